@@ -1,0 +1,1 @@
+//! The binary protocol between the Recon station and its companion apps.

@@ -1,0 +1,1 @@
+"""Recon: a ground control station for several DJI drones over fields."""
