@@ -6,6 +6,22 @@ from recon.model.units import is_finite
 
 
 @dataclass(frozen=True, slots=True)
+class LatLon:
+    """A horizontal WGS84 position, for where no height can be trusted."""
+
+    latitude_deg: float
+    longitude_deg: float
+
+    def is_valid(self) -> bool:
+        """Return whether the numbers are finite and on the globe."""
+        return (
+            is_finite(self.latitude_deg, self.longitude_deg)
+            and abs(self.latitude_deg) <= 90.0
+            and abs(self.longitude_deg) <= 180.0
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class GeoPoint:
     """A WGS84 position; the height is above the ellipsoid."""
 

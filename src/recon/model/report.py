@@ -6,7 +6,7 @@ None in a field means the app said "unknown", or said something that cannot be t
 from dataclasses import dataclass
 from enum import IntEnum
 
-from recon.model.geo import GeoPoint
+from recon.model.geo import LatLon
 from recon.model.imagery import RgbImage
 from recon.model.vehicle import Attitude, BatteryWarning, CameraState, FlightMode, VelocityNed
 
@@ -16,8 +16,8 @@ class CoreReport:
     """Core telemetry (ICD 3.1.1)."""
 
     is_flying: bool | None
-    position: GeoPoint | None
-    """None without a fix. The height is the app's own WGS84 altitude (0 when unknown)."""
+    position: LatLon | None
+    """None without a fix (the app sends 0, 0 then)."""
     reported_altitude_m: float | None
     height_above_takeoff_m: float | None
     velocity_ned: VelocityNed | None

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from enum import Enum, IntEnum
 
-from recon.model.geo import GeoPoint
+from recon.model.geo import GeoPoint, LatLon
 from recon.model.stamped import Stamped
 
 
@@ -150,7 +150,7 @@ class VehicleState:
     profile: VehicleProfile | None = None
     is_simulated: bool = False
     is_flying: Stamped[bool] = Stamped()
-    position: Stamped[GeoPoint] = Stamped()
+    position: Stamped[LatLon] = Stamped()
     height_above_takeoff_m: Stamped[float] = Stamped()
     reported_altitude_m: Stamped[float] = Stamped()
     velocity_ned: Stamped[VelocityNed] = Stamped()
@@ -172,7 +172,7 @@ class VehicleState:
     altitude_offset_m: Stamped[float] = Stamped()
     """Altitude minus height above takeoff, of one packet: what a wgs84 app must have subtracted."""
     altitude_offset_at_takeoff_m: float | None = None
-    takeoff_point: GeoPoint | None = None
+    takeoff_point: LatLon | None = None
     conflict_link_ids: tuple[int, ...] = ()
     """Other live links that claim this serial."""
     track: tuple[TrackPoint, ...] = field(default=())
