@@ -173,8 +173,10 @@ class VehicleState:
     """Altitude minus height above takeoff, of one packet: what a wgs84 app must have subtracted."""
     altitude_offset_at_takeoff_m: float | None = None
     takeoff_point: LatLon | None = None
-    conflict_link_ids: tuple[int, ...] = ()
-    """Other live links that claim this serial."""
+    rival_link_ids: tuple[int, ...] = ()
+    """Other open links that claim this serial; which one is the vehicle is being settled."""
+    in_conflict: bool = False
+    """Whether the old link spoke on after a rival came: an operator's matter."""
     track: tuple[TrackPoint, ...] = field(default=())
 
     @property
