@@ -1,0 +1,350 @@
+"""What the API says and hears. The console's types are generated from these models.
+
+Ages are seconds at the moment the message was made (`StationState.time_ns`); a reader adds the time
+since. `value: null` means unknown. Heights are above the vehicle's own takeoff point unless named
+otherwise.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Message(BaseModel):
+    """Base of all messages: immutable, and unknown keys are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+# --- what the station tells --------------------------------------------------------------------
+
+
+class AgedNumber(Message):
+    """A number with its age."""
+
+    value: float | None
+    age_s: float | None
+
+
+class AgedFlag(Message):
+    """A yes or no with its age."""
+
+    value: bool | None
+    age_s: float | None
+
+
+class AgedText(Message):
+    """A word with its age."""
+
+    value: str | None
+    age_s: float | None
+
+
+class PositionView(Message):
+    """Where a vehicle is (WGS84)."""
+
+    latitude_deg: float | None
+    longitude_deg: float | None
+    age_s: float | None
+
+
+class VelocityView(Message):
+    """How a vehicle moves: metres per second, north-east-down."""
+
+    north_mps: float | None
+    east_mps: float | None
+    down_mps: float | None
+    age_s: float | None
+
+
+class AttitudeView(Message):
+    """Yaw clockwise from north, pitch nose up, roll right side down."""
+
+    yaw_deg: float | None
+    pitch_deg: float | None
+    roll_deg: float | None
+    age_s: float | None
+
+
+class FrameView(Message):
+    """The newest camera frame of a vehicle, to be fetched by its id."""
+
+    id: int
+    received_age_s: float
+    captured_age_s: float
+    captured_sigma_s: float
+
+
+StalenessWord = Literal["live", "late", "lost", "silent"]
+
+
+class VehicleView(Message):
+    """One vehicle. `number` is stable for the life of the station: colour and shortcut."""
+
+    number: int
+    serial: str | None
+    link_id: int | None
+    name: str
+    model: str
+    is_simulated: bool
+    is_eye: bool
+    staleness: StalenessWord
+    telemetry_age_s: float | None
+    is_flying: AgedFlag
+    position: PositionView
+    height_above_takeoff_m: AgedNumber
+    reported_altitude_m: AgedNumber
+    velocity_ned: VelocityView
+    attitude: AttitudeView
+    battery_fraction: AgedNumber
+    battery_warning: AgedText
+    gnss_satellite_count: AgedNumber
+    gnss_signal_level: AgedNumber
+    wind_level: AgedNumber
+    flight_mode: AgedText
+    mission_id: AgedNumber
+    camera_state: AgedText
+    waypoint_altitude: Literal["unset", "wgs84", "takeoff"]
+    conflict_link_ids: list[int]
+    track: list[tuple[float, float]] = Field(description="longitude, latitude; oldest first")
+    frame: FrameView | None
+
+
+class LinkView(Message):
+    """One TCP connection of a companion app, with what its bytes have been like."""
+
+    id: int
+    remote_address: str
+    status: Literal["identified", "unidentified", "conflict", "closed"]
+    claimed_serial: str | None
+    opened_age_s: float
+    last_packet_age_s: float | None
+    closed_reason: str | None
+    bytes_received: int
+    packets_received: int
+    images_received: int
+    bad_hash: int
+    bad_size: int
+    unknown_pid: int
+    meaningless: int
+    bytes_skipped: int
+    commands_queued: int
+
+
+PhaseWord = Literal[
+    "queued",
+    "sent",
+    "acknowledged",
+    "confirmed",
+    "refused_by_station",
+    "refused_by_app",
+    "timed_out",
+    "superseded",
+    "expired",
+    "failed",
+]
+
+
+class PhaseView(Message):
+    """One change in a command's life."""
+
+    phase: PhaseWord
+    age_s: float
+    note: str
+
+
+class CommandView(Message):
+    """One command and its life so far; `history` ends with the present phase."""
+
+    id: int
+    kind: str
+    serial: str | None
+    vehicle_name: str
+    issued_by: str
+    age_s: float
+    phase: PhaseWord
+    is_final: bool
+    note: str
+    times_sent: int
+    takeoff: bool
+    sent_altitudes: str | None = Field(description="which altitudes a mission was sent with")
+    history: list[PhaseView]
+
+
+Severity = Literal["critical", "error", "warning", "info"]
+
+
+class AlarmView(Message):
+    """An alarm stays until its cause ends; `is_active` false: ended, not yet acknowledged."""
+
+    id: int
+    severity: Severity
+    rule: str
+    serial: str | None
+    link_id: int | None
+    vehicle_name: str
+    text: str
+    raised_age_s: float
+    is_active: bool
+    is_acknowledged: bool
+
+
+class GroundImageView(Message):
+    """The newest frame laid on the ground; corners are (longitude, latitude) NW, NE, SE, SW."""
+
+    frame_id: int
+    serial: str
+    captured_age_s: float
+    captured_sigma_s: float
+    registration: Literal["unregistered"]
+    reference: str = Field(description="which telemetry stands for the marked frame")
+    corners: list[tuple[float, float]]
+    cell_m: float
+    rows: int
+    cols: int
+
+
+class SiteView(Message):
+    """The site's place and the quality of the eye's marked pose."""
+
+    name: str
+    latitude_deg: float | None
+    longitude_deg: float | None
+    ground_altitude_m: float | None
+    eye_serial: str | None
+    pose_rms_px: float | None
+    pose_height_m: float | None
+
+
+class StationView(Message):
+    """The station itself."""
+
+    version: str
+    link_addresses: list[str]
+    uptime_s: float
+    frames_dropped: int
+    capture_folder: str | None
+
+
+class StationState(Message):
+    """Everything a console shows; the stream pushes one of these at up to 10 Hz."""
+
+    time_ns: int
+    station: StationView
+    site: SiteView | None
+    vehicles: list[VehicleView]
+    links: list[LinkView]
+    commands: list[CommandView]
+    alarms: list[AlarmView]
+    ground_image: GroundImageView | None
+
+
+# --- what the station is asked -----------------------------------------------------------------
+
+
+class HoverOrder(Message):
+    """Stop and hold."""
+
+    kind: Literal["hover"]
+
+
+class LandOrder(Message):
+    """Land where the vehicle is."""
+
+    kind: Literal["land"]
+
+
+class ReturnHomeOrder(Message):
+    """Return at the aircraft's own go-home height and land."""
+
+    kind: Literal["return_home"]
+
+
+class CameraStartOrder(Message):
+    """Send images."""
+
+    kind: Literal["camera_start"]
+    fps_hz: float
+
+
+class CameraStopOrder(Message):
+    """Stop sending images."""
+
+    kind: Literal["camera_stop"]
+
+
+class WaypointOrder(Message):
+    """One waypoint; null loiter and gimbal mean no action."""
+
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float
+    speed_mps: float
+    corner_radius_m: float = 0.2
+    loiter_s: float | None = None
+    gimbal_pitch_deg: float | None = None
+
+
+class MissionOrder(Message):
+    """Fly waypoints, replacing any mission being flown."""
+
+    kind: Literal["mission"]
+    waypoints: list[WaypointOrder] = Field(max_length=99)
+    land_at_end: bool = False
+    curved: bool = False
+
+
+class StickOrder(Message):
+    """One virtual stick packet (ground: x north, y east; body: x forward, y right)."""
+
+    kind: Literal["stick"]
+    frame: Literal["ground", "body"] = "ground"
+    yaw_deg: float
+    velocity_x_mps: float
+    velocity_y_mps: float
+    height_above_takeoff_m: float
+    timeout_s: float = 1.0
+
+
+AnyOrder = Annotated[
+    HoverOrder
+    | LandOrder
+    | ReturnHomeOrder
+    | CameraStartOrder
+    | CameraStopOrder
+    | MissionOrder
+    | StickOrder,
+    Field(discriminator="kind"),
+]
+
+
+class OrderRequest(Message):
+    """An order to named vehicles. `takeoff` is the explicit word that they may leave the ground."""
+
+    serials: list[str] = Field(min_length=1, max_length=256)
+    order: AnyOrder
+    takeoff: bool = False
+
+
+class OrderResult(Message):
+    """What became of an order for one vehicle: accepted with a command id, or refused."""
+
+    serial: str | None
+    link_id: int | None
+    vehicle_name: str
+    accepted: bool
+    command_id: int
+    rule: str | None
+    reason: str | None
+
+
+class OrderResponse(Message):
+    """One result for each vehicle named."""
+
+    results: list[OrderResult]
+
+
+class Problem(Message):
+    """Why a request was not carried out."""
+
+    error: str

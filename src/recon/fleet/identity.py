@@ -1,0 +1,153 @@
+"""Identity by serial: which link is which vehicle.
+
+A link has no identity until its serial arrives. A second link with a known serial is a rival: if
+the old link stays silent for a second after that, the rival is the vehicle (an app that
+reconnected); if the old link speaks, it is a conflict, which ends when either link closes or the
+old one falls silent for longer.
+"""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from recon.fleet.state import Fleet, LinkRecord
+from recon.fleet.telemetry import with_newest_values
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import VehicleState
+
+SIMULATED_PREFIX = "SIM-"
+
+
+def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
+    """Return the fleet after a link said its serial."""
+    link = fleet.links[link_id]
+    if link.claimed_serial == serial:
+        return fleet
+    if link.claimed_serial is not None:
+        fleet = release(fleet, link, now_ns)
+    holder = fleet.vehicles.get(serial)
+    has_holder = holder is not None and holder.link_id is not None
+    fleet = _put_link(
+        fleet,
+        replace(
+            fleet.links[link_id],
+            claimed_serial=serial,
+            rival_since_ns=now_ns if has_holder else None,
+            in_conflict=False,
+        ),
+    )
+    return _mark_rivals(fleet, serial) if has_holder else _bind(fleet, link_id, serial)
+
+
+def heard(fleet: Fleet, link_id: int, now_ns: int) -> Fleet:
+    """Return the fleet after a link delivered a valid packet: a holder with rivals objects."""
+    serial = fleet.links[link_id].claimed_serial
+    vehicle = fleet.vehicles.get(serial or "")
+    if vehicle is None or vehicle.link_id != link_id or not vehicle.rival_link_ids:
+        return fleet
+    if vehicle.in_conflict and all(fleet.links[r].in_conflict for r in vehicle.rival_link_ids):
+        return fleet
+    for rival_id in vehicle.rival_link_ids:
+        fleet = _put_link(fleet, replace(fleet.links[rival_id], in_conflict=True))
+    return _mark_rivals(fleet, vehicle.serial or "")
+
+
+def release(fleet: Fleet, link: LinkRecord, now_ns: int) -> Fleet:
+    """Return the fleet after a link gave up its serial (closed, or claims another now)."""
+    serial = link.claimed_serial
+    vehicle = fleet.vehicles.get(serial or "")
+    if serial is None or vehicle is None:
+        return fleet
+    still = replace(link, claimed_serial=None, rival_since_ns=None, in_conflict=False)
+    fleet = _put_link(fleet, still if link.is_open else replace(link, rival_since_ns=None))
+    if vehicle.link_id != link.id:
+        return _mark_rivals(fleet, serial)
+    fleet = _put_vehicle(fleet, replace(vehicle, link_id=None))
+    heirs = _rivals(fleet, serial)
+    return _bind(fleet, heirs[0].id, serial) if heirs else _mark_rivals(fleet, serial)
+
+
+def settle(fleet: Fleet, now_ns: int) -> tuple[Fleet, tuple[tuple[int, str], ...]]:
+    """Return the fleet after rivals whose time has come took over, and the links to close."""
+    closing: list[tuple[int, str]] = []
+    for vehicle in tuple(fleet.vehicles.values()):
+        heir = _heir(fleet, vehicle, now_ns)
+        if heir is None or vehicle.link_id is None or vehicle.serial is None:
+            continue
+        old = fleet.links[vehicle.link_id]
+        closing.append((old.id, f"silent; {vehicle.serial} came back on link {heir.id}"))
+        fleet = _put_link(fleet, replace(old, claimed_serial=None))
+        fleet = _bind(fleet, heir.id, vehicle.serial)
+        fleet = _restart_rivals(fleet, vehicle.serial, now_ns)
+    return fleet, tuple(closing)
+
+
+def _heir(fleet: Fleet, vehicle: VehicleState, now_ns: int) -> LinkRecord | None:
+    """The rival that may take over now, if there is one."""
+    if vehicle.link_id is None or not vehicle.rival_link_ids:
+        return None
+    last_heard_ns = fleet.links[vehicle.link_id].last_packet_at_ns or 0
+    settings = fleet.settings
+    for rival in _rivals(fleet, vehicle.serial or ""):
+        limit_s = settings.conflict_silence_s if rival.in_conflict else settings.takeover_silence_s
+        quiet_since_ns = max(last_heard_ns, rival.rival_since_ns or 0)
+        if now_ns - quiet_since_ns >= seconds_to_ns(limit_s):
+            return rival
+    return None
+
+
+def _rivals(fleet: Fleet, serial: str) -> tuple[LinkRecord, ...]:
+    """Open links that claim a serial without being its vehicle's link, the first to come first."""
+    vehicle = fleet.vehicles[serial]
+    claiming: Iterable[LinkRecord] = (
+        link
+        for link in fleet.links.values()
+        if link.is_open and link.claimed_serial == serial and link.id != vehicle.link_id
+    )
+    return tuple(sorted(claiming, key=lambda link: link.rival_since_ns or 0))
+
+
+def _bind(fleet: Fleet, link_id: int, serial: str) -> Fleet:
+    """Make a link the vehicle's link; the vehicle keeps its history."""
+    link = fleet.links[link_id]
+    known = fleet.vehicles.get(serial) or VehicleState(serial=serial)
+    profile = fleet.profiles.get(serial)
+    vehicle = replace(
+        with_newest_values(known, link.own_state),
+        link_id=link_id,
+        profile=profile,
+        is_simulated=link.own_state.is_simulated or serial.startswith(SIMULATED_PREFIX),
+        core_received_at_ns=_newest(known.core_received_at_ns, link.own_state.core_received_at_ns),
+        track=known.track or link.own_state.track,
+    )
+    blank = VehicleState(serial=None, link_id=link_id)
+    fleet = _put_link(fleet, replace(link, own_state=blank, rival_since_ns=None, in_conflict=False))
+    return _mark_rivals(_put_vehicle(fleet, vehicle), serial)
+
+
+def _restart_rivals(fleet: Fleet, serial: str, now_ns: int) -> Fleet:
+    """The remaining rivals begin their wait anew against the new holder."""
+    for rival in _rivals(fleet, serial):
+        fleet = _put_link(fleet, replace(rival, rival_since_ns=now_ns, in_conflict=False))
+    return _mark_rivals(fleet, serial)
+
+
+def _mark_rivals(fleet: Fleet, serial: str) -> Fleet:
+    rivals = _rivals(fleet, serial)
+    marked = replace(
+        fleet.vehicles[serial],
+        rival_link_ids=tuple(link.id for link in rivals),
+        in_conflict=any(link.in_conflict for link in rivals),
+    )
+    return _put_vehicle(fleet, marked)
+
+
+def _newest(a: int | None, b: int | None) -> int | None:
+    return b if a is None else a if b is None else max(a, b)
+
+
+def _put_link(fleet: Fleet, link: LinkRecord) -> Fleet:
+    return replace(fleet, links={**fleet.links, link.id: link})
+
+
+def _put_vehicle(fleet: Fleet, vehicle: VehicleState) -> Fleet:
+    return replace(fleet, vehicles={**fleet.vehicles, vehicle.serial or "": vehicle})

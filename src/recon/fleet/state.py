@@ -1,0 +1,83 @@
+"""What the fleet knows: links and vehicles."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from recon.fleet.settings import FleetSettings
+from recon.model.vehicle import Staleness, VehicleProfile, VehicleState
+
+
+@dataclass(frozen=True, slots=True)
+class LinkRecord:
+    """One connection. `own_state` is what it reported while it was not a vehicle's link."""
+
+    id: int
+    remote_address: str
+    opened_at_ns: int
+    own_state: VehicleState
+    closed_at_ns: int | None = None
+    closed_reason: str | None = None
+    claimed_serial: str | None = None
+    last_packet_at_ns: int | None = None
+    rival_since_ns: int | None = None
+    """When it brought a serial that another open link holds."""
+    in_conflict: bool = False
+    """Whether the holder spoke after that."""
+    packets: int = 0
+    images: int = 0
+    meaningless: int = 0
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the connection stands."""
+        return self.closed_at_ns is None
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """All links (open and lately closed) and all vehicles ever identified in this run."""
+
+    settings: FleetSettings = FleetSettings()
+    profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
+    links: Mapping[int, LinkRecord] = field(default_factory=dict)
+    vehicles: Mapping[str, VehicleState] = field(default_factory=dict)
+
+    def vehicle_of_link(self, link_id: int) -> VehicleState | None:
+        """Return the state a link's reports go to: its vehicle's, or its own without one."""
+        link = self.links.get(link_id)
+        if link is None:
+            return None
+        vehicle = self.vehicles.get(link.claimed_serial or "")
+        return vehicle if vehicle is not None and vehicle.link_id == link_id else link.own_state
+
+    def link_ids_claiming(self, serial: str) -> tuple[int, ...]:
+        """Return every open link that claims `serial`, the vehicle's own link first."""
+        vehicle = self.vehicles.get(serial)
+        if vehicle is None:
+            return ()
+        own = () if vehicle.link_id is None else (vehicle.link_id,)
+        return own + vehicle.rival_link_ids
+
+    def unbound_links(self) -> tuple[LinkRecord, ...]:
+        """Return the open links that are no vehicle's link: unidentified, or rivals."""
+        return tuple(
+            link for link in self.links.values() if link.is_open and not self._is_bound(link)
+        )
+
+    def _is_bound(self, link: LinkRecord) -> bool:
+        vehicle = self.vehicles.get(link.claimed_serial or "")
+        return vehicle is not None and vehicle.link_id == link.id
+
+
+STALENESS_TIERS_S = ((1.0, Staleness.LIVE), (3.0, Staleness.LATE), (10.0, Staleness.LOST))
+
+
+def staleness(vehicle: VehicleState, now_ns: int) -> Staleness:
+    """Return the tier of the newest core telemetry's age; never heard counts as silent."""
+    if vehicle.core_received_at_ns is None:
+        return Staleness.SILENT
+    age_s = (now_ns - vehicle.core_received_at_ns) / 1e9
+    for limit_s, tier in STALENESS_TIERS_S:
+        if age_s < limit_s:
+            return tier
+    return Staleness.SILENT

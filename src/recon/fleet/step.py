@@ -1,0 +1,115 @@
+"""The fleet's step: links come and go, reports are folded in, identities are settled."""
+
+from dataclasses import dataclass, replace
+
+from recon.fleet import identity
+from recon.fleet.state import Fleet, LinkRecord
+from recon.fleet.telemetry import fold_core, fold_extended
+from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived, Tick
+from recon.model.report import (
+    CoreReport,
+    ExtendedReport,
+    ImageReport,
+    MeaninglessReport,
+    MessageReport,
+    Report,
+)
+from recon.model.vehicle import VehicleState
+
+SIMULATOR_GREETING = "recon-sim simulated vehicle"
+"""A simulated app says so twice: in its first message and by its serial's prefix."""
+
+
+@dataclass(frozen=True, slots=True)
+class CloseLink:
+    """The connection is to be closed, for this reason."""
+
+    link_id: int
+    reason: str
+
+
+def step(fleet: Fleet, event: Event, now_ns: int) -> tuple[Fleet, tuple[CloseLink, ...]]:
+    """Return the fleet after an event, and the links to close. Pure."""
+    match event:
+        case LinkOpened(link_id, remote_address):
+            return _opened(fleet, link_id, remote_address, now_ns), ()
+        case LinkClosed(link_id, reason):
+            return _closed(fleet, link_id, reason, now_ns), ()
+        case PacketReceived(link_id, report) if link_id in fleet.links:
+            return _received(fleet, link_id, report, now_ns), ()
+        case Tick():
+            settled, closing = identity.settle(fleet, now_ns)
+            return settled, tuple(CloseLink(*item) for item in closing)
+    return fleet, ()
+
+
+def _opened(fleet: Fleet, link_id: int, remote_address: str, now_ns: int) -> Fleet:
+    link = LinkRecord(
+        id=link_id,
+        remote_address=remote_address,
+        opened_at_ns=now_ns,
+        own_state=VehicleState(serial=None, link_id=link_id),
+    )
+    return replace(fleet, links={**fleet.links, link_id: link})
+
+
+def _closed(fleet: Fleet, link_id: int, reason: str, now_ns: int) -> Fleet:
+    link = fleet.links.get(link_id)
+    if link is None or not link.is_open:
+        return fleet
+    gone = replace(link, closed_at_ns=now_ns, closed_reason=reason)
+    links = _forget_oldest({**fleet.links, link_id: gone}, fleet.settings.closed_links_kept)
+    return identity.release(replace(fleet, links=links), gone, now_ns)
+
+
+def _forget_oldest(links: dict[int, LinkRecord], kept: int) -> dict[int, LinkRecord]:
+    closed = sorted(
+        (link for link in links.values() if link.closed_at_ns is not None),
+        key=lambda link: link.closed_at_ns or 0,
+    )
+    forgotten = {link.id for link in closed[: max(0, len(closed) - kept)]}
+    return {key: link for key, link in links.items() if key not in forgotten}
+
+
+def _received(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
+    fleet = _count(fleet, link_id, report, now_ns)
+    fleet = identity.heard(fleet, link_id, now_ns)
+    if isinstance(report, ExtendedReport) and report.serial is not None:
+        fleet = identity.claim(fleet, link_id, report.serial, now_ns)
+    return _fold(fleet, link_id, report, now_ns)
+
+
+def _count(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
+    link = fleet.links[link_id]
+    counted = replace(
+        link,
+        last_packet_at_ns=now_ns,
+        packets=link.packets + 1,
+        images=link.images + isinstance(report, ImageReport),
+        meaningless=link.meaningless + isinstance(report, MeaninglessReport),
+    )
+    return replace(fleet, links={**fleet.links, link_id: counted})
+
+
+def _fold(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
+    state = fleet.vehicle_of_link(link_id)
+    if state is None:
+        return fleet
+    match report:
+        case CoreReport():
+            return _put(fleet, link_id, fold_core(state, report, now_ns, fleet.settings))
+        case ExtendedReport():
+            return _put(fleet, link_id, fold_extended(state, report, now_ns))
+        case ImageReport():
+            counted = replace(state, image_received_at_ns=now_ns, image_count=state.image_count + 1)
+            return _put(fleet, link_id, counted)
+        case MessageReport(_, text) if text == SIMULATOR_GREETING:
+            return _put(fleet, link_id, replace(state, is_simulated=True))
+    return fleet
+
+
+def _put(fleet: Fleet, link_id: int, state: VehicleState) -> Fleet:
+    if state.serial is not None:
+        return replace(fleet, vehicles={**fleet.vehicles, state.serial: state})
+    link = replace(fleet.links[link_id], own_state=state)
+    return replace(fleet, links={**fleet.links, link_id: link})

@@ -1,0 +1,122 @@
+"""Reports folded into a vehicle's state."""
+
+from dataclasses import fields, replace
+from typing import Any
+
+from recon.fleet.settings import FleetSettings
+from recon.geo.distance import horizontal_distance_m
+from recon.model.geo import LatLon
+from recon.model.report import CoreReport, ExtendedReport
+from recon.model.stamped import Stamped
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import TrackPoint, VehicleState
+
+LEAST_TRACK_STEP_M = 0.5
+
+
+def fold_core(
+    state: VehicleState, report: CoreReport, now_ns: int, settings: FleetSettings
+) -> VehicleState:
+    """Return the state after core telemetry (ICD 3.1.1).
+
+    A field the app does not know becomes unknown: an old value is never passed on as new.
+    """
+    offset_m = _altitude_offset_m(report)
+    takes_off = report.is_flying is True and state.is_flying.value is False
+    return replace(
+        state,
+        is_flying=Stamped(report.is_flying, now_ns),
+        position=Stamped(report.position, now_ns),
+        height_above_takeoff_m=Stamped(report.height_above_takeoff_m, now_ns),
+        reported_altitude_m=Stamped(report.reported_altitude_m, now_ns),
+        velocity_ned=Stamped(report.velocity_ned, now_ns),
+        attitude=Stamped(report.attitude, now_ns),
+        altitude_offset_m=Stamped(offset_m, now_ns),
+        altitude_offset_at_takeoff_m=_offset_at_takeoff_m(state, report, offset_m),
+        takeoff_point=report.position if takes_off else state.takeoff_point,
+        core_received_at_ns=now_ns,
+        track=_extend_track(state, report, now_ns, settings),
+    )
+
+
+def fold_extended(state: VehicleState, report: ExtendedReport, now_ns: int) -> VehicleState:
+    """Return the state after extended telemetry (ICD 3.1.2)."""
+    return replace(
+        state,
+        gnss_satellite_count=Stamped(report.gnss_satellite_count, now_ns),
+        gnss_signal_level=Stamped(report.gnss_signal_level, now_ns),
+        max_height_reached=Stamped(report.max_height_reached, now_ns),
+        max_distance_reached=Stamped(report.max_distance_reached, now_ns),
+        battery_fraction=Stamped(_battery(state, report), now_ns),
+        battery_warning=Stamped(report.battery_warning, now_ns),
+        wind_level=Stamped(report.wind_level, now_ns),
+        camera_state=Stamped(report.camera_state, now_ns),
+        flight_mode=Stamped(report.flight_mode, now_ns),
+        mission_id=Stamped(report.mission_id, now_ns),
+        extended_received_at_ns=now_ns,
+    )
+
+
+def with_newest_values(state: VehicleState, other: VehicleState) -> VehicleState:
+    """Return `state` with every stamped value that `other` knows newer."""
+    newest: dict[str, Any] = {
+        name: max(getattr(state, name), getattr(other, name), key=_received_at_ns)
+        for name in STAMPED_FIELDS
+    }
+    return replace(state, **newest)
+
+
+STAMPED_FIELDS = tuple(
+    field.name for field in fields(VehicleState) if isinstance(field.default, Stamped)
+)
+
+
+def _received_at_ns(stamped: Stamped[Any]) -> int:
+    return -1 if stamped.received_at_ns is None else stamped.received_at_ns
+
+
+def _altitude_offset_m(report: CoreReport) -> float | None:
+    if report.reported_altitude_m is None or report.height_above_takeoff_m is None:
+        return None
+    return report.reported_altitude_m - report.height_above_takeoff_m
+
+
+def _offset_at_takeoff_m(
+    state: VehicleState, report: CoreReport, offset_m: float | None
+) -> float | None:
+    """The offset of the first packet in flight; none on the ground."""
+    if report.is_flying is False:
+        return None
+    if report.is_flying and state.altitude_offset_at_takeoff_m is None:
+        return offset_m
+    return state.altitude_offset_at_takeoff_m
+
+
+def _battery(state: VehicleState, report: ExtendedReport) -> float | None:
+    if report.battery_fraction is None:
+        return None
+    factor = 1.0 if state.profile is None else state.profile.battery_factor
+    return min(1.0, report.battery_fraction * factor)
+
+
+def _extend_track(
+    state: VehicleState, report: CoreReport, now_ns: int, settings: FleetSettings
+) -> tuple[TrackPoint, ...]:
+    if report.position is None:
+        return state.track
+    if state.track and not _is_worth_a_point(state.track[-1], report.position, now_ns, settings):
+        return state.track
+    position = report.position
+    point = TrackPoint(
+        now_ns, position.latitude_deg, position.longitude_deg, report.height_above_takeoff_m
+    )
+    return (*state.track[-(settings.track_points - 1) :], point)
+
+
+def _is_worth_a_point(
+    last: TrackPoint, position: LatLon, now_ns: int, settings: FleetSettings
+) -> bool:
+    if now_ns - last.at_ns < seconds_to_ns(settings.track_interval_s):
+        return False
+    was = LatLon(last.latitude_deg, last.longitude_deg)
+    return horizontal_distance_m(was, position) >= LEAST_TRACK_STEP_M

@@ -1,0 +1,5 @@
+"""Geometry on the ground: the site's east-north-up frame and the globe."""
+
+from recon.geo.local_frame import enu_from_geo, enu_from_point, geo_from_enu, point_from_enu
+
+__all__ = ["enu_from_geo", "enu_from_point", "geo_from_enu", "point_from_enu"]

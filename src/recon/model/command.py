@@ -1,0 +1,134 @@
+"""Commands, what becomes of them, and refusals."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from recon.model.mission import Mission
+
+
+@dataclass(frozen=True, slots=True)
+class Hover:
+    """Stop and hold the position."""
+
+
+@dataclass(frozen=True, slots=True)
+class LandNow:
+    """Land where the vehicle is."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnHome:
+    """Fly home at the aircraft's own go-home height and land."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartCamera:
+    """Send images at about this rate."""
+
+    fps_hz: float
+
+
+@dataclass(frozen=True, slots=True)
+class StopCamera:
+    """Stop sending images."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlyMission:
+    """Fly a waypoint mission, replacing the one being flown."""
+
+    mission: Mission
+
+
+class StickFrame(Enum):
+    """Frame of a stick command's velocity: ICD mode A is ground, mode B is body."""
+
+    GROUND = "ground"
+    BODY = "body"
+
+
+@dataclass(frozen=True, slots=True)
+class VirtualStick:
+    """One virtual stick packet: yaw and height are held, the velocity for at most `timeout_s`.
+
+    `velocity_x_mps` is north (ground) or forward (body), `velocity_y_mps` east or right.
+    """
+
+    frame: StickFrame
+    yaw_deg: float
+    velocity_x_mps: float
+    velocity_y_mps: float
+    height_above_takeoff_m: float
+    timeout_s: float
+
+
+EmergencyBody = Hover | LandNow | ReturnHome
+Body = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
+
+EMERGENCY_BODIES = (Hover, LandNow, ReturnHome)
+CAMERA_BODIES = (StartCamera, StopCamera)
+
+BODY_NAMES: dict[type, str] = {
+    Hover: "hover",
+    LandNow: "land",
+    ReturnHome: "return_home",
+    StartCamera: "camera_start",
+    StopCamera: "camera_stop",
+    FlyMission: "mission",
+    VirtualStick: "stick",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One order to one vehicle, or (all stop only) to one link that has no identity.
+
+    `takeoff` is the operator's explicit word that the vehicle may leave the ground.
+    """
+
+    id: int
+    body: Body
+    issued_by: str
+    issued_at_ns: int
+    expires_at_ns: int
+    serial: str | None = None
+    link_id: int | None = None
+    takeoff: bool = False
+
+    @property
+    def name(self) -> str:
+        """The body's name as the API and the audit write it."""
+        return BODY_NAMES[type(self.body)]
+
+    @property
+    def is_emergency(self) -> bool:
+        """Whether this travels in the ICD's Emergency Command packet."""
+        return isinstance(self.body, EMERGENCY_BODIES)
+
+
+class Phase(Enum):
+    """Where a command is in its life. Only telemetry confirms; an acknowledgment does not."""
+
+    QUEUED = "queued"
+    SENT = "sent"
+    ACKNOWLEDGED = "acknowledged"
+    CONFIRMED = "confirmed"
+    REFUSED_BY_STATION = "refused_by_station"
+    REFUSED_BY_APP = "refused_by_app"
+    TIMED_OUT = "timed_out"
+    SUPERSEDED = "superseded"
+    EXPIRED = "expired"
+    FAILED = "failed"
+
+    @property
+    def is_final(self) -> bool:
+        """Whether the life has ended."""
+        return self not in (Phase.QUEUED, Phase.SENT, Phase.ACKNOWLEDGED)
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """A command that is not sent: which rule says no, and why."""
+
+    rule: str
+    reason: str

@@ -1,0 +1,119 @@
+"""Everything that can happen to the station: one ordered queue of these drives it."""
+
+from dataclasses import dataclass
+
+from recon.model.command import Body, Phase
+from recon.model.report import Report
+
+
+@dataclass(frozen=True, slots=True)
+class LinkOpened:
+    """A companion app connected."""
+
+    link_id: int
+    remote_address: str
+
+
+@dataclass(frozen=True, slots=True)
+class LinkClosed:
+    """A connection ended, with the reason in words."""
+
+    link_id: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PacketReceived:
+    """An app said something."""
+
+    link_id: int
+    report: Report
+
+
+@dataclass(frozen=True, slots=True)
+class CommandSent:
+    """A command's packet was handed to the socket."""
+
+    link_id: int
+    command_id: int
+
+
+@dataclass(frozen=True, slots=True)
+class CommandAnswered:
+    """An app acknowledged (or refused) a command; `positive` None: the ack missed its time."""
+
+    link_id: int
+    command_id: int
+    positive: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class CommandDropped:
+    """A command left a link's queue without being sent."""
+
+    link_id: int
+    command_id: int
+    phase: Phase
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """Time went on."""
+
+
+@dataclass(frozen=True, slots=True)
+class OperatorOrder:
+    """Somebody orders one body for one vehicle (or one link without identity).
+
+    `command_id` is given by whoever asks, so that the answer can be told apart.
+    """
+
+    command_id: int
+    body: Body
+    issued_by: str
+    serial: str | None = None
+    link_id: int | None = None
+    takeoff: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmAcknowledged:
+    """A person has seen an alarm."""
+
+    alarm_id: int
+    by: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WorkerResult:
+    """Heavy work came back; `result` is a value of the room that did it, or the error's text."""
+
+    job_id: int
+    kind: str
+    result: object | None
+    error: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DeadlineMissed:
+    """Heavy work was not done in time, or was dropped for newer work."""
+
+    job_id: int
+    kind: str
+    reason: str
+
+
+Event = (
+    LinkOpened
+    | LinkClosed
+    | PacketReceived
+    | CommandSent
+    | CommandAnswered
+    | CommandDropped
+    | Tick
+    | OperatorOrder
+    | AlarmAcknowledged
+    | WorkerResult
+    | DeadlineMissed
+)

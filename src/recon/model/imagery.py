@@ -1,0 +1,62 @@
+"""Frames, camera poses and images on the ground."""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.geo import GroundGrid
+
+RgbImage: TypeAlias = npt.NDArray[np.uint8]
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """One camera frame; exactly one of `rgb` (H, W, 3) uint8 and `jpeg` is set.
+
+    Image packets carry no time: `captured_at_ns` is the receive time less the vehicle's latency.
+    """
+
+    id: int
+    serial: str
+    received_at_ns: int
+    captured_at_ns: int
+    captured_sigma_s: float
+    rgb: RgbImage | None = None
+    jpeg: bytes | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraPose:
+    """Where a camera is and looks: ray_enu = rotation_enu_camera @ ray_camera.
+
+    `covariance` is (6, 6): rotation vector (rad, in ENU), then position (m, ENU);
+    None when unknown.
+    """
+
+    rotation_enu_camera: FloatArray
+    position_enu_m: FloatArray
+    covariance: FloatArray | None = None
+
+
+class Registration(Enum):
+    """How a ground image was laid on the ground."""
+
+    UNREGISTERED = "unregistered"
+    """By the marked frame's pose moved by telemetry: metres off are possible."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundImage:
+    """A frame laid on the ground: `rgb` (R, C, 3) uint8, `valid` (R, C) bool, on `grid`."""
+
+    grid: GroundGrid
+    frame_id: int
+    captured_at_ns: int
+    rgb: RgbImage
+    valid: npt.NDArray[np.bool_]
+    pose: CameraPose
+    registration: Registration = Registration.UNREGISTERED

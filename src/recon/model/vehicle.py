@@ -1,0 +1,192 @@
+"""Vehicles: what each one is (profile) and what is known of it now (state)."""
+
+from dataclasses import dataclass, field
+from enum import Enum, IntEnum
+
+from recon.model.geo import GeoPoint, LatLon
+from recon.model.stamped import Stamped
+
+
+class FlightMode(IntEnum):
+    """DJI flight modes as the ICD numbers them (table 3)."""
+
+    MANUAL = 0
+    ATTI = 1
+    ATTI_COURSE_LOCK = 2
+    GPS_ATTI = 3
+    GPS_COURSE_LOCK = 4
+    GPS_HOME_LOCK = 5
+    GPS_HOT_POINT = 6
+    ASSISTED_TAKEOFF = 7
+    AUTO_TAKEOFF = 8
+    AUTO_LANDING = 9
+    GPS_WAYPOINT = 10
+    GO_HOME = 11
+    JOYSTICK = 12
+    GPS_ATTI_WRISTBAND = 13
+    DRAW = 14
+    GPS_FOLLOW_ME = 15
+    ACTIVE_TRACK = 16
+    TAP_FLY = 17
+    GPS_SPORT = 18
+    GPS_NOVICE = 19
+    UNKNOWN = 20
+    CONFIRM_LANDING = 21
+    TERRAIN_FOLLOW = 22
+    TRIPOD = 23
+    ACTIVE_TRACK_SPOTLIGHT = 24
+    MOTORS_JUST_STARTED = 25
+    OTHER = 255
+
+
+class CameraState(IntEnum):
+    """What the app says of the DJI camera (field DJICam)."""
+
+    NOT_CONNECTED = 0
+    FEED_OFF = 1
+    FEED_ON = 2
+
+
+class BatteryWarning(IntEnum):
+    """What the aircraft's own thresholds say (field BatWarning)."""
+
+    NONE = 0
+    LOW = 1
+    SERIOUS = 2
+
+
+class AltitudeReference(Enum):
+    """What a waypoint's altitude field means to a vehicle's app. Never guessed."""
+
+    UNSET = "unset"
+    WGS84 = "wgs84"
+    TAKEOFF = "takeoff"
+
+
+class Mount(Enum):
+    """How the camera hangs: a gimbal keeps it level, a fixed mount tilts with the aircraft."""
+
+    GIMBAL = "gimbal"
+    FIXED = "fixed"
+
+
+class Staleness(Enum):
+    """How old the newest core telemetry is: under 1 s, 3 s, 10 s, or older / never."""
+
+    LIVE = "live"
+    LATE = "late"
+    LOST = "lost"
+    SILENT = "silent"
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleProfile:
+    """What a vehicle is and accepts; set per serial in the site's file."""
+
+    serial: str
+    name: str = ""
+    model: str = "unknown model"
+    waypoint_altitude: AltitudeReference = AltitudeReference.UNSET
+    mount: Mount = Mount.GIMBAL
+    pad: GeoPoint | None = None
+    max_waypoints: int = 99
+    battery_factor: float = 1.0
+    """Multiplies the reported battery fraction: 2 for an app that halves it."""
+    video_latency_s: float = 0.5
+    """Capture-to-receive latency of image packets, which carry no time of their own."""
+    video_latency_sigma_s: float = 0.25
+    packet_gap_s: float = 0.1
+    """Least time between two packets to the app; some apps read one packet per segment."""
+
+    @property
+    def display_name(self) -> str:
+        """The name people see: the given one, else the serial."""
+        return self.name or self.serial
+
+
+@dataclass(frozen=True, slots=True)
+class Attitude:
+    """Yaw clockwise from north, pitch nose up, roll right side down, in degrees."""
+
+    yaw_deg: float
+    pitch_deg: float
+    roll_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class VelocityNed:
+    """Velocity in metres per second, north-east-down."""
+
+    north_mps: float
+    east_mps: float
+    down_mps: float
+
+    @property
+    def speed_mps(self) -> float:
+        """Length of the three-dimensional velocity."""
+        return float((self.north_mps**2 + self.east_mps**2 + self.down_mps**2) ** 0.5)
+
+
+@dataclass(frozen=True, slots=True)
+class TrackPoint:
+    """One point of where a vehicle has been."""
+
+    at_ns: int
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleState:
+    """What is known of one vehicle, each value with the moment it was received.
+
+    Heights are above the vehicle's own takeoff point (barometric) unless the name says otherwise;
+    `reported_altitude_m` is the app's WGS84 altitude, which may be off by tens of metres.
+    """
+
+    serial: str | None
+    link_id: int | None = None
+    profile: VehicleProfile | None = None
+    is_simulated: bool = False
+    is_flying: Stamped[bool] = Stamped()
+    position: Stamped[LatLon] = Stamped()
+    height_above_takeoff_m: Stamped[float] = Stamped()
+    reported_altitude_m: Stamped[float] = Stamped()
+    velocity_ned: Stamped[VelocityNed] = Stamped()
+    attitude: Stamped[Attitude] = Stamped()
+    battery_fraction: Stamped[float] = Stamped()
+    battery_warning: Stamped[BatteryWarning] = Stamped()
+    gnss_satellite_count: Stamped[int] = Stamped()
+    gnss_signal_level: Stamped[int] = Stamped()
+    wind_level: Stamped[int] = Stamped()
+    max_height_reached: Stamped[bool] = Stamped()
+    max_distance_reached: Stamped[bool] = Stamped()
+    camera_state: Stamped[CameraState] = Stamped()
+    flight_mode: Stamped[FlightMode] = Stamped()
+    mission_id: Stamped[int] = Stamped()
+    core_received_at_ns: int | None = None
+    extended_received_at_ns: int | None = None
+    image_received_at_ns: int | None = None
+    image_count: int = 0
+    altitude_offset_m: Stamped[float] = Stamped()
+    """Altitude minus height above takeoff, of one packet: what a wgs84 app must have subtracted."""
+    altitude_offset_at_takeoff_m: float | None = None
+    takeoff_point: LatLon | None = None
+    rival_link_ids: tuple[int, ...] = ()
+    """Other open links that claim this serial; which one is the vehicle is being settled."""
+    in_conflict: bool = False
+    """Whether the old link spoke on after a rival came: an operator's matter."""
+    track: tuple[TrackPoint, ...] = field(default=())
+
+    @property
+    def is_identified(self) -> bool:
+        """Whether the vehicle has a serial."""
+        return self.serial is not None
+
+    @property
+    def display_name(self) -> str:
+        """The name people see."""
+        if self.profile is not None:
+            return self.profile.display_name
+        return self.serial if self.serial is not None else f"unidentified link {self.link_id}"

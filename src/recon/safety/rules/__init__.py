@@ -1,0 +1,25 @@
+"""The rules of the gate, in the order they are asked: one file each."""
+
+from collections.abc import Callable
+
+from recon.model.command import Command, Refusal
+from recon.safety.rules.altitude_reference import altitude_reference
+from recon.safety.rules.dji_limits import dji_limits
+from recon.safety.rules.finite_numbers import finite_numbers
+from recon.safety.rules.flying import flying
+from recon.safety.rules.identified import identified
+from recon.safety.rules.not_expired import not_expired
+from recon.safety.rules.reachable import reachable
+from recon.safety.situation import Situation
+
+Rule = Callable[[Command, Situation], Refusal | None]
+
+RULES: tuple[Rule, ...] = (
+    reachable,
+    identified,
+    not_expired,
+    finite_numbers,
+    dji_limits,
+    altitude_reference,
+    flying,
+)

@@ -1,0 +1,28 @@
+"""NaN and infinity never leave the station (NaN only as the wire's "no action")."""
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from math import isfinite
+
+from recon.model.command import Command, Refusal
+from recon.safety.situation import Situation
+
+
+def finite_numbers(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a command that carries a number which is none."""
+    for name, value in _numbers(command.body, ""):
+        if not isfinite(value):
+            return Refusal("finite_numbers", f"{name} is {value}: a finite number is needed")
+    return None
+
+
+def _numbers(value: object, name: str) -> Iterator[tuple[str, float]]:
+    """Every float in a body, with the path to it."""
+    if isinstance(value, float):
+        yield name, value
+    elif isinstance(value, tuple):
+        for index, item in enumerate(value, start=1):
+            yield from _numbers(item, f"{name} {index}")
+    elif is_dataclass(value):
+        for field in fields(value):
+            yield from _numbers(getattr(value, field.name), f"{name} {field.name}".strip())

@@ -1,0 +1,27 @@
+"""Orders go to vehicles that are who they say; only emergency orders go further."""
+
+from recon.model.command import Command, Refusal
+from recon.safety.situation import Situation
+
+
+def identified(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse anything but an emergency order without a serial, or while its owner is unsettled."""
+    vehicle = situation.vehicle
+    if command.is_emergency or vehicle is None:
+        return None
+    if vehicle.serial is None:
+        return Refusal(
+            "identified",
+            f"link {command.link_id} has not said its serial: it takes emergency orders only",
+        )
+    if vehicle.rival_link_ids:
+        return Refusal(
+            "identified",
+            f"{vehicle.display_name}: links {_listed(situation.link_ids)} claim this serial; "
+            "only hold, land and return are sent until one of them closes or falls silent",
+        )
+    return None
+
+
+def _listed(link_ids: tuple[int, ...]) -> str:
+    return " and ".join(str(link_id) for link_id in link_ids)

@@ -1,0 +1,38 @@
+"""The gate's thresholds, each with its reason."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class SafetySettings:
+    """Limits of DJI's Mobile SDK 4 where no other reason is given."""
+
+    fresh_telemetry_s: float = 3.0
+    """Telemetry this old still tells whether a vehicle flies: running video causes dropouts of a
+    second or two, and within three no aircraft lands and disarms unseen."""
+
+    altitude_offset_max_age_s: float = 2.0
+    altitude_offset_max_jump_m: float = 2.0
+    """A wgs84 app is sent height + (Altitude - HAG): the offset must be young, and unchanged since
+    takeoff, or the app subtracts something else than was added."""
+
+    min_waypoints: int = 2
+    min_leg_m: float = 0.5
+    max_leg_m: float = 2_000.0
+    max_path_m: float = 30_000.0
+    min_height_m: float = -200.0
+    max_height_m: float = 500.0
+    max_speed_mps: float = 15.0
+    max_loiter_s: float = 32.767
+    min_gimbal_pitch_deg: float = -90.0
+    max_gimbal_pitch_deg: float = 0.0
+    min_corner_radius_m: float = 0.2
+    max_corner_radius_m: float = 1_000.0
+
+    max_stick_speed_mps: float = 15.0
+    max_stick_height_m: float = 500.0
+    max_stick_timeout_s: float = 5.0
+    """An app holds a stick's velocity this long by itself: at 15 m/s already 75 m."""
+
+    max_camera_fps_hz: float = 30.0
+    """No DJI video feed is faster."""

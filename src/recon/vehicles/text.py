@@ -1,0 +1,23 @@
+"""Text from the wire, made harmless (ICD-level decision: it is untrusted)."""
+
+
+def _escape(character: str) -> str:
+    if character == "\\":
+        return "\\\\"
+    if character.isprintable():
+        return character
+    return character.encode("unicode_escape").decode("ascii")
+
+
+def printable(raw: bytes, limit_chars: int = 1000) -> str:
+    """Return `raw` as text without control, formatting or private characters.
+
+    Bytes that are no UTF-8 and characters that are not printable (terminal escapes, line breaks,
+    direction overrides) appear as backslash escapes; a backslash is doubled, so that two different
+    inputs within the limit never look the same. Longer text ends with an ellipsis.
+    """
+    text = "".join(
+        f"\\x{ord(c) - 0xDC00:02x}" if 0xDC80 <= ord(c) <= 0xDCFF else _escape(c)
+        for c in raw[: 4 * limit_chars].decode("utf-8", errors="surrogateescape")
+    )
+    return text if len(text) <= limit_chars else text[:limit_chars] + "…"
