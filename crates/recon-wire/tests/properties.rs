@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use recon_wire::{Deframer, Error, Limits, decode};
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn decoding_what_was_encoded_gives_the_same_packet_and_bytes(packet in packet()) {
