@@ -56,29 +56,32 @@ pub fn deframer(input: &[u8]) {
 /// Packets and counters of a stream that comes in these reads, the last of them taking what is left.
 fn run(stream: &[u8], reads: &[u8], tick_ns: i64) -> (Vec<Packet>, Counters) {
     let mut deframer = Deframer::new(LIMITS);
-    let mut packets = Vec::new();
-    let (mut now_ns, mut left) = (0, stream);
+    let (mut packets, mut delivered) = (Vec::new(), 0);
+    let mut sink = |packet| {
+        delivered += encode(&packet, &LIMITS).map_or(0, |frame| frame.len());
+        packets.push(packet);
+        delivered
+    };
+    let (mut now_ns, mut left, mut bytes_out) = (0, stream, 0);
     for &read in reads {
         let (part, rest) = left.split_at(left.len().min(read.into()));
         left = rest;
         if read == 0 {
             now_ns += tick_ns;
-            deframer.tick(now_ns, &mut |packet| packets.push(packet));
+            deframer.tick(now_ns, &mut |packet| bytes_out = sink(packet));
         }
-        deframer.push(part, now_ns, &mut |packet| packets.push(packet));
-        account(stream.len() - left.len(), &packets, &deframer);
+        deframer.push(part, now_ns, &mut |packet| bytes_out = sink(packet));
+        account(stream.len() - left.len(), bytes_out, &deframer);
     }
-    deframer.push(left, now_ns, &mut |packet| packets.push(packet));
-    deframer.finish(&mut |packet| packets.push(packet));
-    account(stream.len(), &packets, &deframer);
+    deframer.push(left, now_ns, &mut |packet| bytes_out = sink(packet));
+    deframer.finish(&mut |packet| bytes_out = sink(packet));
+    account(stream.len(), bytes_out, &deframer);
     assert_eq!(deframer.pending_bytes(), 0);
     (packets, deframer.counters().clone())
 }
 
 /// Every byte is part of a packet delivered, skipped, or pending.
-fn account(fed: usize, packets: &[Packet], deframer: &Deframer) {
-    let size = |packet| encode(packet, &LIMITS).map_or(0, |frame| frame.len());
-    let delivered: usize = packets.iter().map(size).sum();
+fn account(fed: usize, delivered: usize, deframer: &Deframer) {
     let skipped = deframer.counters().bytes_skipped as usize;
     assert_eq!(fed, delivered + skipped + deframer.pending_bytes());
 }

@@ -1,0 +1,76 @@
+"""The deframer as Python sees it: reads of any size, time, counters."""
+
+import hypothesis.strategies as st
+from hypothesis import given
+from tests.wire.cases import packets
+
+from recon import wire
+
+ACK = wire.Acknowledgment(positive=1, source_pid=253)
+ACK_FRAME = wire.encode(ACK)
+HOVER = wire.EmergencyCommand(action=0)
+SECOND_NS = 1_000_000_000
+FALSE_HEADER = bytes.fromhex("daa7017bb01102000000000870 0f00".replace(" ", ""))
+
+
+@given(
+    st.lists(st.tuples(packets, st.binary(max_size=9)), max_size=5),
+    st.lists(st.integers(0, 400), max_size=20),
+)
+def test_reads_of_any_size_give_the_same(
+    pieces: list[tuple[wire.Packet, bytes]], reads: list[int]
+) -> None:
+    stream = b"".join(noise + wire.encode(packet) for packet, noise in pieces)
+    whole = wire.Deframer()
+    expected = whole.feed(stream) + whole.finish()
+    split = wire.Deframer()
+    found, start = [], 0
+    for read in [*reads, len(stream)]:
+        found += split.feed(stream[start : start + read])
+        start += read
+    found += split.finish()
+    assert found == expected
+    assert split.counters == whole.counters
+
+
+def test_counters_tell_what_came() -> None:
+    unknown = wire.encode(wire.UnknownPacket(pid=99, payload=b"?"))
+    bad_hash = ACK_FRAME[:-1] + b"\x00"
+    bad_size = b"\xda\xa7\x00\x00\x00\x05\x03"
+    deframer = wire.Deframer()
+    stream = b"xyz" + ACK_FRAME + bad_hash + unknown + bad_size + ACK_FRAME + ACK_FRAME[:4]
+    assert len(deframer.feed(stream)) == 3
+    assert deframer.pending_bytes == 4
+    counters = deframer.counters
+    assert counters.packets == {3: 2, 99: 1}
+    assert (counters.bad_hash, counters.bad_size, counters.unknown_pid) == (1, 1, 1)
+    assert (counters.bad_payload, counters.abandoned) == (0, 0)
+    assert counters.bytes_skipped == 3 + 11 + 7
+    assert deframer.finish() == []
+    assert deframer.counters.abandoned == 1
+    assert counters.abandoned == 0, "counters are a snapshot"
+
+
+def test_a_stall_gives_up_the_half_packet_and_what_it_hides() -> None:
+    deframer = wire.Deframer()
+    assert deframer.feed(FALSE_HEADER + ACK_FRAME, 0) == []
+    assert deframer.tick(2 * SECOND_NS - 1) == []
+    assert deframer.tick(2 * SECOND_NS) == [ACK]
+    assert deframer.pending_bytes == 0
+
+
+def test_patience_is_settable() -> None:
+    limits = wire.Limits(stall_timeout_ns=60 * SECOND_NS, age_timeout_ns=3 * SECOND_NS)
+    deframer = wire.Deframer(limits)
+    assert deframer.feed(FALSE_HEADER + ACK_FRAME, 0) == []
+    assert deframer.feed(wire.encode(HOVER), SECOND_NS * 2) == []
+    assert deframer.tick(SECOND_NS * 3) == [ACK, HOVER]
+
+
+def test_a_claim_beyond_the_limits_holds_nothing_up() -> None:
+    deframer = wire.Deframer(wire.Limits(max_image_rows=100))
+    assert deframer.feed(FALSE_HEADER + ACK_FRAME) == [ACK]
+
+
+def test_bytearrays_are_taken_too() -> None:
+    assert wire.Deframer().feed(bytearray(ACK_FRAME)) == [ACK]
