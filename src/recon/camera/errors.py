@@ -10,8 +10,10 @@
 Each message says what was expected, what came and what to do about it.
 """
 
+from recon.model.errors import ReconError
 
-class CameraError(ValueError):
+
+class CameraError(ReconError):
     """Base of what this room raises."""
 
 

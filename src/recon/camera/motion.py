@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo import enu_from_geo
-from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.geo import LatLon, LocalFrame
 from recon.model.imagery import CameraPose
 from recon.model.units import is_finite
 from recon.model.vehicle import Attitude, Mount
@@ -38,7 +38,7 @@ class TelemetryReference:
     @classmethod
     def from_report(
         cls,
-        position: GeoPoint | None,
+        position: LatLon | None,
         height_above_takeoff_m: float | None,
         attitude: Attitude | None,
     ) -> Self | None:
