@@ -24,6 +24,7 @@ from recon.model.imagery import CameraPose, Frame, GroundImage, Registration, Rg
 
 FloatArray = npt.NDArray[np.float64]
 MapArray = npt.NDArray[np.float32]
+MaskArray = npt.NDArray[np.uint8]
 
 LARGEST_LATTICE_STEP = 16
 """In cells. Coarser saves nothing more: remap dominates."""
@@ -35,6 +36,10 @@ constant f that looks straight down, more when tilted; held by the test over ran
 LEAST_HEIGHT_M = 1.0
 """Under this a camera is on the ground and sees no field."""
 MOST_SIZES_KEPT = 4
+MOST_CIRCLE_SEARCHES = 5
+"""Frames of one size searched for the lit circle: a first frame may be dark or half received."""
+ROWS_AT_ONCE = 128
+"""Rows of a mask computed together: bounds the memory, which is large at 3840 x 2160."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,15 +47,18 @@ class _Source:
     """What is known of frames of one size: the camera there and which pixels show something."""
 
     camera: OmnidirectionalCamera
-    mask: npt.NDArray[np.uint8]
-    """(rows, cols): 255 where a pixel and its neighbours lie in the image circle, else 0."""
+    mask: MaskArray
+    """(rows, cols): 255 where a pixel lies in the image circle, else 0."""
+    searches_left: int
+    """How many more frames are searched for the lit circle; 0 once it is known."""
 
 
 class GroundProjector:
     """Lays frames of one camera on one grid.
 
     `circle` is the lens's lit circle at the model's size; without it, it is looked for in the first
-    frame of each size. Keeps a few frame sizes' masks, nothing else, from one call to the next.
+    frames of each size, and the same frames in the same order give the same ground images. Nothing
+    but a few frame sizes' masks is kept from one call to the next.
     """
 
     def __init__(
@@ -67,13 +75,12 @@ class GroundProjector:
         Raises `FrameDecodeError` for an unreadable frame, `FrameSizeError` for one of another
         aspect ratio than the camera's, `PoseError` for a camera that is not above the ground.
         """
-        rgb = decode_frame(frame)
-        ground_rgb, valid = self.lay_pixels(rgb, pose)
+        rgb, valid = self.lay_pixels(decode_frame(frame), pose)
         return GroundImage(
             grid=self.grid,
             frame_id=frame.id,
             captured_at_ns=frame.captured_at_ns,
-            rgb=ground_rgb,
+            rgb=rgb,
             valid=valid,
             pose=pose,
             registration=Registration.UNREGISTERED,
@@ -85,40 +92,44 @@ class GroundProjector:
         col_map, row_map = ground_maps(self.grid, source.camera, pose)
         seen = cv2.remap(source.mask, col_map, row_map, cv2.INTER_NEAREST)
         laid = cv2.remap(rgb, col_map, row_map, cv2.INTER_LINEAR)
-        valid = seen.view(np.bool_) if seen.dtype == np.bool_ else seen > 0
-        return cv2.bitwise_and(laid, laid, mask=seen).astype(np.uint8, copy=False), valid
+        shown = cv2.bitwise_and(laid, laid, mask=seen)
+        return shown.astype(np.uint8, copy=False), seen > 0
 
     def _source(self, rgb: RgbImage) -> _Source:
         size = (rgb.shape[0], rgb.shape[1])
-        if size not in self._sources:
-            self._sources[size] = self._new_source(rgb)
+        source = self._sources.get(size)
+        if source is None or source.searches_left > 0:
+            searches = MOST_CIRCLE_SEARCHES if source is None else source.searches_left
+            source = self._sources[size] = self._searched_source(rgb, searches)
             if len(self._sources) > MOST_SIZES_KEPT:
                 self._sources.popitem(last=False)
-        return self._sources[size]
+        return source
 
-    def _new_source(self, rgb: RgbImage) -> _Source:
+    def _searched_source(self, rgb: RgbImage, searches: int) -> _Source:
         camera = self.camera.scaled_to(rgb.shape[0], rgb.shape[1])
-        if self._circle is None:
-            circle = find_image_circle(rgb, camera)
-        else:
-            circle = self._circle.scaled(camera.cols / self.camera.cols)
-        return _Source(camera, source_mask(camera, circle))
+        if self._circle is not None:
+            known = self._circle.scaled(camera.cols / self.camera.cols)
+            return _Source(camera, source_mask(camera, known), searches_left=0)
+        found = find_image_circle(rgb, camera)
+        searches_left = searches - 1 if found is None else 0
+        return _Source(camera, source_mask(camera, found), searches_left)
 
 
-def source_mask(camera: OmnidirectionalCamera, circle: ImageCircle | None) -> npt.NDArray[np.uint8]:
+def source_mask(camera: OmnidirectionalCamera, circle: ImageCircle | None) -> MaskArray:
     """Return (rows, cols) uint8: 255 for pixels in the lens's valid range and lit circle, else 0.
 
     The frame's outermost pixels are left out: interpolation there would reach outside.
     """
-    col, row = np.meshgrid(np.arange(camera.cols, dtype=float), np.arange(camera.rows, dtype=float))
-    is_shown = np.isfinite(
-        camera.unproject(np.stack([col.ravel(), row.ravel()], axis=1))[:, 0]
-    ).reshape(col.shape)
-    if circle is not None:
-        is_shown &= circle.contains(col, row)
-    is_shown[[0, -1], :] = False
-    is_shown[:, [0, -1]] = False
-    return np.where(is_shown, np.uint8(255), np.uint8(0))
+    mask = np.zeros((camera.rows, camera.cols), dtype=np.uint8)
+    cols = np.arange(1, camera.cols - 1, dtype=np.float64)
+    for first in range(1, camera.rows - 1, ROWS_AT_ONCE):
+        rows = np.arange(first, min(first + ROWS_AT_ONCE, camera.rows - 1), dtype=np.float64)
+        col, row = np.meshgrid(cols, rows)
+        is_shown = camera.is_in_range(np.stack([col, row], axis=-1))
+        if circle is not None:
+            is_shown &= circle.contains(col, row)
+        mask[first : first + len(rows), 1:-1] = np.where(is_shown, np.uint8(255), np.uint8(0))
+    return mask
 
 
 def ground_maps(

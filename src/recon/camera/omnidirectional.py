@@ -70,10 +70,11 @@ class OmnidirectionalCamera:
         lie outside the frame: see `is_in_frame`.
         """
         directions = np.atleast_2d(np.asarray(rays, dtype=np.float64))
+        is_seen = np.isfinite(directions).all(axis=1) & (directions != 0.0).any(axis=1)
+        directions = np.where(is_seen[:, np.newaxis], directions, (0.0, 0.0, 1.0))
         pixels = self.project_beyond_range(directions)
         angle = np.arctan2(np.hypot(directions[:, 0], directions[:, 1]), directions[:, 2])
-        is_seen = angle <= self.largest_angle_rad + 1e-12
-        is_seen &= np.isfinite(directions).all(axis=1) & (directions != 0.0).any(axis=1)
+        is_seen &= angle <= self.largest_angle_rad + 1e-12
         pixels[~is_seen] = np.nan
         return pixels
 
@@ -100,7 +101,7 @@ class OmnidirectionalCamera:
         points = np.atleast_2d(np.asarray(pixels, dtype=np.float64))
         sensor_row, sensor_col = self._sensor_offsets(points)
         radius = np.hypot(sensor_row, sensor_col)
-        is_valid = radius <= self.profile.largest_radius_px * (1.0 + 1e-12)
+        is_valid = self.is_in_range(points)
         rays = np.stack(
             [sensor_col, sensor_row, self.profile.depth_px(np.where(is_valid, radius, 0.0))], axis=1
         )
@@ -115,6 +116,12 @@ class OmnidirectionalCamera:
             (col >= -0.5) & (col <= self.cols - 0.5) & (row >= -0.5) & (row <= self.rows - 0.5)
         )
         return is_inside
+
+    def is_in_range(self, pixels: FloatArray) -> npt.NDArray[np.bool_]:
+        """Return (...) whether pixels (..., 2) have a ray, wherever the frame ends."""
+        radius = np.hypot(*self._sensor_offsets(pixels))
+        is_near: npt.NDArray[np.bool_] = radius <= self.profile.largest_radius_px * (1.0 + 1e-12)
+        return is_near
 
     def scaled_to(self, rows: int, cols: int) -> "OmnidirectionalCamera":
         """Return the same lens for frames of another size: pixel u becomes (u + 0.5) s - 0.5.

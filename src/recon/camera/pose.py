@@ -1,24 +1,15 @@
-"""The camera's pose from ground control points: every triple proposes, all points decide.
+"""The camera's pose from ground control points, and how well it is known."""
 
-Each triple's P3P solutions are scored on all points; the best starts a least-squares fit of the
-reprojection error in pixels of the camera model. The fit's covariance is that of the pose when the
-markings err independently with the scatter that the residuals show.
-"""
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations, islice
-from math import comb
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
-from scipy.spatial.transform import Rotation
 
 from recon.camera.control_points_file import ControlPoint
 from recon.camera.errors import PoseError
 from recon.camera.omnidirectional import OmnidirectionalCamera, scale_between
-from recon.camera.p3p import solve_p3p
+from recon.camera.pose_fit import PoseFit, fit_pose, residuals_px
 from recon.geo import enu_from_geo
 from recon.model.geo import LocalFrame
 from recon.model.imagery import CameraPose
@@ -26,10 +17,6 @@ from recon.model.imagery import CameraPose
 FloatArray = npt.NDArray[np.float64]
 
 FEWEST_POINTS = 4
-MOST_TRIPLES = 1_500
-"""All triples of 21 points; of more points an even selection, so that loading stays quick."""
-LEAST_SPREAD_RATIO = 0.02
-"""Points nearer to one line than this share of its length leave the turn about it open."""
 LARGEST_RMS_SHARE = 0.03
 """Of the image's height. Real markings give 0.2 to 0.5 %; beyond 3 % points are mixed up."""
 LARGEST_POSITION_SIGMA_SHARE = 0.5
@@ -94,16 +81,14 @@ def solve_pose(
             "to four poses to choose from and nothing to check them by; mark more points"
         )
     pixels = _pixels_at_model_size(camera, points, marked_size_px)
-    rays = _rays(camera, points, pixels)
+    _refuse_unseen(camera, points, pixels)
     points_enu = enu_from_geo(
         frame,
         [p.latitude_deg for p in points],
         [p.longitude_deg for p in points],
         [p.ellipsoid_height_m for p in points],
     )
-    _refuse_degenerate(points_enu)
-    start = _best_start(camera, pixels, rays, points_enu)
-    return _report(camera, points, pixels, points_enu, _refine(camera, pixels, points_enu, start))
+    return _report(camera, points, pixels, points_enu, fit_pose(camera, pixels, points_enu))
 
 
 def _pixels_at_model_size(
@@ -122,136 +107,15 @@ def _pixels_at_model_size(
     return (marked + 0.5) * scale - 0.5
 
 
-def _rays(
+def _refuse_unseen(
     camera: OmnidirectionalCamera, points: Sequence[ControlPoint], pixels: FloatArray
-) -> FloatArray:
-    rays = camera.unproject(pixels)
-    for point, ray in zip(points, rays, strict=True):
-        if not np.isfinite(ray).all():
+) -> None:
+    for point, is_in_range in zip(points, camera.is_in_range(pixels), strict=True):
+        if not is_in_range:
             raise PoseError(
                 f"control point {point.name}: expected a pixel inside the lens's field of view, "
                 f"got column {point.col_px:g}, row {point.row_px:g} outside it"
             )
-    return rays
-
-
-def _refuse_degenerate(points_enu: FloatArray) -> None:
-    spread = np.linalg.svd(points_enu - points_enu.mean(axis=0), compute_uv=False)
-    if not spread[1] > LEAST_SPREAD_RATIO * spread[0]:
-        raise PoseError(
-            "expected control points spread over an area, got points on one line (or one place): "
-            "the camera could be turned about that line; mark a point well off it"
-        )
-
-
-def _triples(count: int) -> Iterator[tuple[int, int, int]]:
-    stride = -(-comb(count, 3) // MOST_TRIPLES)
-    return islice(combinations(range(count), 3), 0, None, stride)
-
-
-def _best_start(
-    camera: OmnidirectionalCamera, pixels: FloatArray, rays: FloatArray, points_enu: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the P3P pose (rotation, position) with the least squared error over all points."""
-    best: tuple[float, tuple[FloatArray, FloatArray]] | None = None
-    ground_m = points_enu[:, 2].mean()
-    for triple in _triples(len(points_enu)):
-        chosen = list(triple)
-        for rotation, position in solve_p3p(rays[chosen], points_enu[chosen]):
-            if position[2] <= ground_m:
-                continue
-            cost = float(np.sum(_residuals(camera, pixels, points_enu, rotation, position) ** 2))
-            if best is None or cost < best[0]:
-                best = (cost, (rotation, position))
-    if best is None:
-        raise PoseError(
-            "expected control points that fit a camera above the ground, got none such: no three "
-            "of them agree with any pose; check that columns, rows and coordinates are not mixed up"
-        )
-    return best[1]
-
-
-def _residuals(
-    camera: OmnidirectionalCamera,
-    pixels: FloatArray,
-    points_enu: FloatArray,
-    rotation: FloatArray,
-    position: FloatArray,
-) -> FloatArray:
-    """Return observed minus predicted pixels, (N, 2)."""
-    rays = (points_enu - position) @ rotation
-    return pixels - camera.project_beyond_range(rays)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Fit:
-    rotation: FloatArray
-    position: FloatArray
-    covariance: FloatArray
-
-
-def _refine(
-    camera: OmnidirectionalCamera,
-    pixels: FloatArray,
-    points_enu: FloatArray,
-    start: tuple[FloatArray, FloatArray],
-) -> _Fit:
-    rotation, position = start
-    # The step's units: one radian moves the image as much as this many metres do.
-    lever_m = float(position[2] - points_enu[:, 2].mean())
-    step_sizes = np.array([1.0, 1.0, 1.0, lever_m, lever_m, lever_m])
-    # Twice, so that the Jacobian of the second fit is taken about the solution itself.
-    for _ in range(2):
-        step, jacobian, sum_of_squares = _fit_step(
-            camera, pixels, points_enu, rotation, position, step_sizes
-        )
-        rotation, position = _moved(rotation, position, step)
-    return _Fit(rotation, position, _covariance(jacobian, sum_of_squares, step_sizes))
-
-
-def _moved(
-    rotation: FloatArray, position: FloatArray, step: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Turn by the step's rotation vector (rad, ENU) and shift by its last three (m, ENU)."""
-    turn: FloatArray = Rotation.from_rotvec(step[:3]).as_matrix()
-    return turn @ rotation, position + step[3:]
-
-
-def _fit_step(
-    camera: OmnidirectionalCamera,
-    pixels: FloatArray,
-    points_enu: FloatArray,
-    rotation: FloatArray,
-    position: FloatArray,
-    step_sizes: FloatArray,
-) -> tuple[FloatArray, FloatArray, float]:
-    """Return the step (6,) to the least squares, the Jacobian (2N, 6), the sum of squares."""
-
-    def cost(step: FloatArray) -> FloatArray:
-        moved = _moved(rotation, position, step)
-        return _residuals(camera, pixels, points_enu, *moved).ravel()
-
-    found = least_squares(
-        cost, np.zeros(6), jac="3-point", x_scale=step_sizes, method="lm", xtol=1e-12, ftol=1e-12
-    )
-    return found.x, np.asarray(found.jac, dtype=np.float64), float(2.0 * found.cost)
-
-
-def _covariance(jacobian: FloatArray, sum_of_squares: float, step_sizes: FloatArray) -> FloatArray:
-    """Return the step's covariance (6, 6); raises `PoseError` when the points leave it open."""
-    scaled = jacobian * step_sizes
-    singular = np.linalg.svd(scaled, compute_uv=False)
-    if not singular[-1] > 1e-6 * singular[0]:
-        raise PoseError(
-            "expected control points that fix the camera's position and direction, got points that "
-            "leave some motion of it unseen; mark points that are spread out further"
-        )
-    freedom = jacobian.shape[0] - jacobian.shape[1]
-    information = np.linalg.inv(scaled.T @ scaled)
-    covariance: FloatArray = (
-        np.outer(step_sizes, step_sizes) * information * (sum_of_squares / freedom)
-    )
-    return covariance
 
 
 def _report(
@@ -259,9 +123,9 @@ def _report(
     points: Sequence[ControlPoint],
     pixels: FloatArray,
     points_enu: FloatArray,
-    fit: _Fit,
+    fit: PoseFit,
 ) -> PoseSolution:
-    errors_px = _residuals(camera, pixels, points_enu, fit.rotation, fit.position)
+    errors_px = residuals_px(camera, pixels, points_enu, fit.rotation, fit.position)
     errors_m = _ground_errors_m(camera, pixels, points_enu, fit)
     residuals = tuple(
         PointResidual(p.name, *(float(v) for v in (*px, *m)))
@@ -284,7 +148,7 @@ def _report(
 
 
 def _ground_errors_m(
-    camera: OmnidirectionalCamera, pixels: FloatArray, points_enu: FloatArray, fit: _Fit
+    camera: OmnidirectionalCamera, pixels: FloatArray, points_enu: FloatArray, fit: PoseFit
 ) -> FloatArray:
     """Where each pixel's ray meets the point's own level, minus the point: (N, 2) east, north.
 
@@ -321,7 +185,7 @@ def _refuse_bad_fit(
         )
 
 
-def _tilt(fit: _Fit) -> tuple[float, float]:
+def _tilt(fit: PoseFit) -> tuple[float, float]:
     """Return the optical axis's angle from straight down and its sigma, in degrees."""
     axis = fit.rotation[:, 2]
     across = float(np.hypot(axis[0], axis[1]))

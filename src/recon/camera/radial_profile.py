@@ -22,6 +22,10 @@ TABLE_ROWS = 4096
 NEWTON_STEPS = 2
 """Each squares the error left by the table; two reach rounding."""
 
+LEAST_SLOPE_SHARE = 0.2
+"""Of the angle per pixel at the centre. With less, a polynomial is about to fold back: no lens does
+so, and near the fold a radius says nothing of the angle."""
+
 LARGEST_ANGLE_RAD = float(np.deg2rad(100.0))
 """No lens here sees further from its axis; a polynomial beyond this is extrapolating."""
 
@@ -41,8 +45,8 @@ class RadialProfile:
     def over(cls, polynomial: tuple[float, ...], corner_radius_px: float) -> Self:
         """Return the profile out to the image's corner, or as far as the polynomial is sound.
 
-        It ends where the angle stops growing or passes 100 degrees. Raises `CalibrationError` when
-        the centre itself does not look along the axis.
+        It ends where the angle all but stops growing or passes 100 degrees. Raises
+        `CalibrationError` when the centre itself does not look along the axis.
         """
         if not polynomial or not np.isfinite(polynomial).all() or polynomial[0] >= 0.0:
             raise CalibrationError(
@@ -52,7 +56,9 @@ class RadialProfile:
         radii = np.linspace(0.0, corner_radius_px, TABLE_ROWS)
         with np.errstate(over="ignore", invalid="ignore"):
             angles = np.arctan2(radii, -np.polynomial.polynomial.polyval(radii, polynomial))
-        is_sound = np.append(True, np.diff(angles) > 0.0) & (angles <= LARGEST_ANGLE_RAD)
+        steps = np.diff(angles)
+        is_sound = np.append(True, steps > LEAST_SLOPE_SHARE * max(steps[0], 0.0))
+        is_sound &= angles <= LARGEST_ANGLE_RAD
         count = TABLE_ROWS if is_sound.all() else int(np.argmin(is_sound))
         if count < TABLE_ROWS // 20:
             raise CalibrationError(
