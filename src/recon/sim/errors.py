@@ -1,4 +1,10 @@
-"""What can be wrong with an order to simulate; each error is one sentence for a person."""
+"""What can be wrong with an order to simulate; each error is one sentence for a person.
+
+SimulationError
+|-- FaultError         a fault's description cannot be read, or names no vehicle
+|-- ReplayError        a folder to replay holds no usable field
+`-- FrameSourceError   frames cannot be read, or do not fit
+"""
 
 from recon.model.errors import ReconError
 
@@ -8,7 +14,11 @@ class SimulationError(ReconError):
 
 
 class FaultError(SimulationError):
-    """A fault's description cannot be read."""
+    """A fault's description cannot be read, or names no vehicle."""
+
+
+class ReplayError(SimulationError):
+    """A folder to replay holds no usable field."""
 
 
 class FrameSourceError(SimulationError):
