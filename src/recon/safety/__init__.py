@@ -5,6 +5,6 @@
 
 from recon.safety.gate import ApprovedCommand, approve
 from recon.safety.settings import SafetySettings
-from recon.safety.situation import Situation
+from recon.safety.situation import Claimant, Situation
 
-__all__ = ["ApprovedCommand", "SafetySettings", "Situation", "approve"]
+__all__ = ["ApprovedCommand", "Claimant", "SafetySettings", "Situation", "approve"]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
-from recon.model.command import Command, FlyMission, Refusal
+from recon.model.command import Command, FlyMission, Hover, Refusal, ReturnHome
 from recon.model.vehicle import AltitudeReference, VehicleProfile
 from recon.safety.rules import RULES
 from recon.safety.situation import Situation
@@ -40,11 +40,24 @@ def approve(command: Command, situation: Situation) -> ApprovedCommand | Refusal
             return refusal
     return ApprovedCommand(
         command=command,
-        link_ids=situation.link_ids,
+        link_ids=_link_ids(command, situation),
         profile=None if situation.vehicle is None else situation.vehicle.profile,
         altitude_offset_m=_altitude_offset_m(command, situation),
         approved_at_ns=situation.now_ns,
         key=_KEY,
+    )
+
+
+def _link_ids(command: Command, situation: Situation) -> tuple[int, ...]:
+    """Every link that claims to be the vehicle; hover and return spare those on the ground.
+
+    On the ground, apps in the field answer hover and return with a takeoff.
+    """
+    wakes = isinstance(command.body, Hover | ReturnHome) and not command.takeoff
+    return tuple(
+        claimant.link_id
+        for claimant in situation.claimants
+        if not (wakes and claimant.is_flying.value is False)
     )
 
 

@@ -38,13 +38,13 @@ def answered_kind(body: Body) -> AnsweredKind:
     return _KINDS[type(body)]
 
 
-def describe_altitudes(body: Body, altitude_offset_m: float) -> str | None:
+def describe_altitudes(body: Body, altitude_offset_m: float | None) -> str | None:
     """Return which altitudes a mission is sent with, for the console, the log and the audit."""
     if not isinstance(body, FlyMission):
         return None
     heights = [w.height_above_takeoff_m for w in body.mission.waypoints]
     above = f"{min(heights):.1f} to {max(heights):.1f} m above takeoff"
-    if altitude_offset_m == 0.0:
+    if altitude_offset_m is None:
         return f"sent as {above}"
     low, high = min(heights) + altitude_offset_m, max(heights) + altitude_offset_m
     return (

@@ -5,7 +5,7 @@ Apps in the field answer hover, return and missions on the ground with a takeoff
 
 from recon.model.command import Command, FlyMission, Hover, Refusal, ReturnHome, VirtualStick
 from recon.model.vehicle import VehicleState
-from recon.safety.situation import Situation
+from recon.safety.situation import Claimant, Situation
 
 RULE = "flying"
 _NEEDS_FLIGHT = (Hover, ReturnHome, FlyMission, VirtualStick)
@@ -19,17 +19,22 @@ def flying(command: Command, situation: Situation) -> Refusal | None:
         return None
     if command.takeoff and isinstance(command.body, _MAY_TAKE_OFF):
         return None
-    age_s = vehicle.is_flying.age_s(situation.now_ns)
-    is_fresh = age_s is not None and age_s <= situation.settings.fresh_telemetry_s
-    if is_fresh and vehicle.is_flying.value is True:
+    if any(_says_flying(claimant, situation) for claimant in situation.claimants):
         return None
-    return Refusal(RULE, f"{vehicle.display_name}: {_why(vehicle, age_s, is_fresh)}")
+    return Refusal(RULE, f"{vehicle.display_name}: {_why(vehicle, situation)}")
 
 
-def _why(vehicle: VehicleState, age_s: float | None, is_fresh: bool) -> str:
+def _says_flying(claimant: Claimant, situation: Situation) -> bool:
+    age_s = claimant.is_flying.age_s(situation.now_ns)
+    is_fresh = age_s is not None and age_s <= situation.settings.fresh_telemetry_s
+    return is_fresh and claimant.is_flying.value is True
+
+
+def _why(vehicle: VehicleState, situation: Situation) -> str:
+    age_s = vehicle.is_flying.age_s(situation.now_ns)
     if age_s is None:
         return "no telemetry says that it flies, and the order could start a takeoff"
-    if not is_fresh:
+    if age_s > situation.settings.fresh_telemetry_s:
         return (
             f"telemetry is {age_s:.1f} s old; if it has landed, the order would start a takeoff. "
             "Land is always sent"

@@ -17,11 +17,11 @@ def identified(command: Command, situation: Situation) -> Refusal | None:
     if vehicle.rival_link_ids:
         return Refusal(
             "identified",
-            f"{vehicle.display_name}: links {_listed(situation.link_ids)} claim this serial; "
+            f"{vehicle.display_name}: links {_listed(situation)} claim this serial; "
             "only hold, land and return are sent until one of them closes or falls silent",
         )
     return None
 
 
-def _listed(link_ids: tuple[int, ...]) -> str:
-    return " and ".join(str(link_id) for link_id in link_ids)
+def _listed(situation: Situation) -> str:
+    return " and ".join(str(claimant.link_id) for claimant in situation.claimants)

@@ -1,0 +1,88 @@
+# Recon. `make` alone tells what there is.
+SHELL := /bin/sh
+.DEFAULT_GOAL := help
+MAKEFLAGS += --no-print-directory
+
+UV_VERSION := 0.13.9
+UV := $(shell command -v uv 2>/dev/null || echo .tools/bin/uv)
+RUN := $(UV) run --locked --quiet
+FUZZ_SECONDS ?= 60
+WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
+
+.PHONY: help setup demo run test test-rust test-python test-web test-e2e check format bench fuzz docs web clean
+
+help: ## Show what can be made
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: setup web ## Run the station, four simulated drones and the console at http://127.0.0.1:8080
+	$(RUN) recon demo
+
+test: test-rust test-python test-web test-e2e ## Set everything up and pass all tests
+
+check: setup web/node_modules/.stamp ## Formats, lint, types, import rules, stub and generated files
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --quiet -- -D warnings
+	$(RUN) ruff format --check .
+	$(RUN) ruff check .
+	$(RUN) mypy
+	$(RUN) lint-imports
+	$(RUN) python -m mypy.stubtest recon.wire._native --mypy-config-file pyproject.toml
+	$(RUN) recon openapi | cmp - web/openapi.json || { echo "web/openapi.json is old: make docs"; exit 1; }
+	npm --prefix web run check
+
+setup: .venv/.stamp ## Bring uv and build the Python package with its Rust part
+
+.venv/.stamp: pyproject.toml uv.lock Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml) | $(filter .tools/%,$(UV))
+	@tools/require.sh python3 cargo
+	$(UV) sync --locked --quiet
+	@touch $@
+
+.tools/bin/uv:
+	@tools/require.sh python3
+	python3 -m venv .tools
+	.tools/bin/pip install --quiet uv==$(UV_VERSION)
+
+web: web/dist/index.html ## Build the console
+
+web/dist/index.html: web/node_modules/.stamp $(WEB_SOURCES)
+	npm --prefix web run build --silent
+	@touch $@
+
+web/node_modules/.stamp: web/package.json web/package-lock.json
+	@tools/require.sh node npm
+	npm --prefix web ci --silent --no-audit --no-fund
+	@touch $@
+
+test-rust: setup ## Tests of the wire crate
+	cargo test --workspace --quiet
+
+test-python: setup ## Tests of everything in Python
+	$(RUN) python -m pytest
+
+test-web: web/node_modules/.stamp ## Tests of the console
+	npm --prefix web test --silent
+
+test-e2e: setup web ## The whole thing once, seen through a headless browser
+	@tools/chromium.sh
+	npm --prefix web run e2e --silent
+
+bench: setup ## Measure; every figure beside a baseline of the same run
+	cargo bench -p recon-wire
+	$(RUN) python -m pytest benches -c benches/pytest.ini
+	$(RUN) python -m benches.station.bench_load
+
+fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
+	@cargo fuzz --version >/dev/null 2>&1 || cargo install cargo-fuzz --locked --quiet
+	cd fuzz && for target in deframer packet; do cargo +nightly fuzz run $$target -- -max_total_time=$(FUZZ_SECONDS) || exit 1; done
+
+docs: setup web/node_modules/.stamp ## Bring generated files up to date: the API's description and the console's types
+	$(RUN) recon openapi > web/openapi.json
+	npm --prefix web run generate --silent
+
+format: setup web/node_modules/.stamp ## Format all sources
+	cargo fmt --all
+	$(RUN) ruff format .
+	$(RUN) ruff check --fix .
+
+clean: ## Remove what was built
+	rm -rf .venv target web/dist web/node_modules .tools

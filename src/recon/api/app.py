@@ -1,0 +1,182 @@
+"""The HTTP application: routes, the stream, the console's files."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+from fastapi import FastAPI, HTTPException, Request, Response, WebSocket
+from fastapi import Path as InPath
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import HTMLResponse, JSONResponse
+from fastapi.staticfiles import StaticFiles
+
+from recon.api import pictures, schema
+from recon.api.orders import to_body
+from recon.api.port import StationPort
+from recon.api.security import Access, Doorman
+from recon.api.stream import StateStream
+
+CONSOLE_MISSING = """<!doctype html><title>Recon</title><p>The console is not built.
+Run <code>make web</code> in the project's folder, then start the station again.
+The API is described at <a href="/openapi.json">/openapi.json</a>."""
+
+SECURITY_HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
+        "style-src 'self' 'unsafe-inline'; connect-src 'self' blob:; frame-ancestors 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
+
+_T = TypeVar("_T")
+_PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": schema.Problem}}
+
+
+def create_app(port: StationPort, access: Access, console: Path | None, version: str) -> FastAPI:
+    """Return the application around a station.
+
+    `console` is the folder with the built console; without one a page says how to build it.
+    """
+    app = FastAPI(title="Recon", version=version, docs_url=None, redoc_url=None)
+    _add_state_routes(app, port)
+    _add_order_routes(app, port)
+    _add_picture_routes(app, port)
+    _add_console(app, console)
+    _add_manners(app)
+    app.add_middleware(Doorman, access=access)
+    return app
+
+
+def _add_state_routes(app: FastAPI, port: StationPort) -> None:
+    stream = StateStream(port)
+
+    @app.get("/api/state")
+    async def state() -> schema.StationState:
+        """Everything a console shows, as of now; the stream sends the same."""
+        return port.state()
+
+    @app.get("/api/vehicles")
+    async def vehicles() -> list[schema.VehicleView]:
+        """All vehicles with every value's age."""
+        return port.state().vehicles
+
+    @app.get("/api/vehicles/{serial}", responses=_PROBLEMS)
+    async def vehicle(serial: str) -> schema.VehicleView:
+        """One vehicle."""
+        found = next((v for v in port.state().vehicles if v.serial == serial), None)
+        return _found(found, f"no vehicle has the serial {serial!r}")
+
+    @app.get("/api/commands")
+    async def commands() -> list[schema.CommandView]:
+        """The latest commands and their lives, the newest first."""
+        return port.state().commands
+
+    @app.get("/api/commands/{command_id}", responses=_PROBLEMS)
+    async def command(command_id: int) -> schema.CommandView:
+        """One command and its life."""
+        found = next((c for c in port.state().commands if c.id == command_id), None)
+        return _found(found, f"no command {command_id} is among the latest")
+
+    @app.websocket("/api/stream")
+    async def state_stream(socket: WebSocket) -> None:
+        await stream.serve(socket)
+
+
+def _add_order_routes(app: FastAPI, port: StationPort) -> None:
+    @app.post("/api/orders")
+    async def order(asked: schema.OrderRequest, request: Request) -> schema.OrderResponse:
+        """Give one order to each named vehicle; refusals are among the results."""
+        return port.order(
+            asked.serials, to_body(asked.order), takeoff=asked.takeoff, issued_by=_who(request)
+        )
+
+    @app.post("/api/all-stop")
+    async def all_stop(request: Request) -> schema.OrderResponse:
+        """Hold everything that flies, identified or not. Never cuts motors."""
+        return port.all_stop(_who(request))
+
+    @app.post("/api/alarms/{alarm_id}/acknowledge", responses=_PROBLEMS, status_code=204)
+    async def acknowledge(alarm_id: int, request: Request) -> None:
+        """Mark an alarm as seen by a person; it stays until its cause ends."""
+        if not port.acknowledge(alarm_id, _who(request)):
+            raise HTTPException(404, f"there is no alarm {alarm_id}")
+
+
+def _add_picture_routes(app: FastAPI, port: StationPort) -> None:
+    serial_path = Annotated[str, InPath(max_length=2048)]
+    jpeg: dict[int | str, dict[str, object]] = {200: {"content": {"image/jpeg": {}}}}
+    png: dict[int | str, dict[str, object]] = {200: {"content": {"image/png": {}}}}
+    tiff: dict[int | str, dict[str, object]] = {200: {"content": {"image/tiff": {}}}}
+
+    @app.get(
+        "/api/vehicles/{serial}/frame.jpg", response_class=Response, responses=_PROBLEMS | jpeg
+    )
+    async def frame(serial: serial_path) -> Response:
+        """A vehicle's newest camera frame, as it came."""
+        newest = _found(port.frame(serial), f"{serial!r} has sent no frame")
+        data = await asyncio.to_thread(pictures.frame_jpeg, newest)
+        return Response(data, media_type="image/jpeg", headers={"X-Frame-Id": str(newest.id)})
+
+    @app.get("/api/ground-image.png", response_class=Response, responses=_PROBLEMS | png)
+    async def ground_png() -> Response:
+        """The newest ground image; its corners are in the state."""
+        newest = _found(port.ground_image(), "no frame has been laid on the ground yet")
+        data = await asyncio.to_thread(pictures.ground_png, newest)
+        headers = {"X-Frame-Id": str(newest.frame_id)}
+        return Response(data, media_type="image/png", headers=headers)
+
+    @app.get("/api/ground-image.tif", response_class=Response, responses=_PROBLEMS | tiff)
+    async def ground_tiff() -> Response:
+        """The newest ground image as a GeoTIFF file."""
+        newest = _found(port.ground_image(), "no frame has been laid on the ground yet")
+        data = await asyncio.to_thread(port.geotiff, newest)
+        name = f'attachment; filename="recon-ground-{newest.frame_id}.tif"'
+        return Response(data, media_type="image/tiff", headers={"Content-Disposition": name})
+
+
+def _add_console(app: FastAPI, console: Path | None) -> None:
+    if console is not None and (console / "index.html").is_file():
+        app.mount("/", StaticFiles(directory=console, html=True), name="console")
+        return
+
+    @app.get("/", include_in_schema=False)
+    async def missing() -> HTMLResponse:
+        return HTMLResponse(CONSOLE_MISSING)
+
+
+def _add_manners(app: FastAPI) -> None:
+    """Errors as one sentence, and headers that keep foreign content out."""
+
+    @app.exception_handler(RequestValidationError)
+    async def invalid(_request: Request, problem: RequestValidationError) -> JSONResponse:
+        first = problem.errors()[0]
+        place = ".".join(str(part) for part in first["loc"] if part != "body")
+        return JSONResponse({"error": f"{place or 'body'}: {first['msg']}"}, status_code=422)
+
+    @app.exception_handler(HTTPException)
+    async def refused(_request: Request, problem: HTTPException) -> JSONResponse:
+        return JSONResponse({"error": str(problem.detail)}, status_code=problem.status_code)
+
+    @app.middleware("http")
+    async def add_headers(
+        request: Request, call_next: Callable[[Request], Awaitable[Response]]
+    ) -> Response:
+        response = await call_next(request)
+        for name, value in SECURITY_HEADERS.items():
+            response.headers.setdefault(name, value)
+        if request.url.path.startswith("/api/"):
+            response.headers.setdefault("Cache-Control", "no-store")
+        return response
+
+
+def _found(value: _T | None, sentence: str) -> _T:
+    if value is None:
+        raise HTTPException(404, sentence)
+    return value
+
+
+def _who(request: Request) -> str:
+    """Who asks, for the commands' record."""
+    return f"api {request.client.host}" if request.client is not None else "api"

@@ -1,0 +1,34 @@
+"""What the API needs of the station. The station implements it; tests may too."""
+
+from typing import Protocol
+
+from recon.api.schema import OrderResponse, StationState
+from recon.model.command import Body
+from recon.model.imagery import Frame, GroundImage
+
+
+class StationPort(Protocol):
+    """The station as the API sees it. Every call returns at once."""
+
+    def state(self) -> StationState:
+        """Return everything a console shows, as of now."""
+
+    def order(
+        self, serials: list[str], body: Body, *, takeoff: bool, issued_by: str
+    ) -> OrderResponse:
+        """Give one order to each named vehicle; refusals are results, not errors."""
+
+    def all_stop(self, issued_by: str) -> OrderResponse:
+        """Hold every link whose telemetry says flying, identified or not."""
+
+    def acknowledge(self, alarm_id: int, by: str) -> bool:
+        """Mark an alarm as seen; False when there is none of that number."""
+
+    def frame(self, serial: str) -> Frame | None:
+        """Return a vehicle's newest camera frame."""
+
+    def ground_image(self) -> GroundImage | None:
+        """Return the newest frame laid on the ground."""
+
+    def geotiff(self, image: GroundImage) -> bytes:
+        """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""

@@ -1,0 +1,89 @@
+"""Who may talk to the API: the right host name, no foreign web page, and a token if one is set.
+
+A web page open in the operator's browser can send requests to loopback. So requests whose Origin is
+another site's, or whose Host is not one of ours (DNS rebinding), are refused before anything else.
+"""
+
+import hmac
+from dataclasses import dataclass
+from hashlib import sha256
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers
+from starlette.responses import JSONResponse
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+PROTOCOL = "recon.v1"
+TOKEN_PROTOCOL_PREFIX = "recon.token."
+LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """Who is let in. Only the token's SHA-256 is kept."""
+
+    host_names: frozenset[str] = LOOPBACK_NAMES
+    token_sha256: bytes | None = None
+
+    @classmethod
+    def make(cls, bound_host: str, token: str | None) -> "Access":
+        """Return the access rules for an address; any name goes where a token guards."""
+        names = LOOPBACK_NAMES | {bound_host}
+        return cls(names, None if token is None else sha256(token.encode()).digest())
+
+    def is_token(self, token: str | None) -> bool:
+        """Return whether a token is right; none is needed when none is set."""
+        if self.token_sha256 is None:
+            return True
+        given = sha256((token or "").encode()).digest()
+        return hmac.compare_digest(given, self.token_sha256)
+
+
+class Doorman:
+    """ASGI middleware that applies `Access` to HTTP and WebSocket alike."""
+
+    def __init__(self, app: ASGIApp, access: Access) -> None:
+        self.app = app
+        self.access = access
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let a request through, or refuse it with one sentence."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        status, sentence = self._judge(scope)
+        if sentence is None:
+            await self.app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 1008, "reason": sentence})
+        else:
+            await JSONResponse({"error": sentence}, status_code=status)(scope, receive, send)
+
+    def _judge(self, scope: Scope) -> tuple[int, str | None]:
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if not self._is_our_host(host):
+            return 400, f"this station is not called {host!r}"
+        origin = headers.get("origin")
+        if origin is not None and urlsplit(origin).netloc != host:
+            return 403, f"requests from pages of {origin} are refused"
+        if scope["path"].startswith("/api/") and not self.access.is_token(_token(headers)):
+            return 401, "a token is needed: open the address that the station printed at its start"
+        return 200, None
+
+    def _is_our_host(self, host: str) -> bool:
+        if self.access.token_sha256 is not None:
+            return True
+        return (urlsplit(f"//{host}").hostname or "") in self.access.host_names
+
+
+def _token(headers: Headers) -> str | None:
+    """The token of an Authorization header, or of a WebSocket's subprotocols."""
+    scheme, _, token = headers.get("authorization", "").partition(" ")
+    if scheme.lower() == "bearer":
+        return token.strip()
+    for offered in headers.get("sec-websocket-protocol", "").split(","):
+        if offered.strip().startswith(TOKEN_PROTOCOL_PREFIX):
+            return offered.strip()[len(TOKEN_PROTOCOL_PREFIX) :]
+    return None

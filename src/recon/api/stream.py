@@ -1,0 +1,62 @@
+"""The stream of states: the newest one, as fast as the reader takes them, 10 Hz at most.
+
+Towards slow readers state is conflated: while a message waits to be taken, no other is made, and
+what is made then is of that moment.
+"""
+
+import asyncio
+import time
+from collections.abc import Callable
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from recon.api.port import StationPort
+from recon.api.security import PROTOCOL
+
+INTERVAL_S = 0.1
+MOST_READERS = 32
+
+
+class StateStream:
+    """Serves all readers; one state is made for all who ask within the same interval."""
+
+    def __init__(self, port: StationPort, clock_s: Callable[[], float] = time.monotonic) -> None:
+        self._port = port
+        self._clock_s = clock_s
+        self._text = ""
+        self._made_at_s = float("-inf")
+        self._readers = 0
+
+    async def serve(self, socket: WebSocket) -> None:
+        """Send states to one reader until it goes."""
+        if self._readers >= MOST_READERS:
+            await socket.close(1013, f"{MOST_READERS} readers are connected already")
+            return
+        offered = socket.scope.get("subprotocols", [])
+        await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
+        self._readers += 1
+        gone = asyncio.ensure_future(_until_gone(socket))
+        try:
+            while not gone.done():
+                await socket.send_text(self._newest())
+                await asyncio.wait((gone,), timeout=INTERVAL_S)
+        except (WebSocketDisconnect, RuntimeError):
+            return
+        finally:
+            self._readers -= 1
+            gone.cancel()
+
+    def _newest(self) -> str:
+        if self._clock_s() - self._made_at_s >= INTERVAL_S / 2:
+            self._text = self._port.state().model_dump_json()
+            self._made_at_s = self._clock_s()
+        return self._text
+
+
+async def _until_gone(socket: WebSocket) -> None:
+    """Read and ignore what a reader sends, to learn when it goes."""
+    try:
+        while (await socket.receive())["type"] != "websocket.disconnect":
+            pass
+    except (WebSocketDisconnect, RuntimeError):
+        return

@@ -1,0 +1,53 @@
+"""Camera models, poses, and frames laid on the ground."""
+
+from recon.camera.calibration_file import format_camera, load_camera, parse_camera
+from recon.camera.control_points_file import (
+    ControlPoint,
+    format_control_points,
+    load_control_points,
+    parse_control_points,
+)
+from recon.camera.decode import decode_frame, decode_jpeg, jpeg_size
+from recon.camera.errors import (
+    CalibrationError,
+    CameraError,
+    ControlPointsError,
+    FrameDecodeError,
+    FrameSizeError,
+    PoseError,
+)
+from recon.camera.ground import GroundProjector, ground_maps
+from recon.camera.image_circle import ImageCircle, find_image_circle
+from recon.camera.motion import TelemetryReference, level_pose, moved_pose
+from recon.camera.omnidirectional import OmnidirectionalCamera
+from recon.camera.pose import PointResidual, PoseSolution, solve_pose
+
+__all__ = [
+    "CalibrationError",
+    "CameraError",
+    "ControlPoint",
+    "ControlPointsError",
+    "FrameDecodeError",
+    "FrameSizeError",
+    "GroundProjector",
+    "ImageCircle",
+    "OmnidirectionalCamera",
+    "PointResidual",
+    "PoseError",
+    "PoseSolution",
+    "TelemetryReference",
+    "decode_frame",
+    "decode_jpeg",
+    "find_image_circle",
+    "format_camera",
+    "format_control_points",
+    "ground_maps",
+    "jpeg_size",
+    "level_pose",
+    "load_camera",
+    "load_control_points",
+    "moved_pose",
+    "parse_camera",
+    "parse_control_points",
+    "solve_pose",
+]

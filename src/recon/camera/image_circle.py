@@ -1,0 +1,100 @@
+"""The lit circle that a fisheye lens throws on its sensor; outside it a frame shows nothing.
+
+The calibration does not tell it (its polynomial goes on), so the site's file may, else it is found
+in a frame: from each direction inwards, the first pixel that is clearly lit; a circle through them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.camera.omnidirectional import OmnidirectionalCamera
+from recon.model.imagery import RgbImage
+
+FloatArray = npt.NDArray[np.float64]
+
+DIRECTIONS = 180
+LIT_LEVEL = 32
+"""Of 255. Stray light outside the circle stays under about 15 in real frames."""
+LEAST_HIT_SHARE = 0.4
+"""Of the directions: fewer, and the lens fills the frame or the frame is dark."""
+LARGEST_SPREAD_SHARE = 0.02
+"""Of the radius: edges further from one circle than this are scenery, not the lens's rim."""
+RIM_SHARE = 0.02
+"""The outermost part of the radius is left out: it is dark and blurred."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImageCircle:
+    """The circle within which frames of one size show something."""
+
+    centre_col_px: float
+    centre_row_px: float
+    radius_px: float
+
+    def contains(self, col_px: FloatArray, row_px: FloatArray) -> npt.NDArray[np.bool_]:
+        """Return whether pixels lie within; shapes broadcast."""
+        across_squared = (col_px - self.centre_col_px) ** 2 + (row_px - self.centre_row_px) ** 2
+        is_inside: npt.NDArray[np.bool_] = across_squared <= self.radius_px**2
+        return is_inside
+
+    def scaled(self, scale: float) -> "ImageCircle":
+        """Return the circle in frames that are `scale` times as large."""
+        return ImageCircle(
+            (self.centre_col_px + 0.5) * scale - 0.5,
+            (self.centre_row_px + 0.5) * scale - 0.5,
+            self.radius_px * scale,
+        )
+
+
+def find_image_circle(rgb: RgbImage, camera: OmnidirectionalCamera) -> ImageCircle | None:
+    """Return the lit circle of a frame (rows, cols, 3), or None when it shows none.
+
+    `camera` is the model at the frame's size; its centre is where the search starts.
+    """
+    edge = _outermost_lit(rgb.max(axis=2) >= LIT_LEVEL, camera)
+    if len(edge) < LEAST_HIT_SHARE * DIRECTIONS:
+        return None
+    circle = _circle_through(edge)
+    for _ in range(3):
+        misses = np.abs(np.hypot(edge[:, 0] - circle[0], edge[:, 1] - circle[1]) - circle[2])
+        kept = edge[misses <= max(2.0 * float(np.median(misses)), 1.0)]
+        if len(kept) < 3:
+            return None
+        circle = _circle_through(kept)
+    if not float(np.median(misses)) <= LARGEST_SPREAD_SHARE * circle[2]:
+        return None
+    return ImageCircle(circle[0], circle[1], circle[2] * (1.0 - RIM_SHARE))
+
+
+def _outermost_lit(is_lit: npt.NDArray[np.bool_], camera: OmnidirectionalCamera) -> FloatArray:
+    """Return (N, 2) col, row of the outermost lit pixel in each direction that has a dark rim."""
+    angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
+    radii = np.arange(1.0, np.hypot(camera.rows, camera.cols))
+    cols = camera.centre_col_px + np.outer(np.cos(angles), radii)
+    rows = camera.centre_row_px + np.outer(np.sin(angles), radii)
+    col_indices, row_indices = np.rint(cols).astype(int), np.rint(rows).astype(int)
+    is_inside = (col_indices >= 0) & (col_indices < camera.cols)
+    is_inside &= (row_indices >= 0) & (row_indices < camera.rows)
+    lit = is_lit[np.where(is_inside, row_indices, 0), np.where(is_inside, col_indices, 0)]
+    lit &= is_inside
+    last_lit = lit.shape[1] - 1 - np.argmax(lit[:, ::-1], axis=1)
+    last_inside = is_inside.sum(axis=1) - 1
+    has_rim = lit.any(axis=1) & (last_lit < last_inside - 2)
+    chosen = np.flatnonzero(has_rim)
+    return np.stack([cols[chosen, last_lit[chosen]], rows[chosen, last_lit[chosen]]], axis=1)
+
+
+def _circle_through(points: FloatArray) -> tuple[float, float, float]:
+    """Return centre col, row and radius of the least-squares circle (Kasa 1976) through (N, 2)."""
+    middle = points.mean(axis=0)
+    x, y = (points - middle).T
+    design = np.stack([x, y, np.ones_like(x)], axis=1)
+    (a, b, c), *_ = np.linalg.lstsq(design, x * x + y * y, rcond=None)
+    radius_squared = c + (a * a + b * b) / 4.0
+    return (
+        float(middle[0] + a / 2.0),
+        float(middle[1] + b / 2.0),
+        float(np.sqrt(max(radius_squared, 0.0))),
+    )

@@ -1,0 +1,115 @@
+"""The marked frame's pose, moved by what telemetry says has changed since.
+
+Only differences of telemetry are used, so a constant error of the aircraft's position, height or
+compass cancels. What is left (drift of the barometer, GNSS wander, compass) is not known here:
+a moved pose has no covariance.
+"""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.geo import enu_from_geo
+from recon.model.geo import LatLon, LocalFrame
+from recon.model.imagery import CameraPose
+from recon.model.units import is_finite
+from recon.model.vehicle import Attitude, Mount
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class TelemetryReference:
+    """Where the aircraft said it was and how it lay at one moment.
+
+    Height is above takeoff (barometric); yaw clockwise from north, pitch nose up, roll right side
+    down, as in core telemetry (ICD 3.1.1).
+    """
+
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float
+    yaw_deg: float
+    pitch_deg: float = 0.0
+    roll_deg: float = 0.0
+
+    @classmethod
+    def from_report(
+        cls,
+        position: LatLon | None,
+        height_above_takeoff_m: float | None,
+        attitude: Attitude | None,
+    ) -> Self | None:
+        """Return the reference that a telemetry report gives, None when a part is unknown."""
+        if position is None or height_above_takeoff_m is None or attitude is None:
+            return None
+        values = (
+            position.latitude_deg,
+            position.longitude_deg,
+            height_above_takeoff_m,
+            attitude.yaw_deg,
+            attitude.pitch_deg,
+            attitude.roll_deg,
+        )
+        return cls(*values) if is_finite(*values) else None
+
+
+def moved_pose(
+    marked_pose: CameraPose,
+    frame: LocalFrame,
+    marked: TelemetryReference,
+    now: TelemetryReference,
+    mount: Mount,
+) -> CameraPose:
+    """Return the camera's pose at `now`, given its pose when telemetry said `marked`.
+
+    The camera turns with the aircraft's yaw always, with pitch and roll only on a fixed mount (a
+    gimbal takes those out). The camera's arm about the aircraft's position is neglected.
+    """
+    turn = _body_rotation(now, mount) @ _body_rotation(marked, mount).T
+    return CameraPose(
+        rotation_enu_camera=turn @ marked_pose.rotation_enu_camera,
+        position_enu_m=marked_pose.position_enu_m + _displacement_enu_m(frame, marked, now),
+    )
+
+
+def _displacement_enu_m(
+    frame: LocalFrame, marked: TelemetryReference, now: TelemetryReference
+) -> FloatArray:
+    # Both points at the frame's own height: heights above takeoff have no place on the ellipsoid.
+    enu = enu_from_geo(
+        frame,
+        [marked.latitude_deg, now.latitude_deg],
+        [marked.longitude_deg, now.longitude_deg],
+        frame.origin.ellipsoid_height_m,
+    )
+    displacement: FloatArray = enu[1] - enu[0]
+    displacement[2] = now.height_above_takeoff_m - marked.height_above_takeoff_m
+    return displacement
+
+
+def _body_rotation(telemetry: TelemetryReference, mount: Mount) -> FloatArray:
+    """Return the rotation that takes forward-right-down vectors to east-north-up."""
+    is_fixed = mount is Mount.FIXED
+    yaw, pitch, roll = np.deg2rad(
+        [
+            telemetry.yaw_deg,
+            telemetry.pitch_deg if is_fixed else 0.0,
+            telemetry.roll_deg if is_fixed else 0.0,
+        ]
+    )
+    cy, sy, cp, sp, cr, sr = (f(a) for a in (yaw, pitch, roll) for f in (np.cos, np.sin))
+    about_down = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    about_right = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    about_forward = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    enu_from_ned = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+    rotation: FloatArray = enu_from_ned @ about_down @ about_right @ about_forward
+    return rotation
+
+
+def level_pose(telemetry: TelemetryReference, position_enu_m: FloatArray) -> CameraPose:
+    """Return the pose of a camera that looks straight down, the frame's top towards the yaw."""
+    forward, right, down = _body_rotation(telemetry, Mount.GIMBAL).T
+    return CameraPose(np.stack([right, -forward, down], axis=1), position_enu_m)

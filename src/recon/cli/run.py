@@ -1,0 +1,81 @@
+"""`recon run`: the station."""
+
+import asyncio
+from pathlib import Path
+from typing import Annotated
+
+import typer
+import uvloop
+
+from recon.cli.console_files import console_folder
+from recon.link.settings import LinkSettings
+from recon.site import default_site, load_site
+from recon.station.run import RunConfig, Started, StartError, run
+
+SHORTEST_TOKEN = 16
+
+
+def run_command(
+    site: Annotated[
+        Path | None, typer.Option(help="Folder with a site.toml; without one, no ground image.")
+    ] = None,
+    link_host: Annotated[
+        str, typer.Option(help="Address for companion apps; 0.0.0.0 lets phones in.")
+    ] = "127.0.0.1",
+    link_port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port for companion apps; 0 picks one.")
+    ] = 3001,
+    http_host: Annotated[
+        str, typer.Option(help="Address of the console; beyond loopback a token is needed.")
+    ] = "127.0.0.1",
+    http_port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port of the console; 0 picks one.")
+    ] = 8080,
+    token_file: Annotated[
+        Path | None, typer.Option(help="File with the secret that opens the console.")
+    ] = None,
+    capture: Annotated[
+        Path | None, typer.Option(help="Folder to write every link's raw bytes to.")
+    ] = None,
+    garbage_limit: Annotated[
+        int, typer.Option(min=1024, help="Close a link after so many bytes without a packet.")
+    ] = LinkSettings().garbage_limit_bytes,
+) -> None:
+    """Run the station until Ctrl+C."""
+    config = RunConfig(
+        site=default_site() if site is None else load_site(site),
+        link_host=link_host,
+        link_port=link_port,
+        http_host=http_host,
+        http_port=http_port,
+        capture_folder=capture,
+        token=None if token_file is None else read_token(token_file),
+        console=console_folder(),
+        link=LinkSettings(garbage_limit_bytes=garbage_limit),
+    )
+    uvloop.run(run(config, _announce))
+
+
+async def _announce(started: Started) -> None:
+    announce(started)
+    await asyncio.sleep(0)
+
+
+def announce(started: Started) -> None:
+    """Print every address the station listens on."""
+    for address in started.link_addresses:
+        print(f"companion apps: {address}", flush=True)
+    print(f"console: {started.console_url}", flush=True)
+
+
+def read_token(path: Path) -> str:
+    """Return the secret in a file; raises `StartError` for a missing file or a short secret."""
+    try:
+        token = path.read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError) as problem:
+        raise StartError(f"cannot read the token file {path}: {problem}") from problem
+    if len(token) < SHORTEST_TOKEN:
+        raise StartError(
+            f"{path}: expected a secret of {SHORTEST_TOKEN} characters or more, got {len(token)}"
+        )
+    return token

@@ -1,0 +1,227 @@
+"""`recon sim`: simulated companion apps."""
+
+import asyncio
+import contextlib
+import signal
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon.model.errors import ReconError
+from recon.model.geo import GeoPoint
+from recon.model.vehicle import AltitudeReference
+from recon.sim.camera_feed import FeedSettings, FrameSource, ImageFormat
+from recon.sim.cloud_shadows import CloudShadows
+from recon.sim.commands import HoverOnGround
+from recon.sim.errors import SimulationError
+from recon.sim.faults import FaultKind, parse_fault
+from recon.sim.field import FieldFrames
+from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig
+from recon.sim.frame_files import folder_frames
+from recon.sim.replay import load_replay, rig_over
+from recon.sim.rig import EyeRig
+from recon.sim.run import run_fleet
+from recon.site import Eye, Site, SiteError, demo_site_folder, load_site
+
+MOST_VEHICLES = 256
+
+
+class WaypointAltitude(Enum):
+    """What a waypoint's altitude means to the simulated apps."""
+
+    WGS84 = "wgs84"
+    TAKEOFF = "takeoff"
+
+
+def sim_command(
+    vehicles: Annotated[
+        int, typer.Option(min=1, max=MOST_VEHICLES, help="How many, the eye included.")
+    ] = 4,
+    station: Annotated[str, typer.Option(help="HOST:PORT of the station.")] = "127.0.0.1:3001",
+    altitude_reference: Annotated[
+        WaypointAltitude, typer.Option(help="What a waypoint's altitude means to the apps.")
+    ] = WaypointAltitude.TAKEOFF,
+    hover_on_ground: Annotated[
+        HoverOnGround, typer.Option(help="What hover and return do on the ground.")
+    ] = HoverOnGround.NOTHING,
+    eye: Annotated[
+        bool, typer.Option("--eye/--no-eye", help="Whether the first vehicle has a camera.")
+    ] = True,
+    airborne: Annotated[
+        bool | None,
+        typer.Option(
+            "--airborne/--grounded",
+            help="All start in the air, or none; otherwise only the eye does.",
+        ),
+    ] = None,
+    wander: Annotated[
+        bool, typer.Option(help="Survey vehicles fly to and fro until ordered otherwise.")
+    ] = False,
+    home: Annotated[
+        str | None, typer.Option(help="LAT,LON to start from; default is the site's.")
+    ] = None,
+    site: Annotated[
+        Path | None, typer.Option(help="Folder with a site.toml: place, eye, pads.")
+    ] = None,
+    replay_site: Annotated[
+        Path | None,
+        typer.Option(help="Folder with RefFrame.jpeg and GCPs.txt: the eye over a real field."),
+    ] = None,
+    frames: Annotated[
+        Path | None, typer.Option(help="Folder of images that the eye sends in turn.")
+    ] = None,
+    frame_size: Annotated[
+        str, typer.Option(help="COLSxROWS of frames from a folder.")
+    ] = "1280x720",
+    fps: Annotated[float, typer.Option(help="Most frames per second the eye sends.")] = 1.0,
+    image_format: Annotated[
+        ImageFormat, typer.Option(help="How frames travel: packet 2 or packet 5.")
+    ] = ImageFormat.RAW,
+    latency_s: Annotated[
+        float | None, typer.Option(help="Capture to send; default is drawn from 0.2 to 1 s.")
+    ] = None,
+    feed: Annotated[
+        bool, typer.Option("--feed/--no-feed", help="Whether the eye's feed is on at the start.")
+    ] = True,
+    altitude_bias_m: Annotated[
+        float | None, typer.Option(help="Error of the absolute altitude; default is drawn.")
+    ] = None,
+    endurance_min: Annotated[float, typer.Option(help="Hover time of a full battery.")] = 25.0,
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="NAME[:vehicle[:start_s[:duration_s]]], again for more. Names: "
+            + ", ".join(kind.value for kind in FaultKind)
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="The same seed behaves the same way.")] = 0,
+) -> None:
+    """Run simulated companion apps that connect to a station, until Ctrl+C."""
+    try:
+        host, port = parse_station(station)
+        _refuse_non_positive("--fps", fps)
+        _refuse_non_positive("--endurance-min", endurance_min)
+        place = _place(site)
+        feed_settings = FeedSettings(fps, image_format, latency_s, feed)
+        rig, source = _eye_world(place, replay_site, frames, frame_size, seed)
+        config = SimulationConfig(
+            home=_home(home, place, rig),
+            station_host=host,
+            station_port=port,
+            vehicle_count=vehicles,
+            eye=EyeSetup(source, feed_settings, rig) if eye else None,
+            altitude_reference=AltitudeReference(altitude_reference.value),
+            hover_on_ground=hover_on_ground,
+            airborne=_AIRBORNE[airborne],
+            wanders=wander,
+            altitude_bias_m=altitude_bias_m,
+            endurance_s=60.0 * endurance_min,
+            seed=seed,
+            faults=tuple(parse_fault(text) for text in fault or ()),
+            pads=_pads(place) if home is None and replay_site is None else {},
+        )
+        asyncio.run(_run(config))
+    except ReconError as problem:
+        print(f"recon sim: {problem}", file=sys.stderr)
+        raise typer.Exit(2) from None
+
+
+_AIRBORNE = {None: Airborne.EYE, True: Airborne.ALL, False: Airborne.NONE}
+
+
+def parse_station(text: str) -> tuple[str, int]:
+    """Return host and port of `HOST:PORT` ([..] around an IPv6 address); `SimulationError`."""
+    host, colon, port = text.rpartition(":")
+    host = host.removeprefix("[").removesuffix("]")
+    if not (colon and host and port.isascii() and port.isdigit() and 0 < int(port) < 65_536):
+        raise SimulationError(f"--station: expected HOST:PORT like 127.0.0.1:3001, got {text!r}")
+    return host, int(port)
+
+
+def parse_home(text: str) -> tuple[float, float]:
+    """Return latitude and longitude of `LAT,LON` in degrees; raises `SimulationError`."""
+    try:
+        latitude, longitude = (float(word) for word in text.split(","))
+    except ValueError:
+        latitude = longitude = 999.0
+    if not (abs(latitude) <= 89.0 and abs(longitude) <= 180.0):
+        raise SimulationError(f"--home: expected LAT,LON in degrees like 41.9,-93.6, got {text!r}")
+    return latitude, longitude
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Return columns and rows of `COLSxROWS`, as large as the wire allows; `SimulationError`."""
+    cols, _, rows = text.partition("x")
+    is_number = cols.isascii() and cols.isdigit() and rows.isascii() and rows.isdigit()
+    if not (is_number and 0 < int(cols) <= 3840 and 0 < int(rows) <= 2160):
+        raise SimulationError(
+            f"--frame-size: expected COLSxROWS up to 3840x2160, like 1280x720, got {text!r}"
+        )
+    return int(cols), int(rows)
+
+
+def _refuse_non_positive(option: str, value: float) -> None:
+    if not 0.0 < value < 1e6:
+        raise SimulationError(f"{option}: expected a positive number, got {value:g}")
+
+
+def _place(folder: Path | None) -> Site:
+    place = load_site(demo_site_folder() if folder is None else folder)
+    if place.frame is None:
+        raise SiteError(f"{folder}: expected a site with an origin, got none")
+    return place
+
+
+def _home(text: str | None, place: Site, rig: EyeRig | None) -> GeoPoint:
+    frame = place.frame if rig is None else rig.frame
+    assert frame is not None
+    if text is None:
+        return frame.origin
+    return GeoPoint(*parse_home(text), frame.origin.ellipsoid_height_m)
+
+
+def _pads(place: Site) -> dict[str, GeoPoint]:
+    return {s: profile.pad for s, profile in place.profiles.items() if profile.pad is not None}
+
+
+def _eye_world(
+    place: Site, replay: Path | None, frames: Path | None, frame_size: str, seed: int
+) -> tuple[EyeRig | None, FrameSource]:
+    """Return where the eye hangs and what it sees: a real field, a folder, or made-up land."""
+    if replay is not None and frames is not None:
+        raise SimulationError("expected --replay-site or --frames, got both")
+    if replay is not None:
+        return load_replay(replay)
+    rig = None if place.eye is None else _site_rig(place, place.eye)
+    if frames is not None:
+        cols, rows = parse_size(frame_size)
+        return rig, folder_frames(frames, rows, cols)
+    if rig is None or place.eye is None:
+        raise SimulationError("expected a site with an [eye], or --frames, or --no-eye, got none")
+    return rig, FieldFrames(rig.camera, place.eye.image_circle, seed, CloudShadows(seed))
+
+
+def _site_rig(place: Site, eye: Eye) -> EyeRig:
+    assert place.frame is not None
+    pose = eye.solution.pose
+    if eye.marked_frame is None:
+        return rig_over(eye.camera, place.frame, pose)
+    return EyeRig(eye.camera, place.frame, pose, eye.marked_frame)
+
+
+async def _run(config: SimulationConfig) -> None:
+    """Fly until Ctrl+C or a polite kill; both end with closed connections."""
+    flying = asyncio.ensure_future(run_fleet(config, _say))
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, flying.cancel)
+    with contextlib.suppress(asyncio.CancelledError):
+        await flying
+    print("simulation ended", flush=True)
+
+
+def _say(line: str) -> None:
+    print(line, flush=True)

@@ -1,0 +1,1 @@
+"""Companion apps' connections: sessions without IO, and the thin TCP server around them."""

@@ -1,0 +1,66 @@
+"""Which command an acknowledgment answers.
+
+On the wire an acknowledgment names only the kind of command. TCP keeps order, so the oldest
+unanswered command of the kind is the one answered, unless an earlier one has missed its time: then
+the answer may be its late one, and is not believed.
+"""
+
+from collections import defaultdict, deque
+from dataclasses import dataclass, field
+
+from recon.link.settings import LinkSettings
+from recon.model.event import CommandAnswered
+from recon.model.report import AckReport, AnsweredKind
+from recon.model.units import seconds_to_ns
+
+
+@dataclass(slots=True)
+class AckBook:
+    """The unanswered commands of one link. Stick packets are not kept: their acks only count."""
+
+    link_id: int
+    settings: LinkSettings
+    unbelieved: int = 0
+    unexpected: int = 0
+    _waiting: dict[AnsweredKind, deque[tuple[int, int]]] = field(
+        default_factory=lambda: defaultdict(deque)
+    )
+    _missed_at_ns: dict[AnsweredKind, deque[int]] = field(
+        default_factory=lambda: defaultdict(deque)
+    )
+
+    def sent(self, kind: AnsweredKind, command_id: int, now_ns: int) -> None:
+        """Remember that an answer to this command is awaited."""
+        if kind is not AnsweredKind.STICK:
+            self._waiting[kind].append((command_id, now_ns))
+
+    def is_waiting(self, kind: AnsweredKind) -> bool:
+        """Return whether a command of this kind is unanswered."""
+        return bool(self._waiting[kind])
+
+    def answered(self, report: AckReport, now_ns: int) -> CommandAnswered | None:
+        """Return which command an acknowledgment answers, or None when that cannot be told."""
+        if report.answered is AnsweredKind.STICK:
+            return None
+        missed = self._missed_at_ns[report.answered]
+        while missed and now_ns - missed[0] > seconds_to_ns(self.settings.late_ack_s):
+            missed.popleft()
+        if missed:
+            missed.popleft()
+            self.unbelieved += 1
+            return None
+        if not self._waiting[report.answered]:
+            self.unexpected += 1
+            return None
+        command_id, _ = self._waiting[report.answered].popleft()
+        return CommandAnswered(self.link_id, command_id, report.positive)
+
+    def expire(self, now_ns: int) -> list[CommandAnswered]:
+        """Return the commands whose acknowledgment has missed its time."""
+        missed: list[CommandAnswered] = []
+        for kind, waiting in self._waiting.items():
+            while waiting and now_ns - waiting[0][1] >= seconds_to_ns(self.settings.ack_timeout_s):
+                command_id, _ = waiting.popleft()
+                self._missed_at_ns[kind].append(now_ns)
+                missed.append(CommandAnswered(self.link_id, command_id, None))
+        return missed

@@ -1,0 +1,156 @@
+"""One app's session as a state machine without IO: bytes and times in, events and bytes out.
+
+Framing, acknowledgments, timeouts, pacing and liveness are here; sockets and clocks are not. Both
+drivers of the station, on real sockets and in virtual time, run this same code.
+"""
+
+from dataclasses import dataclass
+
+from recon import wire
+from recon.link.acks import AckBook
+from recon.link.outbox import Lane, Outbox
+from recon.link.settings import LinkSettings
+from recon.model.command import FlyMission
+from recon.model.event import CommandDropped, CommandSent, Event, PacketReceived
+from recon.model.report import AckReport
+from recon.model.units import seconds_to_ns
+from recon.safety import ApprovedCommand
+from recon.vehicles.packets import answered_kind, to_packet
+from recon.vehicles.reports import to_report
+
+
+@dataclass(frozen=True, slots=True)
+class Outgoing:
+    """One packet for the socket, to be written by itself, and the event that says so."""
+
+    data: bytes
+    event: CommandSent
+
+
+class Session:
+    """The protocol with one connected app. All times are arguments, in nanoseconds."""
+
+    def __init__(self, link_id: int, settings: LinkSettings, opened_at_ns: int) -> None:
+        self.link_id = link_id
+        self.settings = settings
+        self.closing_reason: str | None = None
+        """Set when the connection must be closed; the driver does it."""
+        self.bytes_received = 0
+        self.acks = AckBook(link_id, settings)
+        self._outbox = Outbox.empty(link_id)
+        self._deframer = wire.Deframer(
+            wire.Limits(
+                max_image_rows=settings.max_image_rows, max_image_cols=settings.max_image_cols
+            )
+        )
+        self._opened_at_ns = opened_at_ns
+        self._has_spoken = False
+        self._skipped_at_last_packet = 0
+        self._last_sent_at_ns: int | None = None
+        self._blocked_since_ns: int | None = None
+
+    @property
+    def counters(self) -> wire.Counters:
+        """What the bytes have been like so far."""
+        return self._deframer.counters
+
+    @property
+    def commands_queued(self) -> int:
+        """How many orders wait to be sent."""
+        return len(self._outbox)
+
+    def receive(self, data: bytes, now_ns: int) -> list[Event]:
+        """Take bytes off the socket; return what they said."""
+        self.bytes_received += len(data)
+        return self._events(self._deframer.feed(data, now_ns), now_ns)
+
+    def tick(self, now_ns: int) -> list[Event]:
+        """Let time pass: stalled packets, missed acknowledgments, expired orders, liveness."""
+        events = self._events(self._deframer.tick(now_ns), now_ns)
+        events += self.acks.expire(now_ns)
+        events += self._outbox.expire(now_ns)
+        self._judge_liveness(now_ns)
+        return events
+
+    def finish(self, reason: str, now_ns: int) -> list[Event]:
+        """End the stream: what is still held is read, what is unsent fails with `reason`."""
+        events = self._events(self._deframer.finish(), now_ns)
+        return [*events, *self._outbox.empty_out(f"{reason}, before it was sent")]
+
+    def submit(self, approved: ApprovedCommand) -> list[CommandDropped]:
+        """Queue an approved command; return the unsent ones it displaces.
+
+        Raises TypeError for anything that did not come through the gate.
+        """
+        if not isinstance(approved, ApprovedCommand):
+            raise TypeError(f"only approved commands are sent, not {type(approved).__name__}")
+        if self.link_id not in approved.link_ids:
+            raise TypeError(f"approved for links {approved.link_ids}, not for {self.link_id}")
+        return self._outbox.put(approved)
+
+    def next_packet(self, now_ns: int) -> Outgoing | None:
+        """Return the next packet that may be written now; call only while the socket is clear."""
+        approved = self._outbox.take(lambda lane, waiting: self._may_go(lane, waiting, now_ns))
+        if approved is None:
+            return None
+        command = approved.command
+        self.acks.sent(answered_kind(command.body), command.id, now_ns)
+        self._last_sent_at_ns = now_ns
+        packet = to_packet(command.body, approved.altitude_offset_m or 0.0)
+        return Outgoing(wire.encode(packet), CommandSent(self.link_id, command.id))
+
+    def note_socket(self, is_clear: bool, now_ns: int) -> None:
+        """Tell whether everything written has left for the network."""
+        if is_clear:
+            self._blocked_since_ns = None
+        elif self._blocked_since_ns is None:
+            self._blocked_since_ns = now_ns
+
+    def _may_go(self, lane: Lane, approved: ApprovedCommand, now_ns: int) -> bool:
+        if now_ns >= approved.command.expires_at_ns:
+            return False
+        if lane is Lane.EMERGENCY:
+            return True
+        gap_s = approved.profile.packet_gap_s if approved.profile else self.settings.packet_gap_s
+        last_ns = self._last_sent_at_ns
+        if last_ns is not None and now_ns - last_ns < seconds_to_ns(gap_s):
+            return False
+        needs_answer_first = lane is Lane.CAMERA or isinstance(approved.command.body, FlyMission)
+        return not (
+            needs_answer_first and self.acks.is_waiting(answered_kind(approved.command.body))
+        )
+
+    def _events(self, packets: list[wire.Packet], now_ns: int) -> list[Event]:
+        events: list[Event] = []
+        for packet in packets:
+            report = to_report(packet)
+            if isinstance(report, AckReport):
+                answered = self.acks.answered(report, now_ns)
+                if answered is not None:
+                    events.append(answered)
+            events.append(PacketReceived(self.link_id, report))
+        if packets:
+            self._has_spoken = True
+        self._judge_garbage(bool(packets))
+        return events
+
+    def _judge_garbage(self, has_packets: bool) -> None:
+        skipped = self._deframer.counters.bytes_skipped
+        if has_packets:
+            self._skipped_at_last_packet = skipped
+        elif skipped - self._skipped_at_last_packet > self.settings.garbage_limit_bytes:
+            self.closing_reason = (
+                f"{skipped - self._skipped_at_last_packet} bytes without one valid packet"
+            )
+
+    def _judge_liveness(self, now_ns: int) -> None:
+        waited_ns = now_ns - self._opened_at_ns
+        if not self._has_spoken and waited_ns > seconds_to_ns(self.settings.first_packet_timeout_s):
+            self.closing_reason = (
+                f"no valid packet within {self.settings.first_packet_timeout_s:g} s of connecting"
+            )
+        blocked_ns = now_ns - (self._blocked_since_ns or now_ns)
+        if blocked_ns > seconds_to_ns(self.settings.stuck_output_timeout_s):
+            self.closing_reason = (
+                f"the app has not read for {self.settings.stuck_output_timeout_s:g} s"
+            )

@@ -1,0 +1,289 @@
+"""One simulated companion app and its aircraft, without sockets or clock.
+
+A driver opens links (`connected`), hands over what it reads (`receive`) and sends what `advance`
+returns. What the app does depends on the times of these calls only through what it received: its
+own clock runs in exact steps, so the same seed and orders give the same bytes.
+"""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import partial
+from random import Random
+
+from recon import wire
+from recon.camera import TelemetryReference
+from recon.model.geo import GeoPoint
+from recon.model.imagery import CameraPose
+from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.sim.aircraft import Aircraft
+from recon.sim.camera_feed import CameraFeed, Shot
+from recon.sim.commands import AppHabits, CommandReader, Reaction
+from recon.sim.faults import LINK_FAULTS, PLACEHOLDER_SERIAL, Fault, FaultKind
+from recon.sim.rig import EyeRig
+from recon.sim.telemetry import Sensors, SensorSettings, position_deg
+
+CORE_PERIOD_NS = 100_000_000
+EXTENDED_PERIOD_NS = 500_000_000
+ACTION_DELAY_NS = 120_000_000
+"""Between the acknowledgment and the act: the app's call of the SDK takes its time."""
+
+HELLO = b"recon-sim simulated vehicle"
+MESSAGE_INFO = 1
+MOST_PACKETS_WAITING = 256
+"""Per link; then the oldest is dropped: nobody reads."""
+
+MAIN_LINK = 0
+
+
+class LinkOrderKind(Enum):
+    """What a driver is asked to do with the app's connection."""
+
+    RECONNECT = "reconnect"
+    """Close it; after `seconds` open it again."""
+    ABANDON = "abandon"
+    """Leave it open for `seconds` without reading or writing, and open a new one at once."""
+    SECOND = "second"
+    """Open another one beside it, for `seconds`."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkOrder:
+    """One thing to do with the connection."""
+
+    kind: LinkOrderKind
+    seconds: float
+
+
+_LINK_ORDERS = {
+    FaultKind.RESTART: LinkOrderKind.RECONNECT,
+    FaultKind.HALF_OPEN: LinkOrderKind.ABANDON,
+    FaultKind.SECOND_LINK: LinkOrderKind.SECOND,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class AppSettings:
+    """What one simulated app is."""
+
+    serial: str
+    home: GeoPoint
+    seed: int = 0
+    habits: AppHabits = field(default_factory=AppHabits)
+    faults: tuple[Fault, ...] = ()
+    renders_inline: bool = True
+    """False: the driver takes the shots and renders them in a thread."""
+
+
+@dataclass(slots=True)
+class _Link:
+    deframer: wire.Deframer = field(default_factory=wire.Deframer)
+    outbox: deque[bytes] = field(default_factory=lambda: deque(maxlen=MOST_PACKETS_WAITING))
+
+
+class SimulatedApp:
+    """A companion app: telemetry out, commands in, pictures if it has a feed."""
+
+    def __init__(
+        self,
+        settings: AppSettings,
+        aircraft: Aircraft,
+        feed: CameraFeed | None = None,
+        rig: EyeRig | None = None,
+    ) -> None:
+        self.settings = settings
+        self.aircraft = aircraft
+        self.feed = feed
+        self.rig = rig
+        self._start_ns = aircraft.now_ns
+        bias_m = settings.habits.altitude_bias_m
+        random = Random(f"{settings.seed}/{settings.serial}/sensors")
+        self._sensors = Sensors(settings.home, SensorSettings(altitude_bias_m=bias_m), random)
+        self._commands = CommandReader(settings.home, aircraft, feed, settings.habits)
+        self._links: dict[int, _Link] = {}
+        self._acts: deque[tuple[int, Reaction]] = deque()
+        self._link_orders: deque[LinkOrder] = deque()
+        self._pending_link_faults = sorted(
+            (f for f in settings.faults if f.kind in LINK_FAULTS), key=lambda f: f.start_s
+        )
+        self._lines: deque[str] = deque(maxlen=64)
+        # Apps do not speak in step: each starts at its own part of the first period.
+        phase_ns = random.randrange(CORE_PERIOD_NS)
+        self._next_core_ns = self._start_ns + phase_ns
+        self._next_extended_ns = self._start_ns + phase_ns
+
+    def connected(self, now_ns: int, link: int = MAIN_LINK) -> None:
+        """A connection is open: say hello on it. An older one of this number is forgotten."""
+        self._run_until(now_ns)
+        self._links[link] = _Link()
+        self._send(wire.MessageString(type=MESSAGE_INFO, text=HELLO), link)
+
+    def disconnected(self, link: int = MAIN_LINK) -> None:
+        """A connection is gone."""
+        self._links.pop(link, None)
+
+    def receive(self, data: bytes, now_ns: int, link: int = MAIN_LINK) -> None:
+        """Take what was read from a connection: answer now, act a little later."""
+        self._run_until(now_ns)
+        if link not in self._links:
+            return
+        for packet in self._links[link].deframer.feed(data, now_ns):
+            self._answer(packet, link, now_ns)
+
+    def advance(self, now_ns: int, link: int = MAIN_LINK) -> list[bytes]:
+        """Let time pass and return the packets to send on a connection, in order."""
+        self._run_until(now_ns)
+        waiting = self._links.get(link)
+        if waiting is None:
+            return []
+        packets = list(waiting.outbox)
+        waiting.outbox.clear()
+        return packets
+
+    @property
+    def next_due_ns(self) -> int:
+        """When `advance` has something to do next, as far as is known."""
+        return min(due_ns for due_ns, _ in self._timetable())
+
+    def take_shots(self) -> list[Shot]:
+        """Return the shots to render (only when not rendered inline); see `add_image`."""
+        return [] if self.feed is None else self.feed.take_shots()
+
+    def add_image(self, shot: Shot, packet: bytes | None) -> None:
+        """Take a rendered shot's packet, or None when rendering failed."""
+        if self.feed is None:
+            return
+        if packet is None:
+            self.feed.lose()
+        else:
+            self.feed.add(shot, packet)
+
+    def take_link_orders(self) -> list[LinkOrder]:
+        """Return what faults ask the driver to do with the connection."""
+        orders = list(self._link_orders)
+        self._link_orders.clear()
+        return orders
+
+    def take_lines(self) -> list[str]:
+        """Return what happened since the last call, one line each, for the console."""
+        lines = list(self._lines)
+        self._lines.clear()
+        return lines
+
+    def true_reference(self) -> TelemetryReference:
+        """Return where the aircraft truly is, in the terms of telemetry."""
+        motion = self.aircraft.motion
+        latitude, longitude = position_deg(self.settings.home, motion.north_m, motion.east_m)
+        return TelemetryReference(
+            latitude,
+            longitude,
+            motion.height_m,
+            motion.yaw_deg,
+            motion.pitch_deg,
+            motion.roll_deg,
+        )
+
+    def _timetable(self) -> list[tuple[int, Callable[[int], None]]]:
+        """Return what comes next of each kind, with its time; earlier rows go first on a tie."""
+        rows: list[tuple[int, Callable[[int], None]]] = []
+        if self._acts:
+            rows.append((self._acts[0][0], self._act))
+        if self._pending_link_faults:
+            start_s = self._pending_link_faults[0].start_s
+            rows.append((self._start_ns + seconds_to_ns(start_s), self._begin_link_fault))
+        rows.append((self._next_core_ns, self._say_core))
+        rows.append((self._next_extended_ns, self._say_extended))
+        feed = self.feed
+        if feed is not None and feed.is_on:
+            rows.append((feed.next_shot_ns, partial(self._take_picture, feed)))
+        if feed is not None and feed.next_send_ns is not None:
+            rows.append((feed.next_send_ns, partial(self._say_images, feed)))
+        return rows
+
+    def _run_until(self, now_ns: int) -> None:
+        while True:
+            due_ns, happen = min(self._timetable(), key=lambda row: row[0])
+            if due_ns > now_ns:
+                break
+            self._advance_aircraft(due_ns)
+            happen(due_ns)
+        self._advance_aircraft(now_ns)
+
+    def _advance_aircraft(self, now_ns: int) -> None:
+        mode = self.aircraft.flight_mode
+        self.aircraft.advance(now_ns)
+        if self.aircraft.flight_mode is not mode:
+            self._lines.append(f"mode {self.aircraft.flight_mode.name}")
+
+    def _answer(self, packet: wire.Packet, link: int, now_ns: int) -> None:
+        reaction = self._commands.reaction(packet)
+        if reaction is None:
+            self._lines.append(f"ignored a {type(packet).__name__}")
+            return
+        refuses = self._has(FaultKind.NEGATIVE_ACK, now_ns)
+        if not self._has(FaultKind.NO_ACK, now_ns):
+            positive = reaction.is_positive and not refuses
+            answer = wire.Acknowledgment(positive=int(positive), source_pid=reaction.source_pid)
+            self._send(answer, link)
+        if refuses or self._has(FaultKind.ACK_THEN_NOTHING, now_ns):
+            self._lines.append(f"command {reaction.source_pid}: not carried out (fault)")
+        else:
+            self._acts.append((now_ns + ACTION_DELAY_NS, reaction))
+
+    def _act(self, now_ns: int) -> None:
+        _, reaction = self._acts.popleft()
+        mode = self.aircraft.flight_mode
+        self._lines.append(reaction.act(now_ns))
+        if self.aircraft.flight_mode is not mode:
+            self._lines.append(f"mode {self.aircraft.flight_mode.name}")
+
+    def _say_core(self, now_ns: int) -> None:
+        self._next_core_ns = now_ns + CORE_PERIOD_NS
+        packet = self._sensors.core(self.aircraft, CORE_PERIOD_NS / NS_PER_S)
+        self._broadcast(packet, now_ns)
+
+    def _say_extended(self, now_ns: int) -> None:
+        self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
+        is_placeholder = self._has(FaultKind.PLACEHOLDER_SERIAL, now_ns)
+        serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
+        self._broadcast(self._sensors.extended(self.aircraft, self.feed, serial), now_ns)
+
+    def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
+        feed.take(self._camera_pose())
+        if self.settings.renders_inline:
+            for shot in feed.take_shots():
+                feed.add(shot, shot.packet())
+
+    def _camera_pose(self) -> CameraPose | None:
+        return None if self.rig is None else self.rig.pose_at(self.true_reference())
+
+    def _say_images(self, feed: CameraFeed, now_ns: int) -> None:
+        packets = feed.due(now_ns)
+        if MAIN_LINK in self._links and not self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
+            self._links[MAIN_LINK].outbox.extend(packets)
+
+    def _begin_link_fault(self, now_ns: int) -> None:
+        fault = self._pending_link_faults.pop(0)
+        self._lines.append(f"fault {fault.kind.value}")
+        self._link_orders.append(LinkOrder(_LINK_ORDERS[fault.kind], fault.duration_s))
+        if fault.kind is FaultKind.SECOND_LINK:
+            return
+        self.disconnected()
+        if fault.kind is FaultKind.RESTART:
+            self._acts.clear()
+            self.aircraft.forget_mission_numbers()
+
+    def _has(self, kind: FaultKind, now_ns: int) -> bool:
+        elapsed_ns = now_ns - self._start_ns
+        return any(f.kind is kind and f.is_active(elapsed_ns) for f in self.settings.faults)
+
+    def _broadcast(self, packet: wire.Packet, now_ns: int) -> None:
+        if self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
+            return
+        encoded = wire.encode(packet)
+        for link in self._links.values():
+            link.outbox.append(encoded)
+
+    def _send(self, packet: wire.Packet, link: int) -> None:
+        self._links[link].outbox.append(wire.encode(packet))

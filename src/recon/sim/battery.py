@@ -1,0 +1,36 @@
+"""A flight battery, as simple as it can be: a share that drains while flying."""
+
+from dataclasses import dataclass
+
+from recon.model.vehicle import BatteryWarning
+
+LOW_FRACTION = 0.30
+SERIOUS_FRACTION = 0.15
+FORCED_LANDING_FRACTION = 0.05
+GROUND_SHARE = 0.08
+"""On the ground the electronics draw this share of what hovering does."""
+
+
+@dataclass(slots=True)
+class Battery:
+    """What is left, 0..1; `endurance_s` is the hover time of a full one."""
+
+    fraction: float
+    endurance_s: float
+
+    def drain(self, seconds: float, is_flying: bool, speed_mps: float) -> None:
+        """Use `seconds` worth: fast flight costs up to a quarter more than hovering."""
+        load = (1.0 + 0.25 * min(1.0, speed_mps / 15.0)) if is_flying else GROUND_SHARE
+        self.fraction = max(0.0, self.fraction - load * seconds / self.endurance_s)
+
+    @property
+    def percent(self) -> int:
+        """Whole percent, rounded down."""
+        return int(self.fraction * 100.0)
+
+    @property
+    def warning(self) -> BatteryWarning:
+        """What the aircraft's two thresholds say."""
+        if self.fraction < SERIOUS_FRACTION:
+            return BatteryWarning.SERIOUS
+        return BatteryWarning.LOW if self.fraction < LOW_FRACTION else BatteryWarning.NONE

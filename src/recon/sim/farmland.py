@@ -1,0 +1,196 @@
+"""Procedural farmland seen from above: plots with crop rows, roads, tracks, a creek and trees.
+
+The land is described once (rectangles, lines, points in east-north metres) and drawn at any
+resolution, so that coarse rasters of the distance agree with the fine one below the eye.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+Colour = tuple[float, float, float]
+
+SECTION_M = 805.0
+"""Half a mile between roads."""
+ROAD_EAST_M, ROAD_NORTH_M = 236.0, -287.0
+"""Where one crossing lies, so that roads pass the origin at some distance."""
+LARGEST_PLOT_M = 240.0
+SMALLEST_PLOT_M = 80.0
+
+CROPS: tuple[tuple[str, Colour, float], ...] = (
+    ("maize", (79, 99, 55), 0.26),
+    ("soybean", (104, 121, 67), 0.24),
+    ("hay", (128, 137, 86), 0.14),
+    ("wheat", (181, 164, 112), 0.12),
+    ("stubble", (166, 148, 110), 0.08),
+    ("soil", (127, 108, 86), 0.07),
+    ("pasture", (112, 126, 76), 0.09),
+)
+"""Name, colour (RGB, muted as from a hundred metres up), share; the rest is meadow."""
+MEADOW: Colour = (120, 130, 84)
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """A field: its rectangle in metres, colour, and crop rows."""
+
+    west_m: float
+    south_m: float
+    east_m: float
+    north_m: float
+    colour: Colour
+    row_spacing_m: float
+    row_contrast: float
+    rows_run_north: bool
+    patchiness: float
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """A crown from above."""
+
+    east_m: float
+    north_m: float
+    radius_m: float
+    shade: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Farmland:
+    """What lies on the land within `half_width_m` of the origin."""
+
+    plots: tuple[Plot, ...]
+    tracks: tuple[tuple[float, float, float, float], ...]
+    """Rectangles west, south, east, north of dirt tracks."""
+    trees: tuple[Tree, ...]
+    creek_m: FloatArray
+    """(N, 2) east, north."""
+    roads_east_m: tuple[float, ...]
+    roads_north_m: tuple[float, ...]
+    half_width_m: float
+
+
+def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
+    """Return the land of a seed."""
+    random = np.random.default_rng(seed)
+    roads_east = _road_lines(ROAD_EAST_M, half_width_m)
+    roads_north = _road_lines(ROAD_NORTH_M, half_width_m)
+    plots: list[Plot] = []
+    tracks: list[tuple[float, float, float, float]] = []
+    for west, east in pairwise(roads_east):
+        for south, north in pairwise(roads_north):
+            _divide(random, (west + 9, south + 9, east - 9, north - 9), plots, tracks)
+    creek = _creek(random, half_width_m)
+    trees = (*_creek_trees(random, creek), *_hedges(random, plots), *_groves(random))
+    return Farmland(
+        tuple(plots), tuple(tracks), trees, creek, roads_east, roads_north, half_width_m
+    )
+
+
+def _road_lines(through_m: float, half_width_m: float) -> tuple[float, ...]:
+    count = int(half_width_m // SECTION_M) + 1
+    return tuple(through_m + SECTION_M * k for k in range(-count, count + 1))
+
+
+def _divide(
+    random: np.random.Generator,
+    box: tuple[float, float, float, float],
+    plots: list[Plot],
+    tracks: list[tuple[float, float, float, float]],
+) -> None:
+    """Split a rectangle until it is a plot's size; some of the splits become dirt tracks."""
+    west, south, east, north = box
+    width, height = east - west, north - south
+    is_wide = width >= height
+    longest = max(width, height)
+    small_enough = longest < LARGEST_PLOT_M or (longest < 340.0 and random.random() < 0.25)
+    if small_enough or longest < 2.0 * SMALLEST_PLOT_M:
+        plots.append(_plot(random, box))
+        return
+    share = random.uniform(0.36, 0.64)
+    gap = 2.6 if random.random() < 0.3 else 1.0
+    cut = (west + share * width) if is_wide else (south + share * height)
+    if gap > 2.0:
+        track = (cut - 2.0, south, cut + 2.0, north) if is_wide else (west, cut - 2, east, cut + 2)
+        tracks.append(track)
+    if is_wide:
+        _divide(random, (west, south, cut - gap, north), plots, tracks)
+        _divide(random, (cut + gap, south, east, north), plots, tracks)
+    else:
+        _divide(random, (west, south, east, cut - gap), plots, tracks)
+        _divide(random, (west, cut + gap, east, north), plots, tracks)
+
+
+def _plot(random: np.random.Generator, box: tuple[float, float, float, float]) -> Plot:
+    west, south, east, north = box
+    pick, colour, name = random.random(), MEADOW, "meadow"
+    for crop, crop_colour, share in CROPS:
+        if pick < share:
+            colour, name = crop_colour, crop
+            break
+        pick -= share
+    tint = random.normal(0.0, 4.0) + random.normal(0.0, 1.5, 3)
+    runs_north = bool((north - south > east - west) ^ (random.random() < 0.15))
+    has_rows = name not in ("pasture", "meadow")
+    return Plot(
+        west,
+        south,
+        east,
+        north,
+        (colour[0] + tint[0], colour[1] + tint[1], colour[2] + tint[2]),
+        row_spacing_m=float(random.choice([3.0, 4.5, 6.0])),
+        row_contrast=float(random.uniform(3.0, 7.0)) if has_rows else 0.0,
+        rows_run_north=runs_north,
+        patchiness=float(random.uniform(3.0, 9.0)),
+    )
+
+
+def _creek(random: np.random.Generator, half_width_m: float) -> FloatArray:
+    along = np.arange(-half_width_m, half_width_m, 12.0)
+    bends = sum(
+        amplitude * np.sin(along * 2.0 * np.pi / length + random.uniform(0.0, 6.28))
+        for amplitude, length in ((170.0, 2900.0), (55.0, 760.0), (16.0, 210.0))
+    )
+    return np.stack([along, 0.35 * along + 190.0 + bends], axis=1)
+
+
+def _creek_trees(random: np.random.Generator, creek_m: FloatArray) -> list[Tree]:
+    return [
+        _tree(random, east + random.normal(0.0, 9.0), north + random.normal(0.0, 9.0))
+        for east, north in creek_m
+        for _ in range(int(random.integers(0, 4)))
+    ]
+
+
+def _hedges(random: np.random.Generator, plots: list[Plot]) -> list[Tree]:
+    trees = []
+    for plot in plots:
+        if random.random() < 0.14:
+            count = int((plot.north_m - plot.south_m) / 8.0)
+            for north in np.linspace(plot.south_m, plot.north_m, max(2, count)):
+                if random.random() < 0.75:
+                    trees.append(_tree(random, plot.west_m + random.normal(0.0, 1.2), north))
+        elif random.random() < 0.25:
+            east = random.uniform(plot.west_m + 20.0, plot.east_m - 20.0)
+            north = random.uniform(plot.south_m + 20.0, plot.north_m - 20.0)
+            trees.append(_tree(random, east, north))
+    return trees
+
+
+def _groves(random: np.random.Generator) -> list[Tree]:
+    trees = []
+    for _ in range(60):
+        centre = random.uniform(-5_000.0, 5_000.0, 2)
+        for _ in range(int(random.integers(15, 60))):
+            east, north = centre + random.normal(0.0, 24.0, 2)
+            trees.append(_tree(random, east, north))
+    return trees
+
+
+def _tree(random: np.random.Generator, east_m: float, north_m: float) -> Tree:
+    return Tree(
+        float(east_m), float(north_m), float(random.uniform(2.6, 5.5)), float(random.normal(0, 7.0))
+    )

@@ -1,0 +1,171 @@
+"""The simulated fleet: which vehicles there are, where they start, how each is set up."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from random import Random
+
+from recon.geo import enu_from_point, point_from_enu
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.vehicle import AltitudeReference
+from recon.sim.aircraft import Aircraft, AircraftSettings
+from recon.sim.app import AppSettings, SimulatedApp
+from recon.sim.battery import Battery
+from recon.sim.camera_feed import CameraFeed, FeedSettings, FrameSource
+from recon.sim.commands import AppHabits, HoverOnGround
+from recon.sim.errors import FaultError
+from recon.sim.faults import Fault
+from recon.sim.kinematics import Motion
+from recon.sim.manoeuvres import Grounded, Hold, Manoeuvre, TakeOff, Wander
+from recon.sim.rig import EyeRig
+
+EYE_SERIAL = "SIM-EYE"
+EYE_HEIGHT_M = 130.0
+LARGEST_BIAS_M = 40.0
+"""DJI's absolute altitude is off by tens of metres."""
+
+
+class Airborne(Enum):
+    """Who is in the air at the start."""
+
+    NONE = "none"
+    EYE = "eye"
+    ALL = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class EyeSetup:
+    """The imaging vehicle's pictures; with a rig it starts where the rig's marked frame was."""
+
+    source: FrameSource
+    feed: FeedSettings = field(default_factory=FeedSettings)
+    rig: EyeRig | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationConfig:
+    """A fleet, and the station it reports to."""
+
+    home: GeoPoint
+    station_host: str = "127.0.0.1"
+    station_port: int = 3001
+    vehicle_count: int = 4
+    eye: EyeSetup | None = None
+    altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
+    hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
+    airborne: Airborne = Airborne.EYE
+    wanders: bool = False
+    """Survey vehicles fly back and forth by themselves until ordered otherwise."""
+    altitude_bias_m: float | None = None
+    """None draws one per vehicle, up to 40 m either way."""
+    endurance_s: float = 1500.0
+    seed: int = 0
+    faults: tuple[Fault, ...] = ()
+    pads: Mapping[str, GeoPoint] = field(default_factory=dict)
+    """Start positions by serial; the others start in a row beside home."""
+
+
+def fleet_serials(config: SimulationConfig) -> tuple[str, ...]:
+    """Return the serials: the eye first, if there is one, then SIM-1, SIM-2, ..."""
+    survey_count = config.vehicle_count - (config.eye is not None)
+    eye = (EYE_SERIAL,) if config.eye is not None else ()
+    return eye + tuple(f"SIM-{number}" for number in range(1, survey_count + 1))
+
+
+def build_fleet(
+    config: SimulationConfig, start_ns: int, *, renders_inline: bool = True
+) -> list[SimulatedApp]:
+    """Return the apps, ready to be connected; raises `FaultError` for a fault of no vehicle."""
+    serials = fleet_serials(config)
+    for fault in config.faults:
+        if not any(fault.is_for(serial, n) for n, serial in enumerate(serials, 1)):
+            raise FaultError(
+                f"fault {fault.kind.value}: expected a vehicle of {', '.join(serials)} or its "
+                f"number, got {fault.vehicle!r}"
+            )
+    return [
+        _build_app(config, serial, number, start_ns, renders_inline)
+        for number, serial in enumerate(serials, 1)
+    ]
+
+
+def _build_app(
+    config: SimulationConfig, serial: str, number: int, start_ns: int, renders_inline: bool
+) -> SimulatedApp:
+    random = Random(f"{config.seed}/{serial}/setup")
+    drawn_bias_m = random.uniform(-LARGEST_BIAS_M, LARGEST_BIAS_M)
+    battery = Battery(random.uniform(0.9, 1.0), config.endurance_s)
+    home = _home_of(config, serial, number)
+    app = AppSettings(
+        serial=serial,
+        home=home,
+        seed=config.seed,
+        habits=AppHabits(
+            config.altitude_reference,
+            config.hover_on_ground,
+            drawn_bias_m if config.altitude_bias_m is None else config.altitude_bias_m,
+        ),
+        faults=tuple(f for f in config.faults if f.is_for(serial, number)),
+        renders_inline=renders_inline,
+    )
+    is_eye = serial == EYE_SERIAL
+    settings = AircraftSettings(
+        go_home_height_m=30.0 + 5.0 * number, endurance_s=config.endurance_s
+    )
+    motion = _eye_start(config) if is_eye else _survey_start(config, number)
+    manoeuvre: Manoeuvre = Grounded() if motion.height_m == 0.0 else Hold()
+    if config.wanders and not is_eye:
+        manoeuvre = _wandering(settings, motion, number, random)
+    aircraft = Aircraft(start_ns, settings, motion, manoeuvre, battery=battery)
+    if not is_eye or config.eye is None:
+        return SimulatedApp(app, aircraft)
+    feed_random = Random(f"{config.seed}/{serial}/feed")
+    feed = CameraFeed(config.eye.source, config.eye.feed, feed_random, start_ns)
+    return SimulatedApp(app, aircraft, feed, config.eye.rig)
+
+
+def _home_of(config: SimulationConfig, serial: str, number: int) -> GeoPoint:
+    """Return the takeoff point: the eye's under its marked position, others in a row of pads."""
+    rig = config.eye.rig if config.eye is not None and serial == EYE_SERIAL else None
+    if rig is not None:
+        ground_m = rig.frame.origin.ellipsoid_height_m
+        beneath = GeoPoint(rig.marked.latitude_deg, rig.marked.longitude_deg, ground_m)
+        up_m = float(enu_from_point(rig.frame, beneath)[2])
+        return GeoPoint(beneath.latitude_deg, beneath.longitude_deg, ground_m - up_m)
+    if serial in config.pads:
+        return config.pads[serial]
+    return point_from_enu(LocalFrame(config.home), (15.0 * (number - 1), 0.0, 0.0))
+
+
+def _eye_start(config: SimulationConfig) -> Motion:
+    rig = config.eye.rig if config.eye is not None else None
+    yaw_deg = 0.0 if rig is None else rig.marked.yaw_deg
+    if config.airborne is Airborne.NONE:
+        return Motion(yaw_deg=yaw_deg)
+    height_m = EYE_HEIGHT_M if rig is None else rig.marked.height_above_takeoff_m
+    return Motion(height_m=height_m, yaw_deg=yaw_deg)
+
+
+def _survey_start(config: SimulationConfig, number: int) -> Motion:
+    if config.airborne is not Airborne.ALL:
+        return Motion()
+    return Motion(height_m=_survey_height_m(number))
+
+
+def _survey_height_m(number: int) -> float:
+    # Ten metres apart, because nothing in the air keeps simulated pilots from meeting.
+    return 30.0 + 10.0 * number
+
+
+def _wandering(
+    settings: AircraftSettings, motion: Motion, number: int, random: Random
+) -> Manoeuvre:
+    """Return rows flown to and fro over a field of this vehicle's own."""
+    north_m, east_m = random.uniform(-160.0, 40.0), random.uniform(-180.0, 60.0)
+    length_m, spacing_m, rows = random.uniform(100.0, 160.0), 25.0, 6
+    corners = []
+    for row in range(rows):
+        ends = [(north_m + row * spacing_m, east_m), (north_m + row * spacing_m, east_m + length_m)]
+        corners += ends if row % 2 == 0 else ends[::-1]
+    wander = Wander(tuple(corners), _survey_height_m(number), 6.0, settings.limits)
+    return wander if motion.height_m > 0.0 else TakeOff(settings.limits, wander)

@@ -1,0 +1,192 @@
+"""The shell: simulated apps on real TCP connections, until cancelled."""
+
+import asyncio
+import contextlib
+import time
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass, field
+from typing import Any
+
+from recon.model.units import NS_PER_S
+from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.sim.camera_feed import Shot
+from recon.sim.errors import SimulationError
+from recon.sim.fleet import SimulationConfig, build_fleet
+
+SECOND_LINK = 1
+READ_BYTES = 65_536
+FIRST_BACKOFF_S = 0.2
+LONGEST_BACKOFF_S = 2.0
+LONGEST_WAIT_S = 0.1
+CLOSING_S = 0.5
+WRITE_BUFFER_BYTES = 8 * 1024 * 1024
+"""Beyond this a station that does not read gets no more packets, until it reads again."""
+
+Say = Callable[[str], None]
+
+
+async def run_fleet(config: SimulationConfig, say: Say = print) -> None:
+    """Fly the fleet until the task is cancelled; every event is one line through `say`.
+
+    Raises `SimulationError` when the configuration is no good. A station that is not there, or
+    goes away, is no error: each app tries again.
+    """
+    apps = build_fleet(config, time.monotonic_ns(), renders_inline=False)
+    serials = ", ".join(app.settings.serial for app in apps)
+    say(f"simulating {serials} for the station at {config.station_host}:{config.station_port}")
+    async with asyncio.TaskGroup() as group:
+        for app in apps:
+            group.create_task(_AppShell(app, config.station_host, config.station_port, say).run())
+
+
+@dataclass(slots=True)
+class _AppShell:
+    """One app's connections, and the thread that renders its pictures."""
+
+    app: SimulatedApp
+    host: str
+    port: int
+    say: Say
+    _side_tasks: set[asyncio.Task[None]] = field(default_factory=set)
+
+    async def run(self) -> None:
+        """Connect, serve, and connect again."""
+        backoff_s = FIRST_BACKOFF_S
+        try:
+            while True:
+                try:
+                    reader, writer = await asyncio.open_connection(self.host, self.port)
+                except OSError as problem:
+                    if backoff_s == FIRST_BACKOFF_S:
+                        self._tell(f"no station at {self.host}:{self.port} ({problem}), trying on")
+                    await asyncio.sleep(backoff_s)
+                    backoff_s = min(2.0 * backoff_s, LONGEST_BACKOFF_S)
+                    continue
+                backoff_s = FIRST_BACKOFF_S
+                await self._serve_main(reader, writer)
+        finally:
+            for task in tuple(self._side_tasks):
+                task.cancel()
+            await asyncio.gather(*self._side_tasks, return_exceptions=True)
+
+    async def _serve_main(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self._tell(f"connected to {self.host}:{self.port}")
+        order = None
+        try:
+            order = await self._serve(reader, writer, MAIN_LINK)
+        finally:
+            self.app.disconnected(MAIN_LINK)
+            if order is not None and order.kind is LinkOrderKind.ABANDON:
+                self._aside(_hold_open(writer, order.seconds))
+            else:
+                await _close(writer)
+        if order is not None and order.kind is LinkOrderKind.RECONNECT:
+            await asyncio.sleep(order.seconds)
+        elif order is None:
+            self._tell("connection lost")
+            await asyncio.sleep(FIRST_BACKOFF_S)
+
+    async def _serve(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, link: int
+    ) -> LinkOrder | None:
+        """Read and write until the connection ends (None) or a fault wants something of it."""
+        writer.transport.set_write_buffer_limits(high=WRITE_BUFFER_BYTES)
+        self.app.connected(time.monotonic_ns(), link)
+        receiving = asyncio.ensure_future(reader.read(READ_BYTES))
+        try:
+            while True:
+                order = self._send_due(writer, link)
+                if order is not None:
+                    return order
+                await asyncio.wait({receiving}, timeout=self._pause_s())
+                if not receiving.done():
+                    continue
+                data = receiving.result()
+                if not data:
+                    return None
+                self.app.receive(data, time.monotonic_ns(), link)
+                receiving = asyncio.ensure_future(reader.read(READ_BYTES))
+        except OSError:
+            return None
+        finally:
+            receiving.cancel()
+            with contextlib.suppress(asyncio.CancelledError, OSError):
+                await receiving
+
+    def _send_due(self, writer: asyncio.StreamWriter, link: int) -> LinkOrder | None:
+        """Write what is due, one packet per send; return what a fault wants of this link."""
+        packets = self.app.advance(time.monotonic_ns(), link)
+        if writer.transport.get_write_buffer_size() < WRITE_BUFFER_BYTES:
+            for packet in packets:
+                writer.write(packet)
+        for line in self.app.take_lines():
+            self._tell(line)
+        for shot in self.app.take_shots():
+            self._aside(self._render(shot))
+        if link != MAIN_LINK:
+            return None
+        for order in self.app.take_link_orders():
+            if order.kind is not LinkOrderKind.SECOND:
+                return order
+            self._aside(self._serve_second(order.seconds))
+        return None
+
+    def _pause_s(self) -> float:
+        due_s = (self.app.next_due_ns - time.monotonic_ns()) / NS_PER_S
+        return min(max(0.0, due_s), LONGEST_WAIT_S)
+
+    async def _render(self, shot: Shot) -> None:
+        try:
+            packet = await asyncio.to_thread(shot.packet)
+        except SimulationError as problem:
+            self._tell(f"picture lost: {problem}")
+            self.app.add_image(shot, None)
+        else:
+            self.app.add_image(shot, packet)
+
+    async def _serve_second(self, seconds: float) -> None:
+        try:
+            reader, writer = await asyncio.open_connection(self.host, self.port)
+        except OSError as problem:
+            self._tell(f"no second connection ({problem})")
+            return
+        self._tell("second connection with the same serial")
+        try:
+            async with asyncio.timeout(seconds):
+                await self._serve(reader, writer, SECOND_LINK)
+        except TimeoutError:
+            self._tell("second connection closed")
+        finally:
+            self.app.disconnected(SECOND_LINK)
+            await _close(writer)
+
+    def _aside(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.ensure_future(work)
+        self._side_tasks.add(task)
+        task.add_done_callback(self._side_tasks.discard)
+
+    def _tell(self, line: str) -> None:
+        self.say(f"{self.app.settings.serial}: {line}")
+
+
+async def _hold_open(writer: asyncio.StreamWriter, seconds: float) -> None:
+    """Keep a socket open without reading from it or writing to it, then close it.
+
+    Nobody takes what arrives, so the stream's own small buffer fills and reading stops.
+    """
+    try:
+        await asyncio.sleep(seconds)
+    finally:
+        await _close(writer)
+
+
+async def _close(writer: asyncio.StreamWriter) -> None:
+    """Close, and wait a moment for what is still buffered."""
+    writer.close()
+    try:
+        async with asyncio.timeout(CLOSING_S):
+            await writer.wait_closed()
+    except TimeoutError:
+        writer.transport.abort()
+    except OSError:
+        return

@@ -1,0 +1,8 @@
+"""A site's folder: the place, the eye above it, the vehicles known there."""
+
+from recon.site.demo_folder import demo_site_folder
+from recon.site.errors import SiteError
+from recon.site.load import load_site
+from recon.site.site import Eye, Site, default_site
+
+__all__ = ["Eye", "Site", "SiteError", "default_site", "demo_site_folder", "load_site"]

@@ -1,0 +1,184 @@
+"""The demonstration's site: made up, so that a first run needs no data.
+
+The lens is an equisolid-angle fisheye of 170 degrees; the eye hovers 120 m over farmland and looks
+straight down, the frame's top towards its yaw. Running this module writes the files in `demo/`:
+
+    python -m recon.site.demo_site
+"""
+
+import numpy as np
+
+from recon.camera import (
+    ControlPoint,
+    OmnidirectionalCamera,
+    TelemetryReference,
+    format_camera,
+    format_control_points,
+    level_pose,
+)
+from recon.geo import geo_from_enu
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.site.demo_folder import demo_site_folder
+
+ORIGIN = GeoPoint(41.9012, -93.6034, 275.0)
+EYE_SERIAL = "SIM-EYE"
+SERIALS = ("SIM-1", "SIM-2", "SIM-3")
+EYE_HEIGHT_M = 120.0
+EYE_YAW_DEG = 20.0
+
+ROWS, COLS = 720, 1280
+CENTRE_ROW_PX, CENTRE_COL_PX = 361.2, 637.8
+HALF_FIELD_RAD = float(np.deg2rad(85.0))
+RADIUS_AT_HALF_FIELD_PX = 340.0
+INVERSE_DEGREE = 9
+
+MARKED_SIZE_PX = (3840, 2160)
+MARKING_NOISE_PX = 0.5
+POINTS_EAST_NORTH_M = {
+    "A": (-150.0, 140.0),
+    "B": (20.0, 180.0),
+    "C": (170.0, 120.0),
+    "D": (200.0, -40.0),
+    "E": (110.0, -160.0),
+    "F": (-60.0, -190.0),
+    "G": (-190.0, -70.0),
+    "H": (40.0, 30.0),
+}
+PADS_EAST_NORTH_M = {
+    EYE_SERIAL: (0.0, 0.0),
+    "SIM-1": (-12.0, -6.0),
+    "SIM-2": (-4.0, -12.0),
+    "SIM-3": (6.0, -12.0),
+}
+
+
+def demo_site_files() -> dict[str, str]:
+    """Return the text of each file of the demonstration's site; the same at each call."""
+    camera = demo_camera()
+    return {
+        "camera-model.txt": format_camera(camera),
+        "GCPs.txt": format_control_points(_control_points(camera)),
+        "site.toml": _site_toml(),
+    }
+
+
+def demo_camera() -> OmnidirectionalCamera:
+    """Return the made-up lens: r = 2 f sin(angle / 2), fitted by the omnidirectional model."""
+    focal_px = RADIUS_AT_HALF_FIELD_PX / (2.0 * np.sin(HALF_FIELD_RAD / 2.0))
+    angles = np.linspace(0.0, HALF_FIELD_RAD + 0.05, 400)
+    sine = np.sin(angles / 2.0)
+    radii = 2.0 * focal_px * sine
+    depths = focal_px * (1.0 - 2.0 * sine**2) / np.sqrt(1.0 - sine**2)
+    # The model's usual form: no linear term.
+    powers = np.array([0, 2, 3, 4])
+    scaled, *_ = np.linalg.lstsq((radii / radii[-1])[:, np.newaxis] ** powers, -depths, rcond=None)
+    direct = np.zeros(5)
+    direct[powers] = scaled / radii[-1] ** powers
+    direct_text = tuple(float(f"{value:.9e}") for value in direct)
+    fitted_depths = -np.polynomial.polynomial.polyval(radii, direct_text)
+    angles_below = np.arctan2(radii, fitted_depths) - np.pi / 2.0
+    inverse = np.polynomial.Polynomial.fit(angles_below, radii, INVERSE_DEGREE).convert().coef
+    return OmnidirectionalCamera(
+        direct=direct_text,
+        inverse=tuple(float(f"{value:.6f}") for value in inverse),
+        centre_row_px=CENTRE_ROW_PX,
+        centre_col_px=CENTRE_COL_PX,
+        affine_c=1.0002,
+        affine_d=0.0001,
+        affine_e=-0.0001,
+        rows=ROWS,
+        cols=COLS,
+    )
+
+
+def demo_marked_telemetry() -> TelemetryReference:
+    """Return the eye's telemetry when the marked frame was taken: level, over the origin."""
+    return TelemetryReference(ORIGIN.latitude_deg, ORIGIN.longitude_deg, EYE_HEIGHT_M, EYE_YAW_DEG)
+
+
+def _control_points(camera: OmnidirectionalCamera) -> tuple[ControlPoint, ...]:
+    pose = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, EYE_HEIGHT_M]))
+    points_enu = np.array([(*point, 0.0) for point in POINTS_EAST_NORTH_M.values()])
+    marked_camera = camera.scaled_to(MARKED_SIZE_PX[1], MARKED_SIZE_PX[0])
+    pixels = marked_camera.project((points_enu - pose.position_enu_m) @ pose.rotation_enu_camera)
+    pixels += np.random.default_rng(20).normal(0.0, MARKING_NOISE_PX, pixels.shape)
+    globe = zip(*geo_from_enu(LocalFrame(ORIGIN), points_enu), strict=True)
+    return tuple(
+        ControlPoint(
+            name,
+            round(float(col), 2),
+            round(float(row), 2),
+            round(float(latitude), 8),
+            round(float(longitude), 8),
+            round(float(height), 3),
+        )
+        for name, (col, row), (latitude, longitude, height) in zip(
+            POINTS_EAST_NORTH_M, pixels, globe, strict=True
+        )
+    )
+
+
+def _site_toml() -> str:
+    header = f"""# The demonstration's site: a made-up field with a made-up lens above it.
+# Written by `python -m recon.site.demo_site`; docs/how-to/prepare-a-site.md explains the keys.
+name = "demo field"
+
+[origin]
+latitude_deg = {ORIGIN.latitude_deg}
+longitude_deg = {ORIGIN.longitude_deg}
+ground_altitude_m = {ORIGIN.ellipsoid_height_m}
+
+[eye]
+serial = "{EYE_SERIAL}"
+camera = "camera-model.txt"
+control_points = "GCPs.txt"
+control_points_image_size_px = [{MARKED_SIZE_PX[0]}, {MARKED_SIZE_PX[1]}]
+
+[eye.marked_frame]
+latitude_deg = {ORIGIN.latitude_deg}
+longitude_deg = {ORIGIN.longitude_deg}
+height_above_takeoff_m = {EYE_HEIGHT_M}
+yaw_deg = {EYE_YAW_DEG}
+pitch_deg = 0.0
+roll_deg = 0.0
+
+[eye.image_circle]
+col_px = {CENTRE_COL_PX}
+row_px = {CENTRE_ROW_PX}
+radius_px = {RADIUS_AT_HALF_FIELD_PX}
+
+[ground_image]
+width_m = 512.0
+height_m = 512.0
+cell_m = 1.0
+"""
+    return header + "".join(_vehicle_toml(serial) for serial in (EYE_SERIAL, *SERIALS))
+
+
+def _vehicle_toml(serial: str) -> str:
+    pad_enu = [(*PADS_EAST_NORTH_M[serial], 0.0)]
+    (latitude,), (longitude,), _ = geo_from_enu(LocalFrame(ORIGIN), pad_enu)
+    name = "Eye" if serial == EYE_SERIAL else f"Drone {serial[-1]}"
+    return f"""
+[[vehicles]]
+serial = "{serial}"
+name = "{name}"
+model = "simulated"
+waypoint_altitude = "takeoff"
+mount = "gimbal"
+pad = {{ latitude_deg = {latitude:.7f}, longitude_deg = {longitude:.7f}, altitude_m = {
+        ORIGIN.ellipsoid_height_m
+    } }}
+"""
+
+
+def main() -> None:
+    """Write the files of the demonstration's site."""
+    folder = demo_site_folder()
+    folder.mkdir(exist_ok=True)
+    for name, text in demo_site_files().items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

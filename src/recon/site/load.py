@@ -1,0 +1,221 @@
+"""Reading a site's folder: site.toml and the files it names."""
+
+import math
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+import numpy as np
+
+from recon.camera import (
+    CameraError,
+    ImageCircle,
+    TelemetryReference,
+    load_camera,
+    load_control_points,
+    solve_pose,
+)
+from recon.geo import enu_from_geo
+from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.vehicle import VehicleProfile
+from recon.site.errors import SiteError
+from recon.site.profiles import profile_from_table
+from recon.site.schema import (
+    EyeTable,
+    GroundImageTable,
+    OriginTable,
+    SiteTable,
+    VehicleTable,
+)
+from recon.site.site import Eye, Site
+
+SITE_FILE = "site.toml"
+LARGEST_FILE_BYTES = 256 * 1024
+MOST_CELLS = 4096 * 4096
+MOST_VEHICLES = 64
+LARGEST_ALTITUDE_GAP_M = 15.0
+"""Between the control points and the site's ground: more is a geoid height forgotten, or a slip."""
+LARGEST_DISTANCE_M = 5_000.0
+"""Of a control point from the origin: more is another field, or latitude and longitude swapped."""
+
+T = TypeVar("T")
+
+
+def load_site(folder: Path) -> Site:
+    """Return the site of a folder with a site.toml.
+
+    Files it names lie in the folder: a name that leads out of it (absolute, by .. or by a symbolic
+    link) is refused, so that a folder got from others reads nothing else. Raises `SiteError`.
+    """
+    path = folder / SITE_FILE
+    data = _read_toml(path)
+    _refuse_non_finite(path, data, "")
+    table = _convert(path, data, SiteTable, "")
+    origin = _convert(path, table.origin, OriginTable, "origin")
+    frame = LocalFrame(
+        GeoPoint(origin.latitude_deg, origin.longitude_deg, origin.ground_altitude_m)
+    )
+    ground = _convert(path, table.ground_image or {}, GroundImageTable, "ground_image")
+    grid = _ground_grid(path, ground, frame)
+    profiles = _profiles(path, table.vehicles)
+    eye = None
+    if table.eye is not None:
+        eye = _eye(folder, _convert(path, table.eye, EyeTable, "eye"), frame)
+        profiles.setdefault(eye.serial, VehicleProfile(eye.serial))
+    return Site(table.name, frame, grid, eye, profiles)
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE_BYTES + 1)
+    except OSError as problem:
+        raise SiteError(
+            f"{path}: expected a site's file, got: {problem.strerror or problem}; give the folder "
+            f"that holds {SITE_FILE}"
+        ) from problem
+    if len(data) > LARGEST_FILE_BYTES:
+        raise SiteError(f"{path}: expected at most {LARGEST_FILE_BYTES} bytes, got more")
+    try:
+        return tomllib.loads(data.decode("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
+        raise SiteError(f"{path}: expected a TOML file, got: {problem}") from problem
+    except RecursionError as problem:
+        raise SiteError(f"{path}: expected a TOML file, got one nested too deeply") from problem
+
+
+def _refuse_non_finite(path: Path, value: object, key: str) -> None:
+    """TOML knows nan and inf; no key here does."""
+    if isinstance(value, float) and not math.isfinite(value):
+        raise SiteError(f"{path}: {key}: expected a finite number, got {value}")
+    if isinstance(value, Mapping):
+        for name, item in value.items():
+            _refuse_non_finite(path, item, f"{key}.{name}" if key else str(name))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            _refuse_non_finite(path, item, f"{key}[{index}]")
+
+
+def _convert(path: Path, data: object, kind: type[T], key: str) -> T:
+    try:
+        return msgspec.convert(data, kind, strict=True)
+    except msgspec.ValidationError as problem:
+        what, _, where = str(problem).partition(" - at `$")
+        inner = where.rstrip("`").lstrip(".")
+        place = ".".join(part for part in (key, inner) if part)
+        # An unknown key's name is the file's own text: repr keeps control characters out.
+        said = ascii(what)[1:-1].replace("`", "'")
+        raise SiteError(f"{path}: {place + ': ' if place else ''}{said}") from problem
+
+
+def _ground_grid(path: Path, table: GroundImageTable, frame: LocalFrame) -> GroundGrid:
+    rows = _whole_cells(path, "height_m", table.height_m, table.cell_m)
+    cols = _whole_cells(path, "width_m", table.width_m, table.cell_m)
+    if rows * cols > MOST_CELLS:
+        raise SiteError(
+            f"{path}: ground_image: expected at most {MOST_CELLS} cells, got {cols} x {rows}; "
+            "use larger cells or a smaller area"
+        )
+    return GroundGrid(frame, -table.width_m / 2.0, table.height_m / 2.0, table.cell_m, rows, cols)
+
+
+def _whole_cells(path: Path, key: str, length_m: float, cell_m: float) -> int:
+    cells = round(length_m / cell_m)
+    if cells < 1 or not math.isclose(cells * cell_m, length_m, rel_tol=1e-9):
+        raise SiteError(
+            f"{path}: ground_image.{key}: expected a whole number of cells of {cell_m:g} m, "
+            f"got {length_m:g} m"
+        )
+    return cells
+
+
+def _profiles(path: Path, tables: list[dict[str, Any]]) -> dict[str, VehicleProfile]:
+    if len(tables) > MOST_VEHICLES:
+        raise SiteError(
+            f"{path}: vehicles: expected at most {MOST_VEHICLES} vehicles, got {len(tables)}"
+        )
+    profiles: dict[str, VehicleProfile] = {}
+    for number, data in enumerate(tables, start=1):
+        key = f"vehicles (entry {number})"
+        profile = profile_from_table(_convert(path, data, VehicleTable, key), f"{path}: {key}")
+        if profile.serial in profiles:
+            raise SiteError(
+                f"{path}: {key}.serial: expected each serial once, got {profile.serial!r} again"
+            )
+        profiles[profile.serial] = profile
+    return profiles
+
+
+def _eye(folder: Path, table: EyeTable, frame: LocalFrame) -> Eye:
+    camera_file = _inside(folder, table.camera, "eye.camera")
+    points_file = _inside(folder, table.control_points, "eye.control_points")
+    try:
+        camera = load_camera(camera_file)
+        points = load_control_points(points_file)
+    except CameraError as problem:
+        raise SiteError(str(problem)) from problem
+    try:
+        solution = solve_pose(camera, points, table.control_points_image_size_px, frame)
+    except CameraError as problem:
+        raise SiteError(f"{points_file}: {problem}") from problem
+    eye = Eye(
+        serial=table.serial,
+        camera=camera,
+        control_points=points,
+        control_points_image_size_px=table.control_points_image_size_px,
+        solution=solution,
+        marked_frame=_reference(table),
+        image_circle=_circle(table),
+    )
+    _refuse_other_place(points_file, eye, frame)
+    return eye
+
+
+def _reference(table: EyeTable) -> TelemetryReference | None:
+    marked = table.marked_frame
+    return None if marked is None else TelemetryReference(**msgspec.structs.asdict(marked))
+
+
+def _circle(table: EyeTable) -> ImageCircle | None:
+    circle = table.image_circle
+    return None if circle is None else ImageCircle(circle.col_px, circle.row_px, circle.radius_px)
+
+
+def _inside(folder: Path, name: str, key: str) -> Path:
+    path = folder / name
+    is_inside = path.resolve().is_relative_to(folder.resolve())
+    if "\0" in name or not is_inside:
+        raise SiteError(
+            f"{folder / SITE_FILE}: {key}: expected the name of a file in the site's folder, got "
+            f"{name!a}, which leads out of it; put the file into the folder"
+        )
+    if not path.is_file():
+        raise SiteError(
+            f"{folder / SITE_FILE}: {key}: expected the name of a file in the site's folder, got "
+            f"{name!a}, and there is no such file"
+        )
+    return path
+
+
+def _refuse_other_place(points_file: Path, eye: Eye, frame: LocalFrame) -> None:
+    for point in eye.control_points:
+        enu = enu_from_geo(
+            frame, point.latitude_deg, point.longitude_deg, point.ellipsoid_height_m
+        )[0]
+        distance_m = float(np.hypot(enu[0], enu[1]))
+        if distance_m > LARGEST_DISTANCE_M:
+            raise SiteError(
+                f"{points_file}: control point {point.name}: expected within "
+                f"{LARGEST_DISTANCE_M:g} m of the site's origin, got {distance_m:.0f} m; is the "
+                "origin right, and the latitude before the longitude?"
+            )
+    gap_m = float(np.mean([p.ellipsoid_height_m for p in eye.control_points]))
+    gap_m -= frame.origin.ellipsoid_height_m
+    if abs(gap_m) > LARGEST_ALTITUDE_GAP_M:
+        raise SiteError(
+            f"{points_file}: expected altitudes within {LARGEST_ALTITUDE_GAP_M:g} m of "
+            f"origin.ground_altitude_m in {SITE_FILE}, got {gap_m:+.1f} m; both are heights above "
+            "the WGS84 ellipsoid, not above sea level"
+        )

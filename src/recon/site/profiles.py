@@ -1,0 +1,50 @@
+"""A vehicle's profile from its table in site.toml."""
+
+from dataclasses import replace
+from typing import Any
+
+from recon.model.geo import GeoPoint
+from recon.model.vehicle import AltitudeReference, Mount, VehicleProfile
+from recon.site.errors import SiteError
+from recon.site.schema import VehicleTable
+
+PLACEHOLDER_SERIAL = "00000"
+"""What apps send before they know their aircraft's serial: nobody's."""
+
+APP_PRESETS: dict[str, dict[str, Any]] = {
+    "legacy": {"max_waypoints": 25},
+}
+"""What older companion apps need: 25 waypoints, 1,011 bytes, are read at once."""
+
+_PLAIN_KEYS = (
+    "name",
+    "model",
+    "max_waypoints",
+    "battery_factor",
+    "video_latency_s",
+    "video_latency_sigma_s",
+    "packet_gap_s",
+)
+
+
+def profile_from_table(table: VehicleTable, place: str) -> VehicleProfile:
+    """Return the profile; keys that are given win over the app's preset, that over the defaults.
+
+    `place` leads the message of the `SiteError` that a placeholder serial raises.
+    """
+    if table.serial == PLACEHOLDER_SERIAL:
+        raise SiteError(
+            f"{place}.serial: expected an aircraft's own serial, got the placeholder "
+            f"{PLACEHOLDER_SERIAL!r} that apps send before they know it"
+        )
+    values: dict[str, Any] = dict(APP_PRESETS[table.app]) if table.app else {}
+    given = ((key, getattr(table, key)) for key in _PLAIN_KEYS)
+    values.update({key: value for key, value in given if value is not None})
+    if table.waypoint_altitude is not None:
+        values["waypoint_altitude"] = AltitudeReference(table.waypoint_altitude)
+    if table.mount is not None:
+        values["mount"] = Mount(table.mount)
+    if table.pad is not None:
+        pad = table.pad
+        values["pad"] = GeoPoint(pad.latitude_deg, pad.longitude_deg, pad.altitude_m)
+    return replace(VehicleProfile(table.serial), **values)

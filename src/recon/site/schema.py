@@ -1,0 +1,104 @@
+"""What site.toml may hold: one struct per table, unknown keys refused.
+
+The how-to docs/how-to/prepare-a-site.md explains each key; ranges are checked here, what depends on
+more than one key in `recon.site.load`.
+"""
+
+from typing import Annotated, Any, Literal
+
+from msgspec import Meta, Struct
+
+Latitude = Annotated[float, Meta(ge=-90.0, le=90.0)]
+Longitude = Annotated[float, Meta(ge=-180.0, le=180.0)]
+Altitude = Annotated[float, Meta(ge=-1_000.0, le=10_000.0)]
+Serial = Annotated[str, Meta(min_length=1, max_length=256, pattern=r"^[!-~]+$")]
+"""Printable ASCII without spaces, as DJI's serials are; the wire's limit is 256 bytes."""
+Text = Annotated[str, Meta(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
+FileName = Annotated[str, Meta(min_length=1, max_length=200)]
+Seconds = Annotated[float, Meta(ge=0.0, le=10.0)]
+Pixels = Annotated[int, Meta(ge=2, le=16_384)]
+
+
+class _Table(Struct, frozen=True, forbid_unknown_fields=True):
+    pass
+
+
+class OriginTable(_Table, frozen=True):
+    """[origin]: where the local frame touches the ellipsoid, at the ground's height."""
+
+    latitude_deg: Latitude
+    longitude_deg: Longitude
+    ground_altitude_m: Altitude
+
+
+class MarkedFrameTable(_Table, frozen=True):
+    """[eye.marked_frame]: telemetry when the frame with the control points was taken."""
+
+    latitude_deg: Latitude
+    longitude_deg: Longitude
+    height_above_takeoff_m: Annotated[float, Meta(gt=0.0, le=1_000.0)]
+    yaw_deg: Annotated[float, Meta(ge=-360.0, le=360.0)]
+    pitch_deg: Annotated[float, Meta(ge=-90.0, le=90.0)] = 0.0
+    roll_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] = 0.0
+
+
+class ImageCircleTable(_Table, frozen=True):
+    """[eye.image_circle]: the lens's lit circle, in pixels at the camera file's size."""
+
+    col_px: Annotated[float, Meta(ge=0.0, le=16_384.0)]
+    row_px: Annotated[float, Meta(ge=0.0, le=16_384.0)]
+    radius_px: Annotated[float, Meta(gt=0.0, le=16_384.0)]
+
+
+class EyeTable(_Table, frozen=True):
+    """[eye]: the vehicle whose frames are laid on the ground, its lens and its control points."""
+
+    serial: Serial
+    control_points_image_size_px: tuple[Pixels, Pixels]
+    camera: FileName = "camera-model.txt"
+    control_points: FileName = "GCPs.txt"
+    marked_frame: MarkedFrameTable | None = None
+    image_circle: ImageCircleTable | None = None
+
+
+class GroundImageTable(_Table, frozen=True):
+    """[ground_image]: the raster frames are laid on, centred on the origin."""
+
+    width_m: Annotated[float, Meta(gt=0.0, le=20_000.0)] = 512.0
+    height_m: Annotated[float, Meta(gt=0.0, le=20_000.0)] = 512.0
+    cell_m: Annotated[float, Meta(ge=0.01, le=100.0)] = 1.0
+
+
+class PadTable(_Table, frozen=True):
+    """pad: where a vehicle takes off and lands."""
+
+    latitude_deg: Latitude
+    longitude_deg: Longitude
+    altitude_m: Altitude
+
+
+class VehicleTable(_Table, frozen=True):
+    """One of [[vehicles]]: what a vehicle is and accepts. Absent keys keep the default."""
+
+    serial: Serial
+    name: Text | None = None
+    model: Text | None = None
+    waypoint_altitude: Literal["wgs84", "takeoff"] | None = None
+    mount: Literal["gimbal", "fixed"] | None = None
+    pad: PadTable | None = None
+    app: Literal["legacy"] | None = None
+    max_waypoints: Annotated[int, Meta(ge=2, le=99)] | None = None
+    battery_factor: Annotated[float, Meta(ge=0.1, le=10.0)] | None = None
+    video_latency_s: Seconds | None = None
+    video_latency_sigma_s: Seconds | None = None
+    packet_gap_s: Seconds | None = None
+
+
+class SiteTable(_Table, frozen=True):
+    """The whole file. The tables are converted one by one, so that a complaint can name its own."""
+
+    name: Text
+    origin: dict[str, Any]
+    eye: dict[str, Any] | None = None
+    ground_image: dict[str, Any] | None = None
+    vehicles: list[dict[str, Any]] = []

@@ -1,0 +1,60 @@
+"""A site: the place, the eye above it, and the vehicles that are known there."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from recon.camera import (
+    ControlPoint,
+    ImageCircle,
+    OmnidirectionalCamera,
+    PoseSolution,
+    TelemetryReference,
+)
+from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.vehicle import VehicleProfile
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Eye:
+    """The imaging vehicle: its lens, its control points and the pose these give.
+
+    `solution` is the camera's pose when the marked frame was taken; `marked_frame` what telemetry
+    said then. `image_circle` is at the camera's size, None when it is to be found in the frames.
+    """
+
+    serial: str
+    camera: OmnidirectionalCamera
+    control_points: tuple[ControlPoint, ...]
+    control_points_image_size_px: tuple[int, int]
+    solution: PoseSolution
+    marked_frame: TelemetryReference | None = None
+    image_circle: ImageCircle | None = None
+
+    @property
+    def first_frame_stands_for_marked_frame(self) -> bool:
+        """Whether the first frame received in flight is taken for the marked one.
+
+        So when the file does not tell the marked frame's telemetry: right only if the aircraft is
+        then where it was when the control points' frame was taken. The station must say so.
+        """
+        return self.marked_frame is None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Site:
+    """What a site's folder says; without a folder nothing but the name is known."""
+
+    name: str
+    frame: LocalFrame | None = None
+    ground_grid: GroundGrid | None = None
+    eye: Eye | None = None
+    profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
+
+    def profile_of(self, serial: str) -> VehicleProfile:
+        """Return a vehicle's profile; one that the site does not know gets the defaults."""
+        return self.profiles.get(serial) or VehicleProfile(serial)
+
+
+def default_site() -> Site:
+    """Return the site of a station that was started without one."""
+    return Site(name="no site")

@@ -1,0 +1,116 @@
+"""Alarms: each names its vehicle, stays until its cause ends, and is acknowledged by a person."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+from recon.model.units import seconds_to_ns
+
+
+class Severity(Enum):
+    """How bad it is, the worst first."""
+
+    CRITICAL = "critical"
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Something that is the case now. The same `key` is the same cause.
+
+    It becomes an alarm when it has lasted `after_s`.
+    """
+
+    key: str
+    severity: Severity
+    rule: str
+    vehicle_name: str
+    text: str
+    serial: str | None = None
+    link_id: int | None = None
+    after_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Alarm:
+    """A condition that was raised, and what became of it."""
+
+    id: int
+    condition: Condition
+    raised_at_ns: int
+    is_active: bool = True
+    acknowledged_by: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmBook:
+    """All alarms that are active or not yet acknowledged."""
+
+    alarms: Mapping[int, Alarm] = field(default_factory=dict)
+    since_ns: Mapping[str, int] = field(default_factory=dict)
+    """When each present condition began, by key."""
+    next_id: int = 1
+
+
+def update(book: AlarmBook, conditions: Iterable[Condition], now_ns: int, kept: int) -> AlarmBook:
+    """Return the book after the conditions that hold now: alarms begin, change text, and end."""
+    present = {condition.key: condition for condition in conditions}
+    since_ns = {key: book.since_ns.get(key, now_ns) for key in present}
+    ripe = {
+        key: condition
+        for key, condition in present.items()
+        if now_ns - since_ns[key] >= seconds_to_ns(condition.after_s)
+    }
+    alarms = {
+        alarm.id: replace(
+            alarm,
+            condition=ripe.get(alarm.condition.key, alarm.condition)
+            if alarm.is_active
+            else alarm.condition,
+            is_active=alarm.is_active and alarm.condition.key in ripe,
+        )
+        for alarm in book.alarms.values()
+    }
+    active = {alarm.condition.key for alarm in alarms.values() if alarm.is_active}
+    next_id = book.next_id
+    for key, condition in ripe.items():
+        if key not in active:
+            alarms[next_id] = Alarm(next_id, condition, now_ns)
+            next_id += 1
+    return AlarmBook(_bounded(alarms, kept), since_ns, next_id)
+
+
+def note(book: AlarmBook, condition: Condition, now_ns: int, kept: int) -> AlarmBook:
+    """Return the book with an event that has no duration; it stays until acknowledged.
+
+    The same cause, not yet acknowledged, is not raised twice.
+    """
+    if any(a.condition.key == condition.key for a in book.alarms.values()):
+        return book
+    alarm = Alarm(book.next_id, condition, now_ns, is_active=False)
+    alarms = _bounded({**book.alarms, alarm.id: alarm}, kept)
+    return replace(book, alarms=alarms, next_id=book.next_id + 1)
+
+
+def acknowledge(book: AlarmBook, alarm_id: int, by: str) -> AlarmBook:
+    """Return the book after a person has seen an alarm; an ended one leaves it."""
+    alarm = book.alarms.get(alarm_id)
+    if alarm is None:
+        return book
+    seen = {**book.alarms, alarm_id: replace(alarm, acknowledged_by=by)}
+    return replace(book, alarms=_bounded(seen, len(seen)))
+
+
+def _bounded(alarms: dict[int, Alarm], kept: int) -> dict[int, Alarm]:
+    """Forget ended and acknowledged alarms; beyond the limit, the oldest ended ones too."""
+    open_alarms = {
+        key: alarm
+        for key, alarm in alarms.items()
+        if alarm.is_active or alarm.acknowledged_by is None
+    }
+    ended = [key for key, alarm in open_alarms.items() if not alarm.is_active]
+    for key in ended[: max(0, len(open_alarms) - kept)]:
+        del open_alarms[key]
+    return open_alarms

@@ -1,0 +1,46 @@
+"""Rooms put together: a site becomes the station's first state and the worker's tasks."""
+
+import cv2
+
+from recon.camera.ground import GroundProjector
+from recon.camera.motion import moved_pose
+from recon.fleet.state import Fleet
+from recon.model.imagery import GroundImage
+from recon.model.vehicle import VehicleProfile
+from recon.site import Site
+from recon.station.imaging import LAY_FRAME, Imaging, LayFrame
+from recon.station.settings import StationSettings
+from recon.station.state import Station
+from recon.station.worker import Task
+
+
+def first_state(site: Site, settings: StationSettings | None = None) -> Station:
+    """Return the station before anything has happened."""
+    chosen = settings or StationSettings()
+    marked = None if site.eye is None else site.eye.marked_frame
+    return Station(
+        settings=chosen,
+        fleet=Fleet(settings=chosen.fleet, profiles=site.profiles),
+        imaging=Imaging(
+            eye_serial=None if site.eye is None else site.eye.serial,
+            reference=marked,
+            is_reference_assumed=marked is None,
+        ),
+    )
+
+
+def worker_tasks(site: Site) -> dict[str, Task]:
+    """Return what the worker can do for a site: with an eye, laying its frames on the ground."""
+    cv2.setNumThreads(1)
+    if site.eye is None or site.frame is None or site.ground_grid is None:
+        return {}
+    eye, frame = site.eye, site.frame
+    projector = GroundProjector(site.ground_grid, eye.camera, eye.image_circle)
+    mount = site.profiles.get(eye.serial, VehicleProfile(eye.serial)).mount
+
+    def lay(payload: object) -> GroundImage:
+        assert isinstance(payload, LayFrame)
+        pose = moved_pose(eye.solution.pose, frame, payload.reference, payload.telemetry, mount)
+        return projector.lay(payload.frame, pose)
+
+    return {LAY_FRAME: lay}

@@ -1,0 +1,192 @@
+"""Orders carried out: judged by the gate, superseded, repeated, confirmed, timed out."""
+
+from dataclasses import replace
+
+from recon.fleet.confirmation import is_confirmed, pilot_took_over
+from recon.link.outbox import Lane, lane_of
+from recon.model.command import (
+    CAMERA_BODIES,
+    Command,
+    FlyMission,
+    Phase,
+    Refusal,
+)
+from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
+from recon.model.units import seconds_to_ns
+from recon.safety import ApprovedCommand, Claimant, Situation, approve
+from recon.station import orders
+from recon.station.orders import OrderRecord, PhaseChange
+from recon.station.outputs import Output, SendCommand
+from recon.station.settings import StationSettings
+from recon.station.state import Station
+from recon.vehicles.packets import describe_altitudes
+
+Stepped = tuple[Station, tuple[Output, ...]]
+
+
+def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
+    """Judge an order; send it when the gate approves, record the refusal when not."""
+    command = Command(
+        id=order.command_id,
+        body=order.body,
+        issued_by=order.issued_by,
+        issued_at_ns=now_ns,
+        expires_at_ns=now_ns + seconds_to_ns(station.settings.order_expiry_s),
+        serial=order.serial,
+        link_id=order.link_id,
+        takeoff=order.takeoff,
+    )
+    judged = approve(command, situation(station, command, now_ns))
+    if isinstance(judged, Refusal):
+        return _put(station, _refused(station, command, judged, now_ns)), ()
+    station = _supersede_older(station, command, now_ns)
+    return _put(station, _queued(station, judged, now_ns)), (SendCommand(judged),)
+
+
+def situation(station: Station, command: Command, now_ns: int) -> Situation:
+    """Return the snapshot the gate judges a command by."""
+    return Situation(
+        now_ns=now_ns,
+        vehicle=station.target(command.serial, command.link_id),
+        claimants=_claimants(station, command),
+        settings=station.settings.safety,
+    )
+
+
+def follow(
+    station: Station, event: CommandSent | CommandAnswered | CommandDropped, now_ns: int
+) -> Station:
+    """Take what a link says of a command into its life."""
+    record = station.orders.records.get(event.command_id)
+    if record is None:
+        return station
+    match event:
+        case CommandSent():
+            target = station.target(record.command.serial, record.command.link_id)
+            mode = None if target is None else target.flight_mode.value
+            return _put(station, orders.on_sent(record, event, mode, now_ns))
+        case CommandAnswered():
+            return _put(station, orders.on_answered(record, event, now_ns))
+        case CommandDropped():
+            return _put(station, orders.on_dropped(record, event, now_ns))
+
+
+def watch(station: Station, now_ns: int) -> Stepped:
+    """Let time and telemetry change the orders still alive; repeat emergency orders."""
+    outputs: list[Output] = []
+    for record in station.orders.watched:
+        updated = _confirm(station, record, now_ns)
+        if updated.is_watched:
+            updated = _time_out(updated, station.settings, now_ns)
+        if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
+            updated, again = _repeat(station, updated, now_ns)
+            outputs += again
+        if updated is not record:
+            station = _put(station, updated)
+    return station, tuple(outputs)
+
+
+def _claimants(station: Station, command: Command) -> tuple[Claimant, ...]:
+    fleet = station.fleet
+    if command.serial is not None:
+        link_ids = fleet.link_ids_claiming(command.serial)
+    else:
+        target = station.target(None, command.link_id)
+        link_ids = () if target is None or target.link_id is None else (target.link_id,)
+    states = ((link_id, fleet.vehicle_of_link(link_id)) for link_id in link_ids)
+    return tuple(Claimant(link_id, s.is_flying) for link_id, s in states if s is not None)
+
+
+def _refused(station: Station, command: Command, refusal: Refusal, now_ns: int) -> OrderRecord:
+    note = f"{refusal.rule}: {refusal.reason}"
+    change = PhaseChange(Phase.REFUSED_BY_STATION, now_ns, note)
+    return OrderRecord(command, _name(station, command), (change,), is_watched=False)
+
+
+def _queued(station: Station, approved: ApprovedCommand, now_ns: int) -> OrderRecord:
+    command, settings = approved.command, station.settings
+    repeat_ns = now_ns + seconds_to_ns(settings.emergency_repeat_s)
+    return OrderRecord(
+        command=command,
+        vehicle_name=_name(station, command),
+        history=(PhaseChange(Phase.QUEUED, now_ns, ""),),
+        altitudes=describe_altitudes(command.body, approved.altitude_offset_m),
+        next_repeat_ns=repeat_ns if command.is_emergency else None,
+        repeats_left=settings.emergency_repeats if command.is_emergency else 0,
+    )
+
+
+def _name(station: Station, command: Command) -> str:
+    target = station.target(command.serial, command.link_id)
+    if target is not None:
+        return target.display_name
+    profile = station.fleet.profiles.get(command.serial or "")
+    return profile.display_name if profile is not None else command.serial or "nobody"
+
+
+def _supersede_older(station: Station, command: Command, now_ns: int) -> Station:
+    """A newer order to move ends the life of older ones to the same target, repeats included."""
+    if lane_of(command) is Lane.CAMERA:
+        return station
+    for record in station.orders.watched:
+        older = record.command
+        same_target = (older.serial, older.link_id) == (command.serial, command.link_id)
+        if same_target and lane_of(older) is not Lane.CAMERA:
+            note = f"by order {command.id}"
+            ended = orders.changed(record, Phase.SUPERSEDED, now_ns, note, is_watched=False)
+            station = _put(station, ended)
+    return station
+
+
+def _confirm(station: Station, record: OrderRecord, now_ns: int) -> OrderRecord:
+    target = station.target(record.command.serial, record.command.link_id)
+    if record.sent is None or target is None:
+        return record
+    if is_confirmed(record.command.body, record.sent, target, now_ns):
+        return orders.changed(record, Phase.CONFIRMED, now_ns, "by telemetry", is_watched=False)
+    if record.command.is_emergency and pilot_took_over(record.sent, target):
+        note = "the pilot has taken over"
+        return orders.changed(record, Phase.SUPERSEDED, now_ns, note, is_watched=False)
+    return record
+
+
+def _time_out(record: OrderRecord, settings: StationSettings, now_ns: int) -> OrderRecord:
+    """What telemetry does not confirm in time is unsure; motion can still be confirmed late."""
+    if record.phase is Phase.QUEUED:
+        if now_ns < record.command.expires_at_ns:
+            return record
+        return orders.changed(record, Phase.EXPIRED, now_ns, "not sent in time", is_watched=False)
+    if record.phase not in (Phase.SENT, Phase.ACKNOWLEDGED) or record.sent is None:
+        return record
+    waited_ns = now_ns - record.sent.sent_at_ns
+    limit_s = _confirm_limit_s(record, settings)
+    if waited_ns < seconds_to_ns(limit_s):
+        return record
+    note = f"telemetry has not confirmed it within {limit_s:g} s"
+    is_serious = record.command.is_emergency or isinstance(record.command.body, FlyMission)
+    return orders.changed(record, Phase.TIMED_OUT, now_ns, note, is_watched=is_serious)
+
+
+def _confirm_limit_s(record: OrderRecord, settings: StationSettings) -> float:
+    body = record.command.body
+    if record.command.is_emergency:
+        return settings.emergency_confirm_s
+    if isinstance(body, CAMERA_BODIES):
+        return settings.camera_confirm_s
+    return settings.mission_confirm_s if isinstance(body, FlyMission) else settings.stick_confirm_s
+
+
+def _repeat(
+    station: Station, record: OrderRecord, now_ns: int
+) -> tuple[OrderRecord, tuple[Output, ...]]:
+    """Send an unconfirmed emergency order again if the gate still approves it now."""
+    left = record.repeats_left - 1
+    later_ns = now_ns + seconds_to_ns(station.settings.emergency_repeat_s)
+    record = replace(record, repeats_left=left, next_repeat_ns=later_ns if left > 0 else None)
+    judged = approve(record.command, situation(station, record.command, now_ns))
+    return record, () if isinstance(judged, Refusal) else (SendCommand(judged),)
+
+
+def _put(station: Station, record: OrderRecord) -> Station:
+    book = orders.put(station.orders, record, station.settings.orders_kept)
+    return replace(station, orders=book)

@@ -1,0 +1,110 @@
+"""What is wrong now, worked out from the station's state alone."""
+
+from collections.abc import Iterator
+
+from recon.fleet.state import LinkRecord, staleness
+from recon.model.command import Phase
+from recon.model.units import ns_to_seconds
+from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
+from recon.station.alarms import Condition, Severity
+from recon.station.orders import OrderRecord
+from recon.station.state import Station
+
+
+def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
+    """Yield every condition that holds now."""
+    for vehicle in station.fleet.vehicles.values():
+        yield from _identity(vehicle)
+        yield from _silence(vehicle, now_ns)
+        yield from _battery(vehicle)
+        yield from _landing(vehicle, station.settings.landing_wait_s)
+    for link in station.fleet.unbound_links():
+        yield from _unidentified(link)
+    for record in station.orders.watched:
+        yield from _unconfirmed(record)
+    yield from _imaging(station)
+
+
+def _about(
+    vehicle: VehicleState, rule: str, severity: Severity, text: str, after_s: float = 0.0
+) -> Condition:
+    key = f"{rule}:{vehicle.serial if vehicle.serial is not None else vehicle.link_id}"
+    name = vehicle.display_name
+    return Condition(
+        key, severity, rule, name, f"{name}: {text}", vehicle.serial, vehicle.link_id, after_s
+    )
+
+
+def _identity(vehicle: VehicleState) -> Iterator[Condition]:
+    if vehicle.in_conflict:
+        links = ", ".join(str(link_id) for link_id in vehicle.rival_link_ids)
+        text = (
+            f"link {links} claims the same serial while link {vehicle.link_id} still speaks; "
+            "only hold, land and return are sent, to all of them"
+        )
+        yield _about(vehicle, "serial_conflict", Severity.ERROR, text)
+
+
+def _silence(vehicle: VehicleState, now_ns: int) -> Iterator[Condition]:
+    tier = staleness(vehicle, now_ns)
+    if tier not in (Staleness.LOST, Staleness.SILENT) or vehicle.core_received_at_ns is None:
+        return
+    age_s = ns_to_seconds(now_ns - vehicle.core_received_at_ns)
+    if vehicle.is_flying.value is False:
+        text = f"no telemetry for {age_s:.0f} s; it was on the ground"
+        yield _about(vehicle, "link_lost", Severity.WARNING, text)
+    else:
+        text = f"no telemetry for {age_s:.0f} s; it may be anywhere near its last place"
+        yield _about(vehicle, "link_lost", Severity.CRITICAL, text)
+
+
+def _battery(vehicle: VehicleState) -> Iterator[Condition]:
+    match vehicle.battery_warning.value:
+        case BatteryWarning.SERIOUS:
+            text = "the aircraft warns of a seriously low battery"
+            yield _about(vehicle, "battery", Severity.CRITICAL, text)
+        case BatteryWarning.LOW:
+            text = "the aircraft warns of a low battery"
+            yield _about(vehicle, "battery", Severity.WARNING, text)
+
+
+def _landing(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
+    waits = vehicle.flight_mode.value is FlightMode.CONFIRM_LANDING
+    if waits and vehicle.is_flying.value is True:
+        text = "its landing waits for confirmation in the app or by the pilot"
+        yield _about(vehicle, "landing_waits", Severity.ERROR, text, after_s)
+
+
+def _unidentified(link: LinkRecord) -> Iterator[Condition]:
+    if link.claimed_serial is None and link.own_state.is_flying.value is True:
+        text = f"a vehicle without a serial is flying ({link.remote_address})"
+        yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s=2.0)
+
+
+def _unconfirmed(record: OrderRecord) -> Iterator[Condition]:
+    if not record.is_unsure:
+        return
+    command = record.command
+    ignored = command.name == "mission" and record.phase is Phase.TIMED_OUT
+    yield Condition(
+        key=f"unconfirmed:{command.id}",
+        severity=Severity.ERROR if ignored else Severity.CRITICAL,
+        rule="mission_ignored" if ignored else "order_not_confirmed",
+        vehicle_name=record.vehicle_name,
+        text=f"{record.vehicle_name}: {command.name.replace('_', ' ')}: {record.note}",
+        serial=command.serial,
+        link_id=command.link_id,
+    )
+
+
+def _imaging(station: Station) -> Iterator[Condition]:
+    imaging = station.imaging
+    if imaging.latest_error is not None:
+        yield Condition(
+            key="imaging",
+            severity=Severity.WARNING,
+            rule="imaging",
+            vehicle_name=imaging.eye_serial or "",
+            text=f"the eye's frame was not laid on the ground: {imaging.latest_error}",
+            serial=imaging.eye_serial,
+        )

@@ -1,0 +1,89 @@
+"""The driver on real sockets and the real clock: asyncio around the pure step."""
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Callable
+
+from recon.fleet.step import CloseLink
+from recon.link.server import LinkServer
+from recon.model.event import Event, Tick
+from recon.station.outputs import Output, SendCommand, StartWork
+from recon.station.state import Station
+from recon.station.step import step
+from recon.station.worker import Worker
+
+TICK_S = 0.05
+"""Twenty times a second: takeovers, repeats and alarms are at most this late."""
+
+
+def station_clock() -> Callable[[], int]:
+    """Return a clock of nanoseconds that begins at UTC and never jumps within a run."""
+    offset_ns = time.time_ns() - time.monotonic_ns()
+    return lambda: offset_ns + time.monotonic_ns()
+
+
+class AsyncioDriver:
+    """Runs the station: every event goes through one queue, in order, on one thread."""
+
+    def __init__(
+        self,
+        station: Station,
+        now_ns: Callable[[], int],
+        observe: Callable[[Station, Station, Event], None] | None = None,
+    ) -> None:
+        self.station = station
+        self._observe = observe
+        self.now_ns = now_ns
+        self.started_at_ns = now_ns()
+        self.links: LinkServer | None = None
+        self.worker: Worker | None = None
+        self._queue: deque[Event] = deque()
+        self._is_draining = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    def handle(self, event: Event) -> None:
+        """Take an event; what a step's outputs cause is queued behind it."""
+        self._queue.append(event)
+        if self._is_draining:
+            return
+        self._is_draining = True
+        try:
+            while self._queue:
+                self._step(self._queue.popleft())
+        finally:
+            self._is_draining = False
+
+    def handle_from_thread(self, event: Event) -> None:
+        """Take an event from another thread."""
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self.handle, event)
+
+    async def run(self) -> None:
+        """Let time pass until cancelled."""
+        self._loop = asyncio.get_running_loop()
+        while True:
+            await asyncio.sleep(TICK_S)
+            if self.links is not None:
+                self.links.tick()
+            self.handle(Tick())
+
+    def _step(self, event: Event) -> None:
+        before = self.station
+        self.station, outputs = step(before, event, self.now_ns())
+        if self._observe is not None:
+            self._observe(before, self.station, event)
+        for output in outputs:
+            self._carry_out(output)
+
+    def _carry_out(self, output: Output) -> None:
+        match output:
+            case SendCommand(approved):
+                if self.links is not None:
+                    self.links.send(approved)
+            case CloseLink(link_id, reason):
+                if self.links is not None:
+                    self.links.close_link(link_id, reason)
+            case StartWork():
+                if self.worker is not None:
+                    self.worker.submit(output)

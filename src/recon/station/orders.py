@@ -1,0 +1,118 @@
+"""The life of every order: queued, sent, answered, confirmed by telemetry, or not."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from recon.fleet.confirmation import SentContext
+from recon.model.command import Command, Phase
+from recon.model.event import CommandAnswered, CommandDropped, CommandSent
+from recon.model.vehicle import FlightMode
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseChange:
+    """One step of a life."""
+
+    phase: Phase
+    at_ns: int
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class OrderRecord:
+    """One order and what has become of it.
+
+    `is_watched`: telemetry can still confirm it. `next_repeat_ns`: when an emergency order is sent
+    again if nothing has ended that.
+    """
+
+    command: Command
+    vehicle_name: str
+    history: tuple[PhaseChange, ...]
+    altitudes: str | None = None
+    sent: SentContext | None = None
+    times_sent: int = 0
+    is_watched: bool = True
+    next_repeat_ns: int | None = None
+    repeats_left: int = 0
+
+    @property
+    def phase(self) -> Phase:
+        """Where it is now."""
+        return self.history[-1].phase
+
+    @property
+    def note(self) -> str:
+        """The latest word on it."""
+        return self.history[-1].note
+
+    @property
+    def is_unsure(self) -> bool:
+        """Whether an order was sent that nothing has confirmed: a person must look."""
+        return self.is_watched and self.phase in (Phase.TIMED_OUT, Phase.REFUSED_BY_APP)
+
+
+@dataclass(frozen=True, slots=True)
+class OrderBook:
+    """All orders lately given; `watched` are those that time and telemetry still change."""
+
+    records: Mapping[int, OrderRecord] = field(default_factory=dict)
+
+    @property
+    def watched(self) -> tuple[OrderRecord, ...]:
+        """The orders still alive."""
+        return tuple(record for record in self.records.values() if record.is_watched)
+
+
+def changed(
+    record: OrderRecord, phase: Phase, at_ns: int, note: str = "", *, is_watched: bool = True
+) -> OrderRecord:
+    """Return the record after a change of phase."""
+    history = (*record.history, PhaseChange(phase, at_ns, note))
+    record = replace(record, history=history, is_watched=is_watched)
+    return record if is_watched else replace(record, next_repeat_ns=None, repeats_left=0)
+
+
+def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
+    """Return the book with a record in it; the oldest finished ones are forgotten."""
+    records = {**book.records, record.command.id: record}
+    if len(records) > kept:
+        finished = [key for key, r in records.items() if not r.is_watched]
+        for key in finished[: len(records) - kept]:
+            del records[key]
+    return OrderBook(records)
+
+
+def on_sent(
+    record: OrderRecord, _event: CommandSent, mode: FlightMode | None, now_ns: int
+) -> OrderRecord:
+    """The packet is on its way; the first time counts for what telemetry must be newer than."""
+    again = replace(record, times_sent=record.times_sent + 1)
+    if record.sent is not None:
+        return again
+    return changed(replace(again, sent=SentContext(now_ns, mode)), Phase.SENT, now_ns)
+
+
+def on_answered(record: OrderRecord, event: CommandAnswered, now_ns: int) -> OrderRecord:
+    """The app answered, or its answer missed its time. Neither confirms anything."""
+    if record.phase not in (Phase.SENT, Phase.ACKNOWLEDGED):
+        return record
+    if event.positive is None:
+        return changed(record, record.phase, now_ns, "the app has not acknowledged it in time")
+    if event.positive:
+        return (
+            record
+            if record.phase is Phase.ACKNOWLEDGED
+            else changed(record, Phase.ACKNOWLEDGED, now_ns)
+        )
+    note = "the app refused it"
+    return changed(
+        record, Phase.REFUSED_BY_APP, now_ns, note, is_watched=record.command.is_emergency
+    )
+
+
+def on_dropped(record: OrderRecord, event: CommandDropped, now_ns: int) -> OrderRecord:
+    """It left the queue unsent. A repeat that was not sent changes nothing."""
+    if record.phase is not Phase.QUEUED:
+        return record
+    return changed(record, event.phase, now_ns, event.reason, is_watched=False)

@@ -1,0 +1,25 @@
+"""What the station's step wants done."""
+
+from dataclasses import dataclass
+
+from recon.fleet.step import CloseLink
+from recon.safety import ApprovedCommand
+
+
+@dataclass(frozen=True, slots=True)
+class SendCommand:
+    """Hand an approved command to its links."""
+
+    approved: ApprovedCommand
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StartWork:
+    """Give heavy work to the worker; it comes back as a `WorkerResult`."""
+
+    job_id: int
+    kind: str
+    payload: object
+
+
+Output = SendCommand | CloseLink | StartWork

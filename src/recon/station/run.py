@@ -1,0 +1,175 @@
+"""`recon run`: the station on real sockets, until it is told to stop."""
+
+import asyncio
+import errno
+import socket
+from collections.abc import Awaitable, Callable
+from contextlib import AsyncExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import structlog
+import uvicorn
+
+from recon import __version__
+from recon.api.app import create_app
+from recon.api.security import LOOPBACK_NAMES, Access
+from recon.link.capture import Capture
+from recon.link.server import LinkServer
+from recon.link.settings import LinkSettings
+from recon.model.errors import ReconError
+from recon.model.units import ns_to_seconds
+from recon.site import Site
+from recon.station.build import first_state, worker_tasks
+from recon.station.driver import AsyncioDriver, station_clock
+from recon.station.log import log_step
+from recon.station.service import Service
+from recon.station.worker import ThreadWorker
+
+_log = structlog.get_logger("recon")
+
+
+class StartError(ReconError):
+    """The station cannot start; the text says why and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunConfig:
+    """How a station is started. Everything binds loopback unless told otherwise."""
+
+    site: Site
+    link_host: str = "127.0.0.1"
+    link_port: int = 3001
+    http_host: str = "127.0.0.1"
+    http_port: int = 8080
+    capture_folder: Path | None = None
+    token: str | None = None
+    console: Path | None = None
+    link: LinkSettings = field(default_factory=LinkSettings)
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """Where a station listens."""
+
+    link_addresses: list[str]
+    link_port: int
+    console_url: str
+
+
+OnStart = Callable[[Started], Awaitable[None]]
+
+
+async def run(config: RunConfig, on_start: OnStart) -> None:
+    """Run a station until SIGINT or SIGTERM. Raises `StartError` when it cannot start."""
+    _refuse_open_door(config)
+    http_socket = _listen(config.http_host, config.http_port, "--http-port")
+    async with AsyncExitStack() as stack:
+        stack.callback(http_socket.close)
+        driver = AsyncioDriver(first_state(config.site), station_clock(), log_step)
+        capture = _start_capture(config, driver)
+        if capture is not None:
+            stack.callback(capture.close)
+        worker = ThreadWorker(worker_tasks(config.site), driver.handle_from_thread)
+        driver.worker = worker
+        links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
+        driver.links = links
+        service = Service.around(driver, config.site, _text(config.capture_folder))
+        service.link_addresses = await _start_links(links, config)
+        stack.push_async_callback(links.stop)
+        ticking = asyncio.create_task(driver.run())
+        stack.callback(ticking.cancel)
+        worker.start()
+        stack.callback(worker.stop)
+        server = _http_server(config, service)
+        serving = asyncio.create_task(server.serve(sockets=[http_socket]))
+        await on_start(_started(config, service, links, http_socket))
+        done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
+        # A loop that died must not leave a station that looks alive.
+        server.should_exit = True
+        await serving
+        for task in done:
+            task.result()
+
+
+def _refuse_open_door(config: RunConfig) -> None:
+    if config.http_host not in LOOPBACK_NAMES and config.token is None:
+        raise StartError(
+            f"the console would be open to everyone who reaches {config.http_host}: give "
+            "--token-file FILE with a secret of 16 characters or more, or leave it on 127.0.0.1"
+        )
+
+
+def _listen(host: str, port: int, option: str) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    sock = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        sock.bind((host, port))
+    except (OSError, OverflowError) as problem:
+        sock.close()
+        raise _cannot_listen(host, port, option, problem) from problem
+    return sock
+
+
+def _cannot_listen(host: str, port: int, option: str, problem: Exception) -> StartError:
+    if isinstance(problem, OSError) and problem.errno == errno.EADDRINUSE:
+        return StartError(
+            f"port {port} of {host} is in use, perhaps by another station: stop that one, or "
+            f"choose another port with {option}"
+        )
+    reason = problem.strerror if isinstance(problem, OSError) else problem
+    return StartError(f"cannot listen on {host} port {port}: {reason}; see {option}")
+
+
+async def _start_links(links: LinkServer, config: RunConfig) -> list[str]:
+    try:
+        return await links.start(config.link_host, config.link_port)
+    except (OSError, OverflowError) as problem:
+        raise _cannot_listen(
+            config.link_host, config.link_port, "--link-port", problem
+        ) from problem
+
+
+def _start_capture(config: RunConfig, driver: AsyncioDriver) -> Capture | None:
+    if config.capture_folder is None:
+        return None
+    run_name = f"{ns_to_seconds(driver.started_at_ns):.0f}"
+    capture = Capture(config.capture_folder, run_name, config.link.capture_limit_bytes)
+    try:
+        capture.start()
+    except OSError as problem:
+        raise StartError(
+            f"cannot write captures to {config.capture_folder}: {problem.strerror}; give a folder "
+            "that can be written with --capture"
+        ) from problem
+    return capture
+
+
+def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
+    access = Access.make(config.http_host, config.token)
+    app = create_app(service, access, config.console, __version__)
+    return uvicorn.Server(
+        uvicorn.Config(
+            app,
+            log_level="warning",
+            access_log=False,
+            server_header=False,
+            ws_max_size=64 * 1024,
+            timeout_graceful_shutdown=2,
+            lifespan="off",
+        )
+    )
+
+
+def _started(
+    config: RunConfig, service: Service, links: LinkServer, http_socket: socket.socket
+) -> Started:
+    port = http_socket.getsockname()[1]
+    host = f"[{config.http_host}]" if ":" in config.http_host else config.http_host
+    fragment = "" if config.token is None else f"/#token={config.token}"
+    return Started(service.link_addresses, links.port, f"http://{host}:{port}{fragment}")
+
+
+def _text(folder: Path | None) -> str | None:
+    return None if folder is None else str(folder)

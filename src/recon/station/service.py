@@ -1,0 +1,137 @@
+"""The running station as the API sees it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import count
+
+from recon import __version__
+from recon.api import schema
+from recon.model.command import Body, Hover, Phase
+from recon.model.event import AlarmAcknowledged, OperatorOrder
+from recon.model.imagery import Frame, GroundImage
+from recon.model.units import ns_to_seconds
+from recon.record import geotiff_bytes
+from recon.site import Site
+from recon.station.driver import AsyncioDriver
+from recon.station.orders import OrderRecord
+from recon.station.views import Surroundings, state_view
+
+
+@dataclass(slots=True)
+class Service:
+    """Implements `recon.api.port.StationPort` on a driver."""
+
+    driver: AsyncioDriver
+    site: Site
+    link_addresses: list[str]
+    capture_folder: str | None
+    _ids: Callable[[], int]
+
+    @classmethod
+    def around(cls, driver: AsyncioDriver, site: Site, capture_folder: str | None) -> "Service":
+        """Return the service of a driver that is about to run."""
+        return cls(driver, site, [], capture_folder, count(1).__next__)
+
+    def state(self) -> schema.StationState:
+        """Return everything a console shows, as of now."""
+        now_ns = self.driver.now_ns()
+        return state_view(self.driver.station, self._surroundings(now_ns), now_ns)
+
+    def order(
+        self, serials: list[str], body: Body, *, takeoff: bool, issued_by: str
+    ) -> schema.OrderResponse:
+        """Give one order to each named vehicle, once each."""
+        asked = [
+            OperatorOrder(self._ids(), body, issued_by, serial=serial, takeoff=takeoff)
+            for serial in dict.fromkeys(serials)
+        ]
+        return self._give(asked)
+
+    def all_stop(self, issued_by: str) -> schema.OrderResponse:
+        """Hold every link whose telemetry says flying, identified or not.
+
+        A vehicle that is on the ground, or whose telemetry is too old to tell, is in the results
+        with the gate's refusal.
+        """
+        fleet = self.driver.station.fleet
+        serials = [s for s in fleet.vehicles if fleet.link_ids_claiming(s)]
+        links = [
+            link.id
+            for link in fleet.unbound_links()
+            if link.claimed_serial is None and link.own_state.is_flying.value is True
+        ]
+        orders = [OperatorOrder(self._ids(), Hover(), issued_by, serial=s) for s in serials]
+        orders += [OperatorOrder(self._ids(), Hover(), issued_by, link_id=i) for i in links]
+        return self._give(orders)
+
+    def acknowledge(self, alarm_id: int, by: str) -> bool:
+        """Mark an alarm as seen."""
+        if alarm_id not in self.driver.station.alarms.alarms:
+            return False
+        self.driver.handle(AlarmAcknowledged(alarm_id, by))
+        return True
+
+    def frame(self, serial: str) -> Frame | None:
+        """Return a vehicle's newest frame."""
+        return self.driver.station.frames.get(serial)
+
+    def ground_image(self) -> GroundImage | None:
+        """Return the newest ground image."""
+        return self.driver.station.imaging.ground_image
+
+    def geotiff(self, image: GroundImage) -> bytes:
+        """Return a ground image as a GeoTIFF file."""
+        rms_px = None if self.site.eye is None else self.site.eye.solution.rms_px
+        captured = datetime.fromtimestamp(ns_to_seconds(image.captured_at_ns), UTC)
+        return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
+
+    def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
+        for order in orders:
+            self.driver.handle(order)
+        records = self.driver.station.orders.records
+        return schema.OrderResponse(results=[_result(records[o.command_id]) for o in orders])
+
+    def _surroundings(self, now_ns: int) -> Surroundings:
+        links = self.driver.links
+        connections = {} if links is None else links.connections
+        sessions = {i: c.session for i, c in connections.items() if c.session is not None}
+        return Surroundings(sessions, self._station_view(now_ns), site_view(self.site))
+
+    def _station_view(self, now_ns: int) -> schema.StationView:
+        return schema.StationView(
+            version=__version__,
+            link_addresses=self.link_addresses,
+            uptime_s=ns_to_seconds(now_ns - self.driver.started_at_ns),
+            frames_dropped=self.driver.station.imaging.frames_dropped,
+            capture_folder=self.capture_folder,
+        )
+
+
+def site_view(site: Site) -> schema.SiteView:
+    """Return what a console shows of a site."""
+    origin = None if site.frame is None else site.frame.origin
+    eye = site.eye
+    return schema.SiteView(
+        name=site.name,
+        latitude_deg=None if origin is None else origin.latitude_deg,
+        longitude_deg=None if origin is None else origin.longitude_deg,
+        ground_altitude_m=None if origin is None else origin.ellipsoid_height_m,
+        eye_serial=None if eye is None else eye.serial,
+        pose_rms_px=None if eye is None else eye.solution.rms_px,
+        pose_height_m=None if eye is None else eye.solution.height_above_ground_m,
+    )
+
+
+def _result(record: OrderRecord) -> schema.OrderResult:
+    is_refused = record.phase is Phase.REFUSED_BY_STATION
+    rule, _, reason = record.note.partition(": ")
+    return schema.OrderResult(
+        serial=record.command.serial,
+        link_id=record.command.link_id,
+        vehicle_name=record.vehicle_name,
+        accepted=not is_refused,
+        command_id=record.command.id,
+        rule=rule if is_refused else None,
+        reason=reason if is_refused else None,
+    )

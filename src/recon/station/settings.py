@@ -1,0 +1,39 @@
+"""The station's own times and limits, each with its reason."""
+
+from dataclasses import dataclass, field
+
+from recon.fleet.settings import FleetSettings
+from recon.safety import SafetySettings
+
+
+@dataclass(frozen=True, slots=True)
+class StationSettings:
+    """Times in seconds."""
+
+    fleet: FleetSettings = field(default_factory=FleetSettings)
+    safety: SafetySettings = field(default_factory=SafetySettings)
+
+    order_expiry_s: float = 5.0
+    """An order not on the wire by then is not what its giver sees any more."""
+
+    emergency_repeat_s: float = 0.7
+    emergency_repeats: int = 3
+    """Decisions on the ICD, 16: every 0.7 s, three at most, until telemetry confirms."""
+
+    emergency_confirm_s: float = 10.0
+    """From 15 m/s an aircraft needs 6 s to stand still, and its mode arrives at 2 Hz."""
+
+    mission_confirm_s: float = 8.0
+    """Upload and start of 99 waypoints take seconds; after this it was rejected silently."""
+
+    camera_confirm_s: float = 8.0
+    stick_confirm_s: float = 2.0
+
+    orders_kept: int = 200
+    alarms_kept: int = 200
+
+    landing_wait_s: float = 8.0
+    """A landing that waits for confirmation this long waits for somebody (decisions, 17)."""
+
+    pose_history_samples: int = 50
+    """Five seconds of the eye's telemetry, to look up what held when a late frame was taken."""

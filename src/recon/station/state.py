@@ -1,0 +1,33 @@
+"""Everything the station knows, as one frozen value."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from recon.fleet.state import Fleet
+from recon.model.imagery import Frame
+from recon.model.vehicle import VehicleState
+from recon.station.alarms import AlarmBook
+from recon.station.imaging import Imaging
+from recon.station.orders import OrderBook
+from recon.station.settings import StationSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Station:
+    """The state that `step` turns into the next one."""
+
+    settings: StationSettings = field(default_factory=StationSettings)
+    fleet: Fleet = field(default_factory=Fleet)
+    orders: OrderBook = field(default_factory=OrderBook)
+    alarms: AlarmBook = field(default_factory=AlarmBook)
+    imaging: Imaging = field(default_factory=Imaging)
+    frames: Mapping[str, Frame] = field(default_factory=dict)
+    """The newest frame of each vehicle, by serial."""
+    next_frame_id: int = 1
+
+    def target(self, serial: str | None, link_id: int | None) -> VehicleState | None:
+        """Return the state an order's target has now: a vehicle, or a link without identity."""
+        if serial is not None:
+            return self.fleet.vehicles.get(serial)
+        link = self.fleet.links.get(link_id if link_id is not None else -1)
+        return link.own_state if link is not None and link.is_open else None

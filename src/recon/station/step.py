@@ -1,0 +1,146 @@
+"""The station's step: one event in, the next state and what is to be done out. Pure."""
+
+from dataclasses import replace
+
+from recon.fleet import step as fleet_step
+from recon.model.event import (
+    AlarmAcknowledged,
+    CommandAnswered,
+    CommandDropped,
+    CommandSent,
+    DeadlineMissed,
+    Event,
+    LinkClosed,
+    LinkOpened,
+    OperatorOrder,
+    PacketReceived,
+    Tick,
+    WorkerResult,
+)
+from recon.model.imagery import Frame, GroundImage
+from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import VehicleProfile, VehicleState
+from recon.station import alarms, commanding, imaging
+from recon.station.alarms import Condition, Severity
+from recon.station.commanding import Stepped
+from recon.station.conditions import conditions
+from recon.station.outputs import Output, StartWork
+from recon.station.state import Station
+
+_NO_PROFILE = VehicleProfile(serial="")
+
+
+def step(station: Station, event: Event, now_ns: int) -> Stepped:
+    """Return the station after an event, and the outputs; the same inputs give the same outputs."""
+    match event:
+        case OperatorOrder():
+            return commanding.place(station, event, now_ns)
+        case CommandSent() | CommandAnswered() | CommandDropped():
+            return commanding.follow(station, event, now_ns), ()
+        case LinkOpened() | LinkClosed():
+            return _fleet(station, event, now_ns)
+        case PacketReceived():
+            return _packet(station, event, now_ns)
+        case Tick():
+            return _tick(station, now_ns)
+        case WorkerResult():
+            return _work_done(station, event), ()
+        case DeadlineMissed():
+            dropped = station.imaging.frames_dropped + 1
+            return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
+        case AlarmAcknowledged(alarm_id, by):
+            return replace(station, alarms=alarms.acknowledge(station.alarms, alarm_id, by)), ()
+
+
+def _fleet(station: Station, event: Event, now_ns: int) -> Stepped:
+    fleet, closing = fleet_step.step(station.fleet, event, now_ns)
+    return replace(station, fleet=fleet), closing
+
+
+def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
+    station, outputs = _fleet(station, event, now_ns)
+    vehicle = station.fleet.vehicle_of_link(event.link_id)
+    if vehicle is None:
+        return station, outputs
+    match event.report:
+        case CoreReport() if vehicle.serial is not None and _is_eye(station, vehicle):
+            kept = station.settings.pose_history_samples
+            seen = imaging.with_sample(station.imaging, vehicle, now_ns, kept)
+            station = replace(station, imaging=seen)
+        case ImageReport() as report if vehicle.serial is not None:
+            station, work = _frame(station, vehicle, report, now_ns)
+            return station, (*outputs, *work)
+        case MessageReport() as report:
+            station = _message(station, vehicle, report, now_ns)
+    station, orders = commanding.watch(station, now_ns)
+    return station, (*outputs, *orders)
+
+
+def _tick(station: Station, now_ns: int) -> Stepped:
+    station, closing = _fleet(station, Tick(), now_ns)
+    station, orders = commanding.watch(station, now_ns)
+    kept = station.settings.alarms_kept
+    book = alarms.update(station.alarms, conditions(station, now_ns), now_ns, kept)
+    return replace(station, alarms=book), (*closing, *orders)
+
+
+def _is_eye(station: Station, vehicle: VehicleState) -> bool:
+    return vehicle.serial == station.imaging.eye_serial
+
+
+def _frame(
+    station: Station, vehicle: VehicleState, report: ImageReport, now_ns: int
+) -> tuple[Station, tuple[Output, ...]]:
+    """Keep the newest frame of every vehicle; the eye's frames are laid on the ground."""
+    profile = vehicle.profile or _NO_PROFILE
+    serial = vehicle.serial or ""
+    frame = Frame(
+        id=station.next_frame_id,
+        serial=serial,
+        received_at_ns=now_ns,
+        captured_at_ns=now_ns - seconds_to_ns(profile.video_latency_s),
+        captured_sigma_s=profile.video_latency_sigma_s,
+        rgb=report.rgb,
+        jpeg=report.jpeg,
+    )
+    frames = {**station.frames, serial: frame}
+    station = replace(station, frames=frames, next_frame_id=frame.id + 1)
+    if not _is_eye(station, vehicle):
+        return station, ()
+    is_flying = vehicle.is_flying.value is True
+    seen, work = imaging.take_frame(station.imaging, frame, is_flying)
+    station = replace(station, imaging=seen)
+    return station, () if work is None else (StartWork(work[0], imaging.LAY_FRAME, work[1]),)
+
+
+def _work_done(station: Station, event: WorkerResult) -> Station:
+    """Take a ground image in, unless a newer one is already there."""
+    seen = station.imaging
+    if not isinstance(event.result, GroundImage):
+        return replace(station, imaging=replace(seen, latest_error=event.error))
+    image, latest = event.result, seen.ground_image
+    if latest is not None and latest.captured_at_ns > image.captured_at_ns:
+        return station
+    return replace(station, imaging=replace(seen, ground_image=image, latest_error=None))
+
+
+def _message(
+    station: Station, vehicle: VehicleState, report: MessageReport, now_ns: int
+) -> Station:
+    """An app's own warnings and errors are shown until somebody has seen them."""
+    if report.severity not in (MessageSeverity.WARNING, MessageSeverity.ERROR):
+        return station
+    is_error = report.severity is MessageSeverity.ERROR
+    who = vehicle.serial if vehicle.serial is not None else f"link {vehicle.link_id}"
+    condition = Condition(
+        key=f"app:{who}:{report.text}",
+        severity=Severity.ERROR if is_error else Severity.WARNING,
+        rule="app_message",
+        vehicle_name=vehicle.display_name,
+        text=f"{vehicle.display_name}: its app says: {report.text}",
+        serial=vehicle.serial,
+        link_id=vehicle.link_id,
+    )
+    book = alarms.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book)

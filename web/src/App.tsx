@@ -1,0 +1,65 @@
+import { createEffect, createSignal, onCleanup, onMount } from "solid-js";
+import { useConsole } from "./console";
+import { actOnKey } from "./keys";
+import { MapView } from "./map/MapView";
+import { AlarmList } from "./panels/alarms/AlarmList";
+import { LostBanner } from "./panels/bar/LostBanner";
+import { TopBar } from "./panels/bar/TopBar";
+import { CommandList } from "./panels/commands/CommandList";
+import { VehicleDetail } from "./panels/detail/VehicleDetail";
+import { HelpDialog } from "./panels/help/HelpDialog";
+import { LinkList } from "./panels/links/LinkList";
+import { OrderBar } from "./panels/orders/OrderBar";
+import { StationPanel } from "./panels/station/StationPanel";
+import { VehicleList } from "./panels/vehicles/VehicleList";
+import "./layout.css";
+
+/** The whole page. */
+export function App() {
+  const { source, fleet, selection, desk, theme, fit } = useConsole();
+  const [isHelpOpen, setHelpOpen] = createSignal(false);
+  const numbers = () => fleet.vehicles.map((vehicle) => vehicle.number);
+  const select = (number: number, how: (number: number) => void) => {
+    if (numbers().includes(number)) how(number);
+  };
+
+  onMount(() => {
+    const onKeyDown = (event: KeyboardEvent) => {
+      // In the help only its own keys count, and all stop.
+      if (isHelpOpen() && !(event.shiftKey && event.code === "KeyS")) return;
+      actOnKey(event, {
+        allStop: () => void desk.allStop(),
+        selectOnly: (number) => select(number, selection.only),
+        toggle: (number) => select(number, selection.toggle),
+        selectAll: () => selection.all(numbers()),
+        clear: selection.clear,
+        fit,
+        toggleTheme: theme.toggle,
+        help: () => setHelpOpen(true),
+      });
+    };
+    window.addEventListener("keydown", onKeyDown);
+    onCleanup(() => window.removeEventListener("keydown", onKeyDown));
+  });
+  createEffect(() => selection.keep(numbers()));
+
+  return (
+    <div class="page" classList={{ "is-lost": source.connection().kind === "lost" }}>
+      <TopBar onHelp={() => setHelpOpen(true)} />
+      <LostBanner />
+      <aside class="side side-vehicles" aria-label="Vehicles">
+        <VehicleList />
+        <VehicleDetail />
+      </aside>
+      <MapView />
+      <OrderBar />
+      <aside class="side side-events" aria-label="Alarms and commands">
+        <AlarmList />
+        <CommandList />
+        <LinkList />
+        <StationPanel />
+      </aside>
+      <HelpDialog isOpen={isHelpOpen()} onClose={() => setHelpOpen(false)} />
+    </div>
+  );
+}

@@ -1,0 +1,63 @@
+import { type Accessor, createContext, createMemo, createSignal, useContext } from "solid-js";
+import { createFleetView, type FleetView } from "./fleet/fleetView";
+import { createSelection, type Selection, selectedVehicles } from "./fleet/selection";
+import type { ThemeSwitch } from "./look/theme";
+import { createDesk, type Desk } from "./orders/desk";
+import { type Targets, targetsOf } from "./orders/targets";
+import type { Instant } from "./source/clock";
+import type { StationSource } from "./source/stationSource";
+
+/** What every part of the page shares. */
+export interface Console {
+  readonly source: StationSource;
+  /** The newest state as a store: a panel's parts change only where the state did. */
+  readonly fleet: FleetView;
+  readonly selection: Selection;
+  /** Whom an order would go to. */
+  readonly targets: Accessor<Targets>;
+  readonly desk: Desk;
+  readonly theme: ThemeSwitch;
+  /** Seconds to add to every age of the newest state, growing as one looks. */
+  readonly behindS: Accessor<number>;
+  readonly fitRequests: Accessor<number>;
+  /** Asks the map to show everything. */
+  fit(): void;
+}
+
+/** Puts the page's shared parts together; `now` ticks as often as ages shall be shown anew. */
+export function createConsole(
+  source: StationSource,
+  theme: ThemeSwitch,
+  now: Accessor<Instant>,
+): Console {
+  const fleet = createFleetView(source);
+  const selection = createSelection();
+  const [fitRequests, setFitRequests] = createSignal(0);
+  const behindS = createMemo(() => {
+    source.state();
+    return source.behindS(now()) ?? 0;
+  });
+  const targets = createMemo(() => targetsOf(selectedVehicles(fleet.vehicles, selection)));
+  return {
+    source,
+    fleet,
+    selection,
+    targets,
+    desk: createDesk(source),
+    theme,
+    behindS,
+    fitRequests,
+    fit: () => setFitRequests((count) => count + 1),
+  };
+}
+
+const ConsoleContext = createContext<Console>();
+
+export const ConsoleProvider = ConsoleContext.Provider;
+
+/** The shared parts, for a component inside the page. */
+export function useConsole(): Console {
+  const shared = useContext(ConsoleContext);
+  if (shared === undefined) throw new Error("A part of the page was used outside ConsoleProvider.");
+  return shared;
+}

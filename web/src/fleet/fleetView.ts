@@ -1,0 +1,59 @@
+import { createComputed } from "solid-js";
+import { createStore, reconcile } from "solid-js/store";
+import type {
+  AlarmView,
+  CommandView,
+  GroundImageView,
+  LinkView,
+  SiteView,
+  StationView,
+  VehicleView,
+} from "../protocol";
+import type { StationSource } from "../source/stationSource";
+
+/** The newest state for the panels. Tracks are left out: only the map reads them, from the source. */
+export type FleetView = Readonly<Contents>;
+
+interface Contents {
+  hasState: boolean;
+  vehicles: VehicleView[];
+  links: LinkView[];
+  commands: CommandView[];
+  alarms: AlarmView[];
+  station: StationView | null;
+  site: SiteView | null;
+  groundImage: GroundImageView | null;
+}
+
+const NOTHING: Contents = {
+  hasState: false,
+  vehicles: [],
+  links: [],
+  commands: [],
+  alarms: [],
+  station: null,
+  site: null,
+  groundImage: null,
+};
+
+/**
+ * Keeps a store in step with the source. Rows are matched by what identifies them, so that a button
+ * one is holding is never replaced by a new one.
+ */
+export function createFleetView(source: Pick<StationSource, "state">): FleetView {
+  const [view, setView] = createStore<Contents>({ ...NOTHING });
+  createComputed(() => {
+    const state = source.state();
+    if (state === null) return;
+    const vehicles = state.vehicles.map((vehicle) => ({ ...vehicle, track: [] }));
+    setView("hasState", true);
+    setView("vehicles", reconcile(vehicles, { key: "number" }));
+    setView("links", reconcile([...state.links], { key: "id" }));
+    setView("commands", reconcile([...state.commands], { key: "id" }));
+    setView("alarms", reconcile([...state.alarms], { key: "id" }));
+    setView("station", reconcile(state.station));
+    setView("site", reconcile(state.site));
+    setView("groundImage", reconcile(state.ground_image));
+  });
+  return view;
+}

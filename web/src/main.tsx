@@ -1,0 +1,34 @@
+import { createSignal } from "solid-js";
+import { render } from "solid-js/web";
+import "./look/theme.css";
+import "./look/page.css";
+import { App } from "./App";
+import { ConsoleProvider, createConsole } from "./console";
+import { createThemeSwitch } from "./look/theme";
+import { browserClock } from "./source/clock";
+import { LiveSource, tokenOf } from "./source/liveSource";
+
+/** How often ages are shown anew. */
+const AGE_TICK_MS = 100;
+
+function Page() {
+  const [now, setNow] = createSignal(browserClock.now());
+  setInterval(() => setNow(browserClock.now()), AGE_TICK_MS);
+  const source = new LiveSource({
+    origin: location.origin,
+    token: tokenOf(location.hash),
+    clock: browserClock,
+    openSocket: (url, protocols) => new WebSocket(url, protocols),
+    fetch: (request) => fetch(request),
+  });
+  const shared = createConsole(source, createThemeSwitch(document, localStorage), now);
+  return (
+    <ConsoleProvider value={shared}>
+      <App />
+    </ConsoleProvider>
+  );
+}
+
+const root = document.getElementById("app");
+if (root === null) throw new Error("index.html has no element with id app.");
+render(() => <Page />, root);

@@ -1,0 +1,164 @@
+import { Map as MapLibre, setWorkerUrl } from "maplibre-gl";
+import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
+import { createEffect, createMemo, createSignal, on, onCleanup, onMount, Show } from "solid-js";
+import "maplibre-gl/dist/maplibre-gl.css";
+import "./map.css";
+import { useConsole } from "../console";
+import { formatAge } from "../words/age";
+import { listNames, vehicleLabel } from "../words/names";
+import { readColours } from "./colours";
+import { GhostLayer } from "./ghostLayer";
+import { GraticuleLayer } from "./graticuleLayer";
+import { GroundImageLayer } from "./groundImageLayer";
+import type { Layer } from "./layer";
+import type { Box } from "./localGrid";
+import { positionOf, wholeView } from "./scene";
+import { TrailLayer } from "./trailLayer";
+import { VehicleLayer } from "./vehicleLayer";
+
+// Under Vite MapLibre does not find its worker by itself and stays blank.
+setWorkerUrl(workerUrl);
+
+/** The map with everything that has a place. */
+export function MapView() {
+  const { source, selection, theme, behindS, fitRequests } = useConsole();
+  const [map, setMap] = createSignal<MapLibre | null>(null);
+  let holder!: HTMLDivElement;
+  let labels!: HTMLDivElement;
+  let scaleBar!: HTMLDivElement;
+  let layers: readonly Layer[] = [];
+
+  onMount(() => {
+    const made = createMap(holder, readColours(document).ground);
+    layers = [
+      new GroundImageLayer((frameId) => source.groundImage(frameId)),
+      new GraticuleLayer(labels, scaleBar),
+      new GhostLayer(),
+      new TrailLayer(),
+      new VehicleLayer({ select: selection.only, toggle: selection.toggle }),
+    ];
+    made.on("load", () => {
+      for (const layer of layers) layer.add(made, readColours(document));
+      setMap(made);
+    });
+    onCleanup(() => made.remove());
+  });
+
+  createEffect(() => {
+    const state = source.state();
+    if (map() === null || state === null) return;
+    const scene = { state, behindS: behindS(), selected: selection.numbers() };
+    for (const layer of layers) layer.update(scene);
+  });
+
+  createEffect(() => {
+    theme.changes();
+    const colours = readColours(document);
+    map()?.setPaintProperty("ground", "background-color", colours.ground);
+    if (map() !== null) for (const layer of layers) layer.recolour(colours);
+  });
+
+  const whole = createMemo<Box | null>(() => {
+    const state = source.state();
+    return state === null ? null : wholeView(state);
+  });
+  const fit = (isFirst: boolean) => {
+    const box = whole();
+    if (box !== null) map()?.fitBounds([box.west, box.south, box.east, box.north], view(isFirst));
+  };
+  createEffect(on(fitRequests, () => fit(false), { defer: true }));
+
+  let hasFitted = false;
+  createEffect(() => {
+    if (hasFitted || map() === null || whole() === null) return;
+    hasFitted = true;
+    fit(true);
+  });
+
+  return (
+    <section class="map" aria-label="Map">
+      <div class="map-canvas" ref={holder} />
+      <div class="grid-labels" ref={labels} aria-hidden="true" />
+      <div class="map-tools">
+        <button type="button" class="button" onClick={() => map()?.zoomIn()} aria-label="Zoom in">
+          +
+        </button>
+        <button type="button" class="button" onClick={() => map()?.zoomOut()} aria-label="Zoom out">
+          −
+        </button>
+        <button type="button" class="button" onClick={() => fit(false)} title="Fit everything (F)">
+          Fit
+        </button>
+      </div>
+      <div class="map-scale">
+        <span class="map-north" title="North is up">
+          N ↑
+        </span>
+        <div class="map-scale-bar" ref={scaleBar} />
+      </div>
+      <div class="map-notes">
+        <GroundImageNote />
+        <UnplacedNote />
+      </div>
+    </section>
+  );
+}
+
+function createMap(container: HTMLElement, ground: string): MapLibre {
+  const map = new MapLibre({
+    container,
+    // No sprite, no glyphs, no tiles: nothing is asked of any network.
+    style: {
+      version: 8,
+      sources: {},
+      layers: [{ id: "ground", type: "background", paint: { "background-color": ground } }],
+    },
+    center: [0, 0],
+    zoom: 1,
+    maxZoom: 23,
+    attributionControl: false,
+    dragRotate: false,
+    pitchWithRotate: false,
+    touchPitch: false,
+    canvasContextAttributes: { antialias: true, preserveDrawingBuffer: true },
+  });
+  // North is always up: headings are then read as they are.
+  map.touchZoomRotate.disableRotation();
+  map.keyboard.disableRotation();
+  return map;
+}
+
+function view(isFirst: boolean) {
+  return { padding: 90, maxZoom: 19, animate: !isFirst, duration: 400 };
+}
+
+/** Which frame lies on the ground, how old it is and how well it is placed. */
+function GroundImageNote() {
+  const { source, behindS } = useConsole();
+  const image = () => source.state()?.ground_image ?? null;
+  return (
+    <Show when={image()} fallback={<p class="map-note">No ground image yet</p>}>
+      {(shown) => (
+        <p class="map-note">
+          Ground image: frame {shown().frame_id}, taken{" "}
+          {formatAge(shown().captured_age_s + behindS())} ago ±{" "}
+          {shown().captured_sigma_s.toFixed(1)} s, {shown().registration}
+        </p>
+      )}
+    </Show>
+  );
+}
+
+/** Vehicles that cannot be drawn, so that none is forgotten. */
+function UnplacedNote() {
+  const { source } = useConsole();
+  const unplaced = () =>
+    (source.state()?.vehicles ?? []).filter((vehicle) => positionOf(vehicle) === null);
+  return (
+    <Show when={unplaced().length > 0}>
+      <p class="map-note wire-text">
+        Not on the map, position unknown: {listNames(unplaced().map(vehicleLabel))}
+      </p>
+    </Show>
+  );
+}

@@ -1,0 +1,31 @@
+import { colourVariable, VEHICLE_COLOURS } from "../look/identity";
+
+/** The theme's colours as the map's drawing needs them. */
+export interface Colours {
+  readonly ground: string;
+  readonly grid: string;
+  readonly gridAxis: string;
+  readonly casing: string;
+  readonly stale: string;
+  readonly critical: string;
+  vehicle(number: number): string;
+}
+
+/** Reads the theme from the page's style sheet. */
+export function readColours(page: Document): Colours {
+  const style = getComputedStyle(page.documentElement);
+  const read = (name: string) => style.getPropertyValue(name).trim();
+  const vehicles = Array.from({ length: VEHICLE_COLOURS }, (_, index) =>
+    read(colourVariable(index + 1)),
+  );
+  const stale = read("--stale");
+  return {
+    ground: read("--ground"),
+    grid: read("--grid"),
+    gridAxis: read("--grid-axis"),
+    casing: read("--casing"),
+    critical: read("--critical"),
+    stale,
+    vehicle: (number) => vehicles[(number - 1) % VEHICLE_COLOURS] ?? stale,
+  };
+}

@@ -1,0 +1,39 @@
+import type { StationState, VehicleView } from "../protocol";
+import { type Box, boxAround, type LonLat } from "./localGrid";
+
+/** What the map shows at one moment. Layers take it whole. */
+export interface Scene {
+  readonly state: StationState;
+  /** Seconds to add to the state's ages. */
+  readonly behindS: number;
+  readonly selected: readonly number[];
+}
+
+/** Where a vehicle was last seen; null when that is unknown. */
+export function positionOf(vehicle: Pick<VehicleView, "position">): LonLat | null {
+  const { longitude_deg: lon, latitude_deg: lat } = vehicle.position;
+  return lon === null || lat === null ? null : { lon, lat };
+}
+
+/** A view is never closer than this, so that a lone vehicle has its surroundings. */
+const LEAST_VIEW_M = 120;
+
+/** What the first view shows: every vehicle and the ground image, else the site; null when nothing is placed. */
+export function wholeView(state: StationState): Box | null {
+  const vehicles = state.vehicles.flatMap((vehicle) => positionOf(vehicle) ?? []);
+  const corners = (state.ground_image?.corners ?? []).map(([lon, lat]) => ({ lon, lat }));
+  return boxAround([...vehicles, ...corners], LEAST_VIEW_M) ?? siteView(state);
+}
+
+function siteView(state: StationState): Box | null {
+  const { longitude_deg: lon, latitude_deg: lat } = state.site ?? {};
+  if (lon === null || lon === undefined || lat === null || lat === undefined) return null;
+  return boxAround([{ lon, lat }], LEAST_VIEW_M * 2);
+}
+
+/** What the grid counts from: the site's origin, else the first vehicle that is placed. */
+export function gridOrigin(state: StationState): LonLat | null {
+  const { longitude_deg: lon, latitude_deg: lat } = state.site ?? {};
+  if (typeof lon === "number" && typeof lat === "number") return { lon, lat };
+  return state.vehicles.flatMap((vehicle) => positionOf(vehicle) ?? [])[0] ?? null;
+}

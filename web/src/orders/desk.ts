@@ -1,0 +1,48 @@
+import { type Accessor, createSignal } from "solid-js";
+import type { OrderResult } from "../protocol";
+import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
+import { commandName } from "../words/names";
+
+/** What was asked last and what the station said to it. */
+export interface Answer {
+  readonly what: string;
+  /** The vehicles named; `all` for all stop. */
+  readonly labels: readonly string[];
+  readonly outcome: Outcome<readonly OrderResult[]> | { readonly kind: "waiting" };
+}
+
+/** Gives orders through the source and keeps the last answer for the screen. */
+export interface Desk {
+  readonly last: Accessor<Answer | null>;
+  order(order: NamedOrder, labels: readonly string[]): Promise<void>;
+  allStop(): Promise<void>;
+  dismiss(): void;
+}
+
+export function createDesk(source: Pick<StationSource, "order" | "allStop">): Desk {
+  const [last, setLast] = createSignal<Answer | null>(null);
+  let newest = 0;
+
+  async function run(
+    what: string,
+    labels: readonly string[],
+    ask: () => Promise<Outcome<readonly OrderResult[]>>,
+  ): Promise<void> {
+    newest += 1;
+    const own = newest;
+    setLast({ what, labels, outcome: { kind: "waiting" } });
+    const outcome = await ask();
+    // A slow answer must not stand under a newer order.
+    if (own === newest) setLast({ what, labels, outcome });
+  }
+
+  return {
+    last,
+    order: async (order, labels) => {
+      if (order.serials.length === 0) return;
+      await run(commandName(order.order.kind), labels, () => source.order(order));
+    },
+    allStop: () => run("All stop", ["all flying vehicles"], () => source.allStop()),
+    dismiss: () => setLast(null),
+  };
+}

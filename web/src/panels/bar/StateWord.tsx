@@ -1,0 +1,69 @@
+import { createMemo, createSignal, createUniqueId, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { type Readiness, readiness } from "../../fleet/readiness";
+import { SeverityMark } from "../SeverityMark";
+
+/** The station's state in one word; a press tells everything that stands behind it. */
+export function StateWord() {
+  const { source, behindS } = useConsole();
+  const [isOpen, setOpen] = createSignal(false);
+  const panel = createUniqueId();
+  const now = createMemo(() => readiness(source.state(), source.connection(), behindS()));
+  const closeOnEscape = (event: KeyboardEvent) => {
+    if (event.key !== "Escape" || !isOpen()) return;
+    event.stopPropagation();
+    setOpen(false);
+  };
+  return (
+    <div class="state">
+      <button
+        type="button"
+        class={`state-word tone-ground-${now().severity ?? "good"}`}
+        aria-expanded={isOpen()}
+        onKeyDown={closeOnEscape}
+        aria-controls={panel}
+        onClick={() => setOpen(!isOpen())}
+      >
+        <SeverityMark severity={now().severity} size={26} />
+        <span class="state-text" data-testid="state-word">
+          {now().word}
+        </span>
+        <span class="state-count">{count(now())}</span>
+      </button>
+      <Show when={isOpen()}>
+        <Reasons id={panel} readiness={now()} />
+      </Show>
+    </div>
+  );
+}
+
+function count(readiness: Readiness): string {
+  const total = readiness.reasons.length;
+  if (total === 0) return "why?";
+  return total === 1 ? "1 reason" : `${total} reasons`;
+}
+
+function Reasons(props: { id: string; readiness: Readiness }) {
+  return (
+    <section id={props.id} class="state-reasons" aria-label="Why">
+      <Show
+        when={props.readiness.reasons.length > 0}
+        fallback={<p>Every vehicle is heard and nothing is wrong.</p>}
+      >
+        <ul>
+          <For each={props.readiness.reasons}>
+            {(reason) => (
+              <li class={`tone-${reason.severity}`}>
+                <SeverityMark severity={reason.severity} />
+                <span class="wire-text">
+                  <Show when={reason.vehicleName}>{(name) => <strong>{name()}: </strong>}</Show>
+                  {reason.text}
+                </span>
+              </li>
+            )}
+          </For>
+        </ul>
+      </Show>
+    </section>
+  );
+}

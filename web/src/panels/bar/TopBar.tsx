@@ -1,0 +1,49 @@
+import { createMemo, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { simulation } from "../../fleet/simulation";
+import { AllStop } from "../orders/AllStop";
+import { StateWord } from "./StateWord";
+import "./bar.css";
+
+/** The top of the page: the state word, what flies, and all stop. */
+export function TopBar(props: { onHelp: () => void }) {
+  const { fleet, theme } = useConsole();
+  const flying = () => fleet.vehicles.filter((vehicle) => vehicle.is_flying.value === true).length;
+  return (
+    <header class="bar">
+      <h1 class="bar-title">Recon</h1>
+      <StateWord />
+      <p class="bar-count">
+        <strong>{flying()}</strong> of {fleet.vehicles.length} flying
+      </p>
+      <SimulationTag />
+      <div class="bar-space" />
+      <button
+        type="button"
+        class="button"
+        aria-pressed={theme.theme() === "sun"}
+        title="High contrast for bright sun (T)"
+        onClick={() => theme.toggle()}
+      >
+        ☀ Sun
+      </button>
+      <button type="button" class="button" onClick={() => props.onHelp()} aria-label="Help">
+        ?
+      </button>
+      <AllStop />
+    </header>
+  );
+}
+
+/** Says when nothing real is flown, and loudly when both are. */
+function SimulationTag() {
+  const { fleet } = useConsole();
+  const kind = createMemo(() => simulation(fleet.vehicles));
+  return (
+    <Show when={kind() !== "none"}>
+      <span class="tag tag-simulated">
+        {kind() === "all" ? "SIMULATION" : "REAL AND SIMULATED TOGETHER"}
+      </span>
+    </Show>
+  );
+}

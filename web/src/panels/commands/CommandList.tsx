@@ -1,0 +1,65 @@
+import { createMemo, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { CommandView } from "../../protocol";
+import { formatAge } from "../../words/age";
+import { commandName, PHASE_NAMES, phaseTone } from "../../words/names";
+import { Panel } from "../Panel";
+import "./commands.css";
+
+/** Commands and what became of them, the newest first. */
+export function CommandList() {
+  const { fleet } = useConsole();
+  const newestFirst = createMemo(() => [...fleet.commands].sort((a, b) => b.id - a.id));
+  return (
+    <Panel title="Commands" count={newestFirst().length}>
+      <Show when={newestFirst().length > 0} fallback={<p class="panel-empty">No commands yet.</p>}>
+        <ol>
+          <For each={newestFirst()}>{(command) => <CommandRow command={command} />}</For>
+        </ol>
+      </Show>
+    </Panel>
+  );
+}
+
+function CommandRow(props: { command: CommandView }) {
+  const { behindS } = useConsole();
+  return (
+    <li class="row" data-testid={`command-${props.command.id}`}>
+      <div class="row-line">
+        <strong class="wire-text">
+          {commandName(props.command.kind)} {props.command.vehicle_name}
+        </strong>
+        <span class={`phase phase-${phaseTone(props.command)} push`} data-testid="phase">
+          {PHASE_NAMES[props.command.phase]}
+        </span>
+      </div>
+      <Life command={props.command} />
+      <p class="muted wire-text">
+        #{props.command.id} by {props.command.issued_by},{" "}
+        {formatAge(props.command.age_s + behindS())} ago
+        <Show when={props.command.times_sent > 1}>, sent {props.command.times_sent} times</Show>
+        <Show when={props.command.takeoff}>, takeoff allowed</Show>
+        <Show when={props.command.sent_altitudes}>{(text) => <>, altitudes {text()}</>}</Show>
+      </p>
+      <Show when={props.command.note !== ""}>
+        <p class="wire-text">{props.command.note}</p>
+      </Show>
+    </li>
+  );
+}
+
+/** The phases a command went through, each with how long after the order it came. */
+function Life(props: { command: CommandView }) {
+  return (
+    <ol class="life" aria-label="Its life so far">
+      <For each={props.command.history}>
+        {(phase) => (
+          <li title={phase.note}>
+            {PHASE_NAMES[phase.phase].toLowerCase()}{" "}
+            <span class="muted">+{formatAge(props.command.age_s - phase.age_s)}</span>
+          </li>
+        )}
+      </For>
+    </ol>
+  );
+}

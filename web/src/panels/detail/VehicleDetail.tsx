@@ -1,0 +1,90 @@
+import { For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { colourOf } from "../../look/identity";
+import type { VehicleView } from "../../protocol";
+import { agedBy, formatAge } from "../../words/age";
+import { Panel } from "../Panel";
+import { CameraFrame } from "./CameraFrame";
+import { type Fact, factsOf } from "./facts";
+import "./detail.css";
+
+/** Everything known of the vehicle that was selected last, each value with its age. */
+export function VehicleDetail() {
+  const { fleet, selection } = useConsole();
+  const shown = () => {
+    const number = selection.numbers().at(-1);
+    return fleet.vehicles.find((vehicle) => vehicle.number === number);
+  };
+  return (
+    <Show
+      when={shown()}
+      keyed={false}
+      fallback={
+        <Panel title="Vehicle">
+          <p class="panel-empty">Select a vehicle to see everything it says.</p>
+        </Panel>
+      }
+    >
+      {(vehicle) => (
+        <Panel
+          title={vehicle().name}
+          actions={
+            <span class="badge own-colour" style={{ "--own": colourOf(vehicle().number) }}>
+              {vehicle().number}
+            </span>
+          }
+        >
+          <Identity vehicle={vehicle()} />
+          <Show when={vehicle().frame !== null}>
+            <CameraFrame vehicle={vehicle()} />
+          </Show>
+          <dl class="facts">
+            <For each={factsOf(vehicle())}>{(fact) => <FactRow fact={fact} />}</For>
+          </dl>
+        </Panel>
+      )}
+    </Show>
+  );
+}
+
+function Identity(props: { vehicle: VehicleView }) {
+  const conflicts = () => props.vehicle.conflict_link_ids;
+  return (
+    <div class="detail-identity">
+      <p class="wire-text">
+        {props.vehicle.model}
+        {" · "}
+        {props.vehicle.serial === null
+          ? "serial not received yet: only ALL STOP reaches it"
+          : `serial ${props.vehicle.serial}`}
+        <Show when={props.vehicle.is_simulated}> · simulated</Show>
+      </p>
+      <Show when={conflicts().length > 0}>
+        <p class="tone-error">
+          In conflict: link {conflicts().join(", ")} claims the same serial. Hover, land and return
+          go to every link that does.
+        </p>
+      </Show>
+    </div>
+  );
+}
+
+function FactRow(props: { fact: Fact }) {
+  const { behindS } = useConsole();
+  const isUnknown = () => props.fact.why !== null;
+  return (
+    <div class="fact">
+      <dt>{props.fact.name}</dt>
+      <dd class="fact-value wire-text" classList={{ muted: isUnknown() }}>
+        {props.fact.text}
+        <Show when={props.fact.why}>{(why) => <span> {why()}</span>}</Show>
+      </dd>
+      <dd class="fact-age">
+        <Show when={props.fact.ageS !== null}>
+          <span class="hidden-but-read">age </span>
+          {formatAge(agedBy(props.fact.ageS, behindS()))}
+        </Show>
+      </dd>
+    </div>
+  );
+}

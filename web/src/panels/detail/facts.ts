@@ -1,0 +1,84 @@
+import type { VehicleView } from "../../protocol";
+import { UNKNOWN } from "../../words/age";
+import { plainWords } from "../../words/names";
+import {
+  formatFraction,
+  formatHeading,
+  formatQuantity,
+  groundSpeedMps,
+  whyUnknown,
+} from "../../words/quantity";
+
+/** One line of what is known of a vehicle. */
+export interface Fact {
+  readonly name: string;
+  readonly text: string;
+  /** Age in the station's message, seconds; null when it was never received or does not age. */
+  readonly ageS: number | null;
+  /** Why the value is a dash; null when there is a value. */
+  readonly why: string | null;
+}
+
+/** Everything a vehicle says, with datum and unit. */
+export function factsOf(vehicle: VehicleView): Fact[] {
+  const { position, attitude, velocity_ned: velocity } = vehicle;
+  return [
+    aged("Height above takeoff", vehicle.height_above_takeoff_m, (m) => formatQuantity(m, "m")),
+    aged("Altitude, WGS84, app's own", vehicle.reported_altitude_m, (m) => formatQuantity(m, "m")),
+    fact("Speed over ground", groundSpeed(vehicle), velocity.age_s),
+    fact("Climb rate", climb(velocity.down_mps), velocity.age_s),
+    fact("Heading", formatHeading(attitude.yaw_deg), attitude.age_s),
+    fact("Pitch (nose up)", formatQuantity(attitude.pitch_deg, "°"), attitude.age_s),
+    fact("Roll (right down)", formatQuantity(attitude.roll_deg, "°"), attitude.age_s),
+    fact("Latitude", formatQuantity(position.latitude_deg, "°", 6), position.age_s),
+    fact("Longitude", formatQuantity(position.longitude_deg, "°", 6), position.age_s),
+    aged("Battery", vehicle.battery_fraction, formatFraction),
+    aged("Battery warning", vehicle.battery_warning, plainWords),
+    aged("Flight mode", vehicle.flight_mode, plainWords),
+    aged("Flying", vehicle.is_flying, (isFlying) => (isFlying ? "yes" : "no")),
+    aged("Satellites", vehicle.gnss_satellite_count, String),
+    aged("GNSS signal, 0 to 10", vehicle.gnss_signal_level, String),
+    aged("Wind level", vehicle.wind_level, String),
+    aged("Mission", vehicle.mission_id, (id) => (id === 0 ? "none (0)" : String(id))),
+    aged("Camera", vehicle.camera_state, plainWords),
+    waypointAltitude(vehicle),
+  ];
+}
+
+function aged<T>(
+  name: string,
+  value: { readonly value: T | null; readonly age_s: number | null },
+  format: (value: T) => string,
+): Fact {
+  const text = value.value === null ? UNKNOWN : format(value.value);
+  return fact(name, text, value.age_s);
+}
+
+function fact(name: string, text: string, ageS: number | null): Fact {
+  return { name, text, ageS, why: text === UNKNOWN ? whyUnknown(ageS) : null };
+}
+
+function groundSpeed(vehicle: VehicleView): string {
+  const { north_mps, east_mps } = vehicle.velocity_ned;
+  return formatQuantity(groundSpeedMps(north_mps, east_mps), "m/s");
+}
+
+function climb(down_mps: number | null): string {
+  return formatQuantity(down_mps === null ? null : -down_mps, "m/s");
+}
+
+const WAYPOINT_ALTITUDES: Readonly<Record<VehicleView["waypoint_altitude"], string>> = {
+  takeoff: "above takeoff",
+  wgs84: "WGS84",
+  unset: UNKNOWN,
+};
+
+function waypointAltitude(vehicle: VehicleView): Fact {
+  const isUnset = vehicle.waypoint_altitude === "unset";
+  return {
+    name: "Waypoints are sent",
+    text: WAYPOINT_ALTITUDES[vehicle.waypoint_altitude],
+    ageS: null,
+    why: isUnset ? "not set: missions are refused until the site's file says it" : null,
+  };
+}

@@ -1,0 +1,79 @@
+import { createMemo, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { LinkView, Severity } from "../../protocol";
+import { agedBy, formatAge } from "../../words/age";
+import { formatBytes } from "../../words/quantity";
+import { Panel } from "../Panel";
+import { SeverityMark } from "../SeverityMark";
+
+const STATUS: Readonly<
+  Record<LinkView["status"], { word: string; severity: Severity | null; rank: number }>
+> = {
+  conflict: { word: "Conflict", severity: "error", rank: 0 },
+  unidentified: { word: "Unidentified", severity: "warning", rank: 1 },
+  identified: { word: "Identified", severity: null, rank: 2 },
+  closed: { word: "Closed", severity: null, rank: 3 },
+};
+
+/** The connections of companion apps: conflicts and unidentified ones first. */
+export function LinkList() {
+  const { fleet } = useConsole();
+  const sorted = createMemo(() =>
+    [...fleet.links].sort((a, b) => STATUS[a.status].rank - STATUS[b.status].rank || b.id - a.id),
+  );
+  return (
+    <Panel title="Links" count={sorted().length}>
+      <Show when={sorted().length > 0} fallback={<p class="panel-empty">No app has connected.</p>}>
+        <ul>
+          <For each={sorted()}>{(link) => <LinkRow link={link} />}</For>
+        </ul>
+      </Show>
+    </Panel>
+  );
+}
+
+function LinkRow(props: { link: LinkView }) {
+  const { behindS } = useConsole();
+  const status = () => STATUS[props.link.status];
+  const claim = () => props.link.claimed_serial ?? "no serial yet";
+  return (
+    <li class="row">
+      <div class="row-line">
+        <strong>Link {props.link.id}</strong>
+        <span class="muted wire-text">{claim()}</span>
+        <span class={`severity push tone-${status().severity ?? "info"}`}>
+          <Show when={status().severity}>
+            {(severity) => <SeverityMark severity={severity()} />}
+          </Show>
+          {status().word}
+        </span>
+      </div>
+      <p class="muted wire-text">
+        {props.link.remote_address}, {props.link.packets_received} packets,{" "}
+        {formatBytes(props.link.bytes_received)}, last{" "}
+        {formatAge(agedBy(props.link.last_packet_age_s, behindS()))} ago
+      </p>
+      <Show when={faults(props.link) !== ""}>
+        <p class="tone-warning">{faults(props.link)}</p>
+      </Show>
+      <Show when={props.link.closed_reason}>
+        {(reason) => <p class="wire-text">Closed: {reason()}</p>}
+      </Show>
+    </li>
+  );
+}
+
+/** What was wrong with a link's bytes; empty when nothing was. */
+export function faults(link: LinkView): string {
+  const counts: readonly (readonly [number, string])[] = [
+    [link.bad_hash, "bad hash"],
+    [link.bad_size, "bad size"],
+    [link.unknown_pid, "unknown packet"],
+    [link.meaningless, "without meaning"],
+    [link.bytes_skipped, "bytes skipped"],
+  ];
+  return counts
+    .filter(([count]) => count > 0)
+    .map(([count, name]) => `${count} ${name}`)
+    .join(", ");
+}

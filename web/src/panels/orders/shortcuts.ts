@@ -1,0 +1,43 @@
+import type { HoldTimer } from "../../orders/holdTimer";
+
+/** A letter that, held together with Shift, holds an order's button. */
+export interface HeldKey {
+  readonly key: string;
+  readonly timer: Pick<HoldTimer, "press" | "release" | "cancel">;
+}
+
+/**
+ * Lets Shift and a letter be held like the button itself. Letting go of either, or leaving the page,
+ * ends it. Returns a function that stops listening.
+ */
+export function holdByKey(page: Window, keys: readonly HeldKey[]): () => void {
+  const onDown = (event: KeyboardEvent) => {
+    if (event.key === "Escape") for (const { timer } of keys) timer.cancel();
+    const isPlainShift = event.shiftKey && !event.ctrlKey && !event.altKey && !event.metaKey;
+    if (!isPlainShift || event.repeat || isTyping(event)) return;
+    keys.find(({ key }) => event.code === `Key${key}`)?.timer.press();
+  };
+  const onUp = (event: KeyboardEvent) => {
+    for (const { key, timer } of keys) {
+      if (event.key === "Shift" || event.code === `Key${key}`) timer.release();
+    }
+  };
+  const onBlur = () => {
+    for (const { timer } of keys) timer.cancel();
+  };
+  page.addEventListener("keydown", onDown);
+  page.addEventListener("keyup", onUp);
+  page.addEventListener("blur", onBlur);
+  return () => {
+    page.removeEventListener("keydown", onDown);
+    page.removeEventListener("keyup", onUp);
+    page.removeEventListener("blur", onBlur);
+  };
+}
+
+/** Whether a key belongs to a text field. */
+export function isTyping(event: KeyboardEvent): boolean {
+  const target = event.target;
+  if (!(target instanceof HTMLElement)) return false;
+  return target.isContentEditable || target.matches("textarea, input:not([type=checkbox])");
+}

@@ -1,0 +1,94 @@
+import { createSignal, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { SiteView, StationView } from "../../protocol";
+import { formatAge, UNKNOWN } from "../../words/age";
+import { formatQuantity } from "../../words/quantity";
+import { Panel } from "../Panel";
+
+/** The station itself and the site it stands at. */
+export function StationPanel() {
+  const { fleet } = useConsole();
+  return (
+    <Panel title="Station">
+      <Show when={fleet.station} fallback={<p class="panel-empty">Not heard yet.</p>}>
+        {(station) => <StationFacts station={station()} />}
+      </Show>
+      <Show when={fleet.site}>{(site) => <SiteFacts site={site()} />}</Show>
+      <Show when={fleet.groundImage}>
+        <Download />
+      </Show>
+    </Panel>
+  );
+}
+
+function Facts(props: { facts: readonly (readonly [string, string])[] }) {
+  return (
+    <dl class="facts">
+      <For each={props.facts}>
+        {([name, text]) => (
+          <div class="fact fact-wide">
+            <dt>{name}</dt>
+            <dd class="wire-text">{text}</dd>
+          </div>
+        )}
+      </For>
+    </dl>
+  );
+}
+
+function StationFacts(props: { station: StationView }) {
+  const { behindS } = useConsole();
+  return (
+    <Facts
+      facts={[
+        ["Version", props.station.version],
+        ["Up for", formatAge(props.station.uptime_s + behindS())],
+        ["Apps connect to", props.station.link_addresses.join(", ") || UNKNOWN],
+        ["Frames dropped", String(props.station.frames_dropped)],
+        ["Capture", props.station.capture_folder ?? "off"],
+      ]}
+    />
+  );
+}
+
+function SiteFacts(props: { site: SiteView }) {
+  return (
+    <Facts
+      facts={[
+        ["Site", props.site.name],
+        ["Ground altitude, WGS84", formatQuantity(props.site.ground_altitude_m, "m")],
+        ["Imaging vehicle", props.site.eye_serial ?? UNKNOWN],
+        ["Marked pose, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
+        ["Marked pose, height", formatQuantity(props.site.pose_height_m, "m")],
+      ]}
+    />
+  );
+}
+
+/** Saves the ground image as GeoTIFF. */
+function Download() {
+  const { source } = useConsole();
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const save = async () => {
+    const outcome = await source.groundImageFile();
+    setProblem(outcome.kind === "failed" ? outcome.problem : null);
+    if (outcome.kind === "answered") saveAs(outcome.value, "ground-image.tif");
+  };
+  return (
+    <div class="row">
+      <button type="button" class="button" onClick={() => void save()}>
+        Save ground image (GeoTIFF)
+      </button>
+      <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
+    </div>
+  );
+}
+
+function saveAs(blob: Blob, name: string): void {
+  const url = URL.createObjectURL(blob);
+  const link = document.createElement("a");
+  link.href = url;
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(url);
+}

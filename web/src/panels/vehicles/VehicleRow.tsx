@@ -1,0 +1,85 @@
+import { createMemo, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { hasBatteryWarning } from "../../fleet/readiness";
+import { stalenessNow } from "../../fleet/staleness";
+import { vehicleCondition } from "../../fleet/vehicleWord";
+import { colourOf } from "../../look/identity";
+import type { VehicleView } from "../../protocol";
+import { agedBy, formatAge } from "../../words/age";
+import { vehicleLabel } from "../../words/names";
+import { formatFraction, formatQuantity, groundSpeedMps } from "../../words/quantity";
+import { SeverityMark } from "../SeverityMark";
+
+/** One vehicle: a box to add it to the selection, and a body that selects it alone. */
+export function VehicleRow(props: { vehicle: VehicleView }) {
+  const { selection, behindS } = useConsole();
+  const vehicle = () => props.vehicle;
+  const condition = createMemo(() => vehicleCondition(vehicle(), behindS()));
+  const isStale = () => stalenessNow(vehicle(), behindS()) !== "live";
+  const isSelected = () => selection.has(vehicle().number);
+  return (
+    <li
+      class="row vehicle own-colour"
+      classList={{ "is-stale": isStale(), "is-selected": isSelected() }}
+      style={{ "--own": colourOf(vehicle().number) }}
+    >
+      <label class="vehicle-box">
+        <input
+          type="checkbox"
+          checked={isSelected()}
+          aria-label={`Select ${vehicleLabel(vehicle())} too`}
+          onChange={() => selection.toggle(vehicle().number)}
+        />
+      </label>
+      <button
+        type="button"
+        class="vehicle-body"
+        aria-pressed={isSelected()}
+        onClick={() => selection.only(vehicle().number)}
+      >
+        <span class="row-line">
+          <span class="badge">{vehicle().number}</span>
+          <strong class="vehicle-name">{vehicle().name}</strong>
+          <Show when={vehicle().is_simulated}>
+            <span class="tag tag-simulated">SIM</span>
+          </Show>
+          <Show when={vehicle().is_eye}>
+            <span class="tag vehicle-eye" title="The imaging vehicle">
+              EYE
+            </span>
+          </Show>
+          <span class={`severity push tone-${condition().severity ?? "good"}`}>
+            <Show when={condition().severity}>
+              {(severity) => <SeverityMark severity={severity()} />}
+            </Show>
+            {condition().word}
+          </span>
+        </span>
+        <span class="row-line vehicle-figures">
+          <Figures vehicle={vehicle()} />
+          <span class="push vehicle-age" title="Age of its telemetry">
+            {formatAge(agedBy(vehicle().telemetry_age_s, behindS()))}
+          </span>
+        </span>
+      </button>
+    </li>
+  );
+}
+
+function Figures(props: { vehicle: VehicleView }) {
+  const speed = () => {
+    const { north_mps, east_mps } = props.vehicle.velocity_ned;
+    return groundSpeedMps(north_mps, east_mps);
+  };
+  return (
+    <>
+      <span title="Height above takeoff">
+        ↥ {formatQuantity(props.vehicle.height_above_takeoff_m.value, "m", 0)}
+      </span>
+      <span title="Speed over ground">{formatQuantity(speed(), "m/s", 1)}</span>
+      <span title="Battery" classList={{ "vehicle-battery-low": hasBatteryWarning(props.vehicle) }}>
+        ▮ {formatFraction(props.vehicle.battery_fraction.value)}
+      </span>
+    </>
+  );
+}

@@ -1,0 +1,25 @@
+/**
+ * The station's words under short names. `schema.d.ts` is generated from `openapi.json`
+ * (`npm run generate`); nothing here is written twice.
+ */
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+
+export type StationState = Schemas["StationState"];
+export type StationView = Schemas["StationView"];
+export type SiteView = Schemas["SiteView"];
+export type VehicleView = Schemas["VehicleView"];
+export type LinkView = Schemas["LinkView"];
+export type CommandView = Schemas["CommandView"];
+export type PhaseView = Schemas["PhaseView"];
+export type AlarmView = Schemas["AlarmView"];
+export type GroundImageView = Schemas["GroundImageView"];
+export type OrderRequest = Schemas["OrderRequest"];
+export type OrderResponse = Schemas["OrderResponse"];
+export type OrderResult = Schemas["OrderResult"];
+
+export type Staleness = VehicleView["staleness"];
+export type Phase = CommandView["phase"];
+export type Severity = AlarmView["severity"];
+export type Order = OrderRequest["order"];

@@ -1,0 +1,95 @@
+import { createSignal } from "solid-js";
+import type { StationState } from "../protocol";
+import type { Clock, Instant } from "./clock";
+import { StreamLag } from "./lag";
+import { Requests } from "./requests";
+import type { Connection, NamedOrder, StationSource } from "./stationSource";
+import { type Socket, Stream } from "./stream";
+
+/** What a live source needs from its surroundings; tests bring false ones. */
+export interface Surroundings {
+  /** Where the station is, such as `http://127.0.0.1:8080`. */
+  readonly origin: string;
+  /** The token this page was opened with, if the station wants one. */
+  readonly token: string | null;
+  readonly clock: Clock;
+  openSocket(url: string, protocols: string[]): Socket;
+  fetch(request: Request): Promise<Response>;
+}
+
+/** The subprotocol the stream speaks. */
+export const STREAM_PROTOCOL = "recon.v1";
+
+/** A source that listens to a running station. */
+export class LiveSource implements StationSource {
+  readonly state;
+  readonly connection;
+  private readonly lag = new StreamLag();
+  private readonly stream: Stream;
+  private readonly requests: Requests;
+
+  constructor(surroundings: Surroundings) {
+    const { clock, origin, token } = surroundings;
+    const [state, setState] = createSignal<StationState | null>(null, { equals: false });
+    const [connection, setConnection] = createSignal<Connection>({ kind: "connecting" });
+    this.state = state;
+    this.connection = connection;
+    this.requests = new Requests(origin, token, (request) => surroundings.fetch(request));
+    const url = `${origin.replace(/^http/, "ws")}/api/stream`;
+    const open = () => surroundings.openSocket(url, streamProtocols(token));
+    this.stream = new Stream(open, clock, {
+      onConnection: setConnection,
+      onState: (newest, isFirst) => {
+        if (isFirst) this.lag.restart(newest.time_ns, clock.now());
+        else this.lag.hear(newest.time_ns, clock.now());
+        setState(newest);
+      },
+    });
+    this.stream.open();
+  }
+
+  behindS(now: Instant): number | null {
+    return this.lag.behindS(now);
+  }
+
+  order(order: NamedOrder) {
+    return this.requests.order(order);
+  }
+
+  allStop() {
+    return this.requests.allStop();
+  }
+
+  acknowledge(alarmId: number) {
+    return this.requests.acknowledge(alarmId);
+  }
+
+  vehicleFrame(serial: string, frameId: number) {
+    return this.requests.blob(
+      `/api/vehicles/${encodeURIComponent(serial)}/frame.jpg?id=${frameId}`,
+    );
+  }
+
+  groundImage(frameId: number) {
+    return this.requests.blob(`/api/ground-image.png?id=${frameId}`);
+  }
+
+  groundImageFile() {
+    return this.requests.blob("/api/ground-image.tif");
+  }
+
+  close(): void {
+    this.stream.close();
+  }
+}
+
+/** A browser cannot set headers on a WebSocket, so the token travels as a second subprotocol. */
+function streamProtocols(token: string | null): string[] {
+  return token === null ? [STREAM_PROTOCOL] : [STREAM_PROTOCOL, `recon.token.${token}`];
+}
+
+/** The token in a page's address (`#token=...`), or null. */
+export function tokenOf(fragment: string): string | null {
+  const token = new URLSearchParams(fragment.replace(/^#/, "")).get("token");
+  return token === null || token === "" ? null : token;
+}

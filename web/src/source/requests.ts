@@ -1,0 +1,109 @@
+import createClient from "openapi-fetch";
+import type { OrderResult } from "../protocol";
+import type { paths } from "../protocol/schema";
+import type { NamedOrder, Outcome } from "./stationSource";
+
+/** A request older than this is given up: an order must not arrive when nobody thinks of it any more. */
+export const REQUEST_MS = 3_000;
+
+/** What the page asks of the station over HTTP. Failures are values with a sentence for the operator. */
+export class Requests {
+  private readonly client;
+  private readonly headers: Record<string, string>;
+
+  constructor(
+    private readonly origin: string,
+    token: string | null,
+    private readonly fetch: (request: Request) => Promise<Response>,
+  ) {
+    this.headers = token === null ? {} : { Authorization: `Bearer ${token}` };
+    this.client = createClient<paths>({ baseUrl: origin, headers: this.headers, fetch });
+  }
+
+  order({ serials, order }: NamedOrder): Promise<Outcome<readonly OrderResult[]>> {
+    const body = { serials: [...serials], order, takeoff: false };
+    const signal = AbortSignal.timeout(REQUEST_MS);
+    return answered(
+      () => this.client.POST("/api/orders", { body, signal }),
+      (data) => data.results,
+    );
+  }
+
+  allStop(): Promise<Outcome<readonly OrderResult[]>> {
+    const signal = AbortSignal.timeout(REQUEST_MS);
+    return answered(
+      () => this.client.POST("/api/all-stop", { signal }),
+      (data) => data.results,
+    );
+  }
+
+  async acknowledge(id: number): Promise<Outcome<null>> {
+    const signal = AbortSignal.timeout(REQUEST_MS);
+    const params = { path: { id } };
+    return attempt(async () => {
+      const answer = await this.client.POST("/api/alarms/{id}/acknowledge", { params, signal });
+      return answer.response.ok ? done(null) : failed(refusal(answer.response, answer.error));
+    });
+  }
+
+  /** Fetches a picture or file; always with the token's header, which an `<img>` could not send. */
+  async blob(path: string): Promise<Outcome<Blob>> {
+    return attempt(async () => {
+      const request = new Request(this.origin + path, {
+        headers: this.headers,
+        signal: AbortSignal.timeout(4 * REQUEST_MS),
+      });
+      const response = await this.fetch(request);
+      return response.ok ? done(await response.blob()) : failed(refusal(response, null));
+    });
+  }
+}
+
+interface Answer<D> {
+  readonly data?: D;
+  readonly error?: unknown;
+  readonly response: Response;
+}
+
+function answered<D, T>(ask: () => Promise<Answer<D>>, read: (data: D) => T): Promise<Outcome<T>> {
+  return attempt(async () => {
+    const { data, error, response } = await ask();
+    return data === undefined ? failed(refusal(response, error)) : done(read(data));
+  });
+}
+
+async function attempt<T>(ask: () => Promise<Outcome<T>>): Promise<Outcome<T>> {
+  try {
+    return await ask();
+  } catch (error) {
+    return failed(unreached(error));
+  }
+}
+
+function done<T>(value: T): Outcome<T> {
+  return { kind: "answered", value };
+}
+
+function failed<T>(problem: string): Outcome<T> {
+  return { kind: "failed", problem };
+}
+
+function unreached(error: unknown): string {
+  const isLate = error instanceof DOMException && error.name === "TimeoutError";
+  if (isLate) {
+    return `The station did not answer within ${REQUEST_MS / 1000} s. It may still have heard: look at the commands.`;
+  }
+  return "The station cannot be reached. Use the remote controllers.";
+}
+
+const UNAUTHORISED = 401;
+
+function refusal(response: Response, body: unknown): string {
+  if (response.status === UNAUTHORISED) {
+    return "The station refuses this page. Open it with its token.";
+  }
+  const said =
+    typeof body === "object" && body !== null ? (body as { error?: unknown }).error : null;
+  if (typeof said === "string") return said;
+  return `The station answered ${response.status} ${response.statusText}`.trim();
+}

@@ -1,0 +1,38 @@
+import type { Accessor } from "solid-js";
+import type { Order, OrderResult, StationState } from "../protocol";
+import type { Instant } from "./clock";
+
+/** How the stream of states is doing. */
+export type Connection =
+  | { readonly kind: "connecting" }
+  | { readonly kind: "live" }
+  | { readonly kind: "lost"; readonly reason: string; readonly attempt: number };
+
+/** What became of something the station was asked. A failure says what to do. */
+export type Outcome<T> =
+  | { readonly kind: "answered"; readonly value: T }
+  | { readonly kind: "failed"; readonly problem: string };
+
+/** An order and the vehicles it names. */
+export interface NamedOrder {
+  readonly serials: readonly string[];
+  readonly order: Order;
+}
+
+/** Where the screens get their states from and bring their orders to: live now, a recording later. */
+export interface StationSource {
+  /** The newest whole state; null before the first. */
+  readonly state: Accessor<StationState | null>;
+  readonly connection: Accessor<Connection>;
+  /** Seconds to add at `now` to every age in `state`; null before the first state. */
+  behindS(now: Instant): number | null;
+  /** Gives an order. Never with takeoff: the console's buttons keep vehicles on the ground there. */
+  order(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
+  /** Makes every flying vehicle hold its position; motors stay on. */
+  allStop(): Promise<Outcome<readonly OrderResult[]>>;
+  acknowledge(alarmId: number): Promise<Outcome<null>>;
+  vehicleFrame(serial: string, frameId: number): Promise<Outcome<Blob>>;
+  groundImage(frameId: number): Promise<Outcome<Blob>>;
+  groundImageFile(): Promise<Outcome<Blob>>;
+  close(): void;
+}

@@ -1,0 +1,124 @@
+import type { StationState } from "../protocol";
+import type { Clock } from "./clock";
+import type { Connection } from "./stationSource";
+
+/** Waits between attempts: soon at first, since most losses are short, then calm. */
+export const RECONNECT_DELAYS_MS = [250, 500, 1000, 2000, 4000] as const;
+/** A station that speaks 10 times a second and says nothing for so long is taken for lost. */
+export const SILENCE_MS = 2_000;
+/** An attempt that neither opens nor fails is given up after this. */
+export const OPENING_MS = 4_000;
+
+/** The part of `WebSocket` that is used. */
+export interface Socket {
+  onopen: ((event: Event) => void) | null;
+  onmessage: ((event: MessageEvent) => void) | null;
+  onclose: ((event: CloseEvent) => void) | null;
+  close(): void;
+}
+
+export interface StreamListener {
+  /** A whole state; `isFirst` marks the first one of a connection. */
+  onState(state: StationState, isFirst: boolean): void;
+  onConnection(connection: Connection): void;
+}
+
+/** Keeps one stream open: notices silence, reconnects with growing pauses, hands out whole states. */
+export class Stream {
+  private socket: Socket | null = null;
+  private attempt = 0;
+  private isFirst = true;
+  private cancelTimer: () => void = () => {};
+
+  constructor(
+    private readonly openSocket: () => Socket,
+    private readonly clock: Clock,
+    private readonly listener: StreamListener,
+  ) {}
+
+  open(): void {
+    this.listener.onConnection({ kind: "connecting" });
+    this.connect();
+  }
+
+  close(): void {
+    this.cancelTimer();
+    this.drop();
+  }
+
+  private connect(): void {
+    const socket = this.openSocket();
+    this.socket = socket;
+    this.isFirst = true;
+    this.expectNewsWithin(OPENING_MS, "The station did not answer.");
+    socket.onopen = () => this.expectNewsWithin(SILENCE_MS, "The station says nothing.");
+    socket.onmessage = (event) => this.take(event.data);
+    socket.onclose = (event) => this.lose(closingReason(event.code, event.reason));
+  }
+
+  private take(data: unknown): void {
+    const state = readState(data);
+    if (state === null) {
+      this.lose("The station sent something this page cannot read. Reload the page.");
+      return;
+    }
+    this.attempt = 0;
+    this.expectNewsWithin(SILENCE_MS, "The station says nothing.");
+    const isFirst = this.isFirst;
+    this.isFirst = false;
+    if (isFirst) this.listener.onConnection({ kind: "live" });
+    this.listener.onState(state, isFirst);
+  }
+
+  private expectNewsWithin(delayMs: number, otherwise: string): void {
+    this.cancelTimer();
+    this.cancelTimer = this.clock.after(delayMs, () => this.lose(otherwise));
+  }
+
+  private lose(reason: string): void {
+    this.drop();
+    this.cancelTimer();
+    const last = RECONNECT_DELAYS_MS.length - 1;
+    const delayMs = RECONNECT_DELAYS_MS[Math.min(this.attempt, last)] ?? 0;
+    this.attempt += 1;
+    this.listener.onConnection({ kind: "lost", reason, attempt: this.attempt });
+    this.cancelTimer = this.clock.after(delayMs, () => this.connect());
+  }
+
+  /** Lets go of the socket, deaf to whatever it may still say. */
+  private drop(): void {
+    const socket = this.socket;
+    this.socket = null;
+    if (socket === null) return;
+    socket.onopen = null;
+    socket.onmessage = null;
+    socket.onclose = null;
+    socket.close();
+  }
+}
+
+const POLICY_VIOLATION = 1008;
+
+function closingReason(code: number, reason: string): string {
+  if (reason !== "") return `The station closed the stream: ${reason}`;
+  if (code === POLICY_VIOLATION) return "The station refuses this page. Open it with its token.";
+  return "The station cannot be reached.";
+}
+
+const LISTS = ["vehicles", "links", "commands", "alarms"] as const;
+
+/** The state in a message, or null when it is none. */
+export function readState(data: unknown): StationState | null {
+  if (typeof data !== "string") return null;
+  let value: unknown;
+  try {
+    value = JSON.parse(data);
+  } catch {
+    return null;
+  }
+  if (typeof value !== "object" || value === null) return null;
+  const record = value as Record<string, unknown>;
+  const hasLists = LISTS.every((name) => Array.isArray(record[name]));
+  const isState = hasLists && typeof record["time_ns"] === "number" && "station" in record;
+  return isState ? (value as StationState) : null;
+}

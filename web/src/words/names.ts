@@ -1,0 +1,72 @@
+import type { CommandView, Phase, Severity, VehicleView } from "../protocol";
+
+const COMMANDS: Readonly<Record<string, string>> = {
+  hover: "Hover",
+  land: "Land",
+  return_home: "Return home",
+  camera_start: "Camera on",
+  camera_stop: "Camera off",
+  mission: "Mission",
+  stick: "Stick",
+};
+
+/** A command's kind in plain words; an unknown kind stands as the station said it. */
+export function commandName(kind: string): string {
+  return COMMANDS[kind] ?? plainWords(kind);
+}
+
+export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
+  queued: "Queued",
+  sent: "Sent",
+  acknowledged: "Acknowledged",
+  confirmed: "Confirmed",
+  refused_by_station: "Refused by station",
+  refused_by_app: "Refused by app",
+  timed_out: "Timed out",
+  superseded: "Superseded",
+  expired: "Expired",
+  failed: "Failed",
+};
+
+export type Tone = "good" | "bad" | "over" | "underway";
+
+const TONES: Readonly<Record<Phase, Tone>> = {
+  queued: "underway",
+  sent: "underway",
+  acknowledged: "underway",
+  confirmed: "good",
+  refused_by_station: "bad",
+  refused_by_app: "bad",
+  timed_out: "bad",
+  superseded: "over",
+  expired: "bad",
+  failed: "bad",
+};
+
+/** Whether a command went well, badly, is over without either, or is still under way. */
+export function phaseTone(command: Pick<CommandView, "phase">): Tone {
+  return TONES[command.phase] ?? "underway";
+}
+
+export const SEVERITY_NAMES: Readonly<Record<Severity, string>> = {
+  critical: "Critical",
+  error: "Error",
+  warning: "Warning",
+  info: "Note",
+};
+
+/** An enumeration's word (`AUTO_LANDING`, `auto_landing`) in plain ones (`auto landing`). */
+export function plainWords(word: string): string {
+  return word.toLowerCase().replaceAll("_", " ");
+}
+
+/** A vehicle as every order and alarm names it: its number, then its name. */
+export function vehicleLabel(vehicle: Pick<VehicleView, "number" | "name">): string {
+  return `${vehicle.number} ${vehicle.name}`;
+}
+
+/** Names joined for a sentence: `a`, `a and b`, `a, b and c`. */
+export function listNames(names: readonly string[]): string {
+  if (names.length <= 1) return names.join("");
+  return `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+}

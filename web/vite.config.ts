@@ -1,0 +1,19 @@
+import solid from "vite-plugin-solid";
+import { defineConfig } from "vitest/config";
+
+/** The station under development; `npm run dev` sends the API's requests there. */
+const station = process.env["RECON_STATION"] ?? "http://127.0.0.1:8080";
+
+export default defineConfig({
+  plugins: [solid()],
+  // Relative addresses, so that the built page works under any folder it is served from.
+  base: "./",
+  build: { target: "es2022", chunkSizeWarningLimit: 1500 },
+  server: { host: "127.0.0.1", proxy: { "/api": { target: station, ws: true } } },
+  preview: { host: "127.0.0.1", proxy: { "/api": { target: station, ws: true } } },
+  test: {
+    environment: "happy-dom",
+    include: ["src/**/*.test.{ts,tsx}"],
+    restoreMocks: true,
+  },
+});
