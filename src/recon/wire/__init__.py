@@ -15,21 +15,23 @@ from recon.wire._native import (
     EmergencyCommand,
     ExecuteWaypointMission,
     ExtendedTelemetry,
-    FieldError,
-    HashError,
     Image,
     Limits,
     MessageString,
-    ShortError,
-    SizeError,
-    SyncError,
     UnknownPacket,
     VirtualStickCommand,
     Waypoint,
-    WireError,
     checksum,
     decode,
     encode,
+)
+from recon.wire.errors import (
+    FieldError,
+    HashError,
+    ShortError,
+    SizeError,
+    SyncError,
+    WireError,
 )
 
 Packet: TypeAlias = (

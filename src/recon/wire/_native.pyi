@@ -18,18 +18,12 @@ __all__ = [
     "EmergencyCommand",
     "ExecuteWaypointMission",
     "ExtendedTelemetry",
-    "FieldError",
-    "HashError",
     "Image",
     "Limits",
     "MessageString",
-    "ShortError",
-    "SizeError",
-    "SyncError",
     "UnknownPacket",
     "VirtualStickCommand",
     "Waypoint",
-    "WireError",
     "checksum",
     "decode",
     "encode",
@@ -385,16 +379,6 @@ class Deframer:
     def counters(self) -> Counters: ...
     @property
     def pending_bytes(self) -> int: ...
-
-class WireError(ValueError):
-    expected: str
-    came: str
-
-class ShortError(WireError): ...
-class SyncError(WireError): ...
-class SizeError(WireError): ...
-class HashError(WireError): ...
-class FieldError(WireError): ...
 
 def checksum(data: bytes | bytearray, /) -> tuple[int, int]: ...
 def encode(packet: Packet, /, limits: Limits | None = None) -> bytes: ...
