@@ -141,7 +141,8 @@ def ground_maps(
     `PoseError` for a camera that is not above the ground.
     """
     height_m = float(pose.position_enu_m[2])
-    if not np.isfinite(pose.rotation_enu_camera).all() or not height_m >= LEAST_HEIGHT_M:
+    numbers = (*pose.rotation_enu_camera.ravel(), *pose.position_enu_m)
+    if not np.isfinite(numbers).all() or not height_m >= LEAST_HEIGHT_M:
         raise PoseError(
             f"expected a camera at least {LEAST_HEIGHT_M:g} m above the ground plane, got "
             f"{height_m:.2f} m; no ground image is made on the ground"

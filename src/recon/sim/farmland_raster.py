@@ -22,6 +22,7 @@ SHADOW_DARKENS = 0.62
 SHADOW_EAST, SHADOW_NORTH = -0.7, 0.7
 """Tree shadows fall to the north-west: a morning's sun."""
 
+SMALLEST_CROWN_PX = 0.6
 NOISE_CELLS = 512
 
 
@@ -137,29 +138,31 @@ class _Canvas:
             cv2.polylines(self.pixels, [points], False, colour, thickness, cv2.LINE_AA)
 
     def draw_trees(self, trees: tuple[Tree, ...]) -> None:
-        shadow = np.zeros((self.size, self.size), dtype=np.float32)
-        for tree in trees:
-            self._disc(shadow, tree, 1.3, 1.0)
+        seen = [tree for tree in trees if self._is_seen(tree)]
+        shadow = self._discs(seen, shift=1.3)
         shadow = cv2.GaussianBlur(shadow, (0, 0), 0.9).astype(np.float32)
         self.pixels *= (1.0 - (1.0 - SHADOW_DARKENS) * shadow)[:, :, np.newaxis]
-        crowns, cover = self.pixels.copy(), np.zeros((self.size, self.size), dtype=np.float32)
-        for tree in trees:
-            self._disc(cover, tree, 0.0, 1.0)
-            self._disc(crowns, tree, 0.0, tuple(c + tree.shade for c in CROWN))
-        cover = cv2.GaussianBlur(cover, (0, 0), 0.8).astype(np.float32)[:, :, np.newaxis]
-        crowns += 5.0 * self._grain[:, :, np.newaxis]
-        self.pixels += cover * (crowns - self.pixels)
+        cover = cv2.GaussianBlur(self._discs(seen), (0, 0), 0.8).astype(np.float32)
+        light = 5.0 * self._grain + self._discs(seen, shades=True)
+        crowns = light[:, :, np.newaxis] + np.array(CROWN, dtype=np.float32)
+        self.pixels += cover[:, :, np.newaxis] * (crowns - self.pixels)
 
-    def _disc(
-        self, target: FloatImage, tree: Tree, shadow_m: float, colour: float | tuple[float, ...]
-    ) -> None:
-        east = tree.east_m + shadow_m * tree.radius_m * SHADOW_EAST
-        north = tree.north_m + shadow_m * tree.radius_m * SHADOW_NORTH
-        radius = tree.radius_m / self.cell_m
-        if max(abs(east), abs(north)) > self.half_m or radius < 0.3:
-            return
-        col, row = self._pixels_of(np.array([[east, north]]))[0]
-        cv2.circle(target, (int(col), int(row)), max(1, round(radius)), colour, -1, cv2.LINE_AA)
+    def _is_seen(self, tree: Tree) -> bool:
+        is_large_enough = tree.radius_m > SMALLEST_CROWN_PX * self.cell_m
+        return is_large_enough and max(abs(tree.east_m), abs(tree.north_m)) < self.half_m
+
+    def _discs(self, trees: list[Tree], shift: float = 0.0, shades: bool = False) -> FloatImage:
+        """Return an image with a disc per crown, of 1 or of its shade, shifted by some radii."""
+        image = np.zeros((self.size, self.size), dtype=np.float32)
+        if not trees:
+            return image
+        centres = np.array([(tree.east_m, tree.north_m) for tree in trees])
+        radii = np.array([[tree.radius_m] for tree in trees])
+        points = self._pixels_of(centres + shift * radii * (SHADOW_EAST, SHADOW_NORTH))
+        for tree, point in zip(trees, points.tolist(), strict=True):
+            radius = max(1, round(tree.radius_m / self.cell_m))
+            cv2.circle(image, point, radius, tree.shade if shades else 1.0, -1, cv2.LINE_AA)
+        return image
 
     def add_grain(self) -> None:
         self.pixels += (2.6 * self._grain + 1.5 * self._patches)[:, :, np.newaxis]

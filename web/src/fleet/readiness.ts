@@ -4,6 +4,7 @@ import { formatAge } from "../words/age";
 import { plainWords } from "../words/names";
 import { formatFraction } from "../words/quantity";
 import { severityRank, worstSeverity } from "./severity";
+import { simulation } from "./simulation";
 import { vehicleCondition } from "./vehicleWord";
 
 export type StateWord =
@@ -40,7 +41,7 @@ export function readiness(
     ...streamReasons(connection, behindS),
     ...alarmReasons(state),
     ...state.vehicles.flatMap((vehicle) => vehicleReasons(vehicle, behindS)),
-    ...linkReasons(state),
+    ...fleetReasons(state),
   ].sort((a, b) => severityRank(a.severity) - severityRank(b.severity));
   const severity = worstSeverity(reasons.map((reason) => reason.severity));
   return { word: stateWord(state, connection, behindS, severity), severity, reasons };
@@ -62,7 +63,7 @@ function stateWord(
 ): StateWord {
   const conditions = state.vehicles.map((vehicle) => vehicleCondition(vehicle, behindS));
   const isLost = conditions.some(
-    (condition) => condition.word === "Communication lost" && condition.severity === "critical",
+    (condition) => condition.word === "No contact" && condition.severity === "critical",
   );
   if (connection.kind === "lost" || isLost) return "Communication lost";
   if (conditions.some((condition) => condition.word === "Landing")) return "Landing";
@@ -94,7 +95,7 @@ function vehicleReasons(vehicle: VehicleView, behindS: number): Reason[] {
   const say = (severity: Severity, text: string) =>
     found.push({ severity, vehicleName: vehicle.name, text });
   const condition = vehicleCondition(vehicle, behindS);
-  if (condition.word === "Communication lost") {
+  if (condition.word === "No contact") {
     const ageS = vehicle.telemetry_age_s;
     const since =
       ageS === null ? "No telemetry yet." : `No telemetry for ${formatAge(ageS + behindS)}.`;
@@ -122,7 +123,11 @@ function batteryText(vehicle: VehicleView): string {
   return `${plainWords(vehicle.battery_warning.value ?? "")}, ${left} left`;
 }
 
-function linkReasons(state: StationState): Reason[] {
+function fleetReasons(state: StationState): Reason[] {
+  if (simulation(state.vehicles) === "mixed") {
+    const text = "Real and simulated vehicles are connected together.";
+    return [{ severity: "warning", vehicleName: null, text }];
+  }
   const none: Reason = {
     severity: "warning",
     vehicleName: null,

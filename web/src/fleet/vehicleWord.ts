@@ -3,7 +3,7 @@ import { plainWords } from "../words/names";
 import { stalenessNow } from "./staleness";
 
 export type VehicleWord =
-  | "Communication lost"
+  | "No contact"
   | "Unidentified"
   | "Landing"
   | "Returning"
@@ -33,7 +33,7 @@ export function vehicleCondition(vehicle: VehicleView, behindS: number): Vehicle
   const staleness = stalenessNow(vehicle, behindS);
   if (staleness === "lost" || staleness === "silent") {
     const isAloft = vehicle.is_flying.value !== false;
-    return { word: "Communication lost", severity: isAloft ? "critical" : "warning" };
+    return { word: "No contact", severity: isAloft ? "critical" : "warning" };
   }
   if (vehicle.serial === null) return { word: "Unidentified", severity: "warning" };
   const isConflicting = vehicle.conflict_link_ids.length > 0;

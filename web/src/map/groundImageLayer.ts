@@ -1,15 +1,15 @@
 import type { ImageSource, Map as MapLibre } from "maplibre-gl";
 import type { GroundImageView } from "../protocol";
-import type { Outcome } from "../source/stationSource";
-import type { Colours } from "./colours";
+import type { Outcome, Picture } from "../source/stationSource";
 import type { Layer } from "./layer";
 import type { Scene } from "./scene";
 
 const SOURCE = "ground-image";
 const LAYER = "ground-image";
-
 /** After a picture that did not come, wait so long (station time) before asking again. */
 const RETRY_NS = 2e9;
+/** Places of so many frames are remembered while their pictures are on the way. */
+const REMEMBERED = 8;
 
 type Corner = [number, number];
 type Corners = [Corner, Corner, Corner, Corner];
@@ -17,49 +17,75 @@ type Corners = [Corner, Corner, Corner, Corner];
 /** The newest frame of the imaging vehicle, laid on the ground under everything else. */
 export class GroundImageLayer implements Layer {
   private map: MapLibre | null = null;
+  private readonly places = new Map<number, Corners>();
+  private waiting: { readonly blob: Blob; readonly frameId: number } | null = null;
   private shownFrame: number | null = null;
   private isFetching = false;
   private address: string | null = null;
   private notBefore_ns = 0;
 
-  /** `fetchImage` brings the picture of a frame. */
-  constructor(private readonly fetchImage: (frameId: number) => Promise<Outcome<Blob>>) {}
+  /** `fetchImage` brings the newest picture; which frame it is comes with it. */
+  constructor(private readonly fetchImage: (frameId: number) => Promise<Outcome<Picture>>) {}
 
-  add(map: MapLibre, _colours: Colours): void {
+  add(map: MapLibre): void {
     this.map = map;
   }
 
   update(scene: Scene): void {
     const image = scene.state.ground_image;
+    if (image === null) return;
+    this.remember(image);
+    this.showWaiting();
     // One at a time: on a slow link the newest is fetched next, those between are passed over.
-    if (image === null || this.isFetching || image.frame_id === this.shownFrame) return;
-    if (scene.state.time_ns < this.notBefore_ns) return;
+    const isWanted = image.frame_id !== this.shownFrame && this.waiting === null;
+    if (!isWanted || this.isFetching || scene.state.time_ns < this.notBefore_ns) return;
     this.isFetching = true;
     this.notBefore_ns = scene.state.time_ns + RETRY_NS;
-    void this.bring(image).finally(() => {
+    void this.bring(image.frame_id).finally(() => {
       this.isFetching = false;
     });
   }
 
-  recolour(_colours: Colours): void {}
+  recolour(): void {}
 
-  private async bring(image: GroundImageView): Promise<void> {
-    const corners = cornersOf(image);
-    const outcome = await this.fetchImage(image.frame_id);
-    if (outcome.kind === "failed" || corners === null) return;
-    this.shownFrame = image.frame_id;
+  private async bring(frameId: number): Promise<void> {
+    const outcome = await this.fetchImage(frameId);
+    if (outcome.kind === "failed") return;
+    this.waiting = { blob: outcome.value.blob, frameId: outcome.value.frameId ?? frameId };
     this.notBefore_ns = 0;
-    const before = this.address;
-    this.address = URL.createObjectURL(outcome.value);
-    await this.show(this.address, corners);
-    if (before !== null) URL.revokeObjectURL(before);
+    this.showWaiting();
+  }
+
+  private remember(image: GroundImageView): void {
+    const corners = cornersOf(image);
+    if (corners !== null) this.places.set(image.frame_id, corners);
+    for (const known of this.places.keys()) {
+      if (this.places.size <= REMEMBERED) break;
+      this.places.delete(known);
+    }
+  }
+
+  /** Shows the picture that came as soon as its own place is known: never one frame in another's place. */
+  private showWaiting(): void {
+    const waiting = this.waiting;
+    if (waiting === null) return;
+    const corners = this.places.get(waiting.frameId);
+    const newest = Math.max(...this.places.keys());
+    // A state with its place may still come; after a later frame's it will not.
+    if (corners !== undefined || newest > waiting.frameId) this.waiting = null;
+    if (corners === undefined) return;
+    this.shownFrame = waiting.frameId;
+    void this.show(URL.createObjectURL(waiting.blob), corners);
   }
 
   private async show(url: string, coordinates: Corners): Promise<void> {
+    const before = this.address;
+    this.address = url;
     const source = this.map?.getSource<ImageSource>(SOURCE);
     if (source === undefined) this.addImage(url, coordinates);
     else source.updateImage({ url, coordinates });
     await loaded(url);
+    if (before !== null) URL.revokeObjectURL(before);
   }
 
   private addImage(url: string, coordinates: Corners): void {
@@ -71,7 +97,7 @@ export class GroundImageLayer implements Layer {
   }
 }
 
-/** Waits until the browser has read the picture, so that its address may go. */
+/** Waits until the browser has read the picture, so that the address before it may go. */
 async function loaded(url: string): Promise<void> {
   const image = new Image();
   image.src = url;

@@ -25,6 +25,8 @@ export class VehicleMarker {
   private readonly path = document.createElementNS(SVG, "path");
   private readonly label = document.createElement("span");
   private readonly marker: Marker;
+  /** On its own, under all symbols, so that no label hides another vehicle. */
+  private readonly labelMarker: Marker;
 
   constructor(number: number, press: MarkerPress) {
     this.button.type = "button";
@@ -33,14 +35,17 @@ export class VehicleMarker {
     this.symbol.setAttribute("viewBox", "0 0 40 40");
     this.symbol.setAttribute("aria-hidden", "true");
     this.symbol.append(this.path);
-    this.label.className = "craft-label";
-    this.button.append(this.symbol, this.label);
+    this.label.className = "craft-label own-colour";
+    this.label.setAttribute("aria-hidden", "true");
+    this.label.style.setProperty("--own", colourOf(number));
+    this.button.append(this.symbol);
     this.button.addEventListener("click", (event) => {
       event.stopPropagation();
       if (event.shiftKey || event.ctrlKey || event.metaKey) press.toggle(number);
       else press.select(number);
     });
     this.marker = new Marker({ element: this.button, anchor: "center" });
+    this.labelMarker = new Marker({ element: this.label, anchor: "top", offset: [0, 26] });
   }
 
   /** Brings the marker up to date, and onto the map when it is not there yet. */
@@ -57,12 +62,16 @@ export class VehicleMarker {
     this.button.setAttribute("aria-pressed", String(isSelected));
     this.button.setAttribute("aria-label", describe(vehicle, behindS));
     this.label.replaceChildren(...labelParts(vehicle, behindS, staleness !== "live"));
-    this.marker.setLngLat([at.lon, at.lat]);
-    if (!this.button.isConnected) this.marker.addTo(map);
+    this.label.classList.toggle("is-stale", staleness !== "live");
+    for (const marker of [this.marker, this.labelMarker]) {
+      marker.setLngLat([at.lon, at.lat]);
+      if (!marker.getElement().isConnected) marker.addTo(map);
+    }
   }
 
   remove(): void {
     this.marker.remove();
+    this.labelMarker.remove();
   }
 }
 

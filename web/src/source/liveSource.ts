@@ -65,17 +65,17 @@ export class LiveSource implements StationSource {
   }
 
   vehicleFrame(serial: string, frameId: number) {
-    return this.requests.blob(
+    return this.requests.picture(
       `/api/vehicles/${encodeURIComponent(serial)}/frame.jpg?id=${frameId}`,
     );
   }
 
   groundImage(frameId: number) {
-    return this.requests.blob(`/api/ground-image.png?id=${frameId}`);
+    return this.requests.picture(`/api/ground-image.png?id=${frameId}`);
   }
 
   groundImageFile() {
-    return this.requests.blob("/api/ground-image.tif");
+    return this.requests.picture("/api/ground-image.tif");
   }
 
   close(): void {

@@ -1,7 +1,7 @@
 import createClient from "openapi-fetch";
 import type { OrderResult } from "../protocol";
 import type { paths } from "../protocol/schema";
-import type { NamedOrder, Outcome } from "./stationSource";
+import type { NamedOrder, Outcome, Picture } from "./stationSource";
 
 /** A request older than this is given up: an order must not arrive when nobody thinks of it any more. */
 export const REQUEST_MS = 3_000;
@@ -47,16 +47,22 @@ export class Requests {
   }
 
   /** Fetches a picture or file; always with the token's header, which an `<img>` could not send. */
-  async blob(path: string): Promise<Outcome<Blob>> {
+  async picture(path: string): Promise<Outcome<Picture>> {
     return attempt(async () => {
       const request = new Request(this.origin + path, {
         headers: this.headers,
         signal: AbortSignal.timeout(4 * REQUEST_MS),
       });
       const response = await this.fetch(request);
-      return response.ok ? done(await response.blob()) : failed(refusal(response, null));
+      if (!response.ok) return failed(refusal(response, null));
+      return done({ blob: await response.blob(), frameId: frameIdOf(response) });
     });
   }
+}
+
+function frameIdOf(response: Response): number | null {
+  const text = response.headers.get("X-Frame-Id");
+  return text !== null && /^\d+$/.test(text) ? Number(text) : null;
 }
 
 interface Answer<D> {

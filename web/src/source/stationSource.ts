@@ -13,6 +13,12 @@ export type Outcome<T> =
   | { readonly kind: "answered"; readonly value: T }
   | { readonly kind: "failed"; readonly problem: string };
 
+/** A picture or file, and which frame it really is: the station gives its newest, not the one asked for. */
+export interface Picture {
+  readonly blob: Blob;
+  readonly frameId: number | null;
+}
+
 /** An order and the vehicles it names. */
 export interface NamedOrder {
   readonly serials: readonly string[];
@@ -31,8 +37,8 @@ export interface StationSource {
   /** Makes every flying vehicle hold its position; motors stay on. */
   allStop(): Promise<Outcome<readonly OrderResult[]>>;
   acknowledge(alarmId: number): Promise<Outcome<null>>;
-  vehicleFrame(serial: string, frameId: number): Promise<Outcome<Blob>>;
-  groundImage(frameId: number): Promise<Outcome<Blob>>;
-  groundImageFile(): Promise<Outcome<Blob>>;
+  vehicleFrame(serial: string, frameId: number): Promise<Outcome<Picture>>;
+  groundImage(frameId: number): Promise<Outcome<Picture>>;
+  groundImageFile(): Promise<Outcome<Picture>>;
   close(): void;
 }

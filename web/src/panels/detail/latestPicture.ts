@@ -1,4 +1,4 @@
-import type { Outcome } from "../../source/stationSource";
+import type { Outcome, Picture } from "../../source/stationSource";
 
 export interface PictureKey {
   readonly serial: string;
@@ -22,7 +22,7 @@ export class LatestPicture {
   private isClosed = false;
 
   constructor(
-    private readonly fetchPicture: (key: PictureKey) => Promise<Outcome<Blob>>,
+    private readonly fetchPicture: (key: PictureKey) => Promise<Outcome<Picture>>,
     private readonly addresses: PictureAddresses,
     private readonly show: (url: string | null) => void,
   ) {}
@@ -46,7 +46,7 @@ export class LatestPicture {
     this.asked = null;
     if (this.isClosed) return;
     if (outcome.kind === "answered" && this.wanted?.serial === key.serial) {
-      this.replace(this.addresses.create(outcome.value));
+      this.replace(this.addresses.create(outcome.value.blob));
     }
     const hasNewer = this.wanted?.serial !== key.serial || this.wanted.frameId !== key.frameId;
     if (hasNewer) void this.fetchWanted();

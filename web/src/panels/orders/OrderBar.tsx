@@ -41,17 +41,15 @@ export function OrderBar() {
   return (
     <section class="orders" aria-label="Orders to the selected vehicles">
       <LastAnswer />
-      <div class="orders-line">
-        <p class="orders-to wire-text" aria-live="polite">
-          <ToWhom holding={holding()} />
-        </p>
-        <div class="orders-buttons">
-          <For each={held}>
-            {({ order, timer }) => (
-              <HoldButton order={order} timer={timer} labels={targets().labels} />
-            )}
-          </For>
-        </div>
+      <p class="orders-to wire-text" aria-live="polite">
+        <ToWhom holding={holding()} />
+      </p>
+      <div class="orders-buttons">
+        <For each={held}>
+          {({ order, timer }) => (
+            <HoldButton order={order} timer={timer} labels={targets().labels} />
+          )}
+        </For>
       </div>
     </section>
   );

@@ -72,7 +72,7 @@ function Download() {
   const save = async () => {
     const outcome = await source.groundImageFile();
     setProblem(outcome.kind === "failed" ? outcome.problem : null);
-    if (outcome.kind === "answered") saveAs(outcome.value, "ground-image.tif");
+    if (outcome.kind === "answered") saveAs(outcome.value.blob, "ground-image.tif");
   };
   return (
     <div class="row">

@@ -1,0 +1,38 @@
+"""A fisheye frame lies on the ground: the demo site's lens and pose, a chessboard seen from above.
+
+Run: uv run python examples/03_lay_a_frame_on_the_ground.py [OUTPUT.tif]
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from recon.camera.ground import GroundProjector
+from recon.model.imagery import Frame
+from recon.record import write_ground_image
+from recon.site import demo_site_folder, load_site
+
+
+def main() -> None:
+    """Lay one frame on the demo site's grid and say how much of the field it shows."""
+    site = load_site(demo_site_folder())
+    assert site.eye is not None and site.ground_grid is not None
+    solution = site.eye.solution
+    print(f"pose: {solution.rms_px:.2f} px rms, {solution.height_above_ground_m:.1f} m up")
+
+    rows, cols = site.eye.camera.rows, site.eye.camera.cols
+    row, col = np.mgrid[0:rows, 0:cols]
+    board = np.where((row // 40 + col // 40) % 2, 230, 40).astype(np.uint8)
+    frame = Frame(1, site.eye.serial, 0, 0, 0.0, rgb=np.repeat(board[..., None], 3, axis=2))
+
+    projector = GroundProjector(site.ground_grid, site.eye.camera, site.eye.image_circle)
+    image = projector.lay(frame, solution.pose)
+    print(f"ground image: {image.rgb.shape}, {image.valid.mean():.0%} of the grid seen")
+    if len(sys.argv) > 1:
+        write_ground_image(Path(sys.argv[1]), image)
+        print(f"written to {sys.argv[1]}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,77 @@
+"""The pages say what is true: links lead somewhere, commands and targets exist, examples run."""
+
+import re
+import runpy
+import sys
+import tomllib
+from pathlib import Path
+
+import click
+import pytest
+import typer
+
+from recon.cli.app import app
+from recon.site import load_site
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
+LINK = re.compile(r"\]\((?!https?://|#|mailto:)([^)#\s]+)")
+FENCE = re.compile(r"```(\w*)\n(.*?)```", re.DOTALL)
+SITE_HEAD = """name = "x"
+[origin]
+latitude_deg = 45.0
+longitude_deg = -93.0
+ground_altitude_m = 280.0
+"""
+MAKE_TARGET = re.compile(r"`make ([a-z0-9-]+)`|^make ([a-z0-9-]+)", re.MULTILINE)
+
+
+def page_id(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_id)
+def test_links_lead_to_files(page: Path) -> None:
+    for target in LINK.findall(page.read_text(encoding="utf-8")):
+        assert (page.parent / target).exists(), f"{page_id(page)} links to {target}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_id)
+def test_make_targets_exist(page: Path) -> None:
+    targets = set(re.findall(r"^([a-z0-9-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    named = {a or b for a, b in MAKE_TARGET.findall(page.read_text(encoding="utf-8"))}
+    assert named <= targets
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_id)
+def test_commands_and_options_exist(page: Path) -> None:
+    group = typer.main.get_command(app)
+    assert isinstance(group, click.Group)
+    for _language, block in FENCE.findall(page.read_text(encoding="utf-8")):
+        for line in re.findall(r"^(?:uv run (?:--locked )?)?recon (.+)$", block, re.MULTILINE):
+            name, *words = line.split("#")[0].split()
+            assert name in group.commands, f"{page_id(page)}: recon {name}"
+            known = {o for p in group.commands[name].params for o in (*p.opts, *p.secondary_opts)}
+            named = {word.split("=")[0] for word in words if word.startswith("--")}
+            assert named <= known, f"{page_id(page)}: recon {line}"
+
+
+def test_the_guides_vehicle_entry_is_a_valid_one(tmp_path: Path) -> None:
+    text = (ROOT / "docs/how-to/connect-an-app.md").read_text(encoding="utf-8")
+    blocks = [block for language, block in FENCE.findall(text) if language == "toml"]
+    assert blocks
+    for block in blocks:
+        (tmp_path / "site.toml").write_text(SITE_HEAD + block, encoding="utf-8")
+        serials = [entry["serial"] for entry in tomllib.loads(block)["vehicles"]]
+        assert list(load_site(tmp_path).profiles) == serials
+
+
+@pytest.mark.parametrize("example", sorted((ROOT / "examples").glob("*.py")), ids=page_id)
+def test_examples_run(
+    example: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "argv", [str(example)])
+    runpy.run_path(str(example), run_name="__main__")
+    printed = capsys.readouterr().out
+    expected = {"01": "EmergencyCommand", "02": "confirmed", "03": "of the grid seen"}
+    assert expected[example.name[:2]] in printed

@@ -1,0 +1,98 @@
+import type { Page, WebSocketRoute } from "@playwright/test";
+import type { OrderRequest, StationState } from "../../src/protocol";
+
+/** A station inside the browser: answers the page's requests, and says what a test lets it say. */
+export class FakeStation {
+  readonly orders: OrderRequest[] = [];
+  readonly acknowledged: number[] = [];
+  allStops = 0;
+  private sockets: WebSocketRoute[] = [];
+  private isReachable = true;
+  private picture: Buffer | null = null;
+
+  private constructor(private state: StationState) {}
+
+  /** Takes the place of the station for `page`, before it is opened. */
+  static async behind(page: Page, state: StationState): Promise<FakeStation> {
+    const fake = new FakeStation(state);
+    await page.routeWebSocket("**/api/stream", (socket) => fake.accept(socket));
+    await page.route("**/api/**", (route) => {
+      const request = route.request();
+      const answer = fake.answer(new URL(request.url()).pathname, request.postData());
+      return answer === null ? route.abort() : route.fulfill(answer);
+    });
+    return fake;
+  }
+
+  /** Says a new state, made so many station seconds after the first. */
+  say(state: StationState): void {
+    this.state = state;
+    for (const socket of this.sockets) socket.send(JSON.stringify(state));
+  }
+
+  /** What `ground-image.png` and `frame.jpg` give. */
+  showPicture(picture: Buffer): void {
+    this.picture = picture;
+  }
+
+  /** Closes the streams and answers nothing until `comeBack`. */
+  async vanish(): Promise<void> {
+    this.isReachable = false;
+    const gone = this.sockets;
+    this.sockets = [];
+    await Promise.all(gone.map((socket) => socket.close()));
+  }
+
+  comeBack(): void {
+    this.isReachable = true;
+  }
+
+  private accept(socket: WebSocketRoute): void {
+    if (!this.isReachable) {
+      void socket.close();
+      return;
+    }
+    this.sockets.push(socket);
+    socket.send(JSON.stringify(this.state));
+    socket.onMessage(() => undefined);
+  }
+
+  private answer(path: string, body: string | null) {
+    if (!this.isReachable) return null;
+    if (path === "/api/orders") return this.order(JSON.parse(body ?? "{}") as OrderRequest);
+    if (path === "/api/all-stop") return this.stopAll();
+    const alarm = /^\/api\/alarms\/(\d+)\/acknowledge$/.exec(path);
+    if (alarm !== null) {
+      this.acknowledged.push(Number(alarm[1]));
+      return { status: 204 };
+    }
+    if (/\.(png|jpg)$/.test(path) && this.picture !== null) {
+      const frame = String(this.state.ground_image?.frame_id ?? 1);
+      return { body: this.picture, contentType: "image/png", headers: { "X-Frame-Id": frame } };
+    }
+    return { status: 404, json: { error: "there is no such thing here" } };
+  }
+
+  private order(request: OrderRequest) {
+    this.orders.push(request);
+    const results = request.serials.map((serial, index) => ({
+      serial,
+      link_id: index + 1,
+      vehicle_name: this.nameOf(serial),
+      accepted: true,
+      command_id: 40 + index,
+      rule: null,
+      reason: null,
+    }));
+    return { json: { results } };
+  }
+
+  private stopAll() {
+    this.allStops += 1;
+    return { json: { results: [] } };
+  }
+
+  private nameOf(serial: string): string {
+    return this.state.vehicles.find((vehicle) => vehicle.serial === serial)?.name ?? serial;
+  }
+}

@@ -1,0 +1,154 @@
+import type {
+  AlarmView,
+  CommandView,
+  LinkView,
+  StationState,
+  VehicleView,
+} from "../../src/protocol";
+
+/** The field the false vehicles fly over. */
+export const FIELD = { lat: 44.7, lon: -93.07 };
+
+const M_PER_LAT = 111_132;
+const M_PER_LON = 79_300;
+
+/** A point so many metres east and north of the field's middle. */
+export function at(east_m: number, north_m: number): [number, number] {
+  return [FIELD.lon + east_m / M_PER_LON, FIELD.lat + north_m / M_PER_LAT];
+}
+
+function aged<T>(value: T | null, age_s: number | null = 0.1) {
+  return { value, age_s };
+}
+
+/** A vehicle that flies and lacks nothing, with `changes` made to it. */
+export function vehicle(number: number, changes: Partial<VehicleView> = {}): VehicleView {
+  const [longitude_deg, latitude_deg] = at(60 * number - 150, 30 * number - 60);
+  return {
+    number,
+    serial: `SN-00${number}`,
+    link_id: number,
+    name: ["Alder", "Birch", "Cedar", "Dogwood", "Elm", "Fir"][number - 1] ?? `Vehicle ${number}`,
+    model: "DJI Mavic 2 Pro",
+    is_simulated: false,
+    is_eye: false,
+    staleness: "live",
+    telemetry_age_s: 0.1,
+    is_flying: aged(true),
+    position: { latitude_deg, longitude_deg, age_s: 0.1 },
+    height_above_takeoff_m: aged(40 + 5 * number),
+    reported_altitude_m: aged(331.4),
+    velocity_ned: { north_mps: 3.1, east_mps: 2.2, down_mps: 0.1, age_s: 0.1 },
+    attitude: { yaw_deg: 60 * number, pitch_deg: -4.2, roll_deg: 1.1, age_s: 0.1 },
+    battery_fraction: aged(0.9 - 0.1 * number, 0.4),
+    battery_warning: aged("none", 0.4),
+    gnss_satellite_count: aged(17, 0.4),
+    gnss_signal_level: aged(5, 0.4),
+    wind_level: aged<number>(null, 0.4),
+    flight_mode: aged("gps_waypoint", 0.4),
+    mission_id: aged(12, 0.4),
+    camera_state: aged("feed_on", 0.4),
+    waypoint_altitude: "takeoff",
+    conflict_link_ids: [],
+    track: Array.from({ length: 12 }, (_, i) =>
+      at(60 * number - 150 - 8 * (12 - i), 30 * number - 60 - 40 * Math.sin((12 - i) / 4)),
+    ),
+    frame: null,
+    ...changes,
+  };
+}
+
+export function link(id: number, changes: Partial<LinkView> = {}): LinkView {
+  return {
+    id,
+    remote_address: `192.168.1.${20 + id}:5${id}312`,
+    status: "identified",
+    claimed_serial: `SN-00${id}`,
+    opened_age_s: 320,
+    last_packet_age_s: 0.1,
+    closed_reason: null,
+    bytes_received: 412_000 * id,
+    packets_received: 3840 * id,
+    images_received: 0,
+    bad_hash: 0,
+    bad_size: 0,
+    unknown_pid: 0,
+    meaningless: 0,
+    bytes_skipped: 0,
+    commands_queued: 0,
+    ...changes,
+  };
+}
+
+export function alarm(id: number, changes: Partial<AlarmView> = {}): AlarmView {
+  return {
+    id,
+    severity: "warning",
+    rule: "battery",
+    serial: "SN-004",
+    link_id: 4,
+    vehicle_name: "Dogwood",
+    text: "The aircraft warns of its battery: low, 28 % left.",
+    raised_age_s: 14,
+    is_active: true,
+    is_acknowledged: false,
+    ...changes,
+  };
+}
+
+export function command(id: number, changes: Partial<CommandView> = {}): CommandView {
+  const history: CommandView["history"] = [
+    { phase: "queued", age_s: 9.0, note: "" },
+    { phase: "sent", age_s: 8.99, note: "" },
+    { phase: "acknowledged", age_s: 8.8, note: "" },
+    { phase: "confirmed", age_s: 6.4, note: "" },
+  ];
+  return {
+    id,
+    kind: "hover",
+    serial: "SN-001",
+    vehicle_name: "Alder",
+    issued_by: "api 127.0.0.1",
+    age_s: 9.0,
+    phase: "confirmed",
+    is_final: true,
+    note: "",
+    times_sent: 1,
+    takeoff: false,
+    sent_altitudes: null,
+    history,
+    ...changes,
+  };
+}
+
+/** A whole state of these vehicles, with `changes` made to it. */
+export function station(
+  vehicles: VehicleView[],
+  changes: Partial<StationState> = {},
+): StationState {
+  return {
+    time_ns: 1e9,
+    station: {
+      version: "0.1.0",
+      link_addresses: ["127.0.0.1:3001"],
+      uptime_s: 840,
+      frames_dropped: 0,
+      capture_folder: null,
+    },
+    site: {
+      name: "Field by the creek",
+      latitude_deg: FIELD.lat,
+      longitude_deg: FIELD.lon,
+      ground_altitude_m: 281.5,
+      eye_serial: "SN-001",
+      pose_rms_px: 3.62,
+      pose_height_m: 133.2,
+    },
+    vehicles,
+    links: vehicles.map((one) => link(one.number, { claimed_serial: one.serial })),
+    commands: [],
+    alarms: [],
+    ground_image: null,
+    ...changes,
+  };
+}
