@@ -4,11 +4,11 @@ import json
 import math
 import os
 import sys
-from collections.abc import Hashable, Iterator
+from collections.abc import Iterator
 from functools import cache
 from inspect import signature
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO, NamedTuple, TextIO, cast
+from typing import Annotated, Any, BinaryIO, NamedTuple, TextIO
 
 import numpy as np
 import typer
@@ -127,15 +127,15 @@ def _exactly(source: BinaryIO, count: int) -> bytes:
 
 
 @cache
-def _field_names(packet_type: Hashable) -> tuple[str, ...]:
+def _field_names(class_name: str) -> tuple[str, ...]:
     """Names of a packet's fields in wire order."""
-    return tuple(signature(cast(type, packet_type)).parameters)
+    return tuple(signature(getattr(wire, class_name)).parameters)
 
 
 def _fields(packet: Any) -> dict[str, Any]:
     """Fields of a packet as JSON knows them; images by size, bytes as harmless text or hex."""
     fields: dict[str, Any] = {}
-    for name in _field_names(type(packet)):
+    for name in _field_names(type(packet).__name__):
         value = getattr(packet, name)
         if isinstance(value, np.ndarray):
             fields["rows"], fields["cols"] = value.shape[:2]
