@@ -1,10 +1,18 @@
 import { existsSync } from "node:fs";
 import { defineConfig } from "@playwright/test";
 
-/** Debian's browser where there is one, else the one Playwright brought. */
-const SYSTEM_CHROMIUM = "/usr/bin/chromium";
+/** The system's browser: the one named by `RECON_CHROMIUM`, or the first found where packages put it. */
+const named = process.env["RECON_CHROMIUM"];
+const usual = ["chromium", "chromium-browser", "google-chrome"].map((name) => `/usr/bin/${name}`);
+const executablePath = [...(named === undefined ? [] : [named]), ...usual].find((path) =>
+  existsSync(path),
+);
+if (executablePath === undefined) {
+  throw new Error(
+    "No Chromium found. Install it (sudo apt-get install chromium) or name one in RECON_CHROMIUM.",
+  );
+}
 const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const executable = existsSync(SYSTEM_CHROMIUM) ? { executablePath: SYSTEM_CHROMIUM } : {};
 const PORT = 4173;
 
 export default defineConfig({
@@ -16,7 +24,7 @@ export default defineConfig({
   use: {
     baseURL: `http://127.0.0.1:${PORT}`,
     viewport: { width: 1440, height: 900 },
-    launchOptions: { args, ...executable },
+    launchOptions: { args, executablePath },
   },
   webServer: {
     command: `npm run --silent build && npx vite preview --port ${PORT} --strictPort`,

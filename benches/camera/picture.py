@@ -18,9 +18,9 @@ from recon.camera import (
     decode_jpeg,
     load_camera,
     load_control_points,
-    solve_pose,
+    pose_from_points,
 )
-from recon.geo import enu_from_geo
+from recon.geo import enu_from_points
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 
 CELL_M = 0.5
@@ -34,16 +34,14 @@ def draw(site: Path, camera_file: Path, out: Path) -> None:
         [(p.latitude_deg, p.longitude_deg, p.ellipsoid_height_m) for p in points], axis=0
     )
     frame = LocalFrame(GeoPoint(latitude, longitude, height))
-    solution = solve_pose(camera, points, (3840, 2160), frame)
+    points_enu_m = enu_from_points(frame, [point.place for point in points])
+    solution = pose_from_points(camera, points, (3840, 2160), points_enu_m)
     east_m, north_m, _ = solution.pose.position_enu_m
     half_m = SIDE_CELLS * CELL_M / 2.0
     grid = GroundGrid(frame, east_m - half_m, north_m + half_m, CELL_M, SIDE_CELLS, SIDE_CELLS)
     rgb = decode_jpeg((site / "RefFrame.jpeg").read_bytes())
     laid, valid = GroundProjector(grid, camera).lay_pixels(rgb, solution.pose)
-    for point in points:
-        enu = enu_from_geo(
-            frame, point.latitude_deg, point.longitude_deg, point.ellipsoid_height_m
-        )[0]
+    for point, enu in zip(points, points_enu_m, strict=True):
         at = (round((enu[0] - grid.west_m) / CELL_M), round((grid.north_m - enu[1]) / CELL_M))
         cv2.drawMarker(laid, at, (255, 0, 0), cv2.MARKER_CROSS, 25, 2)
         cv2.putText(laid, point.name, (at[0] + 8, at[1] - 8), 0, 0.8, (255, 255, 0), 2)

@@ -1,12 +1,22 @@
 """Known poses and the points seen from them: truth by construction."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from recon.camera import ControlPoint, OmnidirectionalCamera
-from recon.geo import geo_from_enu
+from recon.camera import (
+    ControlPoint,
+    OmnidirectionalCamera,
+    PoseSolution,
+    TelemetryReference,
+    displaced_pose,
+    pose_from_points,
+)
+from recon.geo import enu_from_points, geo_from_enu, shift_east_north_m
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.imagery import CameraPose
+from recon.model.vehicle import Mount
 
 FRAME = LocalFrame(GeoPoint(44.5, -92.9, 320.0))
 SIZE_PX = (1280, 720)
@@ -48,3 +58,21 @@ def field_points(count: int, seed: int, relief_m: float = 0.0) -> np.ndarray:
     rng = np.random.default_rng(seed)
     flat = rng.uniform(-200.0, 200.0, (count, 2))
     return np.column_stack([flat, rng.uniform(-relief_m, relief_m, count)])
+
+
+def solved(
+    camera: OmnidirectionalCamera,
+    points: Sequence[ControlPoint],
+    marked_size_px: tuple[int, int],
+    frame: LocalFrame,
+) -> PoseSolution:
+    """The pose of control points whose places are on the globe."""
+    points_enu_m = enu_from_points(frame, [point.place for point in points])
+    return pose_from_points(camera, points, marked_size_px, points_enu_m)
+
+
+def moved(
+    pose: CameraPose, marked: TelemetryReference, now: TelemetryReference, mount: Mount
+) -> CameraPose:
+    """A pose moved by telemetry in `FRAME`."""
+    return displaced_pose(pose, marked, now, shift_east_north_m(FRAME, marked, now), mount)

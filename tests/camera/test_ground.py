@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.camera.constructions import FRAME, seen_pixels, tilted_pose
+from tests.camera.constructions import FRAME, seen_pixels, solved, tilted_pose
 
 from recon.camera import (
     FrameDecodeError,
@@ -21,7 +21,6 @@ from recon.camera import (
     ground_maps,
     load_camera,
     load_control_points,
-    solve_pose,
 )
 from recon.camera.ground import lattice_step, source_mask
 from recon.geo import enu_from_geo
@@ -214,7 +213,7 @@ def test_a_real_frames_control_points_lie_where_the_pose_says(fisheye_data: Path
     points = load_control_points(fisheye_data / "elgin-5" / "GCPs.txt")
     first = points[0]
     frame = LocalFrame(GeoPoint(first.latitude_deg, first.longitude_deg, first.ellipsoid_height_m))
-    solution = solve_pose(camera, points, (3840, 2160), frame)
+    solution = solved(camera, points, (3840, 2160), frame)
     grid = GroundGrid(frame, -400.0, 300.0, 0.5, 1200, 1400)
     for point, residual in zip(points, solution.residuals, strict=True):
         rgb = np.zeros((2160, 3840, 3), np.uint8)

@@ -13,6 +13,7 @@ from tests.camera.constructions import (
     SIZE_PX,
     control_points,
     field_points,
+    solved,
     tilted_pose,
 )
 
@@ -22,7 +23,6 @@ from recon.camera import (
     PoseError,
     load_camera,
     load_control_points,
-    solve_pose,
 )
 from recon.camera.pose import PoseSolution
 from recon.model.geo import GeoPoint, LocalFrame
@@ -50,7 +50,7 @@ def test_perfect_marks_give_the_pose_they_were_made_with(
     corners = np.array([[-90.0, -80.0, 0.0], [100.0, -70.0, 0.0], [80.0, 95.0, 0.0]])
     points = np.vstack([corners, field_points(count - 3, seed, relief_m=3.0) / 2.0])
     corner_marks = control_points(DEMO, pose, points)
-    solution = solve_pose(DEMO, corner_marks, SIZE_PX, FRAME)
+    solution = solved(DEMO, corner_marks, SIZE_PX, FRAME)
     assert solution.rms_px < 1e-4
     assert np.abs(solution.pose.position_enu_m - pose.position_enu_m).max() < 0.01
     turned = turn_between_rad(solution.pose.rotation_enu_camera, pose.rotation_enu_camera)
@@ -63,14 +63,14 @@ def test_marks_at_another_size_are_brought_to_the_models_by_pixel_centres() -> N
         replace(p, col_px=(p.col_px + 0.5) * 3 - 0.5, row_px=(p.row_px + 0.5) * 3 - 0.5)
         for p in at_model
     ]
-    solution = solve_pose(DEMO, at_full, (3840, 2160), FRAME)
+    solution = solved(DEMO, at_full, (3840, 2160), FRAME)
     assert solution.rms_px < 1e-4
     assert solution.height_above_ground_m == pytest.approx(118.0, abs=0.01)
 
 
 def noisy_solution(seed: int) -> PoseSolution:
     points = control_points(DEMO, TRUE_POSE, field_points(8, 11), noise_px=1.0, seed=seed)
-    return solve_pose(DEMO, points, SIZE_PX, FRAME)
+    return solved(DEMO, points, SIZE_PX, FRAME)
 
 
 def test_the_standard_deviations_are_those_of_the_errors() -> None:
@@ -114,7 +114,7 @@ def test_ground_residuals_say_where_a_moved_mark_points_to() -> None:
     enu = field_points(60, 12)[7:8]
     moved = control_points(DEMO, TRUE_POSE, enu + np.array([5.0, 0.0, 0.0]))[0]
     points[7] = replace(points[7], col_px=moved.col_px, row_px=moved.row_px)
-    residual = solve_pose(DEMO, points, SIZE_PX, FRAME).residuals[7]
+    residual = solved(DEMO, points, SIZE_PX, FRAME).residuals[7]
     assert residual.east_m == pytest.approx(5.0, abs=1.0)
     assert residual.north_m == pytest.approx(0.0, abs=0.7)
     assert residual.ground_m == pytest.approx(np.hypot(residual.east_m, residual.north_m))
@@ -132,7 +132,7 @@ def test_the_real_frames_are_fitted_as_well_as_they_can_be(
     frame = LocalFrame(
         GeoPoint(points[0].latitude_deg, points[0].longitude_deg, points[0].ellipsoid_height_m)
     )
-    solution = solve_pose(camera, points, (3840, 2160), frame)
+    solution = solved(camera, points, (3840, 2160), frame)
     assert solution.rms_px == pytest.approx(rms_px, abs=0.02)
     assert solution.height_above_ground_m == pytest.approx(height_m, abs=1.0)
     assert solution.tilt_deg < 5.0
@@ -141,7 +141,7 @@ def test_the_real_frames_are_fitted_as_well_as_they_can_be(
 
 def refusal(points: list, camera: OmnidirectionalCamera = DEMO) -> str:
     with pytest.raises(PoseError) as caught:
-        solve_pose(camera, points, SIZE_PX, FRAME)
+        solved(camera, points, SIZE_PX, FRAME)
     return str(caught.value)
 
 
@@ -195,11 +195,11 @@ def test_pixels_outside_the_frame_or_the_lens_are_named() -> None:
 def test_a_marked_frame_of_another_aspect_ratio_is_refused() -> None:
     points = control_points(DEMO, TRUE_POSE, field_points(5, 6))
     with pytest.raises(FrameSizeError, match="aspect ratio"):
-        solve_pose(DEMO, points, (4000, 3000), FRAME)
+        solved(DEMO, points, (4000, 3000), FRAME)
 
 
 def test_many_points_are_solved_from_a_selection_of_triples() -> None:
-    solution = solve_pose(
+    solution = solved(
         DEMO, control_points(DEMO, TRUE_POSE, field_points(120, 2), 0.5), SIZE_PX, FRAME
     )
     assert solution.height_above_ground_m == pytest.approx(118.0, abs=0.5)

@@ -6,7 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pyproj import Transformer
 
-from recon.geo import enu_from_geo, enu_from_point, geo_from_enu, point_from_enu
+from recon.geo import (
+    enu_from_geo,
+    enu_from_point,
+    enu_from_points,
+    geo_from_enu,
+    point_from_enu,
+    shift_east_north_m,
+)
 from recon.geo.ellipsoid import meridian_radius_m, prime_vertical_radius_m
 from recon.model.geo import GeoPoint, LocalFrame
 
@@ -84,3 +91,20 @@ def test_the_poles_convert_back() -> None:
     latitude, _, height = geo_from_enu(frame, [[0.0, 0.0, 5.0]])
     assert latitude[0] == pytest.approx(90.0)
     assert height[0] == pytest.approx(105.0, abs=1e-6)
+
+
+def test_many_points_and_none() -> None:
+    frame = LocalFrame(GeoPoint(45.0, -93.0, 10.0))
+    points = [GeoPoint(45.001, -93.0, 10.0), GeoPoint(45.0, -92.999, 15.0)]
+    enu = enu_from_points(frame, points)
+    assert enu[0] == pytest.approx(enu_from_point(frame, points[0]))
+    assert enu[1] == pytest.approx(enu_from_point(frame, points[1]))
+    assert enu_from_points(frame, []).shape == (0, 3)
+
+
+@given(st.floats(-2e3, 2e3), st.floats(-2e3, 2e3))
+def test_a_shift_is_east_and_north_between_two_places(east_m: float, north_m: float) -> None:
+    frame = LocalFrame(GeoPoint(45.0, -93.0, 10.0))
+    start = point_from_enu(frame, [100.0, -50.0, 0.0])
+    end = point_from_enu(frame, [100.0 + east_m, -50.0 + north_m, 0.0])
+    assert shift_east_north_m(frame, start, end) == pytest.approx([east_m, north_m], abs=2e-3)

@@ -1,7 +1,7 @@
 import { test } from "@playwright/test";
+import { alarm, at, command, link, station, vehicle } from "../src/testing/world";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
-import { alarm, at, command, link, station, vehicle } from "./fake/world";
 
 /** Pictures of the page for people to look at: `npm run screens`, then `web/screens/`. */
 const LOOKS = [
@@ -33,6 +33,7 @@ function busyState(elapsed_s: number) {
     }),
     vehicle(5, { is_flying: { value: false, age_s: 0.1 }, conflict_link_ids: [9] }),
     vehicle(6, {
+      number: 0,
       serial: null,
       name: "link 6",
       position: { latitude_deg: null, longitude_deg: null, age_s: null },

@@ -1,5 +1,6 @@
 import { createEffect, createSignal, onCleanup, onMount } from "solid-js";
 import { useConsole } from "./console";
+import { vehicleKey } from "./fleet/key";
 import { actOnKey } from "./keys";
 import { MapView } from "./map/MapView";
 import { AlarmList } from "./panels/alarms/AlarmList";
@@ -18,9 +19,9 @@ import "./layout.css";
 export function App() {
   const { source, fleet, selection, desk, theme, fit } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
-  const numbers = () => fleet.vehicles.map((vehicle) => vehicle.number);
-  const select = (number: number, how: (number: number) => void) => {
-    if (numbers().includes(number)) how(number);
+  const keys = () => fleet.vehicles.map(vehicleKey);
+  const select = (key: number, how: (key: number) => void) => {
+    if (keys().includes(key)) how(key);
   };
 
   onMount(() => {
@@ -31,7 +32,7 @@ export function App() {
         allStop: () => void desk.allStop(),
         selectOnly: (number) => select(number, selection.only),
         toggle: (number) => select(number, selection.toggle),
-        selectAll: () => selection.all(numbers()),
+        selectAll: () => selection.all(keys()),
         clear: selection.clear,
         fit,
         toggleTheme: theme.toggle,
@@ -41,7 +42,7 @@ export function App() {
     window.addEventListener("keydown", onKeyDown);
     onCleanup(() => window.removeEventListener("keydown", onKeyDown));
   });
-  createEffect(() => selection.keep(numbers()));
+  createEffect(() => selection.keep(keys()));
 
   return (
     <div class="page" classList={{ "is-lost": source.connection().kind === "lost" }}>

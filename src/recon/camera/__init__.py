@@ -18,9 +18,9 @@ from recon.camera.errors import (
 )
 from recon.camera.ground import GroundProjector, ground_maps
 from recon.camera.image_circle import ImageCircle, find_image_circle
-from recon.camera.motion import TelemetryReference, level_pose, moved_pose
+from recon.camera.motion import TelemetryReference, displaced_pose, level_pose, moved_pose
 from recon.camera.omnidirectional import OmnidirectionalCamera
-from recon.camera.pose import PointResidual, PoseSolution, solve_pose
+from recon.camera.pose import PointResidual, PoseSolution, pose_from_points, solve_pose
 
 __all__ = [
     "CalibrationError",
@@ -38,6 +38,7 @@ __all__ = [
     "TelemetryReference",
     "decode_frame",
     "decode_jpeg",
+    "displaced_pose",
     "find_image_circle",
     "format_camera",
     "format_control_points",
@@ -49,5 +50,6 @@ __all__ = [
     "moved_pose",
     "parse_camera",
     "parse_control_points",
+    "pose_from_points",
     "solve_pose",
 ]

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from recon.camera.data_lines import DataLine, data_lines, read_small_text, shown
 from recon.camera.errors import ControlPointsError
+from recon.model.geo import GeoPoint
 
 FIELDS = ("column", "row", "latitude", "longitude", "altitude")
 RANGES = {
@@ -33,6 +34,11 @@ class ControlPoint:
     latitude_deg: float
     longitude_deg: float
     ellipsoid_height_m: float
+
+    @property
+    def place(self) -> GeoPoint:
+        """Where the point is on the globe."""
+        return GeoPoint(self.latitude_deg, self.longitude_deg, self.ellipsoid_height_m)
 
 
 def load_control_points(path: Path) -> tuple[ControlPoint, ...]:

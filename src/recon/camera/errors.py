@@ -1,6 +1,6 @@
 """Everything that can be wrong in this room, as one tree.
 
-    CameraError
+    CameraError (a ReconError)
     |-- CalibrationError       the lens's file or its numbers make no camera
     |-- ControlPointsError     the control points' file is malformed
     |-- PoseError              these control points give no pose

@@ -11,7 +11,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from recon.geo import enu_from_geo
+from recon.geo import shift_east_north_m
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.imagery import CameraPose
 from recon.model.units import is_finite
@@ -56,6 +56,27 @@ class TelemetryReference:
         return cls(*values) if is_finite(*values) else None
 
 
+def displaced_pose(
+    marked_pose: CameraPose,
+    marked: TelemetryReference,
+    now: TelemetryReference,
+    shift_m: FloatArray,
+    mount: Mount,
+) -> CameraPose:
+    """Return the camera's pose at `now`, given its pose when telemetry said `marked`.
+
+    `shift_m` (2,) is how far east and north the aircraft has gone since (`recon.geo` tells). The
+    camera turns with the aircraft's yaw always, with pitch and roll only on a fixed mount (a gimbal
+    takes those out). The camera's arm about the aircraft's position is neglected.
+    """
+    turn = _body_rotation(now, mount) @ _body_rotation(marked, mount).T
+    climb_m = now.height_above_takeoff_m - marked.height_above_takeoff_m
+    return CameraPose(
+        rotation_enu_camera=turn @ marked_pose.rotation_enu_camera,
+        position_enu_m=marked_pose.position_enu_m + np.append(shift_m, climb_m),
+    )
+
+
 def moved_pose(
     marked_pose: CameraPose,
     frame: LocalFrame,
@@ -63,31 +84,8 @@ def moved_pose(
     now: TelemetryReference,
     mount: Mount,
 ) -> CameraPose:
-    """Return the camera's pose at `now`, given its pose when telemetry said `marked`.
-
-    The camera turns with the aircraft's yaw always, with pitch and roll only on a fixed mount (a
-    gimbal takes those out). The camera's arm about the aircraft's position is neglected.
-    """
-    turn = _body_rotation(now, mount) @ _body_rotation(marked, mount).T
-    return CameraPose(
-        rotation_enu_camera=turn @ marked_pose.rotation_enu_camera,
-        position_enu_m=marked_pose.position_enu_m + _displacement_enu_m(frame, marked, now),
-    )
-
-
-def _displacement_enu_m(
-    frame: LocalFrame, marked: TelemetryReference, now: TelemetryReference
-) -> FloatArray:
-    # Both points at the frame's own height: heights above takeoff have no place on the ellipsoid.
-    enu = enu_from_geo(
-        frame,
-        [marked.latitude_deg, now.latitude_deg],
-        [marked.longitude_deg, now.longitude_deg],
-        frame.origin.ellipsoid_height_m,
-    )
-    displacement: FloatArray = enu[1] - enu[0]
-    displacement[2] = now.height_above_takeoff_m - marked.height_above_takeoff_m
-    return displacement
+    """Return `displaced_pose` with the shift taken from the telemetry's positions here."""
+    return displaced_pose(marked_pose, marked, now, shift_east_north_m(frame, marked, now), mount)
 
 
 def _body_rotation(telemetry: TelemetryReference, mount: Mount) -> FloatArray:

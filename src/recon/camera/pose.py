@@ -10,7 +10,7 @@ from recon.camera.control_points_file import ControlPoint
 from recon.camera.errors import PoseError
 from recon.camera.omnidirectional import OmnidirectionalCamera, scale_between
 from recon.camera.pose_fit import PoseFit, fit_pose, residuals_px
-from recon.geo import enu_from_geo
+from recon.geo import enu_from_points
 from recon.model.geo import LocalFrame
 from recon.model.imagery import CameraPose
 
@@ -63,17 +63,18 @@ class PoseSolution:
     tilt_sigma_deg: float
 
 
-def solve_pose(
+def pose_from_points(
     camera: OmnidirectionalCamera,
     points: Sequence[ControlPoint],
     marked_size_px: tuple[int, int],
-    frame: LocalFrame,
+    points_enu_m: FloatArray,
 ) -> PoseSolution:
-    """Return the pose in `frame` of the camera that took the marked frame.
+    """Return the pose, in the local frame, of the camera that took the marked frame.
 
-    `marked_size_px` is (cols, rows) of the frame the points were marked on; pixels are brought to
-    the model's size by pixel centres. Height is above the mean control point. Raises `PoseError`
-    for fewer than four points and for points that fix no pose, `FrameSizeError` for another aspect.
+    `points_enu_m` (N, 3) are the places of the N points in that frame. `marked_size_px` is
+    (cols, rows) of the frame the points were marked on; pixels are brought to the model's size by
+    pixel centres. Height is above the mean control point. Raises `PoseError` for fewer than four
+    points and for points that fix no pose, `FrameSizeError` for another aspect ratio.
     """
     if len(points) < FEWEST_POINTS:
         raise PoseError(
@@ -82,13 +83,18 @@ def solve_pose(
         )
     pixels = _pixels_at_model_size(camera, points, marked_size_px)
     _refuse_unseen(camera, points, pixels)
-    points_enu = enu_from_geo(
-        frame,
-        [p.latitude_deg for p in points],
-        [p.longitude_deg for p in points],
-        [p.ellipsoid_height_m for p in points],
-    )
-    return _report(camera, points, pixels, points_enu, fit_pose(camera, pixels, points_enu))
+    return _report(camera, points, pixels, points_enu_m, fit_pose(camera, pixels, points_enu_m))
+
+
+def solve_pose(
+    camera: OmnidirectionalCamera,
+    points: Sequence[ControlPoint],
+    marked_size_px: tuple[int, int],
+    frame: LocalFrame,
+) -> PoseSolution:
+    """Return `pose_from_points` with the points' places turned into `frame`'s metres here."""
+    points_enu_m = enu_from_points(frame, [point.place for point in points])
+    return pose_from_points(camera, points, marked_size_px, points_enu_m)
 
 
 def _pixels_at_model_size(

@@ -4,6 +4,9 @@ All heights are ellipsoidal. The frame is flat and the earth is not: a point at 
 height lies d^2 / 12,756 km below the plane at distance d (5 mm at 256 m, 8 cm at 1 km).
 """
 
+from collections.abc import Iterable
+from typing import Protocol
+
 import numpy as np
 import numpy.typing as npt
 
@@ -11,6 +14,18 @@ from recon.geo.ellipsoid import ecef_from_geodetic, geodetic_from_ecef
 from recon.model.geo import GeoPoint, LocalFrame
 
 FloatArray = npt.NDArray[np.float64]
+
+
+class OnGlobe(Protocol):
+    """Anything that knows its latitude and longitude."""
+
+    @property
+    def latitude_deg(self) -> float:
+        """WGS84 latitude."""
+
+    @property
+    def longitude_deg(self) -> float:
+        """WGS84 longitude."""
 
 
 def enu_from_geo(
@@ -48,6 +63,25 @@ def enu_from_point(frame: LocalFrame, point: GeoPoint) -> FloatArray:
     enu = enu_from_geo(frame, point.latitude_deg, point.longitude_deg, point.ellipsoid_height_m)
     first: FloatArray = enu[0]
     return first
+
+
+def enu_from_points(frame: LocalFrame, points: Iterable[GeoPoint]) -> FloatArray:
+    """Return east-north-up metres (N, 3) of N points; (0, 3) for none."""
+    rows = [(p.latitude_deg, p.longitude_deg, p.ellipsoid_height_m) for p in points]
+    latitude, longitude, height = np.array(rows, dtype=np.float64).reshape(-1, 3).T
+    return enu_from_geo(frame, latitude, longitude, height)
+
+
+def shift_east_north_m(frame: LocalFrame, start: OnGlobe, end: OnGlobe) -> FloatArray:
+    """Return how far east and north (2,) `end` lies of `start`, both at the origin's height."""
+    enu = enu_from_geo(
+        frame,
+        [start.latitude_deg, end.latitude_deg],
+        [start.longitude_deg, end.longitude_deg],
+        frame.origin.ellipsoid_height_m,
+    )
+    shift: FloatArray = enu[1, :2] - enu[0, :2]
+    return shift
 
 
 def point_from_enu(frame: LocalFrame, enu_m: npt.ArrayLike) -> GeoPoint:

@@ -7,20 +7,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
-import numpy as np
 
-from recon.camera import (
-    CameraError,
-    ImageCircle,
-    TelemetryReference,
-    load_camera,
-    load_control_points,
-    solve_pose,
-)
-from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.site.errors import SiteError
+from recon.site.eye import eye_from_table
 from recon.site.profiles import profile_from_table
 from recon.site.schema import (
     EyeTable,
@@ -29,16 +20,12 @@ from recon.site.schema import (
     SiteTable,
     VehicleTable,
 )
-from recon.site.site import Eye, Site
+from recon.site.site import Site
 
 SITE_FILE = "site.toml"
 LARGEST_FILE_BYTES = 256 * 1024
 MOST_CELLS = 4096 * 4096
 MOST_VEHICLES = 64
-LARGEST_ALTITUDE_GAP_M = 15.0
-"""Between the control points and the site's ground: more is a geoid height forgotten, or a slip."""
-LARGEST_DISTANCE_M = 5_000.0
-"""Of a control point from the origin: more is another field, or latitude and longitude swapped."""
 
 T = TypeVar("T")
 
@@ -62,7 +49,7 @@ def load_site(folder: Path) -> Site:
     profiles = _profiles(path, table.vehicles)
     eye = None
     if table.eye is not None:
-        eye = _eye(folder, _convert(path, table.eye, EyeTable, "eye"), frame)
+        eye = eye_from_table(path, _convert(path, table.eye, EyeTable, "eye"), frame)
         profiles.setdefault(eye.serial, VehicleProfile(eye.serial))
     return Site(table.name, frame, grid, eye, profiles)
 
@@ -146,76 +133,3 @@ def _profiles(path: Path, tables: list[dict[str, Any]]) -> dict[str, VehicleProf
             )
         profiles[profile.serial] = profile
     return profiles
-
-
-def _eye(folder: Path, table: EyeTable, frame: LocalFrame) -> Eye:
-    camera_file = _inside(folder, table.camera, "eye.camera")
-    points_file = _inside(folder, table.control_points, "eye.control_points")
-    try:
-        camera = load_camera(camera_file)
-        points = load_control_points(points_file)
-    except CameraError as problem:
-        raise SiteError(str(problem)) from problem
-    try:
-        solution = solve_pose(camera, points, table.control_points_image_size_px, frame)
-    except CameraError as problem:
-        raise SiteError(f"{points_file}: {problem}") from problem
-    eye = Eye(
-        serial=table.serial,
-        camera=camera,
-        control_points=points,
-        control_points_image_size_px=table.control_points_image_size_px,
-        solution=solution,
-        marked_frame=_reference(table),
-        image_circle=_circle(table),
-    )
-    _refuse_other_place(points_file, eye, frame)
-    return eye
-
-
-def _reference(table: EyeTable) -> TelemetryReference | None:
-    marked = table.marked_frame
-    return None if marked is None else TelemetryReference(**msgspec.structs.asdict(marked))
-
-
-def _circle(table: EyeTable) -> ImageCircle | None:
-    circle = table.image_circle
-    return None if circle is None else ImageCircle(circle.col_px, circle.row_px, circle.radius_px)
-
-
-def _inside(folder: Path, name: str, key: str) -> Path:
-    path = folder / name
-    is_inside = path.resolve().is_relative_to(folder.resolve())
-    if "\0" in name or not is_inside:
-        raise SiteError(
-            f"{folder / SITE_FILE}: {key}: expected the name of a file in the site's folder, got "
-            f"{name!a}, which leads out of it; put the file into the folder"
-        )
-    if not path.is_file():
-        raise SiteError(
-            f"{folder / SITE_FILE}: {key}: expected the name of a file in the site's folder, got "
-            f"{name!a}, and there is no such file"
-        )
-    return path
-
-
-def _refuse_other_place(points_file: Path, eye: Eye, frame: LocalFrame) -> None:
-    for point in eye.control_points:
-        enu = enu_from_geo(
-            frame, point.latitude_deg, point.longitude_deg, point.ellipsoid_height_m
-        )[0]
-        distance_m = float(np.hypot(enu[0], enu[1]))
-        if distance_m > LARGEST_DISTANCE_M:
-            raise SiteError(
-                f"{points_file}: control point {point.name}: expected within "
-                f"{LARGEST_DISTANCE_M:g} m of the site's origin, got {distance_m:.0f} m; is the "
-                "origin right, and the latitude before the longitude?"
-            )
-    gap_m = float(np.mean([p.ellipsoid_height_m for p in eye.control_points]))
-    gap_m -= frame.origin.ellipsoid_height_m
-    if abs(gap_m) > LARGEST_ALTITUDE_GAP_M:
-        raise SiteError(
-            f"{points_file}: expected altitudes within {LARGEST_ALTITUDE_GAP_M:g} m of "
-            f"origin.ground_altitude_m in {SITE_FILE}, got {gap_m:+.1f} m; both are heights above "
-            "the WGS84 ellipsoid, not above sea level"
-        )

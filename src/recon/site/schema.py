@@ -14,7 +14,7 @@ Altitude = Annotated[float, Meta(ge=-1_000.0, le=10_000.0)]
 Serial = Annotated[str, Meta(min_length=1, max_length=256, pattern=r"^[!-~]+$")]
 """Printable ASCII without spaces, as DJI's serials are; the wire's limit is 256 bytes."""
 Text = Annotated[str, Meta(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
-FileName = Annotated[str, Meta(min_length=1, max_length=200)]
+FileName = Annotated[str, Meta(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 Seconds = Annotated[float, Meta(ge=0.0, le=10.0)]
 Pixels = Annotated[int, Meta(ge=2, le=16_384)]
 

@@ -10,13 +10,16 @@ import type {
   VehicleView,
 } from "../protocol";
 import type { StationSource } from "../source/stationSource";
+import { vehicleKey } from "./key";
 
 /** The newest state for the panels. Tracks are left out: only the map reads them, from the source. */
 export type FleetView = Readonly<Contents>;
 
+type KeyedVehicle = VehicleView & { readonly key: number };
+
 interface Contents {
   hasState: boolean;
-  vehicles: VehicleView[];
+  vehicles: KeyedVehicle[];
   links: LinkView[];
   commands: CommandView[];
   alarms: AlarmView[];
@@ -45,9 +48,13 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
   createComputed(() => {
     const state = source.state();
     if (state === null) return;
-    const vehicles = state.vehicles.map((vehicle) => ({ ...vehicle, track: [] }));
+    const vehicles = state.vehicles.map((vehicle) => ({
+      ...vehicle,
+      track: [],
+      key: vehicleKey(vehicle),
+    }));
     setView("hasState", true);
-    setView("vehicles", reconcile(vehicles, { key: "number" }));
+    setView("vehicles", reconcile(vehicles, { key: "key" }));
     setView("links", reconcile([...state.links], { key: "id" }));
     setView("commands", reconcile([...state.commands], { key: "id" }));
     setView("alarms", reconcile([...state.alarms], { key: "id" }));

@@ -1,33 +1,34 @@
 import { type Accessor, createSignal } from "solid-js";
 import type { VehicleView } from "../protocol";
+import { vehicleKey } from "./key";
 
-/** Which vehicles are selected, by number, in the order they were. Nothing is ever selected by itself. */
+/** Which vehicles are selected, by `vehicleKey`, in the order they were. Nothing is ever selected by itself. */
 export interface Selection {
-  readonly numbers: Accessor<readonly number[]>;
-  has(number: number): boolean;
+  readonly keys: Accessor<readonly number[]>;
+  has(key: number): boolean;
   /** Selects this one and no other. */
-  only(number: number): void;
-  toggle(number: number): void;
-  all(numbers: readonly number[]): void;
+  only(key: number): void;
+  toggle(key: number): void;
+  all(keys: readonly number[]): void;
   clear(): void;
   /** Drops those that are not among `present`. */
   keep(present: readonly number[]): void;
 }
 
 export function createSelection(): Selection {
-  const [numbers, setNumbers] = createSignal<readonly number[]>([]);
-  const without = (number: number) => numbers().filter((other) => other !== number);
-  const has = (number: number) => numbers().includes(number);
+  const [keys, setKeys] = createSignal<readonly number[]>([]);
+  const without = (key: number) => keys().filter((other) => other !== key);
+  const has = (key: number) => keys().includes(key);
   return {
-    numbers,
+    keys,
     has,
-    only: (number) => setNumbers([number]),
-    toggle: (number) => setNumbers(has(number) ? without(number) : [...numbers(), number]),
-    all: (all) => setNumbers([...all]),
-    clear: () => setNumbers([]),
+    only: (key) => setKeys([key]),
+    toggle: (key) => setKeys(has(key) ? without(key) : [...keys(), key]),
+    all: (all) => setKeys([...all]),
+    clear: () => setKeys([]),
     keep: (present) => {
-      const kept = numbers().filter((number) => present.includes(number));
-      if (kept.length !== numbers().length) setNumbers(kept);
+      const kept = keys().filter((key) => present.includes(key));
+      if (kept.length !== keys().length) setKeys(kept);
     },
   };
 }
@@ -37,5 +38,5 @@ export function selectedVehicles(
   vehicles: readonly VehicleView[],
   selection: Selection,
 ): VehicleView[] {
-  return vehicles.filter((vehicle) => selection.has(vehicle.number));
+  return vehicles.filter((vehicle) => selection.has(vehicleKey(vehicle)));
 }

@@ -47,7 +47,7 @@ export function MapView() {
   createEffect(() => {
     const state = source.state();
     if (map() === null || state === null) return;
-    const scene = { state, behindS: behindS(), selected: selection.numbers() };
+    const scene = { state, behindS: behindS(), selected: selection.keys() };
     for (const layer of layers) layer.update(scene);
   });
 

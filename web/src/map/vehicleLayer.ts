@@ -1,4 +1,5 @@
 import type { Map as MapLibre } from "maplibre-gl";
+import { vehicleKey } from "../fleet/key";
 import type { Layer } from "./layer";
 import { positionOf, type Scene } from "./scene";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
@@ -20,28 +21,29 @@ export class VehicleLayer implements Layer {
     for (const vehicle of scene.state.vehicles) {
       const at = positionOf(vehicle);
       if (at === null) continue;
-      placed.add(vehicle.number);
-      const isSelected = scene.selected.includes(vehicle.number);
-      this.markerOf(vehicle.number).show(this.map, vehicle, at, scene.behindS, isSelected);
+      const key = vehicleKey(vehicle);
+      placed.add(key);
+      const isSelected = scene.selected.includes(key);
+      this.markerOf(key).show(this.map, vehicle, at, scene.behindS, isSelected);
     }
     this.removeAllBut(placed);
   }
 
   recolour(): void {}
 
-  private markerOf(number: number): VehicleMarker {
-    const known = this.markers.get(number);
+  private markerOf(key: number): VehicleMarker {
+    const known = this.markers.get(key);
     if (known !== undefined) return known;
-    const marker = new VehicleMarker(number, this.press);
-    this.markers.set(number, marker);
+    const marker = new VehicleMarker(key, this.press);
+    this.markers.set(key, marker);
     return marker;
   }
 
   private removeAllBut(placed: ReadonlySet<number>): void {
-    for (const [number, marker] of this.markers) {
-      if (placed.has(number)) continue;
+    for (const [key, marker] of this.markers) {
+      if (placed.has(key)) continue;
       marker.remove();
-      this.markers.delete(number);
+      this.markers.delete(key);
     }
   }
 }

@@ -1,9 +1,11 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
+import { badgeText } from "../fleet/key";
 import { stalenessNow } from "../fleet/staleness";
 import { vehicleCondition } from "../fleet/vehicleWord";
 import { colourOf } from "../look/identity";
 import type { VehicleView } from "../protocol";
 import { agedBy, formatAge } from "../words/age";
+import { vehicleLabel } from "../words/names";
 import { formatQuantity } from "../words/quantity";
 import type { LonLat } from "./localGrid";
 
@@ -14,8 +16,8 @@ const DISC = "M20 8a12 12 0 1 0 .01 0Z";
 
 /** What a press on a vehicle means. */
 export interface MarkerPress {
-  select(number: number): void;
-  toggle(number: number): void;
+  select(key: number): void;
+  toggle(key: number): void;
 }
 
 /** One vehicle on the map: an arrow turned to its heading, under it its number, name and state. */
@@ -28,21 +30,21 @@ export class VehicleMarker {
   /** On its own, under all symbols, so that no label hides another vehicle. */
   private readonly labelMarker: Marker;
 
-  constructor(number: number, press: MarkerPress) {
+  constructor(key: number, press: MarkerPress) {
     this.button.type = "button";
     this.button.className = "craft own-colour";
-    this.button.style.setProperty("--own", colourOf(number));
+    this.button.style.setProperty("--own", colourOf(key));
     this.symbol.setAttribute("viewBox", "0 0 40 40");
     this.symbol.setAttribute("aria-hidden", "true");
     this.symbol.append(this.path);
     this.label.className = "craft-label own-colour";
     this.label.setAttribute("aria-hidden", "true");
-    this.label.style.setProperty("--own", colourOf(number));
+    this.label.style.setProperty("--own", colourOf(key));
     this.button.append(this.symbol);
     this.button.addEventListener("click", (event) => {
       event.stopPropagation();
-      if (event.shiftKey || event.ctrlKey || event.metaKey) press.toggle(number);
-      else press.select(number);
+      if (event.shiftKey || event.ctrlKey || event.metaKey) press.toggle(key);
+      else press.select(key);
     });
     this.marker = new Marker({ element: this.button, anchor: "center" });
     this.labelMarker = new Marker({ element: this.label, anchor: "top", offset: [0, 26] });
@@ -76,7 +78,7 @@ export class VehicleMarker {
 }
 
 function labelParts(vehicle: VehicleView, behindS: number, isStale: boolean): HTMLElement[] {
-  const parts = [part("badge", String(vehicle.number)), part("craft-name", vehicle.name)];
+  const parts = [part("badge", badgeText(vehicle)), part("craft-name", vehicle.name)];
   if (vehicle.is_simulated) parts.push(part("tag tag-simulated", "SIM"));
   if (isStale) {
     const age = formatAge(agedBy(vehicle.telemetry_age_s, behindS));
@@ -98,5 +100,5 @@ function part(className: string, text: string): HTMLElement {
 
 function describe(vehicle: VehicleView, behindS: number): string {
   const kind = vehicle.is_simulated ? "simulated vehicle" : "vehicle";
-  return `${kind} ${vehicle.number} ${vehicle.name}, ${vehicleCondition(vehicle, behindS).word}`;
+  return `${kind} ${vehicleLabel(vehicle)}, ${vehicleCondition(vehicle, behindS).word}`;
 }

@@ -37,11 +37,14 @@ export class Requests {
     );
   }
 
-  async acknowledge(id: number): Promise<Outcome<null>> {
+  async acknowledge(alarm_id: number): Promise<Outcome<null>> {
     const signal = AbortSignal.timeout(REQUEST_MS);
-    const params = { path: { id } };
+    const params = { path: { alarm_id } };
     return attempt(async () => {
-      const answer = await this.client.POST("/api/alarms/{id}/acknowledge", { params, signal });
+      const answer = await this.client.POST("/api/alarms/{alarm_id}/acknowledge", {
+        params,
+        signal,
+      });
       return answer.response.ok ? done(null) : failed(refusal(answer.response, answer.error));
     });
   }

@@ -47,13 +47,24 @@ export class Stream {
   }
 
   private connect(): void {
-    const socket = this.openSocket();
+    const socket = this.tryToOpen();
+    if (socket === null) return;
     this.socket = socket;
     this.isFirst = true;
     this.expectNewsWithin(OPENING_MS, "The station did not answer.");
     socket.onopen = () => this.expectNewsWithin(SILENCE_MS, "The station says nothing.");
     socket.onmessage = (event) => this.take(event.data);
     socket.onclose = (event) => this.lose(closingReason(event.code, event.reason));
+  }
+
+  /** A browser throws at once for a token that cannot be a subprotocol. */
+  private tryToOpen(): Socket | null {
+    try {
+      return this.openSocket();
+    } catch (error) {
+      this.lose(`The stream cannot be opened: ${error instanceof Error ? error.message : error}.`);
+      return null;
+    }
   }
 
   private take(data: unknown): void {

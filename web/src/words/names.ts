@@ -62,7 +62,7 @@ export function plainWords(word: string): string {
 
 /** A vehicle as every order and alarm names it: its number, then its name. */
 export function vehicleLabel(vehicle: Pick<VehicleView, "number" | "name">): string {
-  return `${vehicle.number} ${vehicle.name}`;
+  return vehicle.number > 0 ? `${vehicle.number} ${vehicle.name}` : `? ${vehicle.name}`;
 }
 
 /** Names joined for a sentence: `a`, `a and b`, `a, b and c`. */

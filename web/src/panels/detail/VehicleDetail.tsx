@@ -1,5 +1,6 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { badgeText, vehicleKey } from "../../fleet/key";
 import { colourOf } from "../../look/identity";
 import type { VehicleView } from "../../protocol";
 import { agedBy, formatAge } from "../../words/age";
@@ -12,8 +13,8 @@ import "./detail.css";
 export function VehicleDetail() {
   const { fleet, selection } = useConsole();
   const shown = () => {
-    const number = selection.numbers().at(-1);
-    return fleet.vehicles.find((vehicle) => vehicle.number === number);
+    const key = selection.keys().at(-1);
+    return fleet.vehicles.find((vehicle) => vehicleKey(vehicle) === key);
   };
   return (
     <Show
@@ -29,8 +30,8 @@ export function VehicleDetail() {
         <Panel
           title={vehicle().name}
           actions={
-            <span class="badge own-colour" style={{ "--own": colourOf(vehicle().number) }}>
-              {vehicle().number}
+            <span class="badge own-colour" style={{ "--own": colourOf(vehicleKey(vehicle())) }}>
+              {badgeText(vehicle())}
             </span>
           }
         >

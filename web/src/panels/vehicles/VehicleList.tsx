@@ -1,5 +1,6 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { vehicleKey } from "../../fleet/key";
 import { Panel } from "../Panel";
 import { VehicleRow } from "./VehicleRow";
 import "./vehicles.css";
@@ -7,8 +8,8 @@ import "./vehicles.css";
 /** Every vehicle that ever connected, in the order of their numbers. */
 export function VehicleList() {
   const { fleet, selection } = useConsole();
-  const all = () => fleet.vehicles.map((vehicle) => vehicle.number);
-  const isAll = () => all().length > 0 && all().length === selection.numbers().length;
+  const all = () => fleet.vehicles.map(vehicleKey);
+  const isAll = () => all().length > 0 && all().length === selection.keys().length;
   return (
     <Panel
       title="Vehicles"

@@ -1,5 +1,6 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { badgeText, vehicleKey } from "../../fleet/key";
 import { hasBatteryWarning } from "../../fleet/readiness";
 import { stalenessNow } from "../../fleet/staleness";
 import { vehicleCondition } from "../../fleet/vehicleWord";
@@ -14,31 +15,32 @@ import { SeverityMark } from "../SeverityMark";
 export function VehicleRow(props: { vehicle: VehicleView }) {
   const { selection, behindS } = useConsole();
   const vehicle = () => props.vehicle;
+  const key = () => vehicleKey(vehicle());
   const condition = createMemo(() => vehicleCondition(vehicle(), behindS()));
   const isStale = () => stalenessNow(vehicle(), behindS()) !== "live";
-  const isSelected = () => selection.has(vehicle().number);
+  const isSelected = () => selection.has(key());
   return (
     <li
       class="row vehicle own-colour"
       classList={{ "is-stale": isStale(), "is-selected": isSelected() }}
-      style={{ "--own": colourOf(vehicle().number) }}
+      style={{ "--own": colourOf(key()) }}
     >
       <label class="vehicle-box">
         <input
           type="checkbox"
           checked={isSelected()}
           aria-label={`Select ${vehicleLabel(vehicle())} too`}
-          onChange={() => selection.toggle(vehicle().number)}
+          onChange={() => selection.toggle(key())}
         />
       </label>
       <button
         type="button"
         class="vehicle-body"
         aria-pressed={isSelected()}
-        onClick={() => selection.only(vehicle().number)}
+        onClick={() => selection.only(key())}
       >
         <span class="row-line">
-          <span class="badge">{vehicle().number}</span>
+          <span class="badge">{badgeText(vehicle())}</span>
           <strong class="vehicle-name">{vehicle().name}</strong>
           <Show when={vehicle().is_simulated}>
             <span class="tag tag-simulated">SIM</span>

@@ -1,10 +1,4 @@
-import type {
-  AlarmView,
-  CommandView,
-  LinkView,
-  StationState,
-  VehicleView,
-} from "../../src/protocol";
+import type { AlarmView, CommandView, LinkView, StationState, VehicleView } from "../protocol";
 
 /** The field the false vehicles fly over. */
 export const FIELD = { lat: 44.7, lon: -93.07 };

@@ -1,0 +1,129 @@
+"""The eye from its table in site.toml: files read, pose solved, and both checked for sense."""
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from recon.camera import (
+    CameraError,
+    ImageCircle,
+    TelemetryReference,
+    load_camera,
+    load_control_points,
+    pose_from_points,
+)
+from recon.geo import enu_from_geo, enu_from_points
+from recon.model.geo import LocalFrame
+from recon.site.errors import SiteError
+from recon.site.schema import EyeTable
+from recon.site.site import Eye
+
+LARGEST_ALTITUDE_GAP_M = 15.0
+"""Between the control points and the site's ground: more is a geoid height forgotten, or a slip."""
+LARGEST_DISTANCE_M = 5_000.0
+"""Of a control point from the origin: more is another field, or latitude and longitude swapped."""
+LARGEST_MARKED_GAP_M = 100.0
+"""Between the marked frame's telemetry and its solved pose: GNSS and fit are off by metres."""
+
+
+def eye_from_table(site_file: Path, table: EyeTable, frame: LocalFrame) -> Eye:
+    """Return the eye with its files read and its pose solved.
+
+    Files lie in the site file's folder. Raises `SiteError` naming file, line or key.
+    """
+    camera_file = _inside(site_file, table.camera, "eye.camera")
+    points_file = _inside(site_file, table.control_points, "eye.control_points")
+    try:
+        camera = load_camera(camera_file)
+        points = load_control_points(points_file)
+    except CameraError as problem:
+        raise SiteError(str(problem)) from problem
+    points_enu_m = enu_from_points(frame, [point.place for point in points])
+    try:
+        solution = pose_from_points(
+            camera, points, table.control_points_image_size_px, points_enu_m
+        )
+    except CameraError as problem:
+        raise SiteError(f"{points_file}: {problem}") from problem
+    eye = Eye(
+        serial=table.serial,
+        camera=camera,
+        control_points=points,
+        control_points_image_size_px=table.control_points_image_size_px,
+        solution=solution,
+        marked_frame=_reference(table),
+        image_circle=_circle(table),
+    )
+    _refuse_other_place(points_file, eye, frame)
+    _refuse_other_marked_frame(site_file, eye, frame)
+    return eye
+
+
+def _reference(table: EyeTable) -> TelemetryReference | None:
+    marked = table.marked_frame
+    return None if marked is None else TelemetryReference(**msgspec.structs.asdict(marked))
+
+
+def _circle(table: EyeTable) -> ImageCircle | None:
+    circle = table.image_circle
+    return None if circle is None else ImageCircle(circle.col_px, circle.row_px, circle.radius_px)
+
+
+def _inside(site_file: Path, name: str, key: str) -> Path:
+    folder = site_file.parent
+    path = folder / name
+    try:
+        is_inside = path.resolve().is_relative_to(folder.resolve())
+        is_file = path.is_file()
+    except (OSError, RuntimeError):
+        # A name too long for the file system, or symbolic links that go round in circles.
+        is_inside, is_file = True, False
+    if not is_inside:
+        problem = "which leads out of it; put the file into the folder"
+    elif not is_file:
+        problem = "and there is no such file"
+    else:
+        return path
+    raise SiteError(
+        f"{site_file}: {key}: expected the name of a file in the site's folder, got "
+        f"{name!a}, {problem}"
+    )
+
+
+def _refuse_other_marked_frame(path: Path, eye: Eye, frame: LocalFrame) -> None:
+    """The telemetry must be of the place where the control points put the camera."""
+    marked = eye.marked_frame
+    if marked is None:
+        return
+    enu = enu_from_geo(
+        frame, marked.latitude_deg, marked.longitude_deg, frame.origin.ellipsoid_height_m
+    )[0]
+    apart_m = float(np.hypot(*(enu - eye.solution.pose.position_enu_m)[:2]))
+    if apart_m > LARGEST_MARKED_GAP_M:
+        raise SiteError(
+            f"{path}: eye.marked_frame: expected telemetry within {LARGEST_MARKED_GAP_M:g} m of "
+            f"where the control points put the camera, got {apart_m:.0f} m; is it of that frame?"
+        )
+
+
+def _refuse_other_place(points_file: Path, eye: Eye, frame: LocalFrame) -> None:
+    for point in eye.control_points:
+        enu = enu_from_geo(
+            frame, point.latitude_deg, point.longitude_deg, point.ellipsoid_height_m
+        )[0]
+        distance_m = float(np.hypot(enu[0], enu[1]))
+        if distance_m > LARGEST_DISTANCE_M:
+            raise SiteError(
+                f"{points_file}: control point {point.name}: expected within "
+                f"{LARGEST_DISTANCE_M:g} m of the site's origin, got {distance_m:.0f} m; is the "
+                "origin right, and the latitude before the longitude?"
+            )
+    gap_m = float(np.mean([p.ellipsoid_height_m for p in eye.control_points]))
+    gap_m -= frame.origin.ellipsoid_height_m
+    if abs(gap_m) > LARGEST_ALTITUDE_GAP_M:
+        raise SiteError(
+            f"{points_file}: expected altitudes within {LARGEST_ALTITUDE_GAP_M:g} m of "
+            f"origin.ground_altitude_m in site.toml, got {gap_m:+.1f} m; both are heights above "
+            "the WGS84 ellipsoid, not above sea level"
+        )

@@ -1,0 +1,91 @@
+"""The demonstration's site: the shipped files are what the generator writes, and they work."""
+
+import numpy as np
+import pytest
+
+from recon.camera import (
+    GroundProjector,
+    find_image_circle,
+    format_camera,
+    level_pose,
+    parse_camera,
+    parse_control_points,
+)
+from recon.model.vehicle import AltitudeReference
+from recon.site import demo_site_folder, load_site
+from recon.site.demo_site import (
+    EYE_HEIGHT_M,
+    EYE_SERIAL,
+    SERIALS,
+    demo_camera,
+    demo_marked_telemetry,
+    demo_site_files,
+)
+
+
+def test_the_shipped_files_are_those_the_generator_writes() -> None:
+    written = demo_site_files()
+    shipped = {path.name: path.read_text() for path in demo_site_folder().iterdir()}
+    assert shipped.keys() == written.keys()
+    assert shipped["site.toml"] == written["site.toml"]
+    # The fits may differ in their last digits between numeric libraries.
+    ours = parse_camera(written["camera-model.txt"], "written")
+    theirs = parse_camera(shipped["camera-model.txt"], "shipped")
+    assert np.array(theirs.direct) == pytest.approx(np.array(ours.direct), rel=1e-6)
+    angles = np.linspace(0.0, 1.48, 50)
+    assert theirs.profile.radius_px(angles) == pytest.approx(ours.profile.radius_px(angles))
+    pairs = zip(
+        parse_control_points(shipped["GCPs.txt"], "shipped"),
+        parse_control_points(written["GCPs.txt"], "written"),
+        strict=True,
+    )
+    for ship, make in pairs:
+        assert (ship.name, ship.latitude_deg) == (make.name, pytest.approx(make.latitude_deg))
+        assert (ship.col_px, ship.row_px) == pytest.approx((make.col_px, make.row_px), abs=0.011)
+
+
+def test_the_lens_is_an_equisolid_fisheye_of_170_degrees() -> None:
+    camera = demo_camera()
+    angles = np.deg2rad(np.linspace(0.0, 85.0, 100))
+    focal_px = 340.0 / (2.0 * np.sin(np.deg2rad(42.5)))
+    assert camera.profile.radius_px(angles) == pytest.approx(
+        2.0 * focal_px * np.sin(angles / 2.0), abs=0.3
+    )
+    assert parse_camera(format_camera(camera), "lens") == camera
+
+
+def test_it_loads_and_its_pose_is_the_one_it_was_made_with() -> None:
+    site = load_site(demo_site_folder())
+    assert site.eye is not None
+    assert site.frame is not None
+    solution = site.eye.solution
+    assert 0.0 < solution.rms_px < 0.5
+    assert solution.height_above_ground_m == pytest.approx(EYE_HEIGHT_M, abs=0.3)
+    made_with = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, EYE_HEIGHT_M]))
+    assert np.abs(solution.pose.position_enu_m - made_with.position_enu_m).max() < 0.4
+    assert solution.pose.rotation_enu_camera == pytest.approx(
+        made_with.rotation_enu_camera, abs=0.003
+    )
+    assert site.eye.marked_frame == demo_marked_telemetry()
+    assert not site.eye.first_frame_stands_for_marked_frame
+
+
+def test_every_vehicle_of_the_demonstration_has_a_profile_that_can_fly_missions() -> None:
+    site = load_site(demo_site_folder())
+    assert set(site.profiles) == {EYE_SERIAL, *SERIALS}
+    for profile in site.profiles.values():
+        assert profile.waypoint_altitude is AltitudeReference.TAKEOFF
+        assert profile.pad is not None
+        assert profile.name
+
+
+def test_the_eye_sees_the_whole_ground_image() -> None:
+    site = load_site(demo_site_folder())
+    assert site.eye is not None
+    assert site.ground_grid is not None
+    projector = GroundProjector(site.ground_grid, site.eye.camera, site.eye.image_circle)
+    grey = np.full((720, 1280, 3), 128, np.uint8)
+    _, valid = projector.lay_pixels(grey, site.eye.solution.pose)
+    assert valid.all()
+    assert valid.shape == (512, 512)
+    assert find_image_circle(grey, site.eye.camera) is None

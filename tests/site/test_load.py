@@ -1,0 +1,239 @@
+"""Reading a site's folder: what it may say, and what a bad one gets."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from recon.model.geo import GeoPoint
+from recon.model.vehicle import AltitudeReference, Mount, VehicleProfile
+from recon.site import SiteError, default_site, demo_site_folder, load_site
+
+ORIGIN = "[origin]\nlatitude_deg = 41.9012\nlongitude_deg = -93.6034\nground_altitude_m = 275.0\n"
+EYE = '[eye]\nserial = "EYE"\ncontrol_points_image_size_px = [3840, 2160]\n'
+MINIMAL = 'name = "a field"\n' + ORIGIN
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a lens and control points; tests write its site.toml."""
+    for name in ("camera-model.txt", "GCPs.txt"):
+        shutil.copy(demo_site_folder() / name, tmp_path / name)
+    return tmp_path
+
+
+def write(folder: Path, text: str) -> Path:
+    (folder / "site.toml").write_text(text)
+    return folder
+
+
+def refusal(folder: Path, text: str) -> str:
+    with pytest.raises(SiteError) as caught:
+        load_site(write(folder, text))
+    message = str(caught.value)
+    assert message.isprintable()
+    return message.replace(str(folder), "")
+
+
+def test_name_and_origin_are_enough(folder: Path) -> None:
+    site = load_site(write(folder, MINIMAL))
+    assert site.name == "a field"
+    assert site.eye is None
+    assert site.frame is not None
+    assert site.frame.origin == GeoPoint(41.9012, -93.6034, 275.0)
+    grid = site.ground_grid
+    assert grid is not None
+    assert (grid.west_m, grid.south_m, grid.east_m, grid.north_m) == (-256, -256, 256, 256)
+    assert (grid.rows, grid.cols, grid.cell_m) == (512, 512, 1.0)
+    assert dict(site.profiles) == {}
+
+
+def test_the_eye_uses_the_usual_file_names_and_says_what_stands_for_the_marked_frame(
+    folder: Path,
+) -> None:
+    site = load_site(write(folder, MINIMAL + EYE))
+    assert site.eye is not None
+    assert site.eye.first_frame_stands_for_marked_frame
+    assert site.eye.image_circle is None
+    assert site.eye.control_points_image_size_px == (3840, 2160)
+    assert len(site.eye.control_points) == 8
+    assert site.eye.solution.rms_px < 0.5
+    assert site.profiles["EYE"] == VehicleProfile("EYE")
+
+
+def test_without_a_folder_nothing_is_known() -> None:
+    site = default_site()
+    assert (site.frame, site.ground_grid, site.eye) == (None, None, None)
+    assert site.profile_of("ANY") == VehicleProfile("ANY")
+    assert site.profile_of("ANY").waypoint_altitude is AltitudeReference.UNSET
+
+
+def test_a_vehicles_keys_reach_its_profile(folder: Path) -> None:
+    table = """
+[[vehicles]]
+serial = "0K1CE9R0050123"
+name = "North"
+model = "Matrice 210"
+waypoint_altitude = "wgs84"
+mount = "fixed"
+pad = { latitude_deg = 41.9, longitude_deg = -93.6, altitude_m = 274.5 }
+max_waypoints = 50
+battery_factor = 2
+video_latency_s = 0.8
+video_latency_sigma_s = 0.3
+packet_gap_s = 0.2
+"""
+    profile = load_site(write(folder, MINIMAL + table)).profiles["0K1CE9R0050123"]
+    assert profile == VehicleProfile(
+        serial="0K1CE9R0050123",
+        name="North",
+        model="Matrice 210",
+        waypoint_altitude=AltitudeReference.WGS84,
+        mount=Mount.FIXED,
+        pad=GeoPoint(41.9, -93.6, 274.5),
+        max_waypoints=50,
+        battery_factor=2.0,
+        video_latency_s=0.8,
+        video_latency_sigma_s=0.3,
+        packet_gap_s=0.2,
+    )
+
+
+def test_the_legacy_preset_limits_missions_unless_the_file_says_otherwise(folder: Path) -> None:
+    table = '[[vehicles]]\nserial = "A"\napp = "legacy"\n'
+    assert load_site(write(folder, MINIMAL + table)).profiles["A"].max_waypoints == 25
+    table += "max_waypoints = 30\n"
+    assert load_site(write(folder, MINIMAL + table)).profiles["A"].max_waypoints == 30
+
+
+def vehicle(line: str) -> str:
+    return MINIMAL + f'[[vehicles]]\nserial = "A"\n[[vehicles]]\n{line}\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "/site.toml: Object missing required field 'name'"),
+        ("name = ", "/site.toml: expected a TOML file, got: Invalid value"),
+        ('name = "x"', "/site.toml: Object missing required field 'origin'"),
+        ('name = "x"\n[origin]\n', "origin: Object missing required field 'latitude_deg'"),
+        (MINIMAL + "colour = 3", "origin: Object contains unknown field 'colour'"),
+        (MINIMAL.replace("41.9012", '"north"'), "origin.latitude_deg: Expected 'float', got 'str'"),
+        (MINIMAL.replace("41.9012", "141.9"), "origin.latitude_deg: Expected 'float' <= 90.0"),
+        (MINIMAL.replace("275.0", "nan"), "ground_altitude_m: expected a finite number, got nan"),
+        (MINIMAL.replace("275.0", "-inf"), "ground_altitude_m: expected a finite number, got -inf"),
+        ('name = ""\n' + ORIGIN, "name: Expected 'str' of length >= 1"),
+        ('name = "\\u001b[2J"\n' + ORIGIN, "name: Expected 'str' matching regex"),
+        (MINIMAL + "[ground_image]\ncell_m = 3", "ground_image.height_m: expected a whole number"),
+        (MINIMAL + "[ground_image]\ncell_m = 0.01", "expected at most 16777216 cells, got 51200"),
+        (MINIMAL + "[ground_image]\ncell_m = 0", "ground_image.cell_m: Expected 'float' >= 0.01"),
+        (vehicle('serial = "A"'), "vehicles (entry 2).serial: expected each serial once, got 'A'"),
+        (vehicle('serial = "00000"'), "vehicles (entry 2).serial: expected an aircraft's own"),
+        (vehicle('serial = "a b"'), "vehicles (entry 2).serial: Expected 'str' matching regex"),
+        (vehicle('name = "B"'), "vehicles (entry 2): Object missing required field 'serial'"),
+        (
+            vehicle('serial = "B"\nwaypoint_altitude = "agl"'),
+            "vehicles (entry 2).waypoint_altitude: Invalid enum value 'agl'",
+        ),
+        (vehicle('serial = "B"\nmax_waypoints = 100'), "max_waypoints: Expected 'int' <= 99"),
+        (vehicle('serial = "B"\nmax_waypoints = 9.5'), "max_waypoints: Expected 'int"),
+        (vehicle('serial = "B"\npad = { latitude_deg = 1 }'), "pad: Object missing required field"),
+        (vehicle('serial = "B"\nspeed = 3'), "Object contains unknown field 'speed'"),
+        (MINIMAL + '[eye]\nserial = "E"', "eye: Object missing required field 'control_points_im"),
+        (MINIMAL + EYE.replace("2160", "3000"), "GCPs.txt: expected a frame of 3840 x 3000"),
+        (MINIMAL + EYE.replace("3840", "0"), "eye.control_points_image_size_px[0]: Expected 'int'"),
+        (MINIMAL + EYE + 'camera = "other.txt"', "got 'other.txt', and there is no such file"),
+        (MINIMAL + EYE + 'camera = "."', "got '.', and there is no such file"),
+        (MINIMAL + EYE + 'camera = "GCPs.txt"', "/GCPs.txt, line"),
+        (MINIMAL + EYE + 'control_points = "site.toml"', "/site.toml, line 1: expected 6 values"),
+        (MINIMAL + EYE + "[eye.marked_frame]\nyaw_deg = 3", "eye.marked_frame: Object missing"),
+        (
+            MINIMAL + EYE + "[eye.marked_frame]\nlatitude_deg = 41.903\nlongitude_deg = -93.6034\n"
+            "height_above_takeoff_m = 120\nyaw_deg = 0\n",
+            "eye.marked_frame: expected telemetry within 100 m of where",
+        ),
+        (
+            (MINIMAL + EYE).replace("275.0", "305.0"),
+            "GCPs.txt: expected altitudes within 15 m of origin.ground_altitude_m in site.toml, "
+            "got -30.0 m",
+        ),
+        (
+            (MINIMAL + EYE).replace("41.9012", "41.99"),
+            "control point A: expected within 5000 m of the site's origin, got",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_sentence_that_names_the_key(
+    folder: Path, text: str, message: str
+) -> None:
+    assert message in refusal(folder, text)
+
+
+@pytest.mark.parametrize(
+    "name", ["../lens.txt", "/etc/passwd", "a/../../lens.txt", "sub/../../lens.txt", "link.txt"]
+)
+def test_no_file_outside_the_folder_is_read(tmp_path: Path, name: str) -> None:
+    inside = tmp_path / "site"
+    inside.mkdir()
+    shutil.copy(demo_site_folder() / "GCPs.txt", inside)
+    shutil.copy(demo_site_folder() / "camera-model.txt", tmp_path / "lens.txt")
+    (inside / "link.txt").symlink_to(tmp_path / "lens.txt")
+    assert "leads out of it" in refusal(inside, MINIMAL + EYE + f'camera = "{name}"')
+
+
+def test_names_no_file_system_takes_are_refused(folder: Path) -> None:
+    (folder / "loop.txt").symlink_to(folder / "loop.txt")
+    assert "no such file" in refusal(folder, MINIMAL + EYE + 'camera = "loop.txt"')
+    assert "no such file" in refusal(folder, MINIMAL + EYE + f'camera = "{chr(0x1F681) * 150}"')
+    assert "matching regex" in refusal(folder, MINIMAL + EYE + 'camera = "a\\u0000b"')
+
+
+def test_a_file_in_a_folder_below_is_read(folder: Path) -> None:
+    (folder / "lens").mkdir()
+    shutil.move(folder / "camera-model.txt", folder / "lens" / "model.txt")
+    site = load_site(write(folder, MINIMAL + EYE + 'camera = "lens/model.txt"'))
+    assert site.eye is not None
+
+
+def test_a_missing_folder_a_huge_file_and_deep_nesting_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(SiteError, match=r"expected a site's file, got: No such file"):
+        load_site(tmp_path / "nowhere")
+    assert "at most 262144 bytes" in refusal(tmp_path, "#" * 300_000)
+    assert "expected a TOML file" in refusal(tmp_path, "a = " + "[" * 50_000)
+    (tmp_path / "site.toml").write_bytes(b'name = "\xff"')
+    with pytest.raises(SiteError, match="expected a TOML file, got: 'utf-8'"):
+        load_site(tmp_path)
+
+
+def test_a_file_with_fewer_than_four_points_gives_no_site(folder: Path) -> None:
+    lines = (folder / "GCPs.txt").read_text().splitlines()
+    (folder / "GCPs.txt").write_text("\n".join(lines[:6]))
+    assert "expected at least 4 control points, got 3" in refusal(folder, MINIMAL + EYE)
+
+
+values = st.recursive(
+    st.one_of(
+        st.integers(-(2**40), 2**40).map(str),
+        st.floats(allow_nan=False, allow_infinity=False).map(repr),
+        st.sampled_from(["nan", "inf", "true", "1979-05-27", '"x"', '""']),
+    ),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3).map(lambda items: "[" + ", ".join(items) + "]"),
+        st.dictionaries(st.sampled_from(["serial", "a", "pad"]), inner, max_size=2).map(
+            lambda table: "{" + ", ".join(f"{k} = {v}" for k, v in table.items()) + "}"
+        ),
+    ),
+    max_leaves=6,
+)
+keys = st.sampled_from(["name", "origin", "eye", "ground_image", "vehicles", "colour"])
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.dictionaries(keys, values, max_size=5))
+def test_any_toml_gives_a_refusal_that_names_the_file(
+    tmp_path: Path, tables: dict[str, str]
+) -> None:
+    text = "\n".join(f"{key} = {value}" for key, value in tables.items())
+    assert refusal(tmp_path, text).startswith("/site.toml: ")

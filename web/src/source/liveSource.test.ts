@@ -1,0 +1,128 @@
+import { describe, expect, it } from "vitest";
+import { FakeClock } from "../testing/fakeClock";
+import { FakeSocket } from "../testing/fakeSocket";
+import { station, vehicle } from "../testing/world";
+import { LiveSource, tokenOf } from "./liveSource";
+
+type Answer = (request: Request) => Response | Promise<Response>;
+
+function setUp(answer: Answer, token: string | null = null) {
+  const clock = new FakeClock();
+  const sockets: FakeSocket[] = [];
+  const requests: Request[] = [];
+  const source = new LiveSource({
+    origin: "http://127.0.0.1:8080",
+    token,
+    clock,
+    openSocket: (url, protocols) => {
+      const socket = new FakeSocket(url, protocols);
+      sockets.push(socket);
+      return socket;
+    },
+    fetch: async (request) => {
+      requests.push(request);
+      return answer(request);
+    },
+  });
+  return { clock, source, sockets, requests };
+}
+
+const json = (value: unknown, status = 200) => Response.json(value, { status });
+
+describe("the live source", () => {
+  it("shows the newest state and how far it is behind", () => {
+    const { source, sockets, clock } = setUp(() => json({}));
+    expect(source.state()).toBeNull();
+    sockets[0]?.say(station([vehicle(1)]));
+    clock.advance(400);
+    expect(source.state()?.vehicles).toHaveLength(1);
+    expect(source.behindS(clock.now())).toBeCloseTo(0.4);
+    expect(source.connection().kind).toBe("live");
+  });
+
+  it("brings the token as a header and as a subprotocol, never in an address", async () => {
+    const { source, sockets, requests } = setUp(() => new Response("png"), "s3cret-token");
+    await source.groundImage(7);
+    expect(sockets[0]?.protocols).toEqual(["recon.v1", "recon.token.s3cret-token"]);
+    expect(requests[0]?.headers.get("Authorization")).toBe("Bearer s3cret-token");
+    expect(`${sockets[0]?.url} ${requests[0]?.url}`).not.toContain("s3cret");
+  });
+
+  it("opens the stream of the address the page came from", () => {
+    const { sockets } = setUp(() => json({}));
+    expect(sockets[0]?.url).toBe("ws://127.0.0.1:8080/api/stream");
+    expect(sockets[0]?.protocols).toEqual(["recon.v1"]);
+  });
+
+  it("gives orders to the vehicles named and never allows a takeoff", async () => {
+    const { source, requests } = setUp(() => json({ results: [] }));
+    await source.order({ serials: ["A", "B"], order: { kind: "land" } });
+    const [request] = requests;
+    expect(new URL(request?.url ?? "").pathname).toBe("/api/orders");
+    expect(await request?.json()).toEqual({
+      serials: ["A", "B"],
+      order: { kind: "land" },
+      takeoff: false,
+    });
+  });
+
+  it("hands on the results, vehicle by vehicle", async () => {
+    const result = {
+      serial: "A",
+      link_id: 1,
+      vehicle_name: "Alder",
+      accepted: false,
+      command_id: 3,
+      rule: "flying",
+      reason: "it is on the ground",
+    };
+    const { source } = setUp(() => json({ results: [result] }));
+    expect(await source.allStop()).toEqual({ kind: "answered", value: [result] });
+  });
+
+  it("says the station's own sentence when it refuses", async () => {
+    const { source } = setUp(() => json({ error: "there is no alarm 9" }, 404));
+    expect(await source.acknowledge(9)).toEqual({ kind: "failed", problem: "there is no alarm 9" });
+  });
+
+  it("says what to do when the station is not there", async () => {
+    const { source } = setUp(() => Promise.reject(new TypeError("fetch failed")));
+    const outcome = await source.order({ serials: ["A"], order: { kind: "hover" } });
+    expect(outcome).toMatchObject({
+      kind: "failed",
+      problem: expect.stringContaining("remote controllers"),
+    });
+  });
+
+  it("says that a late order may have been heard", async () => {
+    const late = new DOMException("signal timed out", "TimeoutError");
+    const { source } = setUp(() => Promise.reject(late));
+    expect(await source.allStop()).toMatchObject({
+      problem: expect.stringContaining("may still have heard"),
+    });
+  });
+
+  it("asks for the token when it is refused", async () => {
+    const { source } = setUp(() => json({ error: "a token is needed" }, 401));
+    expect(await source.allStop()).toMatchObject({ problem: expect.stringContaining("token") });
+  });
+
+  it("tells which frame a picture really is", async () => {
+    const { source, requests } = setUp(
+      () => new Response("png", { headers: { "X-Frame-Id": "8" } }),
+    );
+    const outcome = await source.vehicleFrame("a/b ?", 7);
+    expect(outcome).toMatchObject({ kind: "answered", value: { frameId: 8 } });
+    expect(requests[0]?.url).toContain("/api/vehicles/a%2Fb%20%3F/frame.jpg?id=7");
+  });
+});
+
+describe("the token in the page's address", () => {
+  it.each([
+    ["#token=abc", "abc"],
+    ["#x=1&token=a%2Bb", "a+b"],
+    ["#token=", null],
+    ["", null],
+    ["#other", null],
+  ])("%s holds %s", (fragment, token) => expect(tokenOf(fragment)).toBe(token));
+});

@@ -1,0 +1,35 @@
+import type { StationState } from "../protocol";
+import type { Socket } from "../source/stream";
+
+/** A socket whose other end is the test. */
+export class FakeSocket implements Socket {
+  onopen: Socket["onopen"] = null;
+  onmessage: Socket["onmessage"] = null;
+  onclose: Socket["onclose"] = null;
+  isClosed = false;
+
+  constructor(
+    readonly url = "",
+    readonly protocols: readonly string[] = [],
+  ) {}
+
+  close(): void {
+    this.isClosed = true;
+  }
+
+  accept(): void {
+    this.onopen?.(new Event("open"));
+  }
+
+  say(state: StationState): void {
+    this.sayText(JSON.stringify(state));
+  }
+
+  sayText(text: string): void {
+    this.onmessage?.(new MessageEvent("message", { data: text }));
+  }
+
+  fail(code = 1006, reason = ""): void {
+    this.onclose?.(new CloseEvent("close", { code, reason }));
+  }
+}
