@@ -98,8 +98,16 @@ impl Image {
         let Ok(other) = other.cast::<Self>() else {
             return Ok(false);
         };
-        let py = other.py();
-        Ok(self.to_packet(py)? == other.get().to_packet(py)?)
+        let (py, other) = (other.py(), other.get());
+        let (mine, others) = (
+            self.pixels.bind(py).readonly(),
+            other.pixels.bind(py).readonly(),
+        );
+        Ok(
+            self.target_fps_hz.to_bits() == other.target_fps_hz.to_bits()
+                && mine.shape() == others.shape()
+                && mine.as_slice()? == others.as_slice()?,
+        )
     }
 }
 

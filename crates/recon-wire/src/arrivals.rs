@@ -36,3 +36,31 @@ impl Arrivals {
         self.marks.clear();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_byte_has_the_time_it_came() {
+        let mut arrivals = Arrivals::default();
+        arrivals.note(10, 0, 640);
+        arrivals.note(20, 100, 640);
+        arrivals.note(30, 200, 640);
+        assert_eq!(
+            [0, 9, 10, 19, 29, 30].map(|at| arrivals.of(at)),
+            [Some(0), Some(0), Some(100), Some(100), Some(200), None]
+        );
+    }
+
+    #[test]
+    fn bytes_one_by_one_need_few_marks() {
+        let mut arrivals = Arrivals::default();
+        for now in 0..10_000 {
+            arrivals.note(now as u64 + 1, now, 10_000);
+        }
+        assert!(arrivals.marks.len() <= RESOLUTION as usize + 1);
+        let came = arrivals.of(5000).expect("noted");
+        assert!((5000 - 10_000 / RESOLUTION..=5000).contains(&came));
+    }
+}

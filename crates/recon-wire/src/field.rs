@@ -193,3 +193,111 @@ pub fn put_string(out: &mut Vec<u8>, bytes: &[u8], field: &'static str) -> Resul
     out.extend_from_slice(bytes);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The value as wire bytes and read back, with its bits.
+    fn trip<T: Field>(value: T) -> (Vec<u8>, T, u64) {
+        let mut bytes = Vec::new();
+        put(&mut bytes, value);
+        let mut reader = Reader::new(&bytes);
+        let back = T::read(&mut reader, "value").expect("as many bytes as it takes");
+        assert!(reader.is_empty());
+        assert_eq!(bytes.len(), T::SIZE);
+        assert_eq!(back.bits(), value.bits());
+        (bytes, back, value.bits())
+    }
+
+    #[test]
+    fn most_significant_byte_first() {
+        assert_eq!(trip(0x12u8).0, [0x12]);
+        assert_eq!(trip(0x1234u16).0, [0x12, 0x34]);
+        assert_eq!(
+            trip(U24::new(0x12_3456).expect("24 bits")).0,
+            [0x12, 0x34, 0x56]
+        );
+        assert_eq!(trip(0x1234_5678u32).0, [0x12, 0x34, 0x56, 0x78]);
+        assert_eq!(trip(0x0102_0304_0506_0708u64).0, [1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(trip(-2i8).0, [0xfe]);
+        assert_eq!(trip(-2i16).0, [0xff, 0xfe]);
+        assert_eq!(trip(I24::new(-2).expect("24 bits")).0, [0xff, 0xff, 0xfe]);
+        assert_eq!(trip(-2i32).0, [0xff, 0xff, 0xff, 0xfe]);
+        assert_eq!(
+            trip(-2i64).0,
+            [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xfe]
+        );
+        assert_eq!(trip(1.5f32).0, [0x3f, 0xc0, 0, 0]);
+        assert_eq!(trip(-1.5f64).0, [0xbf, 0xf8, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_signalling_nan_keeps_its_payload() {
+        assert_eq!(
+            trip(f32::from_bits(0xff8a_bcde)).0,
+            [0xff, 0x8a, 0xbc, 0xde]
+        );
+        assert_eq!(
+            trip(f64::from_bits(0xfff0_0000_00c0_ffee)).2,
+            0xfff0_0000_00c0_ffee
+        );
+    }
+
+    #[test]
+    fn what_needs_more_than_24_bits_is_refused() {
+        assert_eq!(U24::new(0x00ff_ffff).map(U24::get), Ok(0x00ff_ffff));
+        assert_eq!(I24::new(-0x0080_0000).map(I24::get), Ok(-0x0080_0000));
+        let error = U24::new(0x0100_0000).expect_err("25 bits");
+        assert_eq!(
+            (error.expected(), error.came()),
+            ("0 to 16777215".into(), "16777216".into())
+        );
+        let error = I24::new(0x0080_0000).expect_err("25 bits");
+        assert_eq!(error.came(), "8388608");
+        assert!(I24::new(-0x0080_0001).is_err());
+    }
+
+    #[test]
+    fn a_string_counts_bytes_and_may_lie_about_them() {
+        let mut bytes = Vec::new();
+        put_string(&mut bytes, "鷹".as_bytes(), "text").expect("short");
+        assert_eq!(bytes, [0, 0, 0, 3, 0xe9, 0xb7, 0xb9]);
+        assert_eq!(Reader::new(&bytes).string("text"), Ok("鷹".as_bytes()));
+        let lying = [0xff, 0xff, 0xff, 0xff, b'x'];
+        let expected = Error::Short {
+            field: "text",
+            expected: 0xffff_ffff,
+            came: 1,
+        };
+        assert_eq!(Reader::new(&lying).string("text"), Err(expected));
+    }
+
+    proptest! {
+        #[test]
+        fn every_value_of_every_type_survives(bits in any::<u64>()) {
+            prop_assert_eq!(trip(bits as u8).1, bits as u8);
+            prop_assert_eq!(trip(bits as u16).1, bits as u16);
+            prop_assert_eq!(trip(bits as u32).1, bits as u32);
+            prop_assert_eq!(trip(bits).1, bits);
+            prop_assert_eq!(trip(bits as i8).1, bits as i8);
+            prop_assert_eq!(trip(bits as i16).1, bits as i16);
+            prop_assert_eq!(trip(bits as i32).1, bits as i32);
+            prop_assert_eq!(trip(bits as i64).1, bits as i64);
+            let unsigned = U24::new(bits as u32 >> 8).expect("24 bits");
+            prop_assert_eq!(trip(unsigned).1, unsigned);
+            let signed = I24::new(bits as i32 >> 8).expect("24 bits");
+            prop_assert_eq!(trip(signed).1, signed);
+            prop_assert_eq!(trip(f32::from_bits(bits as u32)).2, u64::from(bits as u32));
+            prop_assert_eq!(trip(f64::from_bits(bits)).2, bits);
+        }
+
+        #[test]
+        fn a_value_cut_short_is_an_error(len in 0usize..8) {
+            let bytes = [0; 8];
+            let expected = Error::Short { field: "value", expected: 8, came: len };
+            prop_assert_eq!(f64::read(&mut Reader::new(&bytes[..len]), "value").map(f64::to_bits), Err(expected));
+        }
+    }
+}

@@ -43,7 +43,7 @@ pub fn claim(bytes: &[u8], limits: &Limits) -> Result<Claim, Error> {
     let size = u32::from_be_bytes([s0, s1, s2, s3]);
     let expected = match rule(pid, payload, limits) {
         Ok(expected) => expected,
-        Err(wanted) => return claim_unless_outside(pid, size, wanted, limits),
+        Err(wanted) => return claim_before_lengths(pid, size, wanted, limits),
     };
     if !allows(expected, size.into()) {
         return Err(Error::Size {
@@ -59,7 +59,7 @@ pub fn claim(bytes: &[u8], limits: &Limits) -> Result<Claim, Error> {
 }
 
 /// The size is in, the payload's own lengths are not: refuse what no length could justify.
-fn claim_unless_outside(
+fn claim_before_lengths(
     pid: u8,
     size: u32,
     wanted: usize,

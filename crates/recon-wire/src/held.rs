@@ -121,3 +121,69 @@ impl Held {
         self.prefixes[step].then(&self.bytes[step * STEP..end])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn noise(len: usize) -> Vec<u8> {
+        (0..len).map(|i| (i * 7 + i / 251 * 13) as u8).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn a_frame_hashes_as_its_bytes_do_wherever_it_lies(
+            reads in prop::collection::vec((0usize..3000, 0usize..3000), 1..12), size in 2usize..9000,
+        ) {
+            let source = noise(40_000);
+            let (mut held, mut end, mut start) = (Held::default(), 0, 0);
+            for (more, fewer) in reads {
+                held.append(&source[end..end + more], more);
+                end += more;
+                start += fewer.min(held.live().len());
+                held.advance(fewer);
+                prop_assert_eq!(held.live(), &source[start..end]);
+                if size <= held.live().len() {
+                    prop_assert_eq!(held.frame_hash(size), Hash::of(&source[start..start + size - 2]));
+                }
+            }
+        }
+    }
+
+    /// A hostile stream keeps a large frame half full while frame after frame fails.
+    #[test]
+    fn the_buffer_stays_within_four_times_the_largest_frame() {
+        const FRAME: usize = 100_000;
+        let (source, mut held) = (noise(13), Held::default());
+        held.append(&noise(FRAME), FRAME);
+        for _ in 0..100_000 {
+            held.advance(13);
+            held.append(&source, FRAME);
+            assert!(
+                held.bytes.capacity() <= 4 * FRAME,
+                "{}",
+                held.bytes.capacity()
+            );
+        }
+        assert_eq!(held.live().len(), FRAME);
+    }
+
+    #[test]
+    fn an_emptied_large_buffer_is_given_back() {
+        let mut held = Held::default();
+        held.append(&noise(1000), 10_000_000);
+        held.advance(1000);
+        assert_eq!((held.bytes.capacity(), held.prefixes.len()), (0, 0));
+    }
+
+    #[test]
+    fn only_a_frame_at_the_end_takes_the_buffer_along() {
+        let mut held = Held::default();
+        held.append(&noise(600), 600);
+        held.advance(100);
+        assert_eq!(held.take_frame(400), None);
+        assert_eq!(held.take_frame(500), Some((noise(600), 100)));
+        assert!(held.is_empty());
+    }
+}
