@@ -4,7 +4,7 @@ mod common;
 use common::deframe;
 use recon_wire::checksum::Hash;
 use recon_wire::packet::{Acknowledgment, CompressedImage, EmergencyCommand};
-use recon_wire::{Deframer, Limits, Packet, encode};
+use recon_wire::{Deframer, Error, Limits, Packet, SizeRule, decode, encode};
 
 const MS: i64 = 1_000_000;
 
@@ -49,7 +49,7 @@ fn a_stalled_half_packet_gives_up_what_it_hides_after_two_seconds() {
 
 #[test]
 fn progress_resets_the_stall_but_not_the_age() {
-    let (header, frame) = (false_header(), ack().1);
+    let (header, frame) = (false_header().repeat(3), ack().1);
     let mut pushes: Vec<(i64, &[u8])> = vec![(0, &header)];
     pushes.extend((1..=9).map(|second| (second * 1000, &frame[..])));
     assert_eq!(run(&pushes, 9999).1, 0);
@@ -71,6 +71,24 @@ fn half_a_good_packet_behind_an_old_header_keeps_its_own_time() {
     push(&frame[..6], 9900);
     push(&frame[6..], 10_100);
     assert_eq!(found, [packet]);
+}
+
+#[test]
+fn half_a_packet_behind_found_ones_keeps_its_own_time() {
+    let (packet, frame) = ack();
+    let mut deframer = Deframer::default();
+    let mut found = Vec::new();
+    let mut push = |data: &[u8], at_ms: i64| {
+        deframer.push(data, at_ms * MS, &mut |packet| found.push(packet));
+    };
+    push(&[false_header(), frame.repeat(20)].concat(), 0);
+    for at_ms in (1000..9900).step_by(500) {
+        push(&frame, at_ms);
+    }
+    push(&frame[..6], 9900);
+    push(&[], 10_000);
+    push(&frame[6..], 11_000);
+    assert_eq!(found, vec![packet; 39]);
 }
 
 #[test]
@@ -132,8 +150,9 @@ fn a_large_file_stays_in_the_buffer_it_came_in() {
     }
     .into();
     let frame = encode(&packet, &Limits::default()).expect("below 16 MiB");
-    let (found, _) = deframe(frame.chunks(4096), Limits::default());
-    assert_eq!(found, [packet]);
+    let stream = [frame, ack().1].concat();
+    let (found, _) = deframe(stream.chunks(4096), Limits::default());
+    assert_eq!(found, [packet, ack().0]);
     let Some(Packet::CompressedImage(image)) = found.into_iter().next() else {
         panic!("no file")
     };
@@ -155,6 +174,18 @@ fn memory_follows_the_bytes_not_the_claim_of_four_gigabytes() {
         (deframer.pending_bytes(), deframer.counters().bad_size),
         (0, 1)
     );
+}
+
+#[test]
+fn a_frame_with_more_behind_it_is_no_frame() {
+    let (_, mut frame) = ack();
+    frame.push(0);
+    let expected = Error::Size {
+        pid: 3,
+        expected: SizeRule::Exactly(11),
+        came: 12,
+    };
+    assert_eq!(decode(&frame, &Limits::default()), Err(expected));
 }
 
 #[test]
