@@ -75,13 +75,15 @@ def test_a_frame_of_a_hovering_eye_is_laid_in_under_5_ms_on_one_core(
     def lay_every_cell(turn: int) -> object:
         return cv2.remap(rgb, *maps_of_every_cell(grid, camera, poses[turn]), cv2.INTER_LINEAR)
 
-    lay(0), lay_every_cell(0)
+    lay(0)
+    lay_every_cell(0)
     laid, bare, naive = times_ms(lay, remap_only, lay_every_cell)
     with capsys.disabled():
         print(
             f"\nground image 512x512 from 1280x720, maps and mask included: "
             f"{np.median(laid):.2f} ms a frame (best {laid.min():.2f}); "
-            f"{np.median(laid) / np.median(bare):.1f}x a bare cv2.remap ({np.median(bare):.2f} ms), "
+            f"{np.median(laid) / np.median(bare):.1f}x a bare cv2.remap "
+            f"({np.median(bare):.2f} ms), "
             f"{np.median(naive) / np.median(laid):.1f}x as fast as projecting every cell "
             f"({np.median(naive):.1f} ms)",
             flush=True,

@@ -22,7 +22,8 @@ from recon.camera import (
     load_camera,
     load_control_points,
 )
-from recon.camera.ground import lattice_step, source_mask
+from recon.camera.ground import source_mask
+from recon.camera.ground_maps import lattice_step
 from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, Frame, Registration
@@ -180,6 +181,16 @@ def test_the_circle_is_looked_for_until_a_frame_shows_it() -> None:
     again = projector.lay_pixels(dark, POSE)[1].mean()
     assert masked < unmasked
     assert again == masked
+
+
+def test_a_laid_frame_is_not_changed_by_the_next_one() -> None:
+    projector = GroundProjector(GRID, DEMO)
+    first_rgb, first_valid = projector.lay_pixels(frame_of_painted_ground(DEMO, POSE), POSE)
+    kept_rgb, kept_valid = first_rgb.copy(), first_valid.copy()
+    other = tilted_pose(60.0, 40.0, 80.0, (0.0, 10.0, -70.0))
+    projector.lay_pixels(np.full((720, 1280, 3), 77, np.uint8), other)
+    assert np.array_equal(first_rgb, kept_rgb)
+    assert np.array_equal(first_valid, kept_valid)
 
 
 def test_the_mask_leaves_out_the_frames_edge() -> None:
