@@ -1,4 +1,4 @@
-"""A station and a simulated drone in virtual time: an order and its life, without sockets or waiting.
+"""A station and a simulated drone in virtual time: an order and its life, without waiting.
 
 Run: uv run python examples/02_hover_in_virtual_time.py
 """

@@ -17,7 +17,8 @@ from recon.site import demo_site_folder, load_site
 def main() -> None:
     """Lay one frame on the demo site's grid and say how much of the field it shows."""
     site = load_site(demo_site_folder())
-    assert site.eye is not None and site.ground_grid is not None
+    assert site.eye is not None
+    assert site.ground_grid is not None
     solution = site.eye.solution
     print(f"pose: {solution.rms_px:.2f} px rms, {solution.height_above_ground_m:.1f} m up")
 

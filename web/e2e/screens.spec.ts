@@ -1,7 +1,8 @@
-import { test } from "@playwright/test";
-import { alarm, at, command, link, station, vehicle } from "../src/testing/world";
+import { expect, test } from "@playwright/test";
+import { busyState } from "./fake/busyState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
+import { drawnShare } from "./mapPicture";
 
 /** Pictures of the page for people to look at: `npm run screens`, then `web/screens/`. */
 const LOOKS = [
@@ -13,91 +14,6 @@ const SIZES = [
   { width: 1440, height: 900 },
   { width: 800, height: 1200 },
 ] as const;
-
-function busyState(elapsed_s: number) {
-  const vehicles = [
-    vehicle(1, {
-      is_eye: true,
-      frame: { id: 12, received_age_s: 0.3, captured_age_s: 0.8, captured_sigma_s: 0.2 },
-    }),
-    vehicle(2, { flight_mode: { value: "auto_landing", age_s: 0.4 } }),
-    vehicle(3, {
-      staleness: "lost",
-      telemetry_age_s: 4.2,
-      position: { ...vehicle(3).position, age_s: 4.2 },
-    }),
-    vehicle(4, {
-      is_simulated: true,
-      battery_fraction: { value: 0.28, age_s: 0.4 },
-      battery_warning: { value: "low", age_s: 0.4 },
-    }),
-    vehicle(5, { is_flying: { value: false, age_s: 0.1 }, conflict_link_ids: [9] }),
-    vehicle(6, {
-      number: 0,
-      serial: null,
-      name: "link 6",
-      position: { latitude_deg: null, longitude_deg: null, age_s: null },
-      is_flying: { value: null, age_s: null },
-    }),
-  ];
-  return station(vehicles, {
-    time_ns: 1e9 * (1 + elapsed_s),
-    links: [
-      ...vehicles.map((one) =>
-        link(one.number, {
-          claimed_serial: one.serial,
-          status: one.serial === null ? "unidentified" : "identified",
-        }),
-      ),
-      link(9, { status: "conflict", claimed_serial: "SN-005", bad_hash: 3, bytes_skipped: 812 }),
-    ],
-    alarms: [
-      alarm(1),
-      alarm(2, {
-        severity: "critical",
-        vehicle_name: "Cedar",
-        text: "Flying, and nothing heard for 4 s.",
-        raised_age_s: 1.2,
-      }),
-      alarm(3, {
-        severity: "error",
-        vehicle_name: "Elm",
-        text: "Link 9 claims to be this vehicle too.",
-        raised_age_s: 60,
-        is_acknowledged: true,
-      }),
-    ],
-    commands: [
-      command(14),
-      command(15, {
-        kind: "land",
-        vehicle_name: "Birch",
-        phase: "acknowledged",
-        is_final: false,
-        history: command(1).history.slice(0, 3),
-      }),
-      command(16, {
-        kind: "return_home",
-        vehicle_name: "Elm",
-        phase: "refused_by_station",
-        history: [{ phase: "refused_by_station", age_s: 3, note: "" }],
-        note: "flying: it is on the ground, and only an explicit takeoff may lift it",
-      }),
-    ],
-    ground_image: {
-      frame_id: 12,
-      serial: "SN-001",
-      captured_age_s: 0.8,
-      captured_sigma_s: 0.2,
-      registration: "unregistered",
-      reference: "telemetry at the marked frame",
-      corners: [at(-170, 130), at(90, 130), at(90, -130), at(-170, -130)],
-      cell_m: 0.5,
-      rows: 520,
-      cols: 520,
-    },
-  });
-}
 
 for (const look of LOOKS) {
   for (const size of SIZES) {
@@ -117,9 +33,32 @@ for (const look of LOOKS) {
       await page.keyboard.press("1");
       await page.keyboard.press("Shift+Digit2");
       await page.getByText("frame 12").first().waitFor();
-      await page.waitForTimeout(3000);
+      await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.2);
       await page.screenshot({ path: `screens/${look.name}-${size.width}.png` });
       clearInterval(talk);
     });
   }
 }
+
+test("contact lost, help and a held button", async ({ page }) => {
+  const fake = await FakeStation.behind(page, busyState(0));
+  fake.showPicture(await fieldPicture(page));
+  await page.goto("/");
+  await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.2);
+  await page.keyboard.press("Control+a");
+  await page.keyboard.down("Shift");
+  await page.keyboard.down("L");
+  await expect(page.getByText("Keep holding to land")).toBeVisible();
+  await page.screenshot({ path: "screens/holding.png" });
+  await expect(page.getByText("accepted, command 44")).toBeVisible();
+  await page.keyboard.up("L");
+  await page.keyboard.up("Shift");
+  await page.screenshot({ path: "screens/answer.png" });
+  await fake.vanish();
+  await expect(page.getByText("No contact with the station.")).toBeVisible();
+  await page.locator(".state-word").click();
+  await page.screenshot({ path: "screens/lost.png" });
+  await page.locator(".state-word").click();
+  await page.keyboard.press("?");
+  await page.screenshot({ path: "screens/help.png" });
+});

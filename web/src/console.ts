@@ -4,12 +4,14 @@ import { createSelection, type Selection, selectedVehicles } from "./fleet/selec
 import type { ThemeSwitch } from "./look/theme";
 import { createDesk, type Desk } from "./orders/desk";
 import { type Targets, targetsOf } from "./orders/targets";
-import type { Instant } from "./source/clock";
+import type { Clock, Instant } from "./source/clock";
 import type { StationSource } from "./source/stationSource";
 
 /** What every part of the page shares. */
 export interface Console {
   readonly source: StationSource;
+  /** What held buttons are timed by. */
+  readonly clock: Clock;
   /** The newest state as a store: a panel's parts change only where the state did. */
   readonly fleet: FleetView;
   readonly selection: Selection;
@@ -28,6 +30,7 @@ export interface Console {
 export function createConsole(
   source: StationSource,
   theme: ThemeSwitch,
+  clock: Clock,
   now: Accessor<Instant>,
 ): Console {
   const fleet = createFleetView(source);
@@ -40,6 +43,7 @@ export function createConsole(
   const targets = createMemo(() => targetsOf(selectedVehicles(fleet.vehicles, selection)));
   return {
     source,
+    clock,
     fleet,
     selection,
     targets,

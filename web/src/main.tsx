@@ -21,7 +21,12 @@ function Page() {
     openSocket: (url, protocols) => new WebSocket(url, protocols),
     fetch: (request) => fetch(request),
   });
-  const shared = createConsole(source, createThemeSwitch(document, localStorage), now);
+  const shared = createConsole(
+    source,
+    createThemeSwitch(document, localStorage),
+    browserClock,
+    now,
+  );
   return (
     <ConsoleProvider value={shared}>
       <App />

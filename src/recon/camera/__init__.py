@@ -16,7 +16,8 @@ from recon.camera.errors import (
     FrameSizeError,
     PoseError,
 )
-from recon.camera.ground import GroundProjector, ground_maps
+from recon.camera.ground import GroundProjector
+from recon.camera.ground_maps import ground_maps
 from recon.camera.image_circle import ImageCircle, find_image_circle
 from recon.camera.motion import TelemetryReference, displaced_pose, level_pose, moved_pose
 from recon.camera.omnidirectional import OmnidirectionalCamera

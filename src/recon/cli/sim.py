@@ -6,7 +6,7 @@ import signal
 import sys
 from enum import Enum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import typer
 
@@ -27,6 +27,7 @@ from recon.sim.run import run_fleet
 from recon.site import Eye, Site, SiteError, demo_site_folder, load_site
 
 MOST_VEHICLES = 256
+LONGEST_LATENCY_S = 60.0
 
 
 class WaypointAltitude(Enum):
@@ -34,6 +35,13 @@ class WaypointAltitude(Enum):
 
     WGS84 = "wgs84"
     TAKEOFF = "takeoff"
+
+
+class EyeWorld(NamedTuple):
+    """Where the eye hangs (None: above home) and what it sees."""
+
+    rig: EyeRig | None
+    source: FrameSource
 
 
 def sim_command(
@@ -104,15 +112,21 @@ def sim_command(
         host, port = parse_station(station)
         _refuse_non_positive("--fps", fps)
         _refuse_non_positive("--endurance-min", endurance_min)
+        if latency_s is not None and not 0.0 <= latency_s <= LONGEST_LATENCY_S:
+            raise SimulationError(
+                f"--latency-s: expected 0 to {LONGEST_LATENCY_S:g} seconds, got {latency_s:g}"
+            )
         place = _place(site)
         feed_settings = FeedSettings(fps, image_format, latency_s, feed)
-        rig, source = _eye_world(place, replay_site, frames, frame_size, seed)
+        if not eye and (frames is not None or replay_site is not None):
+            raise SimulationError("--no-eye: expected neither --frames nor --replay-site, got one")
+        world = _eye_world(place, replay_site, frames, frame_size, seed) if eye else None
         config = SimulationConfig(
-            home=_home(home, place, rig),
+            home=_home(home, place, world),
             station_host=host,
             station_port=port,
             vehicle_count=vehicles,
-            eye=EyeSetup(source, feed_settings, rig) if eye else None,
+            eye=None if world is None else EyeSetup(world.source, feed_settings, world.rig),
             altitude_reference=AltitudeReference(altitude_reference.value),
             hover_on_ground=hover_on_ground,
             airborne=_AIRBORNE[airborne],
@@ -175,8 +189,8 @@ def _place(folder: Path | None) -> Site:
     return place
 
 
-def _home(text: str | None, place: Site, rig: EyeRig | None) -> GeoPoint:
-    frame = place.frame if rig is None else rig.frame
+def _home(text: str | None, place: Site, world: EyeWorld | None) -> GeoPoint:
+    frame = place.frame if world is None or world.rig is None else world.rig.frame
     assert frame is not None
     if text is None:
         return frame.origin
@@ -189,19 +203,20 @@ def _pads(place: Site) -> dict[str, GeoPoint]:
 
 def _eye_world(
     place: Site, replay: Path | None, frames: Path | None, frame_size: str, seed: int
-) -> tuple[EyeRig | None, FrameSource]:
+) -> EyeWorld:
     """Return where the eye hangs and what it sees: a real field, a folder, or made-up land."""
     if replay is not None and frames is not None:
         raise SimulationError("expected --replay-site or --frames, got both")
     if replay is not None:
-        return load_replay(replay)
+        return EyeWorld(*load_replay(replay))
+    cols, rows = parse_size(frame_size)
     rig = None if place.eye is None else _site_rig(place, place.eye)
     if frames is not None:
-        cols, rows = parse_size(frame_size)
-        return rig, folder_frames(frames, rows, cols)
+        return EyeWorld(rig, folder_frames(frames, rows, cols))
     if rig is None or place.eye is None:
         raise SimulationError("expected a site with an [eye], or --frames, or --no-eye, got none")
-    return rig, FieldFrames(rig.camera, place.eye.image_circle, seed, CloudShadows(seed))
+    land = FieldFrames(rig.camera, place.eye.image_circle, seed, CloudShadows(seed))
+    return EyeWorld(rig, land)
 
 
 def _site_rig(place: Site, eye: Eye) -> EyeRig:

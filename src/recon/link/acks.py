@@ -43,8 +43,7 @@ class AckBook:
         if report.answered is AnsweredKind.STICK:
             return None
         missed = self._missed_at_ns[report.answered]
-        while missed and now_ns - missed[0] > seconds_to_ns(self.settings.late_ack_s):
-            missed.popleft()
+        self._forget_missed(missed, now_ns)
         if missed:
             missed.popleft()
             self.unbelieved += 1
@@ -63,4 +62,11 @@ class AckBook:
                 command_id, _ = waiting.popleft()
                 self._missed_at_ns[kind].append(now_ns)
                 missed.append(CommandAnswered(self.link_id, command_id, None))
+        for times_ns in self._missed_at_ns.values():
+            self._forget_missed(times_ns, now_ns)
         return missed
+
+    def _forget_missed(self, times_ns: deque[int], now_ns: int) -> None:
+        """Forget misses so long ago that their answers come no more."""
+        while times_ns and now_ns - times_ns[0] > seconds_to_ns(self.settings.late_ack_s):
+            times_ns.popleft()

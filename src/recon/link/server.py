@@ -80,15 +80,17 @@ class LinkServer:
             connection.tick()
 
 
-class Connection(asyncio.Protocol):
-    """One app's socket."""
+class Connection(asyncio.BufferedProtocol):
+    """One app's socket. What is read from it at a time is bounded by its own small buffer."""
 
     def __init__(self, server: LinkServer) -> None:
         self.server = server
         self.session: Session | None = None
         self._transport: asyncio.Transport | None = None
+        self._buffer = bytearray(server.settings.read_bytes)
         self._events: deque[Event] = deque()
         self._is_reading = True
+        self._is_handling = False
         self._closing_reason: str | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -108,10 +110,15 @@ class Connection(asyncio.Protocol):
         address = _address(self._transport.get_extra_info("peername"))
         self.server.handle(LinkOpened(link_id, address))
 
-    def data_received(self, data: bytes) -> None:
+    def get_buffer(self, sizehint: int) -> bytearray:
+        """Lend the place for what is read next."""
+        return self._buffer
+
+    def buffer_updated(self, nbytes: int) -> None:
         """Take what came; many packets are handled in turns with the other links."""
         if self.session is None:
             return
+        data = bytes(memoryview(self._buffer)[:nbytes])
         now_ns = self.server.now_ns()
         self._record(Direction.FROM_APP, data, now_ns)
         self._take(self.session.receive(data, now_ns))
@@ -129,6 +136,8 @@ class Connection(asyncio.Protocol):
         self._events.extend(self.session.finish(reason, self.server.now_ns()))
         self._handle(len(self._events))
         self.server.handle(LinkClosed(self.session.link_id, reason))
+        if self.server.capture is not None:
+            self.server.capture.end_link(self.session.link_id)
 
     def submit(self, approved: ApprovedCommand) -> None:
         """Queue a command and write it if it may go now."""
@@ -173,7 +182,8 @@ class Connection(asyncio.Protocol):
 
     def _take(self, events: Iterable[Event]) -> None:
         self._events.extend(events)
-        if self._is_reading:
+        # Handling an event can send a command on this very link, and so come back here.
+        if self._is_reading and not self._is_handling:
             self._work()
 
     def _work(self) -> None:
@@ -190,8 +200,13 @@ class Connection(asyncio.Protocol):
             self._transport.resume_reading()
 
     def _handle(self, at_most: int) -> None:
-        for _ in range(min(at_most, len(self._events))):
-            self.server.handle(self._events.popleft())
+        self._is_handling = True
+        try:
+            while self._events and at_most > 0:
+                at_most -= 1
+                self.server.handle(self._events.popleft())
+        finally:
+            self._is_handling = False
 
     def _record(self, direction: Direction, data: bytes, now_ns: int) -> None:
         if self.server.capture is not None and self.session is not None:
@@ -204,6 +219,12 @@ def _prepare_socket(transport: asyncio.Transport, settings: LinkSettings) -> Non
         return
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for option, value in (
+        (socket.TCP_KEEPIDLE, settings.keepalive_idle_s),
+        (socket.TCP_KEEPINTVL, settings.keepalive_interval_s),
+        (socket.TCP_KEEPCNT, settings.keepalive_probes),
+    ):
+        sock.setsockopt(socket.IPPROTO_TCP, option, value)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, settings.send_buffer_bytes)
 
 

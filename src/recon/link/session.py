@@ -149,8 +149,8 @@ class Session:
             self.closing_reason = (
                 f"no valid packet within {self.settings.first_packet_timeout_s:g} s of connecting"
             )
-        blocked_ns = now_ns - (self._blocked_since_ns or now_ns)
-        if blocked_ns > seconds_to_ns(self.settings.stuck_output_timeout_s):
+        since_ns = now_ns if self._blocked_since_ns is None else self._blocked_since_ns
+        if now_ns - since_ns > seconds_to_ns(self.settings.stuck_output_timeout_s):
             self.closing_reason = (
                 f"the app has not read for {self.settings.stuck_output_timeout_s:g} s"
             )

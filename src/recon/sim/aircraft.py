@@ -47,8 +47,10 @@ class Aircraft:
 
     @property
     def is_flying(self) -> bool:
-        """What the flight controller says: off the ground."""
-        return not self.is_on_ground and self.motion.height_m > FLYING_ABOVE_M
+        """What the flight controller says: lifted off, and the motors not stopped since."""
+        if isinstance(self.manoeuvre, TakeOff):
+            return self.motion.height_m > FLYING_ABOVE_M
+        return not self.is_on_ground
 
     @property
     def flight_mode(self) -> FlightMode:

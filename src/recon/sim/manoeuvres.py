@@ -15,6 +15,9 @@ SPIN_UP_S = 1.5
 CONFIRM_HEIGHT_M = 0.3
 """DJI firmware stops here and waits until the app confirms that the ground is fit to land on."""
 
+SHORTEST_GO_HOME_S = 2.0
+"""The mode lasts this long even above home, so that telemetry at 2 Hz shows it."""
+
 LANDING_FAST_MPS = 3.0
 LANDING_SLOW_MPS = 0.8
 LANDING_SLOW_BELOW_M = 6.0
@@ -134,9 +137,11 @@ class GoHome:
     confirmation_s: float = 1.0
     mode: FlightMode = FlightMode.GO_HOME
     _height_m: float | None = None
+    _elapsed_s: float = 0.0
 
     def demand(self, motion: Motion, seconds: float) -> Demand:
         """Ask for the climb first, then for the way home."""
+        self._elapsed_s += seconds
         if self._height_m is None:
             self._height_m = max(self.go_home_height_m, motion.height_m)
         up = hold_height_mps(motion.height_m, self._height_m, self.limits)
@@ -150,6 +155,7 @@ class GoHome:
             return None
         distance_m = hypot(self.home_north_m - motion.north_m, self.home_east_m - motion.east_m)
         arrived = distance_m < 0.5 and motion.ground_speed_mps < 0.5
+        arrived = arrived and self._elapsed_s >= SHORTEST_GO_HOME_S
         return Land(self.confirmation_s) if arrived else None
 
 

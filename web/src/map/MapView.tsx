@@ -120,7 +120,7 @@ function createMap(container: HTMLElement, ground: string): MapLibre {
     dragRotate: false,
     pitchWithRotate: false,
     touchPitch: false,
-    canvasContextAttributes: { antialias: true, preserveDrawingBuffer: true },
+    canvasContextAttributes: { antialias: true },
   });
   // North is always up: headings are then read as they are.
   map.touchZoomRotate.disableRotation();

@@ -32,10 +32,10 @@ export class FakeClock implements Clock {
         .sort((a, b) => a.at_ms - b.at_ms)[0];
       if (due === undefined) break;
       this.waiting = this.waiting.filter((entry) => entry !== due);
-      this.move(due.at_ms - this.monotonicMs);
+      this.move(Math.max(0, due.at_ms - this.monotonicMs));
       due.action();
     }
-    this.move(end_ms - this.monotonicMs);
+    this.move(Math.max(0, end_ms - this.monotonicMs));
   }
 
   /** The computer sleeps: only the wall clock goes on. */

@@ -3,7 +3,6 @@ import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdTimer";
 import { ORDER_KINDS, type OrderKind } from "../../orders/kinds";
 import { targetsKey } from "../../orders/targets";
-import { browserClock } from "../../source/clock";
 import { listNames } from "../../words/names";
 import { HoldButton } from "./HoldButton";
 import { LastAnswer } from "./LastAnswer";
@@ -17,11 +16,11 @@ interface HeldOrder {
 
 /** Hover, return and land for the selected vehicles, which are named before and while one holds. */
 export function OrderBar() {
-  const { targets, desk } = useConsole();
+  const { targets, desk, clock } = useConsole();
   const held: HeldOrder[] = ORDER_KINDS.map((order) => ({
     order,
     timer: createHoldTimer(
-      browserClock,
+      clock,
       order.hold_ms,
       () => targetsKey(targets()),
       () => {

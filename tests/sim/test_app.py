@@ -1,0 +1,232 @@
+"""The app on its link: what it says, what it answers, what it then does."""
+
+import random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from recon import wire
+from recon.geo import enu_from_geo
+from recon.model.geo import LocalFrame
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import AltitudeReference, FlightMode
+from recon.sim.commands import HoverOnGround
+
+HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))
+SQUARE = [(0.0, 10.0, 40.0), (60.0, 10.0, 40.0), (60.0, 70.0, 40.0)]
+
+
+def of(kind: type, packets: list) -> list:
+    return [p for p in packets if isinstance(p, kind)]
+
+
+def stick(**changes) -> wire.VirtualStickCommand:
+    values = {
+        "mode": 0,
+        "yaw_deg": 0.0,
+        "velocity_x_mps": 5.0,
+        "velocity_y_mps": 0.0,
+        "height_above_takeoff_m": 30.0,
+        "timeout_s": 60.0,
+    }
+    return wire.VirtualStickCommand(**(values | changes))
+
+
+def test_it_says_at_once_that_it_is_simulated(app_bench) -> None:
+    bench = app_bench()
+    first = bench.run(0.01)[0]
+    assert isinstance(first, wire.MessageString)
+    assert (first.type, first.text) == (1, b"recon-sim simulated vehicle")
+
+
+def test_telemetry_comes_at_10_and_2_hz_with_the_serial(app_bench) -> None:
+    packets = app_bench().run(10.0)
+    assert len(of(wire.CoreTelemetry, packets)) == 100
+    extended = of(wire.ExtendedTelemetry, packets)
+    assert len(extended) == 20
+    assert {p.serial for p in extended} == {b"SIM-7"}
+    assert {p.camera_state for p in extended} == {0}
+
+
+def test_telemetry_tells_the_truth_within_its_sensors_errors(app_bench) -> None:
+    bench = app_bench(height_m=50.0, bias_m=-23.0)
+    bench.send(stick(velocity_x_mps=8.0, height_above_takeoff_m=50.0))
+    bench.run(12.0)
+    core, truth = bench.last(wire.CoreTelemetry), bench.app.aircraft.motion
+    home = bench.app.settings.home
+    east, north, _ = enu_from_geo(LocalFrame(home), core.latitude_deg, core.longitude_deg, 275.0)[0]
+    assert (north, east) == pytest.approx((truth.north_m, truth.east_m), abs=1.5)
+    assert core.height_above_takeoff_m == pytest.approx(50.0, abs=0.6)
+    assert core.altitude_m - core.height_above_takeoff_m == pytest.approx(275.0 - 23.0)
+    assert core.velocity_north_mps == pytest.approx(8.0)
+    assert core.is_flying == 1
+
+
+@pytest.mark.parametrize("command", [HOVER, LAND, RETURN, stick()])
+def test_the_answer_comes_before_the_act(app_bench, command) -> None:
+    bench = app_bench()
+    before = bench.app.aircraft.manoeuvre
+    (answer,) = of(wire.Acknowledgment, bench.send(command))
+    assert (answer.positive, answer.source_pid) == (1, command.PID)
+    assert bench.app.aircraft.manoeuvre is before
+    bench.run(0.3)
+    assert bench.app.aircraft.manoeuvre is not before
+
+
+@pytest.mark.parametrize(
+    ("command", "mode"),
+    [
+        (LAND, FlightMode.AUTO_LANDING),
+        (RETURN, FlightMode.GO_HOME),
+        (stick(), FlightMode.JOYSTICK),
+    ],
+)
+def test_the_act_shows_in_telemetry_and_hover_ends_it(app_bench, command, mode) -> None:
+    bench = app_bench()
+    bench.send(command)
+    bench.run(1.0)
+    assert bench.mode == mode
+    bench.send(HOVER)
+    bench.run(1.0)
+    assert bench.mode == FlightMode.GPS_ATTI
+
+
+def test_landing_ends_on_the_ground(app_bench) -> None:
+    bench = app_bench(height_m=8.0)
+    bench.send(LAND)
+    modes = [p.flight_mode for p in of(wire.ExtendedTelemetry, bench.run(30.0))]
+    assert FlightMode.CONFIRM_LANDING in modes
+    assert bench.last(wire.CoreTelemetry).is_flying == 0
+
+
+@pytest.mark.parametrize("reference", [AltitudeReference.TAKEOFF, AltitudeReference.WGS84])
+@pytest.mark.parametrize("bias_m", [-35.0, 0.0, 28.5])
+def test_both_altitude_references_reach_the_same_true_height(
+    app_bench, mission_packet, reference, bias_m
+) -> None:
+    bench = app_bench(reference=reference, bias_m=bias_m)
+    bench.run(1.0)
+    core = bench.last(wire.CoreTelemetry)
+    offset_m = 0.0
+    if reference is AltitudeReference.WGS84:
+        offset_m = core.altitude_m - core.height_above_takeoff_m
+    bench.send(mission_packet([(n, e, 62.0 + offset_m) for n, e, _ in SQUARE]))
+    bench.run(60.0)
+    assert bench.mode == FlightMode.GPS_ATTI
+    assert bench.app.aircraft.motion.height_m == pytest.approx(62.0, abs=0.6)
+
+
+def test_a_mission_shows_its_mode_and_number(app_bench, mission_packet) -> None:
+    bench = app_bench()
+    bench.send(mission_packet(SQUARE))
+    bench.run(1.0)
+    assert bench.mode == FlightMode.GPS_WAYPOINT
+    assert bench.last(wire.ExtendedTelemetry).mission_id == 1
+    bench.run(60.0)
+    assert bench.last(wire.ExtendedTelemetry).mission_id == 0
+
+
+def test_a_mission_that_the_sdk_rejects_is_acknowledged_and_nothing_happens(
+    app_bench, mission_packet
+) -> None:
+    bench = app_bench()
+    (answer,) = of(wire.Acknowledgment, bench.send(mission_packet(SQUARE[:1])))
+    assert answer.positive == 1
+    bench.run(2.0)
+    assert bench.mode == FlightMode.GPS_ATTI
+    assert any("rejected silently" in line for line in bench.app.take_lines())
+
+
+def test_a_stick_out_of_range_is_acknowledged_and_nothing_happens(app_bench) -> None:
+    bench = app_bench()
+    (answer,) = of(wire.Acknowledgment, bench.send(stick(velocity_x_mps=16.0)))
+    assert answer.positive == 1
+    bench.run(2.0)
+    assert bench.mode == FlightMode.GPS_ATTI
+
+
+def test_unknown_actions_and_a_camera_that_is_not_there_are_refused(app_bench) -> None:
+    bench = app_bench()
+    for command in (
+        wire.EmergencyCommand(action=7),
+        wire.CameraControl(action=1, target_fps_hz=1.0),
+    ):
+        (answer,) = of(wire.Acknowledgment, bench.send(command))
+        assert (answer.positive, answer.source_pid) == (0, command.PID)
+
+
+def test_packets_in_the_wrong_direction_are_ignored(app_bench) -> None:
+    bench = app_bench()
+    packets = bench.send(wire.Acknowledgment(positive=1, source_pid=253))
+    assert of(wire.Acknowledgment, packets) == []
+
+
+@pytest.mark.parametrize("command", [HOVER, RETURN])
+@pytest.mark.parametrize("habit", list(HoverOnGround))
+def test_hover_and_return_on_the_ground(app_bench, command, habit) -> None:
+    bench = app_bench(height_m=0.0, hover_on_ground=habit)
+    bench.send(command)
+    flew = {p.is_flying for p in of(wire.CoreTelemetry, bench.run(10.0))}
+    assert (1 in flew) == (habit is HoverOnGround.TAKEOFF)
+
+
+def test_return_on_the_ground_comes_back_to_the_ground(app_bench) -> None:
+    bench = app_bench(height_m=0.0, hover_on_ground=HoverOnGround.TAKEOFF)
+    bench.send(RETURN)
+    bench.run(10.0)
+    assert bench.last(wire.CoreTelemetry).is_flying == 1
+    bench.run(80.0)
+    assert bench.last(wire.CoreTelemetry).is_flying == 0
+
+
+def test_commands_split_over_reads_are_understood(app_bench) -> None:
+    bench = app_bench()
+    for byte in wire.encode(LAND):
+        bench.app.receive(bytes([byte]), bench.now_ns)
+    assert of(wire.Acknowledgment, bench.run(0.05))
+
+
+def test_a_new_link_starts_afresh(app_bench) -> None:
+    bench = app_bench()
+    bench.run(1.0)
+    bench.app.disconnected()
+    assert bench.run(1.0) == []
+    bench.app.connected(bench.now_ns)
+    assert isinstance(bench.run(0.01)[0], wire.MessageString)
+
+
+@given(st.lists(st.floats(0.001, 0.7), min_size=1, max_size=30))
+def test_the_same_seed_gives_the_same_bytes_however_time_is_cut(app_bench, steps) -> None:
+    whole, cut = app_bench(), app_bench()
+    end_ns, now_ns, pieces = seconds_to_ns(sum(steps)), 0, []
+    expected = b"".join(whole.app.advance(end_ns))
+    for step_s in steps:
+        now_ns = min(end_ns, now_ns + seconds_to_ns(step_s))
+        pieces += cut.app.advance(now_ns)
+    pieces += cut.app.advance(end_ns)
+    assert b"".join(pieces) == expected
+
+
+def test_what_is_due_next_is_never_late(app_bench) -> None:
+    bench = app_bench()
+    bench.app.advance(0)
+    for _ in range(50):
+        due_ns = bench.app.next_due_ns
+        assert bench.app.advance(due_ns - 1) == []
+        assert bench.app.advance(due_ns) != []
+
+
+def test_a_link_that_is_not_read_holds_a_bounded_number_of_packets(app_bench) -> None:
+    bench = app_bench()
+    packets = bench.run(120.0, step_s=120.0)
+    assert len(packets) == 256
+
+
+def test_garbage_does_no_harm(app_bench) -> None:
+    bench = app_bench()
+    noise = random.Random(3)
+    for _ in range(50):
+        bench.app.receive(noise.randbytes(400), bench.now_ns)
+    bench.run(11.0)
+    assert of(wire.Acknowledgment, bench.send(HOVER))

@@ -1,0 +1,135 @@
+"""The made-up land: drawn the same at every resolution, seen as the lens sees it."""
+
+import cv2
+import numpy as np
+import pytest
+
+from recon.camera import TelemetryReference, level_pose, load_camera
+from recon.camera.image_circle import ImageCircle
+from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.sim import field
+from recon.sim.camera_feed import View
+from recon.sim.cloud_shadows import CloudShadows
+from recon.sim.errors import FrameSourceError
+from recon.sim.farmland import lay_out
+from recon.sim.farmland_raster import draw
+from recon.sim.noise import tileable_noise
+from recon.site import demo_site_folder
+
+SEED = 5
+HEIGHT_M = 120.0
+
+
+@pytest.fixture(scope="module")
+def camera():
+    return load_camera(demo_site_folder() / "camera-model.txt")
+
+
+@pytest.fixture(scope="module")
+def frames(camera):
+    circle = ImageCircle(camera.centre_col_px, camera.centre_row_px, 340.0)
+    return field.FieldFrames(camera, circle, SEED)
+
+
+def pose(east_m: float = 0.0, north_m: float = 0.0, yaw_deg: float = 0.0):
+    reference = TelemetryReference(0.0, 0.0, HEIGHT_M, yaw_deg)
+    return level_pose(reference, np.array([east_m, north_m, HEIGHT_M]))
+
+
+def correlation(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.corrcoef(a.ravel().astype(float), b.ravel().astype(float))[0, 1])
+
+
+@pytest.mark.parametrize(
+    ("east_m", "north_m", "yaw_deg"), [(0.0, 0.0, 0.0), (40.0, -70.0, 33.0), (-90.0, 20.0, -140.0)]
+)
+def test_a_picture_laid_on_the_ground_shows_the_land_where_it_is(
+    frames, camera, east_m, north_m, yaw_deg
+) -> None:
+    """Render, take the picture back to the ground by the camera room, compare with the raster."""
+    there = pose(east_m, north_m, yaw_deg)
+    picture = frames.render(View(0.0, 0, there))
+    grid = GroundGrid(
+        LocalFrame(GeoPoint(0.0, 0.0, 0.0)), east_m - 100, north_m + 100, 1.0, 200, 200
+    )
+    cols, rows = maps(grid, camera, there)
+    seen = cv2.remap(picture, cols, rows, cv2.INTER_LINEAR)
+    truth = raster_part(east_m, north_m)
+    assert correlation(seen[20:-20, 20:-20], truth[20:-20, 20:-20]) > 0.97
+    shifted = np.roll(truth, 4, axis=1)
+    assert correlation(seen[20:-20, 20:-20], shifted[20:-20, 20:-20]) < correlation(
+        seen[20:-20, 20:-20], truth[20:-20, 20:-20]
+    )
+
+
+def maps(grid: GroundGrid, camera, there):
+    """Return where each ground cell's centre lies in the picture."""
+    east = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
+    north = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
+    points = np.stack([*np.meshgrid(east, north), np.zeros((grid.rows, grid.cols))], axis=-1)
+    rays = (points.reshape(-1, 3) - there.position_enu_m) @ there.rotation_enu_camera
+    pixels = camera.project(rays).reshape(grid.rows, grid.cols, 2).astype(np.float32)
+    return pixels[:, :, 0], pixels[:, :, 1]
+
+
+def raster_part(east_m: float, north_m: float) -> np.ndarray:
+    """Return the finest raster's 200 m around a place, at one metre."""
+    fine = draw(lay_out(SEED), 1024, 0.5, SEED)
+    col, row = round((east_m - 100 + 256) / 0.5), round((256 - north_m - 100) / 0.5)
+    part = fine.rgb[row : row + 400, col : col + 400]
+    return cv2.resize(part, (200, 200), interpolation=cv2.INTER_AREA)
+
+
+def test_the_same_view_is_the_same_picture(frames) -> None:
+    view = View(3.0, 1, pose())
+    assert np.array_equal(frames.render(view), frames.render(view))
+
+
+def test_outside_the_image_circle_there_is_nothing(frames, camera) -> None:
+    picture = frames.render(View(0.0, 0, pose()))
+    row, col = np.mgrid[: camera.rows, : camera.cols]
+    radius = np.hypot(col - camera.centre_col_px, row - camera.centre_row_px)
+    assert picture.shape == (camera.rows, camera.cols, 3)
+    assert picture[radius > 342.0].max() == 0
+    assert picture[radius < 330.0].min(axis=1).mean() > 30.0
+
+
+def test_a_view_without_a_pose_is_refused(frames) -> None:
+    with pytest.raises(FrameSourceError, match="expected a camera pose"):
+        frames.render(View(0.0, 0, None))
+
+
+def test_a_coarse_raster_agrees_with_the_fine_one() -> None:
+    land = lay_out(SEED)
+    fine, coarse = draw(land, 1024, 0.5, SEED), draw(land, 256, 2.0, SEED)
+    shrunk = cv2.resize(fine.rgb, (256, 256), interpolation=cv2.INTER_AREA)
+    assert correlation(shrunk, coarse.rgb) > 0.93
+
+
+def test_noise_is_seamless_and_of_unit_strength() -> None:
+    noise = tileable_noise(128, 3, smallest_cells=3.0, slope=1.5)
+    assert noise.std() == pytest.approx(1.0, abs=1e-3)
+    inner = np.abs(np.diff(noise, axis=1)).mean()
+    assert np.abs(noise[:, 0] - noise[:, -1]).mean() < 2.0 * inner
+
+
+def test_shadows_drift_with_the_wind() -> None:
+    shadows = CloudShadows(seed=2, wind_mps=5.0, heading_deg=90.0)
+    east, north = np.meshgrid(
+        np.arange(0.0, 800.0, 4.0, dtype=np.float32), np.arange(0.0, 800.0, 4.0, dtype=np.float32)
+    )
+    now = shadows.transmittance(east, north, 100.0)
+    later = shadows.transmittance(east + np.float32(50.0), north, 110.0)
+    assert np.abs(now - later).max() < 0.01
+    assert 0.37 < now.min() < 0.6
+    assert now.max() == pytest.approx(1.0)
+
+
+def test_about_the_asked_share_is_in_shadow() -> None:
+    shadows = CloudShadows(seed=9, cover=0.3)
+    east, north = np.meshgrid(
+        np.linspace(0.0, 2_400.0, 300, dtype=np.float32),
+        np.linspace(0.0, 2_400.0, 300, dtype=np.float32),
+    )
+    light = shadows.transmittance(east, north, 0.0)
+    assert (light < 1.0 - shadows.depth / 2.0).mean() == pytest.approx(0.3, abs=0.03)

@@ -1,0 +1,32 @@
+"""What the operator is told of a site."""
+
+from dataclasses import replace
+
+from recon.site import Site, default_site, demo_site_folder, load_site, site_report
+
+
+def test_the_report_tells_the_fit_and_every_residual() -> None:
+    site = load_site(demo_site_folder())
+    assert site.eye is not None
+    lines = site_report(site)
+    solution = site.eye.solution
+    assert lines[0] == "site demo field: 4 vehicle profiles"
+    assert "512 x 512 cells of 1 m" in lines[1]
+    assert lines[2] == "eye SIM-EYE: 1280 x 720 lens model"
+    assert f"8 control points fit to {solution.rms_px:.2f} px RMS" in lines[3]
+    assert f"height {solution.height_above_ground_m:.1f} +-" in lines[3]
+    assert [line.split(":")[0] for line in lines[4:]] == [f"control point {n}" for n in "ABCDEFGH"]
+
+
+def test_the_report_says_when_the_first_frame_stands_for_the_marked_one() -> None:
+    site = load_site(demo_site_folder())
+    assert site.eye is not None
+    guessed = Site(site.name, site.frame, site.ground_grid, replace(site.eye, marked_frame=None))
+    assert "first frame received in flight stands for it" in site_report(guessed)[-1]
+
+
+def test_the_report_of_no_site_says_what_is_missing() -> None:
+    assert site_report(default_site()) == (
+        "site no site: 0 vehicle profiles",
+        "no eye: frames are shown as they come, none is laid on the ground",
+    )

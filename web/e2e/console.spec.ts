@@ -1,0 +1,102 @@
+import { expect, test } from "@playwright/test";
+import { station, vehicle } from "../src/testing/world";
+import { busyState } from "./fake/busyState";
+import { fieldPicture } from "./fake/picture";
+import { FakeStation } from "./fake/station";
+import { faintTexts, smallTargets, smallTexts } from "./legibility";
+import { drawnShare } from "./mapPicture";
+
+const LOOKS = [
+  { name: "light", colorScheme: "light", sun: false },
+  { name: "dark", colorScheme: "dark", sun: false },
+  { name: "sun", colorScheme: "light", sun: true },
+] as const;
+
+for (const look of LOOKS) {
+  for (const width of [1440, 800]) {
+    test(`is legible: ${look.name}, ${width} px wide`, async ({ page }) => {
+      await page.setViewportSize({ width, height: 1000 });
+      await page.emulateMedia({ colorScheme: look.colorScheme });
+      await FakeStation.behind(page, busyState(0));
+      await page.goto("/");
+      await expect(page.locator("button.craft")).toHaveCount(5);
+      await page.keyboard.press("1");
+      if (look.sun) await page.keyboard.press("t");
+      await page.locator(".state-word").click();
+      expect(await smallTexts(page)).toEqual([]);
+      expect(await smallTargets(page)).toEqual([]);
+      expect(await faintTexts(page)).toEqual([]);
+      const overflow = await page.evaluate(
+        () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+      );
+      expect(overflow).toBeLessThanOrEqual(0);
+    });
+  }
+}
+
+test("draws a plain map, and the ground image when there is one", async ({ page }) => {
+  const fake = await FakeStation.behind(page, station([vehicle(1)]));
+  await page.goto("/");
+  await expect(page.getByText("No ground image yet")).toBeVisible();
+  await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.001);
+  expect(await drawnShare(page)).toBeLessThan(0.2);
+  fake.showPicture(await fieldPicture(page));
+  fake.say(busyState(0.1));
+  await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.2);
+});
+
+test("says that contact is lost for as long as it is, and finds back", async ({ page }) => {
+  const fake = await FakeStation.behind(page, station([vehicle(1)]));
+  await page.goto("/");
+  await expect(page.getByTestId("state-word")).toHaveText("Flying");
+  await fake.vanish();
+  await expect(page.getByText("No contact with the station.")).toBeVisible();
+  await expect(page.getByTestId("state-word")).toHaveText("Communication lost");
+  await expect(page.locator(".vehicle.is-stale")).toHaveCount(1);
+  await expect(page.locator(".craft.is-stale")).toHaveCount(1);
+  fake.comeBack();
+  await expect(page.getByText("No contact with the station.")).toBeHidden();
+  await expect(page.getByTestId("state-word")).toHaveText("Flying");
+});
+
+test("gives an order only to whom it names, and only when held", async ({ page }) => {
+  const fake = await FakeStation.behind(page, station([vehicle(1), vehicle(2), vehicle(3)]));
+  const talk = setInterval(() => fake.say(station([vehicle(1), vehicle(2), vehicle(3)])), 100);
+  await page.goto("/");
+  await page.getByRole("checkbox", { name: "Select 2 Birch too" }).check();
+  await page.getByRole("checkbox", { name: "Select 3 Cedar too" }).check();
+  const land = page.getByRole("button", { name: "Land 2 Birch and 3 Cedar: hold for 1.5 seconds" });
+  await land.click();
+  await expect(page.getByText("Orders go to 2 Birch and 3 Cedar")).toBeVisible();
+  expect(fake.orders).toEqual([]);
+  await land.focus();
+  await page.keyboard.down("Enter");
+  await expect(page.getByText("accepted, command 40")).toBeVisible();
+  await page.keyboard.up("Enter");
+  clearInterval(talk);
+  expect(fake.orders).toEqual([
+    { serials: ["SN-002", "SN-003"], order: { kind: "land" }, takeoff: false },
+  ]);
+});
+
+test("stops all with one key, even while the help is open", async ({ page }) => {
+  const fake = await FakeStation.behind(page, station([vehicle(1)]));
+  await page.goto("/");
+  await expect(page.locator("button.craft")).toHaveCount(1);
+  await page.keyboard.press("?");
+  await expect(page.getByRole("dialog", { name: "Help" })).toBeVisible();
+  await page.keyboard.press("Shift+S");
+  await expect.poll(() => fake.allStops).toBe(1);
+  await page.keyboard.press("Escape");
+  await expect(page.getByRole("dialog", { name: "Help" })).toBeHidden();
+  expect(fake.orders).toEqual([]);
+});
+
+test("keeps hostile text harmless on the map as well", async ({ page }) => {
+  const name = `<img src=x onerror="window.broken=1">`;
+  await FakeStation.behind(page, station([vehicle(1, { name, serial: "../..\u0007" })]));
+  await page.goto("/");
+  await expect(page.locator(".craft-name")).toHaveText(name);
+  expect(await page.evaluate(() => "broken" in window)).toBe(false);
+  await expect(page.locator("img")).toHaveCount(0);
+});

@@ -1,0 +1,88 @@
+import type { StationState } from "../../src/protocol";
+import { alarm, at, command, link, station, vehicle } from "../../src/testing/world";
+
+/** A field on a bad day: everything a page must be able to show at once. */
+export function busyState(elapsed_s: number): StationState {
+  const vehicles = [
+    vehicle(1, {
+      is_eye: true,
+      frame: { id: 12, received_age_s: 0.3, captured_age_s: 0.8, captured_sigma_s: 0.2 },
+    }),
+    vehicle(2, { flight_mode: { value: "auto_landing", age_s: 0.4 } }),
+    vehicle(3, {
+      staleness: "lost",
+      telemetry_age_s: 4.2,
+      position: { ...vehicle(3).position, age_s: 4.2 },
+    }),
+    vehicle(4, {
+      is_simulated: true,
+      battery_fraction: { value: 0.28, age_s: 0.4 },
+      battery_warning: { value: "low", age_s: 0.4 },
+    }),
+    vehicle(5, { is_flying: { value: false, age_s: 0.1 }, conflict_link_ids: [9] }),
+    vehicle(6, {
+      number: 0,
+      serial: null,
+      name: "link 6",
+      position: { latitude_deg: null, longitude_deg: null, age_s: null },
+      is_flying: { value: null, age_s: null },
+    }),
+  ];
+  return station(vehicles, {
+    time_ns: 1e9 * (1 + elapsed_s),
+    links: [
+      ...vehicles.map((one) =>
+        link(one.number, {
+          claimed_serial: one.serial,
+          status: one.serial === null ? "unidentified" : "identified",
+        }),
+      ),
+      link(9, { status: "conflict", claimed_serial: "SN-005", bad_hash: 3, bytes_skipped: 812 }),
+    ],
+    alarms: [
+      alarm(1),
+      alarm(2, {
+        severity: "critical",
+        vehicle_name: "Cedar",
+        text: "Flying, and nothing heard for 4 s.",
+        raised_age_s: 1.2,
+      }),
+      alarm(3, {
+        severity: "error",
+        vehicle_name: "Elm",
+        text: "Link 9 claims to be this vehicle too.",
+        raised_age_s: 60,
+        is_acknowledged: true,
+      }),
+    ],
+    commands: [
+      command(14),
+      command(15, {
+        kind: "land",
+        vehicle_name: "Birch",
+        phase: "acknowledged",
+        is_final: false,
+        history: command(1).history.slice(0, 3),
+      }),
+      command(16, {
+        kind: "return_home",
+        vehicle_name: "Elm",
+        phase: "refused_by_station",
+        history: [{ phase: "refused_by_station", age_s: 3, note: "" }],
+        note: "flying: it is on the ground, and only an explicit takeoff may lift it",
+      }),
+    ],
+    ground_image: {
+      frame_id: 12,
+      serial: "SN-001",
+      captured_age_s: 0.8,
+      captured_sigma_s: 0.2,
+      registration: "unregistered",
+      reference: "telemetry at the marked frame",
+      corners: [at(-170, 130), at(90, 130), at(90, -130), at(-170, -130)],
+      cell_m: 0.5,
+      rows: 520,
+      cols: 520,
+    },
+  });
+}

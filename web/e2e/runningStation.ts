@@ -1,0 +1,58 @@
+import { type ChildProcess, spawn } from "node:child_process";
+import { fileURLToPath } from "node:url";
+
+const PROJECT = fileURLToPath(new URL("../..", import.meta.url));
+const COMMAND =
+  process.env["RECON_E2E_COMMAND"] ?? "uv run --locked recon demo --http-port 0 --link-port 0";
+const STARTS_WITHIN_MS = 90_000;
+const ENDS_WITHIN_MS = 10_000;
+
+/** A station with simulated vehicles, in a process of its own. */
+export interface RunningStation {
+  /** Where its console is. */
+  readonly url: string;
+  stop(): Promise<void>;
+}
+
+/** Starts `RECON_E2E_COMMAND` and waits until it prints the console's address. */
+export async function startStation(): Promise<RunningStation> {
+  const station = spawn(COMMAND, { cwd: PROJECT, shell: true, detached: true });
+  try {
+    return { url: await consoleAddress(station), stop: () => stop(station) };
+  } catch (error) {
+    await stop(station);
+    throw error;
+  }
+}
+
+function consoleAddress(station: ChildProcess): Promise<string> {
+  return new Promise((resolve, reject) => {
+    let said = "";
+    const fail = (why: string) => reject(new Error(`"${COMMAND}" ${why}. It said:\n${said}`));
+    const timer = setTimeout(() => fail("printed no console address"), STARTS_WITHIN_MS);
+    const listen = (chunk: Buffer) => {
+      said += chunk.toString();
+      const url = /^console: (http:\/\/\S+)/m.exec(said)?.[1];
+      if (url === undefined) return;
+      clearTimeout(timer);
+      resolve(url);
+    };
+    station.stdout?.on("data", listen);
+    station.stderr?.on("data", listen);
+    station.once("exit", (code) => {
+      clearTimeout(timer);
+      fail(`ended with ${code}`);
+    });
+  });
+}
+
+/** Ends the station and all it started, first kindly. */
+async function stop(station: ChildProcess): Promise<void> {
+  const { pid } = station;
+  if (pid === undefined || station.exitCode !== null) return;
+  const ended = new Promise((resolve) => station.once("exit", resolve));
+  process.kill(-pid, "SIGINT");
+  const timer = setTimeout(() => process.kill(-pid, "SIGKILL"), ENDS_WITHIN_MS);
+  await ended;
+  clearTimeout(timer);
+}

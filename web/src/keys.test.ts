@@ -1,0 +1,55 @@
+import { describe, expect, it, vi } from "vitest";
+import { actOnKey, type KeyActions } from "./keys";
+
+function press(init: KeyboardEventInit, target?: HTMLElement) {
+  const actions = {
+    allStop: vi.fn(),
+    selectOnly: vi.fn(),
+    toggle: vi.fn(),
+    selectAll: vi.fn(),
+    clear: vi.fn(),
+    fit: vi.fn(),
+    toggleTheme: vi.fn(),
+    help: vi.fn(),
+  } satisfies KeyActions;
+  const event = new KeyboardEvent("keydown", { bubbles: true, cancelable: true, ...init });
+  (target ?? document.body).dispatchEvent(event);
+  const isTaken = actOnKey(event, actions);
+  const called = Object.entries(actions).filter(([, action]) => action.mock.calls.length > 0);
+  return {
+    isTaken,
+    called: called.map(([name, action]) => [name, ...(action.mock.calls[0] ?? [])]),
+  };
+}
+
+describe("the page's keys", () => {
+  it.each([
+    [{ key: "?", code: "Slash", shiftKey: true }, ["help"]],
+    [{ key: "Escape", code: "Escape" }, ["clear"]],
+    [{ key: "a", code: "KeyA", ctrlKey: true }, ["selectAll"]],
+    [{ key: "3", code: "Digit3" }, ["selectOnly", 3]],
+    [{ key: "#", code: "Digit3", shiftKey: true }, ["toggle", 3]],
+    [{ key: "7", code: "Numpad7" }, ["selectOnly", 7]],
+    [{ key: "S", code: "KeyS", shiftKey: true }, ["allStop"]],
+    [{ key: "f", code: "KeyF" }, ["fit"]],
+    [{ key: "T", code: "KeyT" }, ["toggleTheme"]],
+  ])("%j does %j", (init, expected) => expect(press(init).called).toEqual([expected]));
+
+  it.each([
+    { key: "s", code: "KeyS" },
+    { key: "l", code: "KeyL" },
+    { key: "0", code: "Digit0" },
+    { key: "1", code: "Digit1", altKey: true },
+    { key: "s", code: "KeyS", ctrlKey: true, shiftKey: true },
+    { key: "S", code: "KeyS", shiftKey: true, repeat: true },
+  ])("leaves %j alone", (init) => {
+    expect(press(init)).toEqual({ isTaken: false, called: [] });
+  });
+
+  it("leaves keys to text fields", () => {
+    const field = document.createElement("textarea");
+    document.body.append(field);
+    expect(press({ key: "3", code: "Digit3" }, field).called).toEqual([]);
+    field.remove();
+  });
+});

@@ -1,0 +1,90 @@
+import { describe, expect, it } from "vitest";
+import { at, FIELD, station, vehicle } from "../testing/world";
+import { boxAround, circle, gridLines, metresPerDegree, roundStepM } from "./localGrid";
+import { gridOrigin, wholeView } from "./scene";
+
+const UNPLACED = { position: { latitude_deg: null, longitude_deg: null, age_s: null } };
+
+describe("metres and degrees", () => {
+  it("agree with the WGS84 tables", () => {
+    // One degree at 45° north: 111,131.7 m of latitude and 78,846.8 m of longitude.
+    expect(metresPerDegree(45).lat).toBeCloseTo(111_131.7, 0);
+    expect(metresPerDegree(45).lon).toBeCloseTo(78_846.8, 0);
+    expect(metresPerDegree(0).lon).toBeCloseTo(111_319.5, 0);
+  });
+
+  it("make a circle of the right size", () => {
+    const centre = { lon: FIELD.lon, lat: FIELD.lat };
+    const per = metresPerDegree(FIELD.lat);
+    const ring = circle(centre, 25);
+    for (const [lon, lat] of ring) {
+      const east_m = (lon - centre.lon) * per.lon;
+      expect(Math.hypot(east_m, (lat - centre.lat) * per.lat)).toBeCloseTo(25, 6);
+    }
+    expect(ring.at(-1)).toEqual(ring[0]);
+  });
+});
+
+describe("the grid", () => {
+  it.each([
+    [0.3, 0.5],
+    [1, 1],
+    [1.1, 2],
+    [21, 50],
+    [500, 500],
+    [501, 1000],
+  ])("has steps of at least %d m: %d m", (least, step) => {
+    expect(roundStepM(least)).toBeCloseTo(step, 9);
+  });
+
+  it("has its lines at whole steps from the origin, inside the view", () => {
+    const [west, south] = at(-130, -70);
+    const [east, north] = at(260, 90);
+    const origin = { lon: FIELD.lon, lat: FIELD.lat };
+    const grid = gridLines({ west, south, east, north }, origin, 100);
+    expect(grid.eastings.map(({ m }) => m)).toEqual([-100, 0, 100, 200]);
+    expect(grid.northings.map(({ m }) => m)).toEqual([0]);
+    expect(grid.eastings[1]?.deg).toBe(FIELD.lon);
+  });
+
+  it("never draws without end", () => {
+    const world = { west: -180, south: -80, east: 180, north: 80 };
+    const grid = gridLines(world, { lon: 0, lat: 0 }, 1);
+    expect(grid.eastings.length).toBeLessThanOrEqual(200);
+  });
+
+  it("counts from the site, else from the first vehicle with a place", () => {
+    expect(gridOrigin(station([vehicle(1)]))).toEqual({ lon: FIELD.lon, lat: FIELD.lat });
+    const placed = vehicle(2);
+    const withoutSite = station([vehicle(1, UNPLACED), placed], { site: null });
+    expect(gridOrigin(withoutSite)).toEqual({
+      lon: placed.position.longitude_deg,
+      lat: placed.position.latitude_deg,
+    });
+    expect(gridOrigin(station([], { site: null }))).toBeNull();
+  });
+});
+
+describe("the first view", () => {
+  it("holds every vehicle and the ground image", () => {
+    const state = station([vehicle(1), vehicle(4), vehicle(2, UNPLACED)]);
+    const box = wholeView(state);
+    for (const { position } of [vehicle(1), vehicle(4)]) {
+      expect(box?.west).toBeLessThanOrEqual(position.longitude_deg ?? Number.NaN);
+      expect(box?.east).toBeGreaterThanOrEqual(position.longitude_deg ?? Number.NaN);
+      expect(box?.south).toBeLessThanOrEqual(position.latitude_deg ?? Number.NaN);
+      expect(box?.north).toBeGreaterThanOrEqual(position.latitude_deg ?? Number.NaN);
+    }
+  });
+
+  it("leaves a lone vehicle its surroundings", () => {
+    const box = boxAround([{ lon: FIELD.lon, lat: FIELD.lat }], 120);
+    const per = metresPerDegree(FIELD.lat);
+    expect(((box?.east ?? 0) - (box?.west ?? 0)) * per.lon).toBeCloseTo(120);
+  });
+
+  it("shows the site when nothing is placed, and waits without one", () => {
+    expect(wholeView(station([]))).not.toBeNull();
+    expect(wholeView(station([vehicle(1, UNPLACED)], { site: null }))).toBeNull();
+  });
+});

@@ -1,0 +1,66 @@
+import { describe, expect, it } from "vitest";
+import { type Hold, type HoldEvent, holdProgress, IDLE, STALL_MS, stepHold } from "./hold";
+
+const PRESS: HoldEvent = { kind: "press", duration_ms: 1500, targets: '["A"]' };
+const TICK: HoldEvent = { kind: "tick", targets: '["A"]' };
+
+/** Runs events given as [time, event]. */
+function run(events: readonly (readonly [number, HoldEvent])[]): Hold {
+  return events.reduce((hold, [now_ms, event]) => stepHold(hold, event, now_ms), IDLE);
+}
+
+/** Ticks every 50 ms from `from_ms` through `to_ms`. */
+function ticks(from_ms: number, to_ms: number): [number, HoldEvent][] {
+  const count = Math.floor((to_ms - from_ms) / 50) + 1;
+  return Array.from({ length: count }, (_, index) => [from_ms + 50 * index, TICK]);
+}
+
+describe("hold to confirm", () => {
+  it("confirms after the whole time and not before", () => {
+    expect(run([[0, PRESS], ...ticks(50, 1450)]).kind).toBe("holding");
+    expect(run([[0, PRESS], ...ticks(50, 1500)]).kind).toBe("done");
+  });
+
+  it("gives no order when it is let go of before", () => {
+    const released = run([[0, PRESS], ...ticks(50, 1400), [1410, { kind: "release" }]]);
+    expect(released).toEqual(IDLE);
+    expect(stepHold(released, TICK, 1600)).toEqual(IDLE);
+  });
+
+  it("gives no order when the vehicles change meanwhile", () => {
+    const other: HoldEvent = { kind: "tick", targets: '["A","B"]' };
+    expect(run([[0, PRESS], ...ticks(50, 500), [550, other], ...ticks(600, 3000)])).toEqual(IDLE);
+  });
+
+  it("gives no order when the page stood still, for a release may have been missed", () => {
+    expect(run([[0, PRESS], ...ticks(50, 1000), [1000 + STALL_MS + 1, TICK]])).toEqual(IDLE);
+    expect(
+      run([
+        [0, PRESS],
+        [1500, TICK],
+      ]),
+    ).toEqual(IDLE);
+  });
+
+  it("starts with nobody named: not at all", () => {
+    expect(run([[0, { kind: "press", duration_ms: 400, targets: "" }]])).toEqual(IDLE);
+  });
+
+  it("confirms once, however long it is held and pressed on", () => {
+    const done = run([[0, PRESS], ...ticks(50, 1500)]);
+    expect(stepHold(done, TICK, 5000)).toBe(done);
+    expect(stepHold(done, PRESS, 5000)).toBe(done);
+    expect(stepHold(done, { kind: "release" }, 5000)).toEqual(IDLE);
+  });
+
+  it("does not start over when it is pressed twice", () => {
+    const hold = run([[0, PRESS], ...ticks(50, 1000), [1020, PRESS], ...ticks(1050, 1500)]);
+    expect(hold.kind).toBe("done");
+  });
+
+  it("tells how much is through", () => {
+    expect(holdProgress(IDLE, 100)).toBe(0);
+    expect(holdProgress(run([[0, PRESS]]), 750)).toBeCloseTo(0.5);
+    expect(holdProgress({ kind: "done" }, 0)).toBe(1);
+  });
+});

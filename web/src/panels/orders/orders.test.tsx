@@ -1,0 +1,140 @@
+import { afterEach, beforeEach, describe, expect, it } from "vitest";
+import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { station, vehicle } from "../../testing/world";
+import { AllStop } from "./AllStop";
+import { OrderBar } from "./OrderBar";
+
+const FLEET = station([vehicle(1), vehicle(2), vehicle(3, { number: 0, serial: null })]);
+let page: RenderedPage;
+
+beforeEach(() => {
+  page = renderPage(
+    () => (
+      <>
+        <OrderBar />
+        <AllStop />
+      </>
+    ),
+    FLEET,
+  );
+});
+
+afterEach(() => page.dispose());
+
+const land = () => find<HTMLButtonElement>(page.root, ".order-land");
+const pointer = (type: string) =>
+  land().dispatchEvent(new PointerEvent(type, { bubbles: true, button: 0 }));
+const key = (type: string, init: KeyboardEventInit, target: EventTarget = land()) =>
+  target.dispatchEvent(new KeyboardEvent(type, { bubbles: true, ...init }));
+
+describe("an order's button", () => {
+  it("orders exactly the selected vehicles once it was held for its time", () => {
+    page.shared.selection.all([1, 2]);
+    pointer("pointerdown");
+    page.clock.advance(1450);
+    expect(page.orders).toEqual([]);
+    page.clock.advance(100);
+    expect(page.orders).toEqual([{ serials: ["SN-001", "SN-002"], order: { kind: "land" } }]);
+    page.clock.advance(5000);
+    expect(page.orders).toHaveLength(1);
+  });
+
+  it("names the vehicles before and while it is held", () => {
+    page.shared.selection.all([1, 2]);
+    expect(find(page.root, ".orders-to").textContent).toBe("Orders go to 1 Alder and 2 Birch");
+    expect(land().getAttribute("aria-label")).toContain("1 Alder and 2 Birch");
+    pointer("pointerdown");
+    const said = find(page.root, ".orders-to").textContent;
+    expect(said).toBe("Keep holding to land: 1 Alder and 2 Birch");
+  });
+
+  it("does nothing while nobody is selected", () => {
+    pointer("pointerdown");
+    key("keydown", { key: " " });
+    page.clock.advance(5000);
+    expect(page.orders).toEqual([]);
+    expect(land().getAttribute("aria-disabled")).toBe("true");
+  });
+
+  it.each(["pointerup", "pointerleave", "pointercancel", "blur"])("gives up at %s", (type) => {
+    page.shared.selection.only(1);
+    pointer("pointerdown");
+    page.clock.advance(1000);
+    pointer(type);
+    page.clock.advance(5000);
+    expect(page.orders).toEqual([]);
+  });
+
+  it("gives up when the selection changes or the vehicle goes", () => {
+    page.shared.selection.only(1);
+    pointer("pointerdown");
+    page.clock.advance(1000);
+    page.shared.selection.toggle(2);
+    page.clock.advance(5000);
+    pointer("pointerup");
+    pointer("pointerdown");
+    page.clock.advance(1000);
+    page.say(station([]));
+    page.clock.advance(5000);
+    expect(page.orders).toEqual([]);
+  });
+
+  it("goes on through new states, which come ten times a second", () => {
+    page.shared.selection.only(1);
+    pointer("pointerdown");
+    const before = land();
+    for (let message = 0; message < 16; message += 1) {
+      page.say(station([vehicle(1), vehicle(2)], { time_ns: message * 1e8 }));
+      page.clock.advance(100);
+    }
+    expect(land()).toBe(before);
+    expect(page.orders).toHaveLength(1);
+  });
+
+  it("works from the keyboard, whose repeats mean nothing", () => {
+    page.shared.selection.only(2);
+    key("keydown", { key: "Enter" });
+    page.clock.advance(800);
+    key("keydown", { key: "Enter", repeat: true });
+    page.clock.advance(800);
+    key("keyup", { key: "Enter" });
+    expect(page.orders).toEqual([{ serials: ["SN-002"], order: { kind: "land" } }]);
+  });
+
+  it("works with Shift and its letter, and not without Shift to the end", () => {
+    page.shared.selection.only(1);
+    key("keydown", { code: "KeyL", key: "L", shiftKey: true }, window);
+    page.clock.advance(1000);
+    key("keyup", { key: "Shift" }, window);
+    page.clock.advance(5000);
+    expect(page.orders).toEqual([]);
+    key("keydown", { code: "KeyR", key: "R", shiftKey: true }, window);
+    page.clock.advance(1600);
+    expect(page.orders).toEqual([{ serials: ["SN-001"], order: { kind: "return_home" } }]);
+  });
+
+  it("does not order a vehicle that has not said who it is", () => {
+    page.shared.selection.all([1, -3]);
+    expect(find(page.root, ".orders-to").textContent).toContain("Not to ? Cedar");
+    pointer("pointerdown");
+    page.clock.advance(2000);
+    expect(page.orders.map(({ serials }) => serials)).toEqual([["SN-001"]]);
+  });
+
+  it("asks less of hover, the safe one", () => {
+    page.shared.selection.only(1);
+    const hover = find(page.root, ".order-hover");
+    hover.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(450);
+    expect(page.orders).toEqual([{ serials: ["SN-001"], order: { kind: "hover" } }]);
+  });
+});
+
+describe("all stop", () => {
+  it("needs one press, whoever is selected and whether the station is heard or not", () => {
+    page.connect({ kind: "lost", reason: "gone", attempt: 1 });
+    find(page.root, ".all-stop").click();
+    expect(page.allStops()).toBe(1);
+    expect(page.orders).toEqual([]);
+  });
+});

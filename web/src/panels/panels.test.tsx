@@ -1,0 +1,190 @@
+import { afterEach, describe, expect, it } from "vitest";
+import type { StationState } from "../protocol";
+import { find, type RenderedPage, renderPage } from "../testing/renderPage";
+import { alarm, command, link, station, vehicle } from "../testing/world";
+import { AlarmList } from "./alarms/AlarmList";
+import { LostBanner } from "./bar/LostBanner";
+import { StateWord } from "./bar/StateWord";
+import { TopBar } from "./bar/TopBar";
+import { CommandList } from "./commands/CommandList";
+import { factsOf } from "./detail/facts";
+import { VehicleDetail } from "./detail/VehicleDetail";
+import { LinkList } from "./links/LinkList";
+import { StationPanel } from "./station/StationPanel";
+import { VehicleList } from "./vehicles/VehicleList";
+
+const HOSTILE = '<img src=x onerror="document.title=1"><script>1</script>\u202e';
+
+let page: RenderedPage;
+const show = (part: Parameters<typeof renderPage>[0], state: StationState) => {
+  page = renderPage(part, state);
+  return page.root;
+};
+
+afterEach(() => page.dispose());
+
+describe("text from the wire", () => {
+  it("is shown as text in every panel", () => {
+    const one = vehicle(1, { serial: HOSTILE, name: HOSTILE, model: HOSTILE });
+    const state = station([one], {
+      alarms: [alarm(1, { text: HOSTILE, vehicle_name: HOSTILE })],
+      commands: [command(1, { vehicle_name: HOSTILE, note: HOSTILE, issued_by: HOSTILE })],
+      links: [link(1, { claimed_serial: HOSTILE, closed_reason: HOSTILE })],
+    });
+    const root = show(
+      () => (
+        <>
+          <VehicleList />
+          <VehicleDetail />
+          <AlarmList />
+          <CommandList />
+          <LinkList />
+          <StationPanel />
+        </>
+      ),
+      state,
+    );
+    page.shared.selection.only(1);
+    expect(root.querySelector("img, script")).toBeNull();
+    expect(root.textContent?.split(HOSTILE).length).toBeGreaterThan(8);
+  });
+});
+
+describe("the vehicle list", () => {
+  it("marks simulated vehicles with a word", () => {
+    const root = show(VehicleList, station([vehicle(1), vehicle(2, { is_simulated: true })]));
+    const tags = [...root.querySelectorAll("li")].map((row) => row.textContent?.includes("SIM"));
+    expect(tags).toEqual([false, true]);
+  });
+
+  it("greys a vehicle as its telemetry grows old, and counts its age", () => {
+    const root = show(VehicleList, station([vehicle(1, { telemetry_age_s: 0.2 })]));
+    expect(find(root, ".vehicle").classList.contains("is-stale")).toBe(false);
+    page.age(4);
+    expect(find(root, ".vehicle").classList.contains("is-stale")).toBe(true);
+    expect(find(root, ".vehicle-age").textContent).toBe("4.2 s");
+    expect(root.textContent).toContain("No contact");
+  });
+
+  it("shows what is unknown as a dash and never as a zero", () => {
+    const unknown = { value: null, age_s: null };
+    const velocity = { north_mps: null, east_mps: null, down_mps: null, age_s: null };
+    const one = vehicle(1, {
+      height_above_takeoff_m: unknown,
+      battery_fraction: unknown,
+      velocity_ned: velocity,
+    });
+    const root = show(VehicleList, station([one]));
+    expect(find(root, ".vehicle-figures").textContent).toMatch(/^↥ ——▮ —/);
+  });
+
+  it("selects one by its row and more by their boxes", () => {
+    const root = show(VehicleList, station([vehicle(1), vehicle(2), vehicle(3)]));
+    const rows = [...root.querySelectorAll<HTMLElement>(".vehicle-body")];
+    rows[1]?.click();
+    expect(page.shared.selection.keys()).toEqual([2]);
+    root.querySelectorAll<HTMLElement>("input")[2]?.click();
+    expect(page.shared.selection.keys()).toEqual([2, 3]);
+    rows[0]?.click();
+    expect(page.shared.selection.keys()).toEqual([1]);
+  });
+
+  it("says where apps connect while there are none", () => {
+    expect(show(VehicleList, station([])).textContent).toContain("127.0.0.1:3001");
+  });
+});
+
+describe("the facts of a vehicle", () => {
+  it("name each height's datum and say why a value is unknown", () => {
+    page = renderPage(() => null, station([]));
+    const facts = factsOf(
+      vehicle(1, {
+        wind_level: { value: null, age_s: 0.4 },
+        mission_id: { value: null, age_s: null },
+        waypoint_altitude: "unset",
+      }),
+    );
+    const of = (name: string) => facts.find((fact) => fact.name === name);
+    expect(of("Height above takeoff")?.text).toBe("45.0\u00a0m");
+    expect(of("Altitude, WGS84, app's own")?.text).toBe("331.4\u00a0m");
+    expect(of("Wind level")).toMatchObject({ text: "—", why: "the app sends no usable value" });
+    expect(of("Mission")).toMatchObject({ text: "—", why: "not received yet" });
+    expect(of("Waypoints are sent")?.why).toContain("missions are refused");
+  });
+});
+
+describe("alarms", () => {
+  it("name the vehicle, come worst first and can be acknowledged", () => {
+    const alarms = [
+      alarm(1),
+      alarm(7, { severity: "critical", vehicle_name: "Cedar", text: "Lost." }),
+    ];
+    const root = show(AlarmList, station([vehicle(1)], { alarms }));
+    const rows = [...root.querySelectorAll("li")].map((row) => row.textContent);
+    expect(rows[0]).toContain("Cedar Lost.");
+    find(root, "button[aria-label='Acknowledge: Cedar Lost.']").click();
+    expect(page.acknowledged).toEqual([7]);
+  });
+});
+
+describe("commands", () => {
+  it("show their life with the newest first, and the reason of a refusal", () => {
+    const refused = command(9, { phase: "refused_by_station", note: "flying: on the ground" });
+    const root = show(CommandList, station([], { commands: [command(8), refused] }));
+    const rows = [...root.querySelectorAll("[data-testid^=command-]")];
+    expect(rows.map((row) => row.getAttribute("data-testid"))).toEqual(["command-9", "command-8"]);
+    expect(rows[0]?.textContent).toContain("flying: on the ground");
+    const life = [...(rows[1]?.querySelectorAll(".life li") ?? [])].map((item) => item.textContent);
+    expect(life).toEqual([
+      "queued +0.0 s",
+      "sent +0.0 s",
+      "acknowledged +0.2 s",
+      "confirmed +2.6 s",
+    ]);
+  });
+});
+
+describe("links", () => {
+  it("put conflicts and unidentified ones first and tell what was wrong", () => {
+    const links = [
+      link(1),
+      link(2, { status: "unidentified", claimed_serial: null }),
+      link(3, { status: "conflict", bad_hash: 2, bytes_skipped: 40 }),
+    ];
+    const rows = [...show(LinkList, station([], { links })).querySelectorAll("li")];
+    expect(rows.map((row) => row.querySelector("strong")?.textContent)).toEqual([
+      "Link 3",
+      "Link 2",
+      "Link 1",
+    ]);
+    expect(rows[0]?.textContent).toContain("2 bad hash, 40 bytes skipped");
+  });
+});
+
+describe("the top", () => {
+  it("says the state in a word, and why when it is pressed", () => {
+    const root = show(StateWord, station([vehicle(1)], { alarms: [alarm(1)] }));
+    expect(find(root, "[data-testid=state-word]").textContent).toBe("Flying");
+    expect(root.querySelector(".state-reasons")).toBeNull();
+    find(root, ".state-word").click();
+    expect(find(root, ".state-reasons").textContent).toContain("Dogwood: The aircraft warns");
+  });
+
+  it("tells a simulation, and a mixture even more", () => {
+    const simulated = vehicle(1, { is_simulated: true });
+    const root = show(() => <TopBar onHelp={() => {}} />, station([simulated]));
+    expect(find(root, ".tag-simulated").textContent).toBe("SIMULATION");
+    page.say(station([simulated, vehicle(2)]));
+    expect(find(root, ".tag-simulated").textContent).toBe("REAL AND SIMULATED TOGETHER");
+  });
+
+  it("keeps a banner for as long as the stream is lost", () => {
+    const root = show(LostBanner, station([vehicle(1)]));
+    expect(root.querySelector(".banner")).toBeNull();
+    page.connect({ kind: "lost", reason: "The station says nothing.", attempt: 3 });
+    page.age(12);
+    expect(find(root, ".banner").textContent).toContain("Everything below is 12 s old.");
+    page.connect({ kind: "live" });
+    expect(root.querySelector(".banner")).toBeNull();
+  });
+});
