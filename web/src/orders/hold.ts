@@ -3,14 +3,18 @@
  * for its whole time, on the same vehicles as when it was pressed.
  */
 
-/** If the page stood still for longer than this while a button was held, a release may have been missed. */
-export const STALL_MS = 400;
+/**
+ * The most that one look at the button counts for. While a busy page stands still, a release may wait
+ * unseen; that time does not count, and the release is heard before the rest of the hold is through.
+ */
+export const MOST_COUNTED_MS = 100;
 
 export type Hold =
   | { readonly kind: "idle" }
   | {
       readonly kind: "holding";
-      readonly since_ms: number;
+      /** Time that was seen to be held. */
+      readonly held_ms: number;
       readonly seen_ms: number;
       readonly duration_ms: number;
       readonly targets: string;
@@ -33,7 +37,7 @@ export function stepHold(hold: Hold, event: HoldEvent, now_ms: number): Hold {
       if (hold.kind !== "idle" || event.targets === "") return hold;
       return {
         kind: "holding",
-        since_ms: now_ms,
+        held_ms: 0,
         seen_ms: now_ms,
         duration_ms: event.duration_ms,
         targets: event.targets,
@@ -47,16 +51,14 @@ export function stepHold(hold: Hold, event: HoldEvent, now_ms: number): Hold {
 }
 
 function heldOn(hold: Hold & { kind: "holding" }, targets: string, now_ms: number): Hold {
-  const hasChanged = targets !== hold.targets;
-  const hasStalled = now_ms - hold.seen_ms > STALL_MS;
-  if (hasChanged || hasStalled) return IDLE;
-  if (now_ms - hold.since_ms >= hold.duration_ms) return { kind: "done" };
-  return { ...hold, seen_ms: now_ms };
+  if (targets !== hold.targets) return IDLE;
+  const held_ms = hold.held_ms + Math.min(MOST_COUNTED_MS, now_ms - hold.seen_ms);
+  if (held_ms >= hold.duration_ms) return { kind: "done" };
+  return { ...hold, held_ms, seen_ms: now_ms };
 }
 
 /** How much of the time is through, 0 to 1. */
-export function holdProgress(hold: Hold, now_ms: number): number {
+export function holdProgress(hold: Hold): number {
   if (hold.kind === "idle") return 0;
-  if (hold.kind === "done") return 1;
-  return Math.min(1, Math.max(0, (now_ms - hold.since_ms) / hold.duration_ms));
+  return hold.kind === "done" ? 1 : Math.min(1, hold.held_ms / hold.duration_ms);
 }

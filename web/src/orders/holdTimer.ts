@@ -34,7 +34,7 @@ export function createHoldTimer(
     const before = hold;
     hold = stepHold(hold, event, now_ms);
     setKind(hold.kind);
-    setProgress(holdProgress(hold, now_ms));
+    setProgress(holdProgress(hold));
     cancelTick();
     if (hold.kind === "holding") cancelTick = clock.after(TICK_MS, tick);
     if (hold.kind === "done" && before.kind !== "done") confirm();
