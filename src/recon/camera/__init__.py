@@ -19,9 +19,9 @@ from recon.camera.errors import (
 from recon.camera.ground import GroundProjector
 from recon.camera.ground_maps import ground_maps
 from recon.camera.image_circle import ImageCircle, find_image_circle
-from recon.camera.motion import TelemetryReference, displaced_pose, level_pose, moved_pose
+from recon.camera.motion import TelemetryReference, displaced_pose, level_pose
 from recon.camera.omnidirectional import OmnidirectionalCamera
-from recon.camera.pose import PointResidual, PoseSolution, pose_from_points, solve_pose
+from recon.camera.pose import PointResidual, PoseSolution, pose_from_points
 
 __all__ = [
     "CalibrationError",
@@ -48,9 +48,7 @@ __all__ = [
     "level_pose",
     "load_camera",
     "load_control_points",
-    "moved_pose",
     "parse_camera",
     "parse_control_points",
     "pose_from_points",
-    "solve_pose",
 ]

@@ -11,8 +11,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from recon.geo import shift_east_north_m
-from recon.model.geo import LatLon, LocalFrame
+from recon.model.geo import LatLon
 from recon.model.imagery import CameraPose
 from recon.model.units import is_finite
 from recon.model.vehicle import Attitude, Mount
@@ -75,17 +74,6 @@ def displaced_pose(
         rotation_enu_camera=turn @ marked_pose.rotation_enu_camera,
         position_enu_m=marked_pose.position_enu_m + np.append(shift_m, climb_m),
     )
-
-
-def moved_pose(
-    marked_pose: CameraPose,
-    frame: LocalFrame,
-    marked: TelemetryReference,
-    now: TelemetryReference,
-    mount: Mount,
-) -> CameraPose:
-    """Return `displaced_pose` with the shift taken from the telemetry's positions here."""
-    return displaced_pose(marked_pose, marked, now, shift_east_north_m(frame, marked, now), mount)
 
 
 def _body_rotation(telemetry: TelemetryReference, mount: Mount) -> FloatArray:

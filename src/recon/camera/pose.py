@@ -10,8 +10,6 @@ from recon.camera.control_points_file import ControlPoint
 from recon.camera.errors import PoseError
 from recon.camera.omnidirectional import OmnidirectionalCamera, scale_between
 from recon.camera.pose_fit import PoseFit, fit_pose, residuals_px
-from recon.geo import enu_from_points
-from recon.model.geo import LocalFrame
 from recon.model.imagery import CameraPose
 
 FloatArray = npt.NDArray[np.float64]
@@ -84,17 +82,6 @@ def pose_from_points(
     pixels = _pixels_at_model_size(camera, points, marked_size_px)
     _refuse_unseen(camera, points, pixels)
     return _report(camera, points, pixels, points_enu_m, fit_pose(camera, pixels, points_enu_m))
-
-
-def solve_pose(
-    camera: OmnidirectionalCamera,
-    points: Sequence[ControlPoint],
-    marked_size_px: tuple[int, int],
-    frame: LocalFrame,
-) -> PoseSolution:
-    """Return `pose_from_points` with the points' places turned into `frame`'s metres here."""
-    points_enu_m = enu_from_points(frame, [point.place for point in points])
-    return pose_from_points(camera, points, marked_size_px, points_enu_m)
 
 
 def _pixels_at_model_size(

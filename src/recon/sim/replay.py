@@ -16,9 +16,9 @@ from recon.camera import (
     jpeg_size,
     load_camera,
     load_control_points,
-    solve_pose,
+    pose_from_points,
 )
-from recon.geo import geo_from_enu
+from recon.geo import enu_from_points, geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.imagery import CameraPose, RgbImage
 from recon.sim.camera_feed import View
@@ -36,6 +36,9 @@ class StillFrame:
 
     def __init__(self, rgb: RgbImage) -> None:
         self.rgb = rgb
+
+    def prepare(self) -> None:
+        """Nothing is left to do."""
 
     def render(self, view: View) -> RgbImage:
         """Return the picture."""
@@ -76,7 +79,9 @@ def _rig(
         float(np.mean([p.ellipsoid_height_m for p in points])),
     )
     frame = LocalFrame(origin)
-    return rig_over(camera, frame, solve_pose(camera, points, marked_size_px, frame).pose)
+    points_enu_m = enu_from_points(frame, [point.place for point in points])
+    solution = pose_from_points(camera, points, marked_size_px, points_enu_m)
+    return rig_over(camera, frame, solution.pose)
 
 
 def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose) -> EyeRig:

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from recon.camera import OmnidirectionalCamera, TelemetryReference, moved_pose
+from recon.camera import OmnidirectionalCamera, TelemetryReference, displaced_pose
+from recon.geo import shift_east_north_m
 from recon.model.geo import LocalFrame
 from recon.model.imagery import CameraPose
 from recon.model.vehicle import Mount
@@ -23,4 +24,5 @@ class EyeRig:
 
     def pose_at(self, truth: TelemetryReference) -> CameraPose:
         """Return the camera's pose when the aircraft is truly at `truth`."""
-        return moved_pose(self.marked_pose, self.frame, self.marked, truth, self.mount)
+        shift_m = shift_east_north_m(self.frame, self.marked, truth)
+        return displaced_pose(self.marked_pose, self.marked, truth, shift_m, self.mount)

@@ -3,8 +3,9 @@
 import cv2
 
 from recon.camera.ground import GroundProjector
-from recon.camera.motion import moved_pose
+from recon.camera.motion import displaced_pose
 from recon.fleet.state import Fleet
+from recon.geo import shift_east_north_m
 from recon.model.imagery import GroundImage
 from recon.model.vehicle import VehicleProfile
 from recon.site import Site
@@ -40,7 +41,9 @@ def worker_tasks(site: Site) -> dict[str, Task]:
 
     def lay(payload: object) -> GroundImage:
         assert isinstance(payload, LayFrame)
-        pose = moved_pose(eye.solution.pose, frame, payload.reference, payload.telemetry, mount)
+        marked, now = payload.reference, payload.telemetry
+        shift_m = shift_east_north_m(frame, marked, now)
+        pose = displaced_pose(eye.solution.pose, marked, now, shift_m, mount)
         return projector.lay(payload.frame, pose)
 
     return {LAY_FRAME: lay}
