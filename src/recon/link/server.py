@@ -122,6 +122,9 @@ class Connection(asyncio.BufferedProtocol):
         now_ns = self.server.now_ns()
         self._record(Direction.FROM_APP, data, now_ns)
         self._take(self.session.receive(data, now_ns))
+        # An answer may be what the next command has waited for.
+        if self.session.commands_queued:
+            self.pump()
 
     def resume_writing(self) -> None:
         """Everything written has left: the next packet may go."""

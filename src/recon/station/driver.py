@@ -2,12 +2,12 @@
 
 import asyncio
 import time
-from collections import deque
 from collections.abc import Callable
 
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
 from recon.model.event import Event, Tick
+from recon.station.event_queue import EventQueue
 from recon.station.outputs import Output, SendCommand, StartWork
 from recon.station.state import Station
 from recon.station.step import step
@@ -38,21 +38,12 @@ class AsyncioDriver:
         self.started_at_ns = now_ns()
         self.links: LinkServer | None = None
         self.worker: Worker | None = None
-        self._queue: deque[Event] = deque()
-        self._is_draining = False
+        self._queue = EventQueue(self._step)
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def handle(self, event: Event) -> None:
         """Take an event; what a step's outputs cause is queued behind it."""
-        self._queue.append(event)
-        if self._is_draining:
-            return
-        self._is_draining = True
-        try:
-            while self._queue:
-                self._step(self._queue.popleft())
-        finally:
-            self._is_draining = False
+        self._queue.put(event)
 
     def handle_from_thread(self, event: Event) -> None:
         """Take an event from another thread."""

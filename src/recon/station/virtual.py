@@ -15,6 +15,7 @@ from recon.link.session import Session
 from recon.link.settings import LinkSettings
 from recon.model.event import Event, LinkClosed, LinkOpened, Tick
 from recon.model.units import seconds_to_ns
+from recon.station.event_queue import EventQueue
 from recon.station.outputs import Output, SendCommand, StartWork
 from recon.station.state import Station
 from recon.station.step import step
@@ -87,6 +88,7 @@ class VirtualDriver:
         self._due: list[tuple[int, int, Callable[[], None]]] = []
         self._sequence = 0
         self._steps = 0
+        self._queue = EventQueue(self._step)
 
     def connect(self, peer: Peer, link: FakeLink | None = None) -> int:
         """Open a connection for a peer; return its link id."""
@@ -109,11 +111,8 @@ class VirtualDriver:
         return link_id in self._wires
 
     def handle(self, event: Event) -> None:
-        """Give the station an event now."""
-        self.log.append(event)
-        self.station, outputs = step(self.station, event, self.now_ns)
-        for output in outputs:
-            self._carry_out(output)
+        """Give the station an event now; what a step's outputs cause is queued behind it."""
+        self._queue.put(event)
 
     def run_for(self, seconds: float) -> None:
         """Let virtual time pass."""
@@ -127,6 +126,12 @@ class VirtualDriver:
         while self.now_ns < end_ns and not is_reached(self.station):
             self._advance()
         return is_reached(self.station)
+
+    def _step(self, event: Event) -> None:
+        self.log.append(event)
+        self.station, outputs = step(self.station, event, self.now_ns)
+        for output in outputs:
+            self._carry_out(output)
 
     def _advance(self) -> None:
         self.now_ns += STEP_NS
@@ -157,7 +162,7 @@ class VirtualDriver:
 
     def _arrive(self, link_id: int, data: bytes) -> None:
         wire = self._wires.get(link_id)
-        if wire is not None and data:
+        if wire is not None and data and not wire.link.is_dead:
             self._handle_all(wire.session.receive(data, self.now_ns))
             self._pump(wire)
 
@@ -170,7 +175,12 @@ class VirtualDriver:
     def _post_to_app(self, wire: _Wire, data: bytes) -> None:
         arrives_at_ns = self.now_ns + self._delay_ns(wire.link)
         wire.to_app_at_ns = max(wire.to_app_at_ns, arrives_at_ns)
-        self._at(wire.to_app_at_ns, lambda: wire.peer.receive(data, self.now_ns))
+        self._at(wire.to_app_at_ns, lambda: self._reach_app(wire, data))
+
+    def _reach_app(self, wire: _Wire, data: bytes) -> None:
+        # What was on its way when a connection ended must not come out of the peer's next one.
+        if self._wires.get(wire.session.link_id) is wire and not wire.link.is_dead:
+            wire.peer.receive(data, self.now_ns)
 
     def _carry_out(self, output: Output) -> None:
         match output:
