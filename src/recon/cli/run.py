@@ -1,6 +1,5 @@
 """`recon run`: the station."""
 
-import asyncio
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +8,7 @@ import uvloop
 
 from recon.cli.console_files import console_folder
 from recon.link.settings import LinkSettings
-from recon.site import default_site, load_site
+from recon.site import Site, default_site, load_site, site_report
 from recon.station.run import RunConfig, Started, StartError, run
 
 SHORTEST_TOKEN = 16
@@ -53,12 +52,18 @@ def run_command(
         console=console_folder(),
         link=LinkSettings(garbage_limit_bytes=garbage_limit),
     )
+    describe(config.site)
     uvloop.run(run(config, _announce))
 
 
 async def _announce(started: Started) -> None:
     announce(started)
-    await asyncio.sleep(0)
+
+
+def describe(site: Site) -> None:
+    """Print what the site came to: how well the control points fit, what is assumed."""
+    for line in site_report(site):
+        print(line, flush=True)
 
 
 def announce(started: Started) -> None:
