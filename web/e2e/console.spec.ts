@@ -71,7 +71,7 @@ test("gives an order only to whom it names, and only when held", async ({ page }
   expect(fake.orders).toEqual([]);
   await land.focus();
   await page.keyboard.down("Enter");
-  await expect(page.getByText("accepted, command 40")).toBeVisible();
+  await expect(page.getByText("Accepted: Birch (command 40) and Cedar (command 41)")).toBeVisible();
   await page.keyboard.up("Enter");
   clearInterval(talk);
   expect(fake.orders).toEqual([

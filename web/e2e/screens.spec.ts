@@ -50,7 +50,7 @@ test("contact lost, help and a held button", async ({ page }) => {
   await page.keyboard.down("L");
   await expect(page.getByText("Keep holding to land")).toBeVisible();
   await page.screenshot({ path: "screens/holding.png" });
-  await expect(page.getByText("accepted, command 44")).toBeVisible();
+  await expect(page.getByText("(command 44)")).toBeVisible();
   await page.keyboard.up("L");
   await page.keyboard.up("Shift");
   await page.screenshot({ path: "screens/answer.png" });

@@ -26,17 +26,15 @@ export function App() {
 
   onMount(() => {
     const onKeyDown = (event: KeyboardEvent) => {
-      // In the help only its own keys count, and all stop.
-      if (isHelpOpen() && !(event.shiftKey && event.code === "KeyS")) return;
       actOnKey(event, {
         allStop: () => void desk.allStop(),
         selectOnly: (number) => select(number, selection.only),
         toggle: (number) => select(number, selection.toggle),
         selectAll: () => selection.all(keys()),
-        clear: selection.clear,
+        clear: () => (isHelpOpen() ? setHelpOpen(false) : selection.clear()),
         fit,
         toggleTheme: theme.toggle,
-        help: () => setHelpOpen(true),
+        help: () => setHelpOpen(!isHelpOpen()),
       });
     };
     window.addEventListener("keydown", onKeyDown);
@@ -46,7 +44,7 @@ export function App() {
 
   return (
     <div class="page" classList={{ "is-lost": source.connection().kind === "lost" }}>
-      <TopBar onHelp={() => setHelpOpen(true)} />
+      <TopBar onHelp={() => setHelpOpen(!isHelpOpen())} />
       <LostBanner />
       <aside class="side side-vehicles" aria-label="Vehicles">
         <VehicleList />

@@ -47,7 +47,7 @@ export function createConsole(
     fleet,
     selection,
     targets,
-    desk: createDesk(source),
+    desk: createDesk(source, clock),
     theme,
     behindS,
     fitRequests,

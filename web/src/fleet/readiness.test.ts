@@ -68,6 +68,16 @@ describe("the state word", () => {
     expect(reasons.map(({ vehicleName }) => vehicleName)).toEqual(["Cedar", "Alder", "Dogwood"]);
   });
 
+  it("says once what the station raised an alarm for, without the name twice", () => {
+    const low = vehicle(4, { battery_warning: { value: "low", age_s: 0.1 } });
+    const raised = alarm(1, { rule: "battery", text: "Dogwood: the battery is low" });
+    const { reasons } = readiness(station([low], { alarms: [raised] }), LIVE, 0);
+    expect(reasons).toEqual([
+      { severity: "warning", vehicleName: "Dogwood", text: "The battery is low" },
+    ]);
+    expect(readiness(station([low]), LIVE, 0).reasons).toHaveLength(1);
+  });
+
   it("leaves out alarms that ended", () => {
     const state = station([vehicle(1, GROUNDED)], { alarms: [alarm(1, { is_active: false })] });
     expect(readiness(state, LIVE, 0).word).toBe("Ready");

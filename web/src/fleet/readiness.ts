@@ -1,7 +1,7 @@
-import type { Severity, StationState, VehicleView } from "../protocol";
+import type { AlarmView, Severity, StationState, VehicleView } from "../protocol";
 import type { Connection } from "../source/stationSource";
 import { formatAge } from "../words/age";
-import { plainWords } from "../words/names";
+import { alarmText, plainWords } from "../words/names";
 import { formatFraction } from "../words/quantity";
 import { severityRank, worstSeverity } from "./severity";
 import { simulation } from "./simulation";
@@ -40,7 +40,7 @@ export function readiness(
   const reasons = [
     ...streamReasons(connection, behindS),
     ...alarmReasons(state),
-    ...state.vehicles.flatMap((vehicle) => vehicleReasons(vehicle, behindS)),
+    ...state.vehicles.flatMap((vehicle) => vehicleReasons(vehicle, state.alarms, behindS)),
     ...fleetReasons(state),
   ].sort((a, b) => severityRank(a.severity) - severityRank(b.severity));
   const severity = worstSeverity(reasons.map((reason) => reason.severity));
@@ -83,31 +83,61 @@ function streamReasons(connection: Connection, behindS: number): Reason[] {
 function alarmReasons(state: StationState): Reason[] {
   return state.alarms
     .filter((alarm) => alarm.is_active)
-    .map(({ severity, text, vehicle_name }) => ({
-      severity,
-      text,
-      vehicleName: vehicle_name === "" ? null : vehicle_name,
+    .map((alarm) => ({
+      severity: alarm.severity,
+      text: alarmText(alarm),
+      vehicleName: alarm.vehicle_name === "" ? null : alarm.vehicle_name,
     }));
 }
 
-function vehicleReasons(vehicle: VehicleView, behindS: number): Reason[] {
-  const found: Reason[] = [];
-  const say = (severity: Severity, text: string) =>
-    found.push({ severity, vehicleName: vehicle.name, text });
-  const condition = vehicleCondition(vehicle, behindS);
-  if (condition.word === "No contact") {
+/** What the page sees for itself; what the station raised an alarm for is not said twice. */
+function vehicleReasons(
+  vehicle: VehicleView,
+  alarms: readonly AlarmView[],
+  behindS: number,
+): Reason[] {
+  const raised = alarms
+    .filter((alarm) => alarm.is_active && isAbout(alarm, vehicle))
+    .map((alarm) => alarm.rule);
+  return conditionsOf(vehicle, behindS)
+    .filter(({ rule }) => !raised.includes(rule))
+    .map(({ severity, text }) => ({ severity, text, vehicleName: vehicle.name }));
+}
+
+function isAbout(alarm: AlarmView, vehicle: VehicleView): boolean {
+  if (vehicle.serial !== null) return alarm.serial === vehicle.serial;
+  return alarm.serial === null && alarm.link_id === vehicle.link_id;
+}
+
+/** A condition under the name of the station's rule for it. */
+interface Condition {
+  readonly rule: string;
+  readonly severity: Severity;
+  readonly text: string;
+}
+
+function conditionsOf(vehicle: VehicleView, behindS: number): Condition[] {
+  const found: Condition[] = [];
+  const say = (rule: string, severity: Severity, text: string) =>
+    found.push({ rule, severity, text });
+  const { word, severity } = vehicleCondition(vehicle, behindS);
+  if (word === "No contact") {
     const ageS = vehicle.telemetry_age_s;
-    const since =
-      ageS === null ? "No telemetry yet." : `No telemetry for ${formatAge(ageS + behindS)}.`;
-    say(condition.severity ?? "warning", since);
+    const since = ageS === null ? "yet" : `for ${formatAge(ageS + behindS)}`;
+    say("link_lost", severity ?? "warning", `No telemetry ${since}.`);
     return found;
   }
-  if (vehicle.serial === null) say("warning", "Its app has not said which aircraft it is.");
-  if (vehicle.conflict_link_ids.length > 0)
-    say("error", "A second link claims to be this vehicle.");
-  if (vehicle.position.latitude_deg === null) say("warning", "Its position is not known.");
+  if (vehicle.serial === null) {
+    say("unidentified", "warning", "Its app has not said which aircraft it is.");
+  }
+  if (vehicle.conflict_link_ids.length > 0) {
+    say("serial_conflict", "error", "A second link claims to be this vehicle.");
+  }
+  if (vehicle.position.latitude_deg === null) {
+    say("position", "warning", "Its position is not known.");
+  }
   if (hasBatteryWarning(vehicle)) {
-    say("warning", `The aircraft warns of its battery: ${batteryText(vehicle)}.`);
+    say("battery", "warning", `The aircraft warns of its battery: ${batteryText(vehicle)}.`);
   }
   return found;
 }

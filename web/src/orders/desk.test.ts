@@ -1,24 +1,39 @@
 import { describe, expect, it } from "vitest";
 import type { OrderResult } from "../protocol";
 import type { NamedOrder, Outcome } from "../source/stationSource";
+import { FakeClock } from "../testing/fakeClock";
 import { vehicle } from "../testing/world";
-import { createDesk } from "./desk";
+import { ALL_WELL_FOR_MS, createDesk } from "./desk";
 import { targetsKey, targetsOf } from "./targets";
+
+const REFUSED: OrderResult = {
+  serial: "A",
+  link_id: 1,
+  vehicle_name: "Alder",
+  accepted: false,
+  command_id: 3,
+  rule: "flying",
+  reason: "it is on the ground",
+};
 
 type Results = Outcome<readonly OrderResult[]>;
 
 function setUp() {
+  const clock = new FakeClock();
   const given: NamedOrder[] = [];
   const answers: ((outcome: Results) => void)[] = [];
   const wait = () => new Promise<Results>((resolve) => answers.push(resolve));
-  const desk = createDesk({
-    order: (order) => {
-      given.push(order);
-      return wait();
+  const desk = createDesk(
+    {
+      order: (order) => {
+        given.push(order);
+        return wait();
+      },
+      allStop: wait,
     },
-    allStop: wait,
-  });
-  return { desk, given, answers };
+    clock,
+  );
+  return { desk, given, answers, clock };
 }
 
 describe("the desk", () => {
@@ -40,6 +55,21 @@ describe("the desk", () => {
     await desk.order({ serials: [], order: { kind: "land" } }, []);
     expect(given).toEqual([]);
     expect(desk.last()).toBeNull();
+  });
+
+  it("puts an answer away by itself when nothing was refused, and only then", async () => {
+    const { desk, answers, clock } = setUp();
+    const result = { ...REFUSED, accepted: true };
+    for (const [accepted, remains] of [
+      [true, false],
+      [false, true],
+    ] as const) {
+      const done = desk.allStop();
+      answers.at(-1)?.({ kind: "answered", value: [{ ...result, accepted }] });
+      await done;
+      clock.advance(ALL_WELL_FOR_MS);
+      expect(desk.last() !== null).toBe(remains);
+    }
   });
 
   it("keeps a late answer from standing under a newer order", async () => {

@@ -1,5 +1,6 @@
 import { type Accessor, createSignal } from "solid-js";
 import type { OrderResult } from "../protocol";
+import type { Clock } from "../source/clock";
 import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
 import { commandName } from "../words/names";
 
@@ -19,7 +20,10 @@ export interface Desk {
   dismiss(): void;
 }
 
-export function createDesk(source: Pick<StationSource, "order" | "allStop">): Desk {
+/** An answer without a refusal goes by itself after this; the commands' list tells on. */
+export const ALL_WELL_FOR_MS = 10_000;
+
+export function createDesk(source: Pick<StationSource, "order" | "allStop">, clock: Clock): Desk {
   const [last, setLast] = createSignal<Answer | null>(null);
   let newest = 0;
 
@@ -33,7 +37,13 @@ export function createDesk(source: Pick<StationSource, "order" | "allStop">): De
     setLast({ what, labels, outcome: { kind: "waiting" } });
     const outcome = await ask();
     // A slow answer must not stand under a newer order.
-    if (own === newest) setLast({ what, labels, outcome });
+    if (own !== newest) return;
+    setLast({ what, labels, outcome });
+    if (isAllWell(outcome)) {
+      clock.after(ALL_WELL_FOR_MS, () => {
+        if (own === newest) setLast(null);
+      });
+    }
   }
 
   return {
@@ -45,4 +55,8 @@ export function createDesk(source: Pick<StationSource, "order" | "allStop">): De
     allStop: () => run("All stop", ["all flying vehicles"], () => source.allStop()),
     dismiss: () => setLast(null),
   };
+}
+
+function isAllWell(outcome: Outcome<readonly OrderResult[]>): boolean {
+  return outcome.kind === "answered" && outcome.value.every((result) => result.accepted);
 }

@@ -1,4 +1,4 @@
-import type { CommandView, Phase, Severity, VehicleView } from "../protocol";
+import type { AlarmView, CommandView, Phase, Severity, VehicleView } from "../protocol";
 
 const COMMANDS: Readonly<Record<string, string>> = {
   hover: "Hover",
@@ -69,4 +69,11 @@ export function vehicleLabel(vehicle: Pick<VehicleView, "number" | "name">): str
 export function listNames(names: readonly string[]): string {
   if (names.length <= 1) return names.join("");
   return `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+}
+
+/** An alarm's text without the vehicle's name before it: where it is shown the name stands already. */
+export function alarmText(alarm: Pick<AlarmView, "text" | "vehicle_name">): string {
+  const name = `${alarm.vehicle_name}: `;
+  const text = alarm.text.startsWith(name) ? alarm.text.slice(name.length) : alarm.text;
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }

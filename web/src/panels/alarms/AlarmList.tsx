@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import { sortAlarms } from "../../fleet/severity";
 import type { AlarmView } from "../../protocol";
 import { formatAge } from "../../words/age";
+import { alarmText } from "../../words/names";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./alarms.css";
@@ -29,6 +30,7 @@ function AlarmRow(props: { alarm: AlarmView }) {
     const outcome = await source.acknowledge(props.alarm.id);
     setProblem(outcome.kind === "failed" ? outcome.problem : null);
   };
+  const text = () => alarmText(props.alarm);
   const about = () => props.alarm.vehicle_name || "Station";
   return (
     <li
@@ -40,20 +42,20 @@ function AlarmRow(props: { alarm: AlarmView }) {
       </span>
       <div class="alarm-text wire-text">
         <p>
-          <strong>{about()}</strong> {props.alarm.text}
+          <strong>{about()}</strong> {text()}
         </p>
         <p class="muted" aria-live="off">
           {formatAge(props.alarm.raised_age_s + behindS())} ago
           {props.alarm.is_active ? "" : ", ended"}
           {props.alarm.is_acknowledged ? ", acknowledged" : ""}
         </p>
-        <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
+        <Show when={problem()}>{(why) => <p class="tone-error">{why()}</p>}</Show>
       </div>
       <Show when={!props.alarm.is_acknowledged}>
         <button
           type="button"
           class="button"
-          aria-label={`Acknowledge: ${about()} ${props.alarm.text}`}
+          aria-label={`Acknowledge: ${about()} ${text()}`}
           onClick={() => void acknowledge()}
         >
           Ack

@@ -2,11 +2,11 @@ import { createEffect, For } from "solid-js";
 import { SHORTCUTS } from "../../keys";
 import "./help.css";
 
-/** What the keys do and how orders are confirmed. */
+/** What the keys do and how orders are confirmed. Not modal: all stop stays in reach. */
 export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
   let dialog!: HTMLDialogElement;
   createEffect(() => {
-    if (props.isOpen && !dialog.open) dialog.showModal();
+    if (props.isOpen && !dialog.open) dialog.show();
     if (!props.isOpen && dialog.open) dialog.close();
   });
   return (

@@ -58,8 +58,11 @@ function AnswerBody(props: { answer: Answer }) {
       <Match when={results()}>
         {(list) => (
           <Show when={list().length > 0} fallback={<p class="answer-line">Nothing was flying.</p>}>
-            <ul class="answer-list">
-              <For each={list()}>{(result) => <ResultLine result={result} />}</For>
+            <AcceptedLine accepted={list().filter((result) => result.accepted)} />
+            <ul>
+              <For each={list().filter((result) => !result.accepted)}>
+                {(result) => <RefusedLine result={result} />}
+              </For>
             </ul>
           </Show>
         )}
@@ -68,23 +71,36 @@ function AnswerBody(props: { answer: Answer }) {
   );
 }
 
-function ResultLine(props: { result: OrderResult }) {
-  const name = () => props.result.vehicle_name || `link ${props.result.link_id ?? "unknown"}`;
+function nameOf(result: OrderResult): string {
+  return result.vehicle_name || `link ${result.link_id ?? "unknown"}`;
+}
+
+function AcceptedLine(props: { accepted: readonly OrderResult[] }) {
+  const names = () =>
+    props.accepted.map((result) => `${nameOf(result)} (command ${result.command_id})`);
+  return (
+    <Show when={props.accepted.length > 0}>
+      <p class="answer-line">
+        <span class="tone-good">
+          <SeverityMark severity={null} />
+        </span>
+        <span>
+          Accepted: <strong>{listNames(names())}</strong>
+        </span>
+      </p>
+    </Show>
+  );
+}
+
+function RefusedLine(props: { result: OrderResult }) {
   return (
     <li class="answer-line">
-      <SeverityMark severity={props.result.accepted ? null : "error"} />
+      <span class="tone-error">
+        <SeverityMark severity="error" />
+      </span>
       <span>
-        <strong>{name()}</strong>{" "}
-        <Show
-          when={props.result.accepted}
-          fallback={
-            <>
-              refused ({props.result.rule ?? "no rule given"}): {props.result.reason}
-            </>
-          }
-        >
-          accepted, command {props.result.command_id}
-        </Show>
+        Refused: <strong>{nameOf(props.result)}</strong> ({props.result.rule ?? "no rule given"}):{" "}
+        {props.result.reason}
       </span>
     </li>
   );
