@@ -23,6 +23,9 @@ PICTURE = np.random.default_rng(1).integers(0, 255, (36, 64, 3), dtype=np.uint8)
 class Numbered:
     """Pictures whose first pixel tells the shot's number and its time in tenths."""
 
+    def prepare(self) -> None:
+        return None
+
     def render(self, view: View) -> np.ndarray:
         picture = PICTURE.copy()
         picture[0, 0] = (view.number, round(view.elapsed_s * 10), 0)
@@ -122,6 +125,14 @@ def test_pictures_ready_after_the_feed_was_stopped_are_dropped() -> None:
     feed.switch_off()
     feed.add(shot, shot.packet())
     assert feed.due(10 * NS_PER_S) == []
+
+
+def test_no_pictures_are_taken_while_nobody_is_connected(bench) -> None:
+    feed = bench(FeedSettings(latency_s=0.2))
+    feed.app.disconnected()
+    feed.run(10.0)
+    feed.app.connected(feed.now_ns)
+    assert len(images(feed.run(5.0))) == 5
 
 
 def write(folder: Path, name: str, rgb: np.ndarray) -> Path:

@@ -4,7 +4,7 @@ from itertools import pairwise
 from math import hypot
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from recon.model.vehicle import FlightMode
@@ -14,6 +14,9 @@ from recon.sim.path import Corner, rounded_path
 
 LIMITS = Limits()
 SECONDS = 0.05
+
+# A flight takes long: a failing example is shown as it was found, not shrunk for minutes.
+QUICK = (Phase.explicit, Phase.reuse, Phase.generate)
 
 points = st.builds(
     MissionPoint,
@@ -54,7 +57,7 @@ def flown(flights, mission: tuple[MissionPoint, ...], curved: bool) -> list[Moti
     return track
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25, deadline=None, phases=QUICK)
 @given(st.lists(points, min_size=2, max_size=6))
 def test_stopping_missions_reach_every_waypoint_within_the_limits(flights, mission) -> None:
     track = flown(flights, tuple(mission), curved=False)
@@ -64,7 +67,7 @@ def test_stopping_missions_reach_every_waypoint_within_the_limits(flights, missi
     assert track[-1].ground_speed_mps < 0.5
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25, deadline=None, phases=QUICK)
 @given(st.lists(points, min_size=2, max_size=6))
 def test_curved_missions_stay_near_their_path_and_end_at_the_last_waypoint(
     flights, mission
@@ -72,6 +75,22 @@ def test_curved_missions_stay_near_their_path_and_end_at_the_last_waypoint(
     track = flown(flights, tuple(mission), curved=True)
     assert_limits_kept(track)
     assert closest_m(track, mission[0]) < 0.6
+    assert closest_m(track[-1:], mission[-1]) < 1.5
+
+
+@pytest.mark.parametrize("turn_back_m", [(0.0, 0.0), (0.5, 10.0), (20.0, 1.0)])
+def test_reversals_are_flown_to_their_end(flights, turn_back_m) -> None:
+    mission = tuple(
+        MissionPoint(n, e, h, 15.0, r)
+        for n, e, h, r in (
+            (150.0, 20.0, 15.0, 0.2),
+            (-150.0, 0.5, 15.0, 40.0),
+            (150.0, 0.0, 20.0, 1.0),
+            (*turn_back_m, 60.0, 0.2),
+        )
+    )
+    track = flown(flights, mission, curved=True)
+    assert_limits_kept(track)
     assert closest_m(track[-1:], mission[-1]) < 1.5
 
 
@@ -149,6 +168,16 @@ def test_a_mission_replaces_a_mission_and_counts(flights) -> None:
     assert aircraft.mission_id == 2
     flights.fly_until(aircraft, lambda a: a.mission_id == 0, 60.0)
     assert aircraft.motion.east_m == pytest.approx(-90.0, abs=0.7)
+
+
+def test_the_legs_before_a_tight_corner_are_flown_at_full_speed(flights) -> None:
+    mission = tuple(
+        MissionPoint(n, e, 20.0, 12.0) for n, e in ((0.0, 0.0), (150.0, 0.0), (150.0, 150.0))
+    )
+    track = flown(flights, mission, curved=True)
+    on_first_leg = [m.ground_speed_mps for m in track if 60.0 < m.north_m < 90.0]
+    assert min(on_first_leg) == pytest.approx(12.0, abs=0.5)
+    assert len(track) * SECONDS < 60.0
 
 
 corners = st.builds(

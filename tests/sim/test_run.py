@@ -219,6 +219,9 @@ def test_without_a_station_it_waits_and_ends_when_told() -> None:
 class Broken:
     """Pictures that cannot be had."""
 
+    def prepare(self) -> None:
+        return None
+
     def render(self, view: object) -> np.ndarray:
         raise FrameSourceError("expected a picture, got none")
 

@@ -117,6 +117,9 @@ class SimulatedApp:
         """A connection is open: say hello on it. An older one of this number is forgotten."""
         self._run_until(now_ns)
         self._links[link] = _Link()
+        if self.feed is not None and link == MAIN_LINK:
+            # Nobody takes pictures for nobody: those of the time without a link are left out.
+            self.feed.skip_to(now_ns)
         self._send(wire.MessageString(type=MESSAGE_INFO, text=HELLO), link)
 
     def disconnected(self, link: int = MAIN_LINK) -> None:
@@ -195,7 +198,7 @@ class SimulatedApp:
         rows.append((self._next_core_ns, self._say_core))
         rows.append((self._next_extended_ns, self._say_extended))
         feed = self.feed
-        if feed is not None and feed.is_on:
+        if feed is not None and feed.is_on and MAIN_LINK in self._links:
             rows.append((feed.next_shot_ns, partial(self._take_picture, feed)))
         if feed is not None and feed.next_send_ns is not None:
             rows.append((feed.next_send_ns, partial(self._say_images, feed)))

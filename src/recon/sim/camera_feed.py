@@ -45,6 +45,10 @@ class View:
 class FrameSource(Protocol):
     """Where pictures come from."""
 
+    def prepare(self) -> None:
+        """Do what the first picture would wait for; may take seconds, once."""
+        ...
+
     def render(self, view: View) -> RgbImage:
         """Return (rows, cols, 3) uint8 RGB; may take long, may be called from any thread."""
         ...
@@ -132,6 +136,10 @@ class CameraFeed:
         self._in_hand += 1
         send_at_ns = now_ns + seconds_to_ns(max(0.0, latency_s))
         self._taken.append(Shot(view, self.target_fps_hz, send_at_ns, self.source, self.settings))
+
+    def skip_to(self, now_ns: int) -> None:
+        """Take the next picture at this moment, and none before."""
+        self.next_shot_ns = max(self.next_shot_ns, now_ns)
 
     def take_shots(self) -> list[Shot]:
         """Hand out the shots to render; each comes back by `add`."""

@@ -9,7 +9,7 @@ import numpy as np
 from recon.sim.noise import FloatImage, tileable_noise
 
 TILE_CELLS = 256
-TILE_M = 2_400.0
+TILE_M = 1_500.0
 
 
 @dataclass(slots=True)
@@ -17,19 +17,19 @@ class CloudShadows:
     """A pattern that moves with the wind; a pure function of time and place."""
 
     seed: int = 0
-    cover: float = 0.35
+    cover: float = 0.28
     """Share of the ground that is in shadow, about."""
-    depth: float = 0.62
+    depth: float = 0.5
     """How much darker a full shadow is."""
     wind_mps: float = 6.0
     heading_deg: float = 70.0
     _transmittance: FloatImage = field(init=False)
 
     def __post_init__(self) -> None:
-        noise = tileable_noise(TILE_CELLS, self.seed, smallest_cells=7.0, slope=1.9)
+        noise = tileable_noise(TILE_CELLS, self.seed, smallest_cells=9.0, slope=1.5)
         edge = float(np.quantile(noise, 1.0 - self.cover))
         # From sun to shadow within a band of noise: some tens of metres on the ground.
-        share = np.clip((noise - edge) / 0.35 + 0.5, 0.0, 1.0)
+        share = np.clip((noise - edge) / 0.4 + 0.5, 0.0, 1.0)
         self._transmittance = (1.0 - self.depth * share * share * (3.0 - 2.0 * share)).astype(
             np.float32
         )

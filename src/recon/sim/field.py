@@ -51,15 +51,19 @@ class FieldFrames:
         """Return the picture (rows, cols, 3)."""
         if view.pose is None:
             raise FrameSourceError("expected a camera pose to render a field from, got none")
-        lens, rasters = self.prepare()
+        lens, rasters = self._scene()
         look = _look(lens, view.pose)
         picture = _with_haze(lens, look, _ground_picture(lens, look, rasters))
         frame = np.zeros((self.camera.rows, self.camera.cols, 3), dtype=np.uint8)
         frame[lens.window] = _lit(lens, look, picture, self.shadows, view.elapsed_s)
         return frame
 
-    def prepare(self) -> "tuple[_Lens, tuple[Raster, ...]]":
-        """Draw the land, once: the first picture would wait for it. Threads may call this."""
+    def prepare(self) -> None:
+        """Draw the land."""
+        self._scene()
+
+    def _scene(self) -> "tuple[_Lens, tuple[Raster, ...]]":
+        """Return lens and land, made at the first call; several threads may call this at once."""
         with self._preparing:
             if self._lens is None:
                 self._lens = _Lens(self.camera, self.image_circle)

@@ -25,6 +25,10 @@ class FolderFrames:
     cols: int
     _last: tuple[int, RgbImage] | None = field(default=None)
 
+    def prepare(self) -> None:
+        """Read the first picture."""
+        self.render(View(0.0, 0, None))
+
     def render(self, view: View) -> RgbImage:
         """Return the picture that is next."""
         index = view.number % len(self.paths)
@@ -46,7 +50,7 @@ def folder_frames(folder: Path, rows: int = 720, cols: int = 1280) -> FolderFram
     if not paths:
         raise FrameSourceError(f"{folder}: expected {', '.join(SUFFIXES)} files, got none")
     frames = FolderFrames(paths, rows, cols)
-    frames.render(View(0.0, 0, None))
+    frames.prepare()
     return frames
 
 

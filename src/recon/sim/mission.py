@@ -13,6 +13,7 @@ ARRIVED_BELOW_MPS = 0.4
 GIMBAL_RATE_DPS = 30.0
 PATH_GAIN_PER_S = 0.8
 LEAST_PATH_SPEED_MPS = 0.3
+LONGEST_LAG_M = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +66,7 @@ class MissionFlight:
     def demand(self, motion: Motion, seconds: float) -> Demand:
         """Ask for the way to the next waypoint, or for standstill while its action runs."""
         if self._curve is not None:
-            return self._curve.demand(motion)
+            return self._curve.demand(motion, seconds)
         if self.next_index >= len(self.points):
             return Demand()
         target = self.points[self.next_index]
@@ -114,36 +115,39 @@ class MissionFlight:
 
 
 class CurveFollower:
-    """Follows a rounded path: along it at the allowed speed, and back to it when off."""
+    """Follows a point that runs along a rounded path and waits when the vehicle falls behind."""
 
     def __init__(self, points: tuple[MissionPoint, ...], limits: Limits) -> None:
         corners = [
             Corner(p.north_m, p.east_m, p.height_m, p.corner_radius_m, p.speed_mps) for p in points
         ]
         self.path: FlightPath = rounded_path(corners, limits)
-        self._index = 0
+        self._along_m = 0.0
 
     @property
     def is_flown(self) -> bool:
-        """Whether the end is reached."""
-        return self._index >= len(self.path.points_m) - 1
+        """Whether the point has reached the end."""
+        return self._along_m >= self.path.length_m
 
-    def demand(self, motion: Motion) -> Demand:
-        """Ask for the path's direction at its speed, corrected towards the path."""
-        points, speeds = self.path.points_m, self.path.speeds_mps
-        place = (motion.north_m, motion.east_m, motion.height_m)
-        self._index = self.path.nearest(place, self._index)
-        ahead = min(self._index + 2, len(points) - 1)
-        north, east, up = (float(d) for d in points[ahead] - points[max(0, ahead - 2)])
-        speed = 0.0 if self.is_flown else max(LEAST_PATH_SPEED_MPS, float(speeds[ahead]))
-        along = speed / max(1e-9, sqrt(north * north + east * east + up * up))
-        back = PATH_GAIN_PER_S * (points[self._index] - place)
-        return Demand(
-            north * along + float(back[0]),
-            east * along + float(back[1]),
-            up * along + float(back[2]),
-            heading_deg(north, east) if hypot(north, east) > 1e-3 else None,
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for the point's velocity, corrected towards where it is."""
+        place = self.path.place_at(self._along_m)
+        behind = [
+            wanted - is_at
+            for wanted, is_at in zip(
+                place.point_m, (motion.north_m, motion.east_m, motion.height_m), strict=True
+            )
+        ]
+        lag_m = sqrt(sum(part * part for part in behind))
+        pace = max(0.0, 1.0 - lag_m / LONGEST_LAG_M)
+        speed = 0.0 if self.is_flown else pace * max(LEAST_PATH_SPEED_MPS, place.speed_mps)
+        self._along_m += speed * seconds
+        north, east, up = (
+            speed * along + PATH_GAIN_PER_S * back
+            for along, back in zip(place.direction, behind, strict=True)
         )
+        yaw = heading_deg(*place.direction[:2]) if hypot(*place.direction[:2]) > 1e-3 else None
+        return Demand(north, east, up, yaw)
 
 
 def _has_arrived(motion: Motion, point: MissionPoint) -> bool:

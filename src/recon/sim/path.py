@@ -32,17 +32,43 @@ class Corner:
     speed_mps: float
 
 
+@dataclass(frozen=True, slots=True)
+class PathPlace:
+    """A place on a path: its point, the unit direction onwards, how fast it is flown."""
+
+    point_m: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    speed_mps: float
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FlightPath:
-    """Samples of a path: `points_m` (N, 3) north, east, height; `speeds_mps` (N,), last one 0."""
+    """Samples of a path: `points_m` (N, 3) north, east, height; `speeds_mps` (N,), 0 at both ends.
+
+    `along_m` (N,) is each sample's distance along the path.
+    """
 
     points_m: FloatArray
     speeds_mps: FloatArray
+    along_m: FloatArray
 
-    def nearest(self, point_m: tuple[float, float, float], from_index: int) -> int:
-        """Return the nearest sample at or a little after `from_index`: never backwards."""
-        offsets = self.points_m[from_index : from_index + 60] - point_m
-        return from_index + int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
+    @property
+    def length_m(self) -> float:
+        """From end to end."""
+        return float(self.along_m[-1])
+
+    def place_at(self, along_m: float) -> PathPlace:
+        """Return the place at a distance along the path, within its ends."""
+        after = int(np.searchsorted(self.along_m, along_m, side="right"))
+        after = max(1, min(after, len(self.along_m) - 1))
+        start, end = self.points_m[after - 1], self.points_m[after]
+        length = max(1e-9, float(self.along_m[after] - self.along_m[after - 1]))
+        share = max(0.0, min(1.0, (along_m - float(self.along_m[after - 1])) / length))
+        north, east, height = (float(v) for v in start + share * (end - start))
+        to_north, to_east, to_up = (float(v) / length for v in end - start)
+        slower, faster = self.speeds_mps[after - 1], self.speeds_mps[after]
+        speed = float(slower + share * (faster - slower))
+        return PathPlace((north, east, height), (to_north, to_east, to_up), speed)
 
 
 def rounded_path(corners: Sequence[Corner], limits: Limits) -> FlightPath:
@@ -51,11 +77,15 @@ def rounded_path(corners: Sequence[Corner], limits: Limits) -> FlightPath:
     speeds = [corners[0].speed_mps]
     for index in range(1, len(corners) - 1):
         before, corner, after = corners[index - 1 : index + 2]
-        for point, limit in _arc(before, corner, after, limits.acceleration_mps2):
+        arc = _arc(before, corner, after, limits.acceleration_mps2)
+        _extend(points, speeds, arc[0][0], before.speed_mps)
+        for point, limit in arc:
             _extend(points, speeds, point, min(limit, before.speed_mps))
     _extend(points, speeds, _point(corners[-1]), corners[-2].speed_mps)
     samples = np.array(points)
-    return FlightPath(samples, _within_limits(samples, np.array(speeds), limits))
+    steps = np.linalg.norm(np.diff(samples, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    return FlightPath(samples, _within_limits(samples, np.array(speeds), limits), along)
 
 
 def _point(corner: Corner) -> FloatArray:
@@ -123,15 +153,19 @@ def _direction(a: Corner, b: Corner) -> tuple[FloatArray, float]:
 
 
 def _within_limits(points: FloatArray, wanted_mps: FloatArray, limits: Limits) -> FloatArray:
-    """Return speeds that keep to the vertical limits and can meet every later one and the stop."""
+    """Return speeds that can be reached from rest, keep the vertical limits, and end at rest."""
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     slopes = np.abs(steps[:, 2]) / np.maximum(lengths, 1e-9)
     steepest = 0.8 * min(limits.climb_mps, limits.descent_mps)
     speeds = wanted_mps.copy()
     speeds[:-1] = np.minimum(speeds[:-1], steepest / np.maximum(slopes, 1e-9))
-    speeds[-1] = 0.0
+    # Half of the acceleration is left for turning and for coming back to the path.
+    speeds[0] = speeds[-1] = 0.0
     for i in range(len(speeds) - 2, -1, -1):
         braked = sqrt(speeds[i + 1] ** 2 + limits.acceleration_mps2 * lengths[i])
         speeds[i] = min(speeds[i], braked)
+    for i in range(len(speeds) - 1):
+        gained = sqrt(speeds[i] ** 2 + limits.acceleration_mps2 * lengths[i])
+        speeds[i + 1] = min(speeds[i + 1], gained)
     return speeds

@@ -52,6 +52,8 @@ class _AppShell:
     async def run(self) -> None:
         """Connect, serve, and connect again."""
         backoff_s = FIRST_BACKOFF_S
+        if self.app.feed is not None:
+            await asyncio.to_thread(self.app.feed.source.prepare)
         try:
             while True:
                 try:
