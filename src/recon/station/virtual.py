@@ -75,11 +75,13 @@ class VirtualDriver:
         tasks: Mapping[str, Task] | None = None,
         link_settings: LinkSettings | None = None,
         work_takes_s: float = 0.05,
+        keeps_log: bool = True,
     ) -> None:
         self.station = station
         self.now_ns = 0
         self.log: list[Event] = []
-        """Every event the station saw, in order."""
+        """Every event the station saw, in order; not kept in long studies, images fill memory."""
+        self._keeps_log = keeps_log
         self._tasks = dict(tasks or {})
         self._settings = link_settings or LinkSettings()
         self._work_takes_ns = seconds_to_ns(work_takes_s)
@@ -128,7 +130,8 @@ class VirtualDriver:
         return is_reached(self.station)
 
     def _step(self, event: Event) -> None:
-        self.log.append(event)
+        if self._keeps_log:
+            self.log.append(event)
         self.station, outputs = step(self.station, event, self.now_ns)
         for output in outputs:
             self._carry_out(output)

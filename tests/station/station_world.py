@@ -1,0 +1,176 @@
+"""A station and simulated apps joined by fake links, in virtual time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from recon.model.command import Body, Phase
+from recon.model.event import OperatorOrder
+from recon.model.geo import GeoPoint
+from recon.model.mission import Mission, Waypoint
+from recon.model.vehicle import AltitudeReference, VehicleProfile, VehicleState
+from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.sim.faults import parse_fault
+from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
+from recon.site import Site
+from recon.station.build import first_state
+from recon.station.orders import OrderRecord
+from recon.station.virtual import FakeLink, VirtualDriver
+
+HOME = GeoPoint(41.9, -93.6, 275.0)
+SECOND_LINK = 1
+
+
+@dataclass(slots=True)
+class AppPeer:
+    """One of an app's connections; a silent one neither reads nor writes any more."""
+
+    app: SimulatedApp
+    link: int = MAIN_LINK
+    is_silent: bool = False
+
+    def receive(self, data: bytes, now_ns: int) -> None:
+        if not self.is_silent:
+            self.app.receive(data, now_ns, self.link)
+
+    def advance(self, now_ns: int) -> list[bytes]:
+        return [] if self.is_silent else self.app.advance(now_ns, self.link)
+
+
+@dataclass(slots=True)
+class Connected:
+    """An app and its present main connection."""
+
+    app: SimulatedApp
+    peer: AppPeer
+    link_id: int
+
+
+@dataclass(slots=True)
+class World:
+    """Runs everything; carries out what faults ask of connections."""
+
+    driver: VirtualDriver
+    make_link: Callable[[], FakeLink] = FakeLink
+    connected: dict[str, Connected] = field(default_factory=dict)
+    _later: list[tuple[int, Callable[[], None]]] = field(default_factory=list)
+    _next_order: int = 1
+
+    def connect(self, app: SimulatedApp, link: FakeLink | None = None) -> int:
+        app.connected(self.driver.now_ns)
+        peer = AppPeer(app)
+        link_id = self.driver.connect(peer, link or self.make_link())
+        self.connected[app.settings.serial] = Connected(app, peer, link_id)
+        return link_id
+
+    def vehicle(self, serial: str) -> VehicleState:
+        return self.driver.station.fleet.vehicles[serial]
+
+    def app(self, serial: str) -> SimulatedApp:
+        return self.connected[serial].app
+
+    def order(self, serial: str, body: Body, *, takeoff: bool = False) -> int:
+        order_id = self._next_order
+        self._next_order += 1
+        self.driver.handle(OperatorOrder(order_id, body, "test", serial=serial, takeoff=takeoff))
+        return order_id
+
+    def record(self, order_id: int) -> OrderRecord:
+        return self.driver.station.orders.records[order_id]
+
+    def phases(self, order_id: int) -> list[Phase]:
+        return [change.phase for change in self.record(order_id).history]
+
+    def run_for(self, seconds: float) -> None:
+        for _ in range(round(seconds * 100)):
+            self._advance()
+
+    def run_until(self, is_reached: Callable[[], bool], at_most_s: float) -> bool:
+        for _ in range(round(at_most_s * 100)):
+            if is_reached():
+                return True
+            self._advance()
+        return is_reached()
+
+    def _advance(self) -> None:
+        self.driver.run_for(0.01)
+        due = [action for at_ns, action in self._later if at_ns <= self.driver.now_ns]
+        self._later = [item for item in self._later if item[0] > self.driver.now_ns]
+        for action in due:
+            action()
+        for connected in tuple(self.connected.values()):
+            for order in connected.app.take_link_orders():
+                self._carry_out(connected, order)
+
+    def _carry_out(self, connected: Connected, order: LinkOrder) -> None:
+        app, old_id = connected.app, connected.link_id
+        match order.kind:
+            case LinkOrderKind.RECONNECT:
+                self.driver.disconnect(old_id)
+                self._after(order.seconds, lambda: self.connect(app))
+            case LinkOrderKind.ABANDON:
+                connected.peer.is_silent = True
+                self._after(order.seconds, lambda: self.driver.disconnect(old_id))
+                self.connect(app)
+            case LinkOrderKind.SECOND:
+                app.connected(self.driver.now_ns, SECOND_LINK)
+                second_id = self.driver.connect(AppPeer(app, SECOND_LINK), self.make_link())
+                self._after(order.seconds, lambda: self._end_second(app, second_id))
+
+    def _end_second(self, app: SimulatedApp, link_id: int) -> None:
+        app.disconnected(SECOND_LINK)
+        self.driver.disconnect(link_id)
+
+    def _after(self, seconds: float, action: Callable[[], object]) -> None:
+        at_ns = self.driver.now_ns + round(seconds * 1e9)
+        self._later.append((at_ns, lambda: (action(), None)[1]))
+
+
+def world(
+    vehicles: int = 1,
+    *,
+    faults: tuple[str, ...] = (),
+    reference: AltitudeReference = AltitudeReference.TAKEOFF,
+    profile_reference: AltitudeReference | None = None,
+    airborne: Airborne = Airborne.ALL,
+    wanders: bool = False,
+    seed: int = 0,
+    make_link: Callable[[], FakeLink] = FakeLink,
+    keeps_log: bool = True,
+) -> World:
+    """Return a station with connected simulated vehicles SIM-1, SIM-2, ...
+
+    `reference` is what the apps take altitudes for; what the site says of them is the same, unless
+    `profile_reference` says otherwise.
+    """
+    believed = profile_reference or reference
+    config = SimulationConfig(
+        home=HOME,
+        vehicle_count=vehicles,
+        altitude_reference=reference,
+        airborne=airborne,
+        wanders=wanders,
+        seed=seed,
+        faults=tuple(parse_fault(text) for text in faults),
+    )
+    apps = build_fleet(config, 0)
+    profiles = {
+        app.settings.serial: VehicleProfile(app.settings.serial, waypoint_altitude=believed)
+        for app in apps
+    }
+    site = Site(name="test", profiles=profiles)
+    made = World(VirtualDriver(first_state(site), keeps_log=keeps_log), make_link)
+    for app in apps:
+        made.connect(app)
+    return made
+
+
+def square_mission(height_m: float = 45.0, side_m: float = 30.0) -> Mission:
+    """Return a small square north-east of home."""
+    north_deg, east_deg = side_m / 111_000.0, side_m / 82_600.0
+    corners = ((0.0, 0.0), (north_deg, 0.0), (north_deg, east_deg), (0.0, east_deg))
+    return Mission(
+        tuple(
+            Waypoint(HOME.latitude_deg + north, HOME.longitude_deg + east, height_m, 5.0)
+            for north, east in corners
+        )
+    )
