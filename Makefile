@@ -68,12 +68,16 @@ test-e2e: setup web ## The whole thing once, seen through a headless browser
 
 bench: setup ## Measure; every figure beside a baseline of the same run
 	cargo bench -p recon-wire
-	$(RUN) python -m pytest benches -c benches/pytest.ini
+	$(RUN) python -m pytest benches -p no:cacheprovider
 	$(RUN) python -m benches.station.bench_load
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
 	@cargo fuzz --version >/dev/null 2>&1 || cargo install cargo-fuzz --locked --quiet
-	cd fuzz && for target in deframer packet; do cargo +nightly fuzz run $$target -- -max_total_time=$(FUZZ_SECONDS) || exit 1; done
+	for target in deframer packet; do \
+		mkdir -p fuzz/work/$$target && \
+		cargo +nightly fuzz run $$target fuzz/work/$$target fuzz/corpus/$$target \
+			-- -max_total_time=$(FUZZ_SECONDS) -max_len=4096 || exit 1; \
+	done
 
 docs: setup web/node_modules/.stamp ## Bring generated files up to date: the API's description and the console's types
 	$(RUN) recon openapi > web/openapi.json

@@ -5,7 +5,7 @@ for tool in "$@"; do
     command -v "$tool" >/dev/null 2>&1 && continue
     case "$tool" in
         python3) hint="install Python 3.11 or newer (Debian: apt-get install python3 python3-venv)" ;;
-        cargo) hint="install Rust 1.85 or newer from https://rustup.rs" ;;
+        cargo) hint="install Rust 1.88 or newer from https://rustup.rs" ;;
         node | npm) hint="install Node.js 20 or newer with npm from https://nodejs.org" ;;
         *) hint="install it and try again" ;;
     esac
@@ -23,6 +23,12 @@ esac
 case " $* " in *" node "*)
     [ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ] || {
         echo "recon: Node.js 20 or newer is needed, this is $(node --version)." >&2
+        exit 1
+    } ;;
+esac
+case " $* " in *" cargo "*)
+    cargo --version | awk '{ split($2, v, "."); exit !(v[1] > 1 || v[2] >= 88) }' || {
+        echo "recon: Rust 1.88 or newer is needed, this is $(cargo --version): run 'rustup update'." >&2
         exit 1
     } ;;
 esac
