@@ -7,10 +7,10 @@ from collections.abc import Callable, Coroutine
 from dataclasses import dataclass, field
 from typing import Any
 
+from recon.model.errors import ReconError
 from recon.model.units import NS_PER_S
 from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
 from recon.sim.camera_feed import Shot
-from recon.sim.errors import SimulationError
 from recon.sim.fleet import SimulationConfig, build_fleet
 
 SECOND_LINK = 1
@@ -140,7 +140,7 @@ class _AppShell:
     async def _render(self, shot: Shot) -> None:
         try:
             packet = await asyncio.to_thread(shot.packet)
-        except SimulationError as problem:
+        except ReconError as problem:
             self._tell(f"picture lost: {problem}")
             self.app.add_image(shot, None)
         else:
