@@ -10,6 +10,7 @@ from fastapi import Path as InPath
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
+from starlette.exceptions import HTTPException as AnyHTTPException
 
 from recon.api import pictures, schema
 from recon.api.orders import to_body
@@ -83,6 +84,10 @@ def _add_state_routes(app: FastAPI, port: StationPort) -> None:
     async def state_stream(socket: WebSocket) -> None:
         await stream.serve(socket)
 
+    @app.websocket("/{path:path}")
+    async def no_stream(socket: WebSocket, path: str) -> None:
+        await socket.close(1008, "the only stream is /api/stream")
+
 
 def _add_order_routes(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/orders")
@@ -155,8 +160,8 @@ def _add_manners(app: FastAPI) -> None:
         place = ".".join(str(part) for part in first["loc"] if part != "body")
         return JSONResponse({"error": f"{place or 'body'}: {first['msg']}"}, status_code=422)
 
-    @app.exception_handler(HTTPException)
-    async def refused(_request: Request, problem: HTTPException) -> JSONResponse:
+    @app.exception_handler(AnyHTTPException)
+    async def refused(_request: Request, problem: AnyHTTPException) -> JSONResponse:
         return JSONResponse({"error": str(problem.detail)}, status_code=problem.status_code)
 
     @app.middleware("http")

@@ -321,7 +321,7 @@ AnyOrder = Annotated[
 class OrderRequest(Message):
     """An order to named vehicles. `takeoff` is the explicit word that they may leave the ground."""
 
-    serials: list[str] = Field(min_length=1, max_length=256)
+    serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=256)
     order: AnyOrder
     takeoff: bool = False
 

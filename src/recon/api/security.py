@@ -15,6 +15,9 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 PROTOCOL = "recon.v1"
 TOKEN_PROTOCOL_PREFIX = "recon.token."
+MOST_BODY_BYTES = 1024 * 1024
+"""The longest mission takes 20 KiB; nothing asks for more, and what is read is held in memory."""
+
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
@@ -66,16 +69,42 @@ class Doorman:
         if not self._is_our_host(host):
             return 400, f"this station is not called {host!r}"
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and _place_of(origin) != host:
             return 403, f"requests from pages of {origin} are refused"
         if scope["path"].startswith("/api/") and not self.access.is_token(_token(headers)):
             return 401, "a token is needed: open the address that the station printed at its start"
-        return 200, None
+        return _judge_body(headers)
 
     def _is_our_host(self, host: str) -> bool:
         if self.access.token_sha256 is not None:
             return True
-        return (urlsplit(f"//{host}").hostname or "") in self.access.host_names
+        return _name_of(host) in self.access.host_names
+
+
+def _judge_body(headers: Headers) -> tuple[int, str | None]:
+    """Refuse a body that is too long, or does not say how long it is."""
+    if "transfer-encoding" in headers:
+        return 411, "a body must say its Content-Length"
+    length = headers.get("content-length", "0")
+    if not length.isdecimal() or int(length) > MOST_BODY_BYTES:
+        return 413, f"a body may have up to {MOST_BODY_BYTES} bytes, this one claims {length[:20]}"
+    return 200, None
+
+
+def _place_of(origin: str) -> str | None:
+    """Host and port of an Origin header; None when it is no origin."""
+    try:
+        return urlsplit(origin).netloc or None
+    except ValueError:
+        return None
+
+
+def _name_of(host: str) -> str | None:
+    """The name or address in a Host header, without its port; None when it is none."""
+    try:
+        return urlsplit(f"//{host}").hostname
+    except ValueError:
+        return None
 
 
 def _token(headers: Headers) -> str | None:

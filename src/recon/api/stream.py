@@ -1,7 +1,8 @@
 """The stream of states: the newest one, as fast as the reader takes them, 10 Hz at most.
 
 Towards slow readers state is conflated: while a message waits to be taken, no other is made, and
-what is made then is of that moment.
+what is made then is of that moment. The server's send waits as long as more than its 64 KiB wait for
+the socket, so a reader that does not read holds those and one message, whatever its pace.
 """
 
 import asyncio
@@ -32,18 +33,23 @@ class StateStream:
         if self._readers >= MOST_READERS:
             await socket.close(1013, f"{MOST_READERS} readers are connected already")
             return
-        offered = socket.scope.get("subprotocols", [])
-        await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
         self._readers += 1
+        try:
+            offered = socket.scope.get("subprotocols", [])
+            await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
+            await self._send_until_gone(socket)
+        except (WebSocketDisconnect, RuntimeError):
+            return
+        finally:
+            self._readers -= 1
+
+    async def _send_until_gone(self, socket: WebSocket) -> None:
         gone = asyncio.ensure_future(_until_gone(socket))
         try:
             while not gone.done():
                 await socket.send_text(self._newest())
                 await asyncio.wait((gone,), timeout=INTERVAL_S)
-        except (WebSocketDisconnect, RuntimeError):
-            return
         finally:
-            self._readers -= 1
             gone.cancel()
 
     def _newest(self) -> str:

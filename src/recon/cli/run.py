@@ -1,5 +1,6 @@
 """`recon run`: the station."""
 
+import string
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,8 @@ from recon.site import Site, default_site, load_site, site_report
 from recon.station.run import RunConfig, Started, StartError, run
 
 SHORTEST_TOKEN = 16
+TOKEN_LETTERS = frozenset(string.ascii_letters + string.digits + "-._~")
+"""What travels unchanged in an address and in a WebSocket's list of subprotocols."""
 
 
 def run_command(
@@ -82,5 +85,10 @@ def read_token(path: Path) -> str:
     if len(token) < SHORTEST_TOKEN:
         raise StartError(
             f"{path}: expected a secret of {SHORTEST_TOKEN} characters or more, got {len(token)}"
+        )
+    if not TOKEN_LETTERS.issuperset(token):
+        raise StartError(
+            f"{path}: expected a secret of letters, digits and -._~ only, got others: browsers "
+            "cannot send those; `openssl rand -hex 24` makes a good one"
         )
     return token

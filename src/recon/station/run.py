@@ -2,9 +2,10 @@
 
 import asyncio
 import errno
+import signal
 import socket
-from collections.abc import Awaitable, Callable
-from contextlib import AsyncExitStack
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import AsyncExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -27,6 +28,9 @@ from recon.station.service import Service
 from recon.station.worker import ThreadWorker
 
 _log = structlog.get_logger("recon")
+
+HTTP_BACKLOG = 128
+SHUTDOWN_S = 2
 
 
 class StartError(ReconError):
@@ -82,6 +86,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         worker.start()
         stack.callback(worker.stop)
         server = _http_server(config, service)
+        stack.enter_context(_stopped_by_signals(server))
         serving = asyncio.create_task(server.serve(sockets=[http_socket]))
         await on_start(_started(config, service, links, http_socket))
         done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
@@ -106,6 +111,9 @@ def _listen(host: str, port: int, option: str) -> socket.socket:
     try:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         sock.bind((host, port))
+        # Listening at once, so that the address is open when it is printed, and so that a second
+        # station started in the same moment finds the port in use.
+        sock.listen(HTTP_BACKLOG)
     except (OSError, OverflowError) as problem:
         sock.close()
         raise _cannot_listen(host, port, option, problem) from problem
@@ -146,17 +154,51 @@ def _start_capture(config: RunConfig, driver: AsyncioDriver) -> Capture | None:
     return capture
 
 
+class _HttpServer(uvicorn.Server):
+    """Uvicorn without its own signal handling.
+
+    That would raise the signal again once the server has ended, and so kill the process before the
+    links are closed and the captures written.
+    """
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals alone; `_stopped_by_signals` takes them."""
+        yield
+
+
+@contextmanager
+def _stopped_by_signals(server: uvicorn.Server) -> Iterator[None]:
+    """End the server on SIGINT and SIGTERM; the second one does not wait for open requests."""
+    loop = asyncio.get_running_loop()
+    numbers = (signal.SIGINT, signal.SIGTERM)
+
+    def stop() -> None:
+        server.force_exit = server.should_exit
+        server.should_exit = True
+
+    for number in numbers:
+        loop.add_signal_handler(number, stop)
+    try:
+        yield
+    finally:
+        for number in numbers:
+            loop.remove_signal_handler(number)
+
+
 def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
     access = Access.make(config.http_host, config.token)
     app = create_app(service, access, config.console, __version__)
-    return uvicorn.Server(
+    return _HttpServer(
         uvicorn.Config(
             app,
             log_level="warning",
             access_log=False,
             server_header=False,
+            # Its send waits while the reader's socket takes no more: see api/stream.py.
+            ws="websockets-sansio",
             ws_max_size=64 * 1024,
-            timeout_graceful_shutdown=2,
+            timeout_graceful_shutdown=SHUTDOWN_S,
             lifespan="off",
         )
     )

@@ -87,10 +87,12 @@ class Service:
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
 
     def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
-        for order in orders:
-            self.driver.handle(order)
-        records = self.driver.station.orders.records
-        return schema.OrderResponse(results=[_result(records[o.command_id]) for o in orders])
+        return schema.OrderResponse(results=[self._give_one(order) for order in orders])
+
+    def _give_one(self, order: OperatorOrder) -> schema.OrderResult:
+        """Give an order and read its record at once: of many, the first are soon forgotten."""
+        self.driver.handle(order)
+        return _result(self.driver.station.orders.records[order.command_id])
 
     def _surroundings(self, now_ns: int) -> Surroundings:
         links = self.driver.links

@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
+from recon.model.errors import ReconError
 from recon.model.event import DeadlineMissed, Event, WorkerResult
 from recon.station.outputs import StartWork
 
@@ -29,7 +30,7 @@ def do_work(tasks: Mapping[str, Task], work: StartWork) -> WorkerResult:
         return WorkerResult(work.job_id, work.kind, None, f"nobody does {work.kind} here")
     try:
         return WorkerResult(work.job_id, work.kind, task(work.payload))
-    except ValueError as problem:
+    except (ReconError, ValueError) as problem:
         return WorkerResult(work.job_id, work.kind, None, str(problem))
     except Exception as problem:
         # A fault in one frame's work must not end the thread that does all the others.

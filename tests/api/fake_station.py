@@ -1,0 +1,73 @@
+"""A station that the API can be put around, and its application under test."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from fastapi import FastAPI
+
+from recon.api.app import create_app
+from recon.api.schema import OrderResponse, StationState
+from recon.api.security import Access
+from recon.model.command import Body
+from recon.model.imagery import Frame, GroundImage
+from recon.site import default_site
+from recon.station.build import first_state
+from recon.station.driver import AsyncioDriver
+from recon.station.service import Service
+
+TOKEN = "a-token-of-enough-letters"
+
+
+@dataclass
+class FakeStation:
+    """The real service around a station without sockets; pictures are put in by hand."""
+
+    frames: dict[str, Frame] = field(default_factory=dict)
+    image: GroundImage | None = None
+    asked: list[tuple[list[str], Body, bool]] = field(default_factory=list)
+    states_made: int = 0
+
+    def __post_init__(self) -> None:
+        site = default_site()
+        self.driver = AsyncioDriver(first_state(site), lambda: 1_000_000_000)
+        self.service = Service.around(self.driver, site, None)
+
+    def state(self) -> StationState:
+        self.states_made += 1
+        return self.service.state()
+
+    def order(
+        self, serials: list[str], body: Body, *, takeoff: bool, issued_by: str
+    ) -> OrderResponse:
+        self.asked.append((serials, body, takeoff))
+        return self.service.order(serials, body, takeoff=takeoff, issued_by=issued_by)
+
+    def all_stop(self, issued_by: str) -> OrderResponse:
+        return self.service.all_stop(issued_by)
+
+    def acknowledge(self, alarm_id: int, by: str) -> bool:
+        return self.service.acknowledge(alarm_id, by)
+
+    def frame(self, serial: str) -> Frame | None:
+        return self.frames.get(serial)
+
+    def ground_image(self) -> GroundImage | None:
+        return self.image
+
+    def geotiff(self, image: GroundImage) -> bytes:
+        return self.service.geotiff(image)
+
+
+def application(
+    station: FakeStation, *, token: str | None = None, console: Path | None = None
+) -> FastAPI:
+    return create_app(station, Access.make("127.0.0.1", token), console, "1.2.3")
+
+
+def rgb_frame(serial: str) -> Frame:
+    """Return a frame whose left half is red and right half blue."""
+    rgb = np.zeros((32, 64, 3), np.uint8)
+    rgb[:, :32, 0] = 255
+    rgb[:, 32:, 2] = 255
+    return Frame(7, serial, 0, 0, 0.25, rgb=rgb)

@@ -1,0 +1,117 @@
+"""The stream on a real server: fresh for a fast reader, bounded towards one that does not read."""
+
+import asyncio
+import contextlib
+import socket
+from collections.abc import AsyncIterator
+
+import uvicorn
+import websockets
+from tests.api.fake_station import FakeStation, application
+
+from recon.api import stream as stream_module
+from recon.api.schema import StationState
+from recon.api.security import PROTOCOL
+
+PATIENCE_S = 20.0
+
+
+class BigStation(FakeStation):
+    """A station whose state is large: one megabyte of text."""
+
+    def state(self) -> StationState:
+        state = super().state()
+        name = state.station.model_copy(update={"version": "v" * 1_000_000})
+        return state.model_copy(update={"station": name, "time_ns": self.states_made})
+
+
+@contextlib.asynccontextmanager
+async def served(station: FakeStation) -> AsyncIterator[int]:
+    """Serve an application on a free port of loopback, with the station's own choice of `ws`."""
+    listening = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(
+        application(station), log_level="error", lifespan="off", ws="websockets-sansio"
+    )
+    server = uvicorn.Server(config)
+    task = asyncio.ensure_future(server._serve([listening]))
+    try:
+        yield int(listening.getsockname()[1])
+    finally:
+        server.should_exit = server.force_exit = True
+        await task
+        listening.close()
+
+
+def test_a_fast_reader_gets_one_state_after_another() -> None:
+    async def main() -> None:
+        async with asyncio.timeout(PATIENCE_S), served(FakeStation()) as port:
+            url = f"ws://127.0.0.1:{port}/api/stream"
+            async with websockets.connect(url, subprotocols=[PROTOCOL]) as reader:
+                for _ in range(5):
+                    StationState.model_validate_json(await reader.recv())
+
+    asyncio.run(main())
+
+
+def test_states_are_made_once_for_all_readers() -> None:
+    async def main() -> None:
+        station = FakeStation()
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            served(station) as port,
+            contextlib.AsyncExitStack() as stack,
+        ):
+            url = f"ws://127.0.0.1:{port}/api/stream"
+            readers = [await stack.enter_async_context(websockets.connect(url)) for _ in range(8)]
+            for _ in range(10):
+                for reader in readers:
+                    await reader.recv()
+            assert station.states_made < 8 * 10 / 2
+
+    asyncio.run(main())
+
+
+def test_a_reader_that_does_not_read_is_sent_the_present_not_the_past() -> None:
+    """What waits for it is bounded; when it reads again it skips what it missed."""
+
+    async def main() -> None:
+        station = BigStation()
+        async with asyncio.timeout(PATIENCE_S), served(station) as port:
+            url = f"ws://127.0.0.1:{port}/api/stream"
+            async with (
+                websockets.connect(url, max_queue=1, compression=None, max_size=None) as slow,
+                websockets.connect(url, max_size=None) as fast,
+            ):
+                made_first = StationState.model_validate_json(await fast.recv()).time_ns
+                for _ in range(40):
+                    newest = StationState.model_validate_json(await fast.recv()).time_ns
+                assert newest - made_first >= 30
+                waiting = [StationState.model_validate_json(await slow.recv()).time_ns]
+                while waiting[-1] < newest:
+                    waiting.append(StationState.model_validate_json(await slow.recv()).time_ns)
+                # Of 40 states of a megabyte the slow one holds a few: its own buffers', no queue.
+                assert len(waiting) < 20
+
+    asyncio.run(main())
+
+
+def test_readers_beyond_the_limit_are_refused_and_places_come_free() -> None:
+    async def main() -> None:
+        async with asyncio.timeout(PATIENCE_S), served(FakeStation()) as port:
+            url = f"ws://127.0.0.1:{port}/api/stream"
+            async with contextlib.AsyncExitStack() as stack:
+                for _ in range(stream_module.MOST_READERS):
+                    reader = await stack.enter_async_context(websockets.connect(url))
+                    await reader.recv()
+                with contextlib.suppress(websockets.InvalidStatus):
+                    await websockets.connect(url)
+                    raise AssertionError("one reader too many was let in")
+            while True:
+                try:
+                    async with websockets.connect(url) as reader:
+                        await reader.recv()
+                    return
+                except websockets.InvalidStatus:
+                    continue
+
+    asyncio.run(main())
