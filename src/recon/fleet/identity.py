@@ -23,7 +23,8 @@ def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
     if link.claimed_serial == serial:
         return fleet
     if link.claimed_serial is not None:
-        fleet = release(fleet, link, now_ns)
+        # What was heard under the old serial belongs to the old vehicle.
+        fleet = release(fleet, replace(link, own_state=_blank(link)), now_ns)
     holder = fleet.vehicles.get(serial)
     has_holder = holder is not None and holder.link_id is not None
     fleet = _put_link(
@@ -63,7 +64,9 @@ def release(fleet: Fleet, link: LinkRecord, now_ns: int) -> Fleet:
         return _mark_rivals(fleet, serial)
     fleet = _put_vehicle(fleet, replace(vehicle, link_id=None))
     heirs = _rivals(fleet, serial)
-    return _bind(fleet, heirs[0].id, serial) if heirs else _mark_rivals(fleet, serial)
+    if not heirs:
+        return _mark_rivals(fleet, serial)
+    return _restart_rivals(_bind(fleet, heirs[0].id, serial), serial, now_ns)
 
 
 def settle(fleet: Fleet, now_ns: int) -> tuple[Fleet, tuple[tuple[int, str], ...]]:
@@ -79,6 +82,20 @@ def settle(fleet: Fleet, now_ns: int) -> tuple[Fleet, tuple[tuple[int, str], ...
         fleet = _bind(fleet, heir.id, vehicle.serial)
         fleet = _restart_rivals(fleet, vehicle.serial, now_ns)
     return fleet, tuple(closing)
+
+
+def forget_vehicles(fleet: Fleet) -> Fleet:
+    """Return the fleet without the vehicles beyond its limit that have no link, silent longest."""
+    excess = len(fleet.vehicles) - fleet.settings.vehicles_kept
+    if excess <= 0:
+        return fleet
+    absent = sorted(
+        (v for v in fleet.vehicles.values() if v.link_id is None),
+        key=lambda v: (v.serial in fleet.profiles, v.core_received_at_ns or 0),
+    )
+    forgotten = {vehicle.serial for vehicle in absent[:excess]}
+    kept = {key: v for key, v in fleet.vehicles.items() if key not in forgotten}
+    return replace(fleet, vehicles=kept)
 
 
 def _heir(fleet: Fleet, vehicle: VehicleState, now_ns: int) -> LinkRecord | None:
@@ -112,15 +129,13 @@ def _bind(fleet: Fleet, link_id: int, serial: str) -> Fleet:
     known = fleet.vehicles.get(serial) or VehicleState(serial=serial)
     profile = fleet.profiles.get(serial)
     vehicle = replace(
-        with_newest_values(known, link.own_state),
+        with_newest_values(known, link.own_state, fleet.settings),
         link_id=link_id,
         profile=profile,
         is_simulated=link.own_state.is_simulated or serial.startswith(SIMULATED_PREFIX),
-        core_received_at_ns=_newest(known.core_received_at_ns, link.own_state.core_received_at_ns),
-        track=known.track or link.own_state.track,
     )
-    blank = VehicleState(serial=None, link_id=link_id)
-    fleet = _put_link(fleet, replace(link, own_state=blank, rival_since_ns=None, in_conflict=False))
+    bound = replace(link, own_state=_blank(link), rival_since_ns=None, in_conflict=False)
+    fleet = _put_link(fleet, bound)
     return _mark_rivals(_put_vehicle(fleet, vehicle), serial)
 
 
@@ -141,8 +156,10 @@ def _mark_rivals(fleet: Fleet, serial: str) -> Fleet:
     return _put_vehicle(fleet, marked)
 
 
-def _newest(a: int | None, b: int | None) -> int | None:
-    return b if a is None else a if b is None else max(a, b)
+def _blank(link: LinkRecord) -> VehicleState:
+    """A link's own state with nothing heard; only that its app is a simulated one stays known."""
+    is_simulated = link.own_state.is_simulated
+    return VehicleState(serial=None, link_id=link.id, is_simulated=is_simulated)
 
 
 def _put_link(fleet: Fleet, link: LinkRecord) -> Fleet:

@@ -21,5 +21,9 @@ class FleetSettings:
     track_points: int = 600
     """Ten minutes of track."""
 
+    vehicles_kept: int = 64
+    """An app that names a new serial again and again must not fill the memory: beyond this, the
+    vehicles without a link that were silent longest are forgotten."""
+
     closed_links_kept: int = 32
     """Closed links that stay visible, so that a person can read why they closed."""

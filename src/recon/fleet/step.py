@@ -35,12 +35,17 @@ def step(fleet: Fleet, event: Event, now_ns: int) -> tuple[Fleet, tuple[CloseLin
             return _opened(fleet, link_id, remote_address, now_ns), ()
         case LinkClosed(link_id, reason):
             return _closed(fleet, link_id, reason, now_ns), ()
-        case PacketReceived(link_id, report) if link_id in fleet.links:
+        case PacketReceived(link_id, report) if _is_open(fleet, link_id):
             return _received(fleet, link_id, report, now_ns), ()
         case Tick():
             settled, closing = identity.settle(fleet, now_ns)
             return settled, tuple(CloseLink(*item) for item in closing)
     return fleet, ()
+
+
+def _is_open(fleet: Fleet, link_id: int) -> bool:
+    link = fleet.links.get(link_id)
+    return link is not None and link.is_open
 
 
 def _opened(fleet: Fleet, link_id: int, remote_address: str, now_ns: int) -> Fleet:
@@ -76,6 +81,7 @@ def _received(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
     fleet = identity.heard(fleet, link_id, now_ns)
     if isinstance(report, ExtendedReport) and report.serial is not None:
         fleet = identity.claim(fleet, link_id, report.serial, now_ns)
+        fleet = identity.forget_vehicles(fleet)
     return _fold(fleet, link_id, report, now_ns)
 
 
@@ -104,8 +110,16 @@ def _fold(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
             counted = replace(state, image_received_at_ns=now_ns, image_count=state.image_count + 1)
             return _put(fleet, link_id, counted)
         case MessageReport(_, text) if text == SIMULATOR_GREETING:
-            return _put(fleet, link_id, replace(state, is_simulated=True))
+            fleet = _put(fleet, link_id, replace(state, is_simulated=True))
+            return _remember_simulated(fleet, link_id)
     return fleet
+
+
+def _remember_simulated(fleet: Fleet, link_id: int) -> Fleet:
+    """The greeting is about the app, whichever vehicle it flies: the link keeps it."""
+    link = fleet.links[link_id]
+    own_state = replace(link.own_state, is_simulated=True)
+    return replace(fleet, links={**fleet.links, link_id: replace(link, own_state=own_state)})
 
 
 def _put(fleet: Fleet, link_id: int, state: VehicleState) -> Fleet:

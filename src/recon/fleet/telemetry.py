@@ -1,6 +1,7 @@
 """Reports folded into a vehicle's state."""
 
 from dataclasses import fields, replace
+from math import isfinite
 from typing import Any
 
 from recon.fleet.settings import FleetSettings
@@ -32,7 +33,9 @@ def fold_core(
         velocity_ned=Stamped(report.velocity_ned, now_ns),
         attitude=Stamped(report.attitude, now_ns),
         altitude_offset_m=Stamped(offset_m, now_ns),
-        altitude_offset_at_takeoff_m=_offset_at_takeoff_m(state, report, offset_m),
+        altitude_offset_at_takeoff_m=(
+            offset_m if takes_off else _offset_at_takeoff_m(state, report, offset_m)
+        ),
         takeoff_point=report.position if takes_off else state.takeoff_point,
         core_received_at_ns=now_ns,
         track=_extend_track(state, report, now_ns, settings),
@@ -57,18 +60,45 @@ def fold_extended(state: VehicleState, report: ExtendedReport, now_ns: int) -> V
     )
 
 
-def with_newest_values(state: VehicleState, other: VehicleState) -> VehicleState:
-    """Return `state` with every stamped value that `other` knows newer."""
+def with_newest_values(
+    state: VehicleState, other: VehicleState, settings: FleetSettings
+) -> VehicleState:
+    """Return a vehicle's state with all that another link heard of it later.
+
+    A takeoff the other link saw is the newer one; its track goes on where the vehicle's ends.
+    """
     newest: dict[str, Any] = {
         name: max(getattr(state, name), getattr(other, name), key=_received_at_ns)
         for name in STAMPED_FIELDS
     }
-    return replace(state, **newest)
+    times: dict[str, Any] = {
+        name: _later(getattr(state, name), getattr(other, name)) for name in TIME_FIELDS
+    }
+    last_ns = state.track[-1].at_ns if state.track else -1
+    track = (*state.track, *(point for point in other.track if point.at_ns > last_ns))
+    saw_takeoff = other.takeoff_point is not None or state.altitude_offset_at_takeoff_m is None
+    source = other if saw_takeoff else state
+    return replace(
+        state,
+        **newest,
+        **times,
+        image_count=state.image_count + other.image_count,
+        altitude_offset_at_takeoff_m=source.altitude_offset_at_takeoff_m,
+        takeoff_point=other.takeoff_point or state.takeoff_point,
+        track=track[-settings.track_points :],
+    )
 
 
 STAMPED_FIELDS = tuple(
     field.name for field in fields(VehicleState) if isinstance(field.default, Stamped)
 )
+
+
+TIME_FIELDS = ("core_received_at_ns", "extended_received_at_ns", "image_received_at_ns")
+
+
+def _later(a: int | None, b: int | None) -> int | None:
+    return b if a is None else a if b is None else max(a, b)
 
 
 def _received_at_ns(stamped: Stamped[Any]) -> int:
@@ -78,7 +108,8 @@ def _received_at_ns(stamped: Stamped[Any]) -> int:
 def _altitude_offset_m(report: CoreReport) -> float | None:
     if report.reported_altitude_m is None or report.height_above_takeoff_m is None:
         return None
-    return report.reported_altitude_m - report.height_above_takeoff_m
+    offset_m = report.reported_altitude_m - report.height_above_takeoff_m
+    return offset_m if isfinite(offset_m) else None
 
 
 def _offset_at_takeoff_m(

@@ -1,9 +1,19 @@
 """The gate: every rule must agree before a command becomes an approved one."""
 
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import InitVar, dataclass, replace
+from typing import Final, NoReturn
 
-from recon.model.command import Command, FlyMission, Hover, Refusal, ReturnHome
+from recon.model.command import (
+    CAMERA_BODIES,
+    Command,
+    FlyMission,
+    Hover,
+    LandNow,
+    Refusal,
+    ReturnHome,
+)
+from recon.model.stamped import Stamped
+from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, VehicleProfile
 from recon.safety.rules import RULES
 from recon.safety.situation import Situation
@@ -16,6 +26,8 @@ _KEY: Final = object()
 class ApprovedCommand:
     """A command that may be sent, to these links and no others. Made by `approve` only.
 
+    The key is asked for and not kept: neither `dataclasses.replace` nor a copy nor a pickle makes
+    another approved command out of one. `command` expires when the approval does.
     `altitude_offset_m` is what every waypoint's height above takeoff is raised by on the wire; None
     when heights go out as they are.
     """
@@ -25,11 +37,17 @@ class ApprovedCommand:
     profile: VehicleProfile | None
     altitude_offset_m: float | None
     approved_at_ns: int
-    key: object
+    key: InitVar[object]
 
-    def __post_init__(self) -> None:
-        if self.key is not _KEY:
+    def __post_init__(self, key: object) -> None:
+        if key is not _KEY:
             raise TypeError("only recon.safety.approve makes an ApprovedCommand")
+
+    def __reduce_ex__(self, _protocol: object) -> NoReturn:
+        raise TypeError("an ApprovedCommand is not copied or pickled: ask recon.safety.approve")
+
+    def __setstate__(self, _state: object) -> NoReturn:
+        raise TypeError("an ApprovedCommand is not restored: ask recon.safety.approve")
 
 
 def approve(command: Command, situation: Situation) -> ApprovedCommand | Refusal:
@@ -39,7 +57,7 @@ def approve(command: Command, situation: Situation) -> ApprovedCommand | Refusal
         if refusal is not None:
             return refusal
     return ApprovedCommand(
-        command=command,
+        command=replace(command, expires_at_ns=_holds_until_ns(command, situation)),
         link_ids=_link_ids(command, situation),
         profile=None if situation.vehicle is None else situation.vehicle.profile,
         altitude_offset_m=_altitude_offset_m(command, situation),
@@ -61,10 +79,29 @@ def _link_ids(command: Command, situation: Situation) -> tuple[int, ...]:
     )
 
 
+def _holds_until_ns(command: Command, situation: Situation) -> int:
+    """When the approval ends: an order that may do harm late must not wait in a queue."""
+    body, limits = command.body, situation.settings
+    if isinstance(body, (LandNow, *CAMERA_BODIES)):
+        return command.expires_at_ns
+    is_mission = isinstance(body, FlyMission)
+    holds_s = limits.mission_approval_holds_s if is_mission else limits.approval_holds_s
+    until_ns = min(command.expires_at_ns, situation.now_ns + seconds_to_ns(holds_s))
+    offset = _altitude_offset(command, situation)
+    if offset is None or offset.received_at_ns is None:
+        return until_ns
+    max_age_ns = seconds_to_ns(limits.altitude_offset_max_age_s)
+    return min(until_ns, offset.received_at_ns + max_age_ns + 1)
+
+
 def _altitude_offset_m(command: Command, situation: Situation) -> float | None:
+    offset = _altitude_offset(command, situation)
+    return None if offset is None else offset.value
+
+
+def _altitude_offset(command: Command, situation: Situation) -> Stamped[float] | None:
     vehicle = situation.vehicle
     if not isinstance(command.body, FlyMission) or vehicle is None or vehicle.profile is None:
         return None
-    if vehicle.profile.waypoint_altitude is AltitudeReference.WGS84:
-        return vehicle.altitude_offset_m.value
-    return None
+    is_wgs84 = vehicle.profile.waypoint_altitude is AltitudeReference.WGS84
+    return vehicle.altitude_offset_m if is_wgs84 else None

@@ -11,10 +11,20 @@ class SafetySettings:
     """Telemetry this old still tells whether a vehicle flies: running video causes dropouts of a
     second or two, and within three no aircraft lands and disarms unseen."""
 
+    approval_holds_s: float = 1.5
+    """An approved order to move is sent within this time or not at all: what made it safe (it
+    flies, telemetry is fresh) may not hold any longer. Unsent emergency orders are judged anew
+    every 0.7 s."""
+    mission_approval_holds_s: float = 2.5
+    """A mission may first wait 2 s for the answer to the one before it."""
+
     altitude_offset_max_age_s: float = 2.0
     altitude_offset_max_jump_m: float = 2.0
     """A wgs84 app is sent height + (Altitude - HAG): the offset must be young, and unchanged since
     takeoff, or the app subtracts something else than was added."""
+
+    altitude_offset_max_m: float = 10_000.0
+    """No aircraft is this far from its takeoff point's height: such a number is a broken one."""
 
     min_waypoints: int = 2
     min_leg_m: float = 0.5

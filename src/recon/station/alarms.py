@@ -15,6 +15,15 @@ class Severity(Enum):
     WARNING = "warning"
     INFO = "info"
 
+    @property
+    def rank(self) -> int:
+        """0 for the worst."""
+        return tuple(Severity).index(self)
+
+    def is_worse_than(self, other: "Severity") -> bool:
+        """Return whether this is the worse of the two."""
+        return self.rank < other.rank
+
 
 @dataclass(frozen=True, slots=True)
 class Condition:
@@ -63,16 +72,7 @@ def update(book: AlarmBook, conditions: Iterable[Condition], now_ns: int, kept: 
         for key, condition in present.items()
         if now_ns - since_ns[key] >= seconds_to_ns(condition.after_s)
     }
-    alarms = {
-        alarm.id: replace(
-            alarm,
-            condition=ripe.get(alarm.condition.key, alarm.condition)
-            if alarm.is_active
-            else alarm.condition,
-            is_active=alarm.is_active and alarm.condition.key in ripe,
-        )
-        for alarm in book.alarms.values()
-    }
+    alarms = {alarm.id: _continued(alarm, ripe) for alarm in book.alarms.values()}
     active = {alarm.condition.key for alarm in alarms.values() if alarm.is_active}
     next_id = book.next_id
     for key, condition in ripe.items():
@@ -80,6 +80,17 @@ def update(book: AlarmBook, conditions: Iterable[Condition], now_ns: int, kept: 
             alarms[next_id] = Alarm(next_id, condition, now_ns)
             next_id += 1
     return AlarmBook(_bounded(alarms, kept), since_ns, next_id)
+
+
+def _continued(alarm: Alarm, ripe: Mapping[str, Condition]) -> Alarm:
+    """The alarm with its cause as it is now. One that nobody has seen comes back as itself; one
+    that got worse must be seen again."""
+    condition = ripe.get(alarm.condition.key)
+    if condition is None:
+        return replace(alarm, is_active=False)
+    is_worse = condition.severity.is_worse_than(alarm.condition.severity)
+    seen_by = None if is_worse else alarm.acknowledged_by
+    return replace(alarm, condition=condition, is_active=True, acknowledged_by=seen_by)
 
 
 def note(book: AlarmBook, condition: Condition, now_ns: int, kept: int) -> AlarmBook:
@@ -104,13 +115,17 @@ def acknowledge(book: AlarmBook, alarm_id: int, by: str) -> AlarmBook:
 
 
 def _bounded(alarms: dict[int, Alarm], kept: int) -> dict[int, Alarm]:
-    """Forget ended and acknowledged alarms; beyond the limit, the oldest ended ones too."""
+    """Forget ended and acknowledged alarms; beyond the limit, ended ones too: of those the least
+    severe first, and among them the oldest, so that chatter never displaces what matters."""
     open_alarms = {
         key: alarm
         for key, alarm in alarms.items()
         if alarm.is_active or alarm.acknowledged_by is None
     }
-    ended = [key for key, alarm in open_alarms.items() if not alarm.is_active]
+    ended = sorted(
+        (key for key, alarm in open_alarms.items() if not alarm.is_active),
+        key=lambda key: (-open_alarms[key].condition.severity.rank, key),
+    )
     for key in ended[: max(0, len(open_alarms) - kept)]:
         del open_alarms[key]
     return open_alarms

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from recon.fleet.confirmation import is_confirmed, pilot_took_over
+from recon.fleet.confirmation import Progress, SentContext, pilot_took_over, progress
 from recon.link.outbox import Lane, lane_of
 from recon.model.command import (
     CAMERA_BODIES,
@@ -13,6 +13,7 @@ from recon.model.command import (
 )
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
 from recon.model.units import seconds_to_ns
+from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand, Claimant, Situation, approve
 from recon.station import orders
 from recon.station.orders import OrderRecord, PhaseChange
@@ -40,7 +41,7 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     if isinstance(judged, Refusal):
         return _put(station, _refused(station, command, judged, now_ns)), ()
     station = _supersede_older(station, command, now_ns)
-    return _put(station, _queued(station, judged, now_ns)), (SendCommand(judged),)
+    return _put(station, _queued(station, command, judged, now_ns)), (SendCommand(judged),)
 
 
 def situation(station: Station, command: Command, now_ns: int) -> Situation:
@@ -62,9 +63,7 @@ def follow(
         return station
     match event:
         case CommandSent():
-            target = station.target(record.command.serial, record.command.link_id)
-            mode = None if target is None else target.flight_mode.value
-            return _put(station, orders.on_sent(record, event, mode, now_ns))
+            return _put(station, orders.on_sent(record, event, _context(station, record, now_ns)))
         case CommandAnswered():
             return _put(station, orders.on_answered(record, event, now_ns))
         case CommandDropped():
@@ -75,9 +74,9 @@ def watch(station: Station, now_ns: int) -> Stepped:
     """Let time and telemetry change the orders still alive; repeat emergency orders."""
     outputs: list[Output] = []
     for record in station.orders.watched:
-        updated = _confirm(station, record, now_ns)
+        updated, seen = _confirm(station, record, now_ns)
         if updated.is_watched:
-            updated = _time_out(updated, station.settings, now_ns)
+            updated = _time_out(updated, seen, station.settings, now_ns)
         if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
             updated, again = _repeat(station, updated, now_ns)
             outputs += again
@@ -103,8 +102,10 @@ def _refused(station: Station, command: Command, refusal: Refusal, now_ns: int) 
     return OrderRecord(command, _name(station, command), (change,), is_watched=False)
 
 
-def _queued(station: Station, approved: ApprovedCommand, now_ns: int) -> OrderRecord:
-    command, settings = approved.command, station.settings
+def _queued(
+    station: Station, command: Command, approved: ApprovedCommand, now_ns: int
+) -> OrderRecord:
+    settings = station.settings
     repeat_ns = now_ns + seconds_to_ns(settings.emergency_repeat_s)
     return OrderRecord(
         command=command,
@@ -113,6 +114,7 @@ def _queued(station: Station, approved: ApprovedCommand, now_ns: int) -> OrderRe
         altitudes=describe_altitudes(command.body, approved.altitude_offset_m),
         next_repeat_ns=repeat_ns if command.is_emergency else None,
         repeats_left=settings.emergency_repeats if command.is_emergency else 0,
+        waiting_link_ids=approved.link_ids,
     )
 
 
@@ -125,41 +127,81 @@ def _name(station: Station, command: Command) -> str:
 
 
 def _supersede_older(station: Station, command: Command, now_ns: int) -> Station:
-    """A newer order to move ends the life of older ones to the same target, repeats included."""
-    if lane_of(command) is Lane.CAMERA:
-        return station
+    """A newer order to move ends the life of older ones to the same target, repeats included.
+
+    Camera orders end older camera orders only: looking must never end the repeats of a stop.
+    """
+    target = _target(station, command)
+    is_camera = lane_of(command) is Lane.CAMERA
     for record in station.orders.watched:
         older = record.command
-        same_target = (older.serial, older.link_id) == (command.serial, command.link_id)
-        if same_target and lane_of(older) is not Lane.CAMERA:
+        if (lane_of(older) is Lane.CAMERA) is is_camera and _target(station, older) is target:
             note = f"by order {command.id}"
             ended = orders.changed(record, Phase.SUPERSEDED, now_ns, note, is_watched=False)
             station = _put(station, ended)
     return station
 
 
-def _confirm(station: Station, record: OrderRecord, now_ns: int) -> OrderRecord:
-    target = station.target(record.command.serial, record.command.link_id)
-    if record.sent is None or target is None:
-        return record
-    if is_confirmed(record.command.body, record.sent, target, now_ns):
-        return orders.changed(record, Phase.CONFIRMED, now_ns, "by telemetry", is_watched=False)
-    if record.command.is_emergency and pilot_took_over(record.sent, target):
+def _target(station: Station, command: Command) -> VehicleState | None:
+    return station.target(command.serial, command.link_id)
+
+
+def _context(station: Station, record: OrderRecord, now_ns: int) -> SentContext:
+    """What is known as a command leaves; an old mode is no knowledge of the mode now."""
+    target = _target(station, record.command)
+    if target is None:
+        return SentContext(now_ns, None, None)
+    age_s = target.flight_mode.age_s(now_ns)
+    is_fresh = age_s is not None and age_s <= station.settings.safety.fresh_telemetry_s
+    mode = target.flight_mode.value if is_fresh else None
+    return SentContext(now_ns, mode, target.is_flying.value)
+
+
+def _confirm(station: Station, record: OrderRecord, now_ns: int) -> tuple[OrderRecord, Progress]:
+    """Return the record after what telemetry shows, and how much that is."""
+    target = _target(station, record.command)
+    if target is None:
+        note = "its connection closed before telemetry confirmed it"
+        ended = orders.changed(record, Phase.FAILED, now_ns, note, is_watched=False)
+        return ended, Progress.UNSEEN
+    if record.sent is None:
+        return record, Progress.UNSEEN
+    body, sent = record.command.body, record.sent
+    states = (target, *_flying_rivals(station, record, target))
+    seen = min(progress(body, sent, state, now_ns) for state in states)
+    if seen is Progress.COMPLETE:
+        note = "by telemetry"
+        return orders.changed(record, Phase.CONFIRMED, now_ns, note, is_watched=False), seen
+    if record.command.is_emergency and all(pilot_took_over(sent, state) for state in states):
         note = "the pilot has taken over"
-        return orders.changed(record, Phase.SUPERSEDED, now_ns, note, is_watched=False)
-    return record
+        return orders.changed(record, Phase.SUPERSEDED, now_ns, note, is_watched=False), seen
+    if seen is Progress.CONFIRMED and record.phase is not Phase.CONFIRMED:
+        return orders.underway(record, now_ns, "by telemetry: it is landing"), seen
+    return record, seen
 
 
-def _time_out(record: OrderRecord, settings: StationSettings, now_ns: int) -> OrderRecord:
+def _flying_rivals(
+    station: Station, record: OrderRecord, target: VehicleState
+) -> tuple[VehicleState, ...]:
+    """What other links say that claim the serial and fly: an emergency order is for them too."""
+    if not record.command.is_emergency:
+        return ()
+    links = (station.fleet.links[link_id] for link_id in target.rival_link_ids)
+    return tuple(link.own_state for link in links if link.own_state.is_flying.value is True)
+
+
+def _time_out(
+    record: OrderRecord, seen: Progress, settings: StationSettings, now_ns: int
+) -> OrderRecord:
     """What telemetry does not confirm in time is unsure; motion can still be confirmed late."""
     if record.phase is Phase.QUEUED:
         if now_ns < record.command.expires_at_ns:
             return record
-        return orders.changed(record, Phase.EXPIRED, now_ns, "not sent in time", is_watched=False)
+        return orders.unsent(record, Phase.EXPIRED, now_ns, "not sent in time")
     if record.phase not in (Phase.SENT, Phase.ACKNOWLEDGED) or record.sent is None:
         return record
     waited_ns = now_ns - record.sent.sent_at_ns
-    limit_s = _confirm_limit_s(record, settings)
+    limit_s = _confirm_limit_s(record, seen, settings)
     if waited_ns < seconds_to_ns(limit_s):
         return record
     note = f"telemetry has not confirmed it within {limit_s:g} s"
@@ -167,10 +209,11 @@ def _time_out(record: OrderRecord, settings: StationSettings, now_ns: int) -> Or
     return orders.changed(record, Phase.TIMED_OUT, now_ns, note, is_watched=is_serious)
 
 
-def _confirm_limit_s(record: OrderRecord, settings: StationSettings) -> float:
+def _confirm_limit_s(record: OrderRecord, seen: Progress, settings: StationSettings) -> float:
     body = record.command.body
     if record.command.is_emergency:
-        return settings.emergency_confirm_s
+        is_begun = seen is Progress.BEGUN
+        return settings.emergency_confirm_s if is_begun else settings.emergency_answer_s
     if isinstance(body, CAMERA_BODIES):
         return settings.camera_confirm_s
     return settings.mission_confirm_s if isinstance(body, FlyMission) else settings.stick_confirm_s
@@ -179,12 +222,18 @@ def _confirm_limit_s(record: OrderRecord, settings: StationSettings) -> float:
 def _repeat(
     station: Station, record: OrderRecord, now_ns: int
 ) -> tuple[OrderRecord, tuple[Output, ...]]:
-    """Send an unconfirmed emergency order again if the gate still approves it now."""
-    left = record.repeats_left - 1
+    """Send an unconfirmed emergency order again if the gate still approves it now.
+
+    One that has never left is no repeat: it is judged anew and waits on, until it expires.
+    """
+    left = record.repeats_left - (record.sent is not None)
     later_ns = now_ns + seconds_to_ns(station.settings.emergency_repeat_s)
     record = replace(record, repeats_left=left, next_repeat_ns=later_ns if left > 0 else None)
     judged = approve(record.command, situation(station, record.command, now_ns))
-    return record, () if isinstance(judged, Refusal) else (SendCommand(judged),)
+    if isinstance(judged, Refusal):
+        return record, ()
+    waiting = tuple(dict.fromkeys((*record.waiting_link_ids, *judged.link_ids)))
+    return replace(record, waiting_link_ids=waiting), (SendCommand(judged),)
 
 
 def _put(station: Station, record: OrderRecord) -> Station:

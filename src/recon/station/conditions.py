@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from recon.fleet.confirmation import has_stopped_landing
 from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
 from recon.model.units import ns_to_seconds
@@ -22,6 +23,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _unidentified(link)
     for record in station.orders.watched:
         yield from _unconfirmed(record)
+        yield from _stopped_landing(station, record)
     yield from _imaging(station)
 
 
@@ -95,6 +97,16 @@ def _unconfirmed(record: OrderRecord) -> Iterator[Condition]:
         serial=command.serial,
         link_id=command.link_id,
     )
+
+
+def _stopped_landing(station: Station, record: OrderRecord) -> Iterator[Condition]:
+    """A landing that telemetry confirmed, and that ended in the air."""
+    vehicle = station.target(record.command.serial, record.command.link_id)
+    if record.phase is not Phase.CONFIRMED or record.sent is None or vehicle is None:
+        return
+    if has_stopped_landing(record.sent, vehicle):
+        text = "it began to land as ordered, has stopped landing and still flies"
+        yield _about(vehicle, "landing_stopped", Severity.CRITICAL, text, after_s=2.0)
 
 
 def _imaging(station: Station) -> Iterator[Condition]:

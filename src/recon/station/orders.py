@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from recon.fleet.confirmation import SentContext
 from recon.model.command import Command, Phase
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent
-from recon.model.vehicle import FlightMode
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +34,8 @@ class OrderRecord:
     is_watched: bool = True
     next_repeat_ns: int | None = None
     repeats_left: int = 0
+    waiting_link_ids: tuple[int, ...] = ()
+    """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""
 
     @property
     def phase(self) -> Phase:
@@ -48,8 +49,11 @@ class OrderRecord:
 
     @property
     def is_unsure(self) -> bool:
-        """Whether an order was sent that nothing has confirmed: a person must look."""
-        return self.is_watched and self.phase in (Phase.TIMED_OUT, Phase.REFUSED_BY_APP)
+        """Whether nothing has confirmed an order, sent or stuck unsent: a person must look."""
+        return self.is_watched and self.phase in UNSURE_PHASES
+
+
+UNSURE_PHASES = (Phase.TIMED_OUT, Phase.REFUSED_BY_APP, Phase.EXPIRED, Phase.FAILED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +77,19 @@ def changed(
     return record if is_watched else replace(record, next_repeat_ns=None, repeats_left=0)
 
 
+def underway(record: OrderRecord, at_ns: int, note: str) -> OrderRecord:
+    """Return a confirmed record whose end telemetry still has to show; repeats end."""
+    confirmed = changed(record, Phase.CONFIRMED, at_ns, note)
+    return replace(confirmed, next_repeat_ns=None, repeats_left=0)
+
+
+def unsent(record: OrderRecord, phase: Phase, at_ns: int, note: str) -> OrderRecord:
+    """Return a record that never left. For an emergency order that is an alarm: it stays watched,
+    until a newer order takes its place."""
+    kept = changed(record, phase, at_ns, note, is_watched=record.command.is_emergency)
+    return replace(kept, next_repeat_ns=None, repeats_left=0)
+
+
 def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
     """Return the book with a record in it; the oldest finished ones are forgotten."""
     records = {**book.records, record.command.id: record}
@@ -83,14 +100,13 @@ def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
     return OrderBook(records)
 
 
-def on_sent(
-    record: OrderRecord, _event: CommandSent, mode: FlightMode | None, now_ns: int
-) -> OrderRecord:
+def on_sent(record: OrderRecord, event: CommandSent, context: SentContext) -> OrderRecord:
     """The packet is on its way; the first time counts for what telemetry must be newer than."""
+    record = _no_longer_waiting(record, event.link_id)
     again = replace(record, times_sent=record.times_sent + 1)
-    if record.sent is not None:
+    if not record.is_watched or record.sent is not None:
         return again
-    return changed(replace(again, sent=SentContext(now_ns, mode)), Phase.SENT, now_ns)
+    return changed(replace(again, sent=context), Phase.SENT, context.sent_at_ns)
 
 
 def on_answered(record: OrderRecord, event: CommandAnswered, now_ns: int) -> OrderRecord:
@@ -112,7 +128,13 @@ def on_answered(record: OrderRecord, event: CommandAnswered, now_ns: int) -> Ord
 
 
 def on_dropped(record: OrderRecord, event: CommandDropped, now_ns: int) -> OrderRecord:
-    """It left the queue unsent. A repeat that was not sent changes nothing."""
-    if record.phase is not Phase.QUEUED:
+    """It left a queue unsent. That ends it only when no other link can send it, nor has."""
+    record = _no_longer_waiting(record, event.link_id)
+    if record.phase is not Phase.QUEUED or record.waiting_link_ids:
         return record
-    return changed(record, event.phase, now_ns, event.reason, is_watched=False)
+    return unsent(record, event.phase, now_ns, event.reason)
+
+
+def _no_longer_waiting(record: OrderRecord, link_id: int) -> OrderRecord:
+    waiting = tuple(other for other in record.waiting_link_ids if other != link_id)
+    return replace(record, waiting_link_ids=waiting)

@@ -20,8 +20,11 @@ class StationSettings:
     emergency_repeats: int = 3
     """Decisions on the ICD, 16: every 0.7 s, three at most, until telemetry confirms."""
 
+    emergency_answer_s: float = 3.5
+    """When the last repeat is out, telemetry gets little more than a second to show an effect."""
+
     emergency_confirm_s: float = 10.0
-    """From 15 m/s an aircraft needs 6 s to stand still, and its mode arrives at 2 Hz."""
+    """A hover that has begun: from 15 m/s an aircraft needs 6 s to stand still."""
 
     mission_confirm_s: float = 8.0
     """Upload and start of 99 waypoints take seconds; after this it was rejected silently."""

@@ -26,8 +26,13 @@ class Station:
     next_frame_id: int = 1
 
     def target(self, serial: str | None, link_id: int | None) -> VehicleState | None:
-        """Return the state an order's target has now: a vehicle, or a link without identity."""
+        """Return the state an order's target has now: a vehicle, or a link without identity.
+
+        A link that has since said its serial stands for its vehicle.
+        """
         if serial is not None:
             return self.fleet.vehicles.get(serial)
         link = self.fleet.links.get(link_id if link_id is not None else -1)
-        return link.own_state if link is not None and link.is_open else None
+        if link is None or not link.is_open:
+            return None
+        return self.fleet.vehicle_of_link(link.id)

@@ -101,8 +101,11 @@ _READERS: dict[type, Callable[[Any], Report]] = {
 
 
 def to_serial(raw: bytes) -> str | None:
-    """Return a serial made harmless, or None for an empty one and the apps' placeholder."""
-    if not raw or raw == PLACEHOLDER_SERIAL:
+    """Return a serial made harmless, or None for an empty one and the apps' placeholder.
+
+    Padding does not make an identity of either: two apps that pad alike are still two vehicles.
+    """
+    if raw.strip(b"\0 \t\r\n") in (b"", PLACEHOLDER_SERIAL):
         return None
     return printable(raw, limit_chars=4 * 256)
 

@@ -6,7 +6,10 @@ def _escape(character: str) -> str:
         return "\\\\"
     if character.isprintable():
         return character
-    return character.encode("unicode_escape").decode("ascii")
+    code = ord(character)
+    if code < 0x80:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def printable(raw: bytes, limit_chars: int = 1000) -> str:

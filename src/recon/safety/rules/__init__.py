@@ -8,6 +8,7 @@ from recon.safety.rules.dji_limits import dji_limits
 from recon.safety.rules.finite_numbers import finite_numbers
 from recon.safety.rules.flying import flying
 from recon.safety.rules.identified import identified
+from recon.safety.rules.known_order import known_order
 from recon.safety.rules.not_expired import not_expired
 from recon.safety.rules.reachable import reachable
 from recon.safety.situation import Situation
@@ -15,6 +16,7 @@ from recon.safety.situation import Situation
 Rule = Callable[[Command, Situation], Refusal | None]
 
 RULES: tuple[Rule, ...] = (
+    known_order,
     reachable,
     identified,
     not_expired,

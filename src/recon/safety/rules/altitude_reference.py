@@ -33,11 +33,17 @@ def _offset_refusal(vehicle: VehicleState, situation: Situation) -> Refusal | No
         return Refusal(RULE, f"{name} reports no altitude to relate WGS84 to its takeoff point")
     if age_s > limits.altitude_offset_max_age_s:
         return Refusal(RULE, f"{name}: its altitude is {age_s:.1f} s old, 2 s at most is needed")
+    if not abs(offset.value) <= limits.altitude_offset_max_m:
+        return Refusal(
+            RULE,
+            f"{name} reports an altitude {offset.value:g} m from its height above takeoff: "
+            "no altitude on earth; wait until it reports a sound one",
+        )
     at_takeoff_m = vehicle.altitude_offset_at_takeoff_m
     if at_takeoff_m is None:
         return None
     jump_m = abs(offset.value - at_takeoff_m)
-    if jump_m > limits.altitude_offset_max_jump_m:
+    if not jump_m <= limits.altitude_offset_max_jump_m:
         return Refusal(
             RULE,
             f"{name}: its WGS84 altitude has jumped by {jump_m:.1f} m against its height above "

@@ -1,8 +1,9 @@
 """What DJI's SDK takes. It rejects the rest silently, so the station says it aloud."""
 
+import struct
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from math import hypot
+from math import hypot, inf
 from typing import Any
 
 from recon.geo.distance import horizontal_distance_m
@@ -28,7 +29,7 @@ def dji_limits(command: Command, situation: Situation) -> Refusal | None:
 
 def _camera(body: StartCamera, situation: Situation) -> Iterator[str]:
     limit_hz = situation.settings.max_camera_fps_hz
-    if not 0.0 < body.fps_hz <= limit_hz:
+    if not 0.0 < _as_sent(body.fps_hz) <= limit_hz:
         yield f"{body.fps_hz:g} frames per second: more than 0 and up to {limit_hz:g} are possible"
 
 
@@ -39,7 +40,7 @@ def _stick(body: VirtualStick, situation: Situation) -> Iterator[str]:
             yield f"velocity {name} is {speed_mps:g} m/s, at most 15 m/s either way is accepted"
     if not 0.0 <= body.height_above_takeoff_m <= limits.max_stick_height_m:
         yield f"height {body.height_above_takeoff_m:g} m: 0 to 500 m above takeoff are accepted"
-    if not 0.0 < body.timeout_s <= limits.max_stick_timeout_s:
+    if not 0.0 < _as_sent(body.timeout_s) <= limits.max_stick_timeout_s:
         yield (
             f"timeout {body.timeout_s:g} s: more than 0 and up to "
             f"{limits.max_stick_timeout_s:g} s are allowed, for the app flies on by itself so long"
@@ -71,7 +72,7 @@ def _waypoint(waypoint: Waypoint, curved: bool, limits: SafetySettings) -> Itera
     height_m = waypoint.height_above_takeoff_m
     if not limits.min_height_m <= height_m <= limits.max_height_m:
         yield f"height {height_m:g} m: -200 to 500 m above takeoff are accepted"
-    if not 0.0 < waypoint.speed_mps <= limits.max_speed_mps:
+    if not 0.0 < _as_sent(waypoint.speed_mps) <= limits.max_speed_mps:
         yield f"speed {waypoint.speed_mps:g} m/s: more than 0 and up to 15 m/s are accepted"
     if curved and (waypoint.loiter_s is not None or waypoint.gimbal_pitch_deg is not None):
         yield "a curved mission carries no loiter or gimbal action (the SDK ignores them)"
@@ -116,6 +117,14 @@ def _corners(mission: Mission, limits: SafetySettings) -> Iterator[str]:
     for number, (a, b) in enumerate(pairwise(mission.waypoints), start=1):
         if a.corner_radius_m + b.corner_radius_m >= _distance_m(a, b):
             yield f"waypoints {number} and {number + 1}: their corners are wider than their leg"
+
+
+def _as_sent(value: float) -> float:
+    """The number a 32-bit float of the wire makes of it: what is tiny becomes 0."""
+    try:
+        return float(struct.unpack(">f", struct.pack(">f", value))[0])
+    except OverflowError:
+        return inf
 
 
 def _distance_m(a: Waypoint, b: Waypoint) -> float:

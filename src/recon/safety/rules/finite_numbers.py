@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from math import isfinite
+from numbers import Real
 
 from recon.model.command import Command, Refusal
 from recon.safety.situation import Situation
@@ -11,14 +12,21 @@ from recon.safety.situation import Situation
 def finite_numbers(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a command that carries a number which is none."""
     for name, value in _numbers(command.body, ""):
-        if not isfinite(value):
+        if not _is_finite(value):
             return Refusal("finite_numbers", f"{name} is {value}: a finite number is needed")
     return None
 
 
-def _numbers(value: object, name: str) -> Iterator[tuple[str, float]]:
-    """Every float in a body, with the path to it."""
-    if isinstance(value, float):
+def _is_finite(value: Real) -> bool:
+    try:
+        return isfinite(value)
+    except OverflowError:  # an integer no float can hold
+        return False
+
+
+def _numbers(value: object, name: str) -> Iterator[tuple[str, Real]]:
+    """Every number in a body, with the path to it."""
+    if isinstance(value, Real):
         yield name, value
     elif isinstance(value, tuple):
         for index, item in enumerate(value, start=1):
