@@ -1,8 +1,8 @@
 """The stream of states: the newest one, as fast as the reader takes them, 10 Hz at most.
 
 Towards slow readers state is conflated: while a message waits to be taken, no other is made, and
-what is made then is of that moment. The server's send waits as long as more than its 64 KiB wait for
-the socket, so a reader that does not read holds those and one message, whatever its pace.
+what is made then is of that moment. The server's send waits as long as more than its 64 KiB wait
+for the socket, so a reader that does not read holds those and one message, whatever its pace.
 """
 
 import asyncio

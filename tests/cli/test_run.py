@@ -1,0 +1,141 @@
+"""`recon run` as a person meets it: addresses, one sentence for what is wrong, a clean end."""
+
+import contextlib
+import json
+import signal
+import socket
+import stat
+import urllib.request
+from pathlib import Path
+
+import pytest
+from tests.cli.processes import started
+
+from recon import wire
+from recon.cli.run import read_token
+from recon.station.run import StartError
+
+FREE = ("--link-port", "0", "--http-port", "0")
+HELLO = wire.encode(wire.MessageString(type=1, text=b"hello"))
+
+
+def link_port(line: str) -> int:
+    return int(line.rpartition(":")[2])
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -> None:
+    """Also with an app connected: what it said is in the capture."""
+    with started("run", *FREE, "--capture", str(tmp_path / "raw")) as recon:
+        port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
+        console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
+        with urllib.request.urlopen(f"{console}/api/state", timeout=20) as response:
+            assert json.load(response)["vehicles"] == []
+        with socket.create_connection(("127.0.0.1", port)) as app:
+            recon.line_with("app connected")
+            app.sendall(HELLO)
+            app.shutdown(socket.SHUT_WR)
+            recon.line_with("app gone")
+            assert recon.end(number) == 0
+        assert "Traceback" not in recon.text
+    (capture,) = (tmp_path / "raw").iterdir()
+    assert HELLO in capture.read_bytes()
+
+
+def test_an_app_still_connected_at_the_end_is_captured(tmp_path: Path) -> None:
+    with started("run", *FREE, "--capture", str(tmp_path)) as recon:
+        port = link_port(recon.line_with("companion apps"))
+        recon.line_with("console")
+        with socket.create_connection(("127.0.0.1", port)) as app:
+            app.sendall(HELLO)
+            recon.line_with("app connected")
+            assert recon.end(signal.SIGTERM) == 0
+            app.settimeout(20)
+            with contextlib.suppress(ConnectionResetError):
+                assert app.recv(1) == b""
+    assert len(list(tmp_path.iterdir())) == 1
+    assert "Traceback" not in recon.text
+
+
+def refused(*options: str) -> str:
+    """Run with options that cannot work; return the one sentence."""
+    with started("run", *options) as recon:
+        assert recon.wait() != 0
+        assert "Traceback" not in recon.text
+        return recon.text
+
+
+def test_a_link_port_in_use_is_one_sentence() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        said = refused("--link-port", str(port), "--http-port", "0")
+    assert f"port {port} of 127.0.0.1 is in use" in said
+    assert "--link-port" in said
+
+
+def test_an_http_port_in_use_is_one_sentence() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        said = refused("--link-port", "0", "--http-port", str(port))
+    assert f"port {port} of 127.0.0.1 is in use" in said
+    assert "--http-port" in said
+
+
+def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
+    """Two stations started in the same moment."""
+    with socket.socket() as other:
+        other.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        other.bind(("127.0.0.1", 0))
+        port = other.getsockname()[1]
+        with started("run", "--link-port", "0", "--http-port", str(port)) as first:
+            first.line_with("console:")
+            assert "is in use" in refused("--link-port", "0", "--http-port", str(port))
+            assert first.end(signal.SIGINT) == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("--site", "/nowhere/at/all"), "/nowhere/at/all"),
+        (("--http-host", "0.0.0.0"), "--token-file"),
+        (("--http-host", "::"), "--token-file"),
+        (("--link-host", "203.0.113.77"), "--link-port"),
+        (("--link-host", "no.such.host.invalid"), "no.such.host.invalid"),
+        (("--token-file", "/nowhere/token"), "/nowhere/token"),
+        (("--capture", "/proc/none"), "--capture"),
+        (("--link-port", "70000"), "--link-port"),
+        (("--nonsense",), "nonsense"),
+    ],
+)
+def test_what_cannot_work_is_one_sentence(options: tuple[str, ...], says: str) -> None:
+    given = dict.fromkeys(options)
+    free = FREE if "--link-port" not in given else FREE[2:]
+    assert says in refused(*free, *options)
+
+
+def test_beyond_loopback_with_a_token_it_runs(tmp_path: Path) -> None:
+    token = tmp_path / "token"
+    token.write_text("0123456789abcdef\n")
+    with started("run", *FREE, "--http-host", "0.0.0.0", "--token-file", str(token)) as recon:
+        assert "#token=0123456789abcdef" in recon.line_with("console:")
+        assert recon.end(signal.SIGTERM) == 0
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"short", "16 characters"),
+        (b"", "16 characters"),
+        (b"with/slashes+and=signs==", "letters, digits"),
+        (b"two words of a long secret", "letters, digits"),
+        (b"\xff\xfe" * 20, "cannot read"),
+    ],
+)
+def test_a_secret_that_browsers_cannot_send_is_refused(
+    tmp_path: Path, content: bytes, says: str
+) -> None:
+    path = tmp_path / "token"
+    path.write_bytes(content)
+    path.chmod(stat.S_IRUSR | stat.S_IWUSR)
+    with pytest.raises(StartError, match=says):
+        read_token(path)
