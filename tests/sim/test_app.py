@@ -1,6 +1,7 @@
 """The app on its link: what it says, what it answers, what it then does."""
 
 import random
+from math import isfinite
 
 import pytest
 from hypothesis import given
@@ -221,6 +222,53 @@ def test_a_link_that_is_not_read_holds_a_bounded_number_of_packets(app_bench) ->
     bench = app_bench()
     packets = bench.run(120.0, step_s=120.0)
     assert len(packets) == 256
+
+
+any_float = st.floats(width=32) | st.sampled_from([0.0, 90.0, 180.0, 1e30])
+any_waypoints = st.lists(
+    st.builds(
+        wire.Waypoint,
+        latitude_deg=any_float,
+        longitude_deg=any_float,
+        altitude_m=any_float,
+        corner_radius_m=any_float,
+        speed_mps=any_float,
+        loiter_time_s=any_float,
+        gimbal_pitch_deg=any_float,
+    ),
+    min_size=1,
+    max_size=4,
+)
+any_command = (
+    st.builds(
+        wire.ExecuteWaypointMission,
+        land_at_end=st.integers(0, 255),
+        curved_flight=st.integers(0, 255),
+        waypoints=any_waypoints,
+    )
+    | st.builds(
+        wire.VirtualStickCommand,
+        mode=st.integers(0, 255),
+        yaw_deg=any_float,
+        velocity_x_mps=any_float,
+        velocity_y_mps=any_float,
+        height_above_takeoff_m=any_float,
+        timeout_s=any_float,
+    )
+    | st.builds(wire.EmergencyCommand, action=st.integers(0, 255))
+    | st.builds(wire.CameraControl, action=st.integers(0, 255), target_fps_hz=any_float)
+)
+
+
+@given(st.lists(any_command, max_size=6))
+def test_whatever_is_ordered_is_answered_and_telemetry_stays_finite(app_bench, orders) -> None:
+    bench = app_bench()
+    for order in orders:
+        answers = of(wire.Acknowledgment, bench.send(order))
+        assert [a.source_pid for a in answers] == [order.PID]
+        bench.run(0.3)
+    core = bench.last(wire.CoreTelemetry) if orders else bench.run(1.0)[1]
+    assert isfinite(core.latitude_deg + core.longitude_deg + core.altitude_m + core.yaw_deg)
 
 
 def test_garbage_does_no_harm(app_bench) -> None:

@@ -6,7 +6,7 @@ The answer is sent before acting (as apps in the field do), so a positive one pr
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
-from math import isfinite, isnan
+from math import isfinite, isnan, nan
 
 from recon import wire
 from recon.geo import enu_from_geo
@@ -150,21 +150,25 @@ class CommandReader:
         return tuple(self._point(waypoint, subtracted_m) for waypoint in packet.waypoints)
 
     def _point(self, waypoint: wire.Waypoint, subtracted_m: float) -> MissionPoint:
-        east, north, _ = enu_from_geo(
-            self._frame,
-            waypoint.latitude_deg,
-            waypoint.longitude_deg,
-            self._home.ellipsoid_height_m,
-        )[0]
+        north_m, east_m = self._place(waypoint.latitude_deg, waypoint.longitude_deg)
         return MissionPoint(
-            north_m=float(north),
-            east_m=float(east),
+            north_m=north_m,
+            east_m=east_m,
             height_m=waypoint.altitude_m - subtracted_m,
             speed_mps=waypoint.speed_mps,
             corner_radius_m=waypoint.corner_radius_m,
             loiter_s=_unless_nan(waypoint.loiter_time_s),
             gimbal_pitch_deg=_unless_nan(waypoint.gimbal_pitch_deg),
         )
+
+    def _place(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
+        """Return north and east of home; NaN for what is no place on the globe."""
+        # The sine of infinity is an error, that of 1e30 is noise.
+        if not (abs(latitude_deg) <= 90.0 and abs(longitude_deg) <= 360.0):
+            return nan, nan
+        height_m = self._home.ellipsoid_height_m
+        east, north, _ = enu_from_geo(self._frame, latitude_deg, longitude_deg, height_m)[0]
+        return float(north), float(east)
 
 
 def _refusal(pid: int, why: str) -> Reaction:
