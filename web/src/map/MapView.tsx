@@ -19,6 +19,9 @@ import { VehicleLayer } from "./vehicleLayer";
 // Under Vite MapLibre does not find its worker by itself and stays blank.
 setWorkerUrl(workerUrl);
 
+/** Ages on the map grow in steps of this while nothing new comes in. */
+const LATE_STEP_S = 0.2;
+
 /** The map with everything that has a place. */
 export function MapView() {
   const { source, selection, theme, behindS, fitRequests } = useConsole();
@@ -44,10 +47,12 @@ export function MapView() {
     onCleanup(() => made.remove());
   });
 
+  // While news comes in, states alone move the map; only old news is drawn anew as it ages.
+  const lateS = createMemo(() => Math.floor(behindS() / LATE_STEP_S) * LATE_STEP_S);
   createEffect(() => {
     const state = source.state();
     if (map() === null || state === null) return;
-    const scene = { state, behindS: behindS(), selected: selection.keys() };
+    const scene = { state, behindS: lateS(), selected: selection.keys() };
     for (const layer of layers) layer.update(scene);
   });
 
@@ -120,7 +125,6 @@ function createMap(container: HTMLElement, ground: string): MapLibre {
     dragRotate: false,
     pitchWithRotate: false,
     touchPitch: false,
-    canvasContextAttributes: { antialias: true },
   });
   // North is always up: headings are then read as they are.
   map.touchZoomRotate.disableRotation();

@@ -19,6 +19,7 @@ const WIDEST_M = 2000;
 /** A growing circle around each vehicle whose telemetry is old: it may be anywhere inside. */
 export class GhostLayer implements Layer {
   private map: MapLibre | null = null;
+  private hasGhosts = false;
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
@@ -40,6 +41,9 @@ export class GhostLayer implements Layer {
   update(scene: Scene): void {
     if (this.map === null) return;
     const ghosts = scene.state.vehicles.flatMap((vehicle) => ghost(vehicle, scene.behindS) ?? []);
+    // Most of the time there are none, and drawing costs.
+    if (ghosts.length === 0 && !this.hasGhosts) return;
+    this.hasGhosts = ghosts.length > 0;
     setFeatures(this.map, SOURCE, ghosts);
   }
 

@@ -75,16 +75,16 @@ export class GroundImageLayer implements Layer {
     if (corners !== undefined || newest > waiting.frameId) this.waiting = null;
     if (corners === undefined) return;
     this.shownFrame = waiting.frameId;
-    void this.show(URL.createObjectURL(waiting.blob), corners);
+    this.show(URL.createObjectURL(waiting.blob), corners);
   }
 
-  private async show(url: string, coordinates: Corners): Promise<void> {
+  private show(url: string, coordinates: Corners): void {
     const before = this.address;
     this.address = url;
     const source = this.map?.getSource<ImageSource>(SOURCE);
     if (source === undefined) this.addImage(url, coordinates);
     else source.updateImage({ url, coordinates });
-    await loaded(url);
+    // MapLibre has read the one before, or has just been told to forget it.
     if (before !== null) URL.revokeObjectURL(before);
   }
 
@@ -95,13 +95,6 @@ export class GroundImageLayer implements Layer {
     const paint = { "raster-fade-duration": 0, "raster-resampling": "linear" } as const;
     this.map.addLayer({ id: LAYER, type: "raster", source: SOURCE, paint }, lowest?.id);
   }
-}
-
-/** Waits until the browser has read the picture, so that the address before it may go. */
-async function loaded(url: string): Promise<void> {
-  const image = new Image();
-  image.src = url;
-  await image.decode().catch(() => undefined);
 }
 
 function cornersOf(image: GroundImageView): Corners | null {

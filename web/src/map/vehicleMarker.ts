@@ -25,6 +25,8 @@ export class VehicleMarker {
   private readonly button = document.createElement("button");
   private readonly symbol = document.createElementNS(SVG, "svg");
   private readonly path = document.createElementNS(SVG, "path");
+  /** A wide edge around the path, so that it stands out on any ground. */
+  private readonly casing = document.createElementNS(SVG, "path");
   private readonly label = document.createElement("span");
   private readonly marker: Marker;
   /** On its own, under all symbols, so that no label hides another vehicle. */
@@ -36,7 +38,8 @@ export class VehicleMarker {
     this.button.style.setProperty("--own", colourOf(key));
     this.symbol.setAttribute("viewBox", "0 0 40 40");
     this.symbol.setAttribute("aria-hidden", "true");
-    this.symbol.append(this.path);
+    this.casing.setAttribute("class", "craft-casing");
+    this.symbol.append(this.casing, this.path);
     this.label.className = "craft-label own-colour";
     this.label.setAttribute("aria-hidden", "true");
     this.label.style.setProperty("--own", colourOf(key));
@@ -54,7 +57,9 @@ export class VehicleMarker {
   show(map: MapLibre, vehicle: VehicleView, at: LonLat, behindS: number, isSelected: boolean) {
     const staleness = stalenessNow(vehicle, behindS);
     const yaw_deg = vehicle.attitude.yaw_deg;
-    this.path.setAttribute("d", yaw_deg === null ? DISC : ARROW);
+    for (const path of [this.casing, this.path]) {
+      path.setAttribute("d", yaw_deg === null ? DISC : ARROW);
+    }
     this.symbol.style.transform = `rotate(${yaw_deg ?? 0}deg)`;
     const classes = this.button.classList;
     classes.toggle("is-simulated", vehicle.is_simulated);

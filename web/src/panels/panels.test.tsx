@@ -16,7 +16,7 @@ import { VehicleList } from "./vehicles/VehicleList";
 const HOSTILE = '<img src=x onerror="document.title=1"><script>1</script>\u202e';
 
 let page: RenderedPage;
-const show = (part: Parameters<typeof renderPage>[0], state: StationState) => {
+const show = (part: Parameters<typeof renderPage>[0], state: StationState | null) => {
   page = renderPage(part, state);
   return page.root;
 };
@@ -91,6 +91,23 @@ describe("the vehicle list", () => {
 
   it("says where apps connect while there are none", () => {
     expect(show(VehicleList, station([])).textContent).toContain("127.0.0.1:3001");
+  });
+});
+
+describe("before the first news", () => {
+  it("claims nothing, not even that there is nothing", () => {
+    const lists = () => (
+      <>
+        <VehicleList />
+        <AlarmList />
+        <CommandList />
+        <LinkList />
+      </>
+    );
+    const empty = [...show(lists, null).querySelectorAll(".panel-empty")];
+    expect(empty.map((note) => note.textContent)).toEqual(
+      Array(4).fill("Not known: the station has not been heard yet."),
+    );
   });
 });
 

@@ -54,6 +54,19 @@ describe("the live source", () => {
     expect(sockets[0]?.protocols).toEqual(["recon.v1"]);
   });
 
+  it("gives the station's reason when it turns the page away", async () => {
+    const { source, sockets, requests } = setUp(() => json({ error: "a token is needed" }, 401));
+    sockets[0]?.fail();
+    expect(source.connection()).toMatchObject({ reason: "The station cannot be reached." });
+    await expect
+      .poll(() => source.connection())
+      .toMatchObject({
+        kind: "lost",
+        reason: "The station refuses this page. Open it with its token.",
+      });
+    expect(requests.map(({ url }) => new URL(url).pathname)).toEqual(["/api/state"]);
+  });
+
   it("gives orders to the vehicles named and never allows a takeoff", async () => {
     const { source, requests } = setUp(() => json({ results: [] }));
     await source.order({ serials: ["A", "B"], order: { kind: "land" } });

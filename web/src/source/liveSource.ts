@@ -38,7 +38,10 @@ export class LiveSource implements StationSource {
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
     const open = () => surroundings.openSocket(url, streamProtocols(token));
     this.stream = new Stream(open, clock, {
-      onConnection: setConnection,
+      onConnection: (next) => {
+        setConnection(next);
+        if (next.kind === "lost") void this.explain(next, setConnection);
+      },
       onState: (newest, isFirst) => {
         if (isFirst) this.lag.restart(newest.time_ns, clock.now());
         else this.lag.hear(newest.time_ns, clock.now());
@@ -46,6 +49,15 @@ export class LiveSource implements StationSource {
       },
     });
     this.stream.open();
+  }
+
+  /** Puts the station's own reason for turning the page away in the place of a guess. */
+  private async explain(
+    lost: Connection & { kind: "lost" },
+    setConnection: (connection: Connection) => void,
+  ): Promise<void> {
+    const reason = await this.requests.whyRefused();
+    if (reason !== null && this.connection() === lost) setConnection({ ...lost, reason });
   }
 
   behindS(now: Instant): number | null {

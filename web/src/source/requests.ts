@@ -49,6 +49,16 @@ export class Requests {
     });
   }
 
+  /** Why the station turns this page away, when it answers at all; a browser does not tell for a stream. */
+  async whyRefused(): Promise<string | null> {
+    const signal = AbortSignal.timeout(REQUEST_MS);
+    const asked = await attempt(async () => {
+      const answer = await this.client.GET("/api/state", { signal });
+      return done(answer.response.ok ? null : refusal(answer.response, answer.error));
+    });
+    return asked.kind === "answered" ? asked.value : null;
+  }
+
   /** Fetches a picture or file; always with the token's header, which an `<img>` could not send. */
   async picture(path: string): Promise<Outcome<Picture>> {
     return attempt(async () => {

@@ -24,7 +24,7 @@ export interface RenderedPage {
 const PLAIN_THEME: ThemeSwitch = { theme: () => "auto", changes: () => 0, toggle: () => {} };
 
 /** Renders a part of the page over a source that says `first`. */
-export function renderPage(part: () => JSX.Element, first: StationState): RenderedPage {
+export function renderPage(part: () => JSX.Element, first: StationState | null): RenderedPage {
   const clock = new FakeClock();
   const [state, setState] = createSignal<StationState | null>(first, { equals: false });
   const [connection, setConnection] = createSignal<Connection>({ kind: "live" });

@@ -4,6 +4,7 @@ import { sortAlarms } from "../../fleet/severity";
 import type { AlarmView } from "../../protocol";
 import { formatAge } from "../../words/age";
 import { alarmText } from "../../words/names";
+import { Empty } from "../Empty";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./alarms.css";
@@ -14,7 +15,7 @@ export function AlarmList() {
   const sorted = createMemo(() => sortAlarms(fleet.alarms));
   return (
     <Panel title="Alarms" count={sorted().length}>
-      <Show when={sorted().length > 0} fallback={<p class="panel-empty">No alarms.</p>}>
+      <Show when={sorted().length > 0} fallback={<Empty>No alarms.</Empty>}>
         <ul aria-live="assertive" aria-relevant="additions">
           <For each={sorted()}>{(alarm) => <AlarmRow alarm={alarm} />}</For>
         </ul>

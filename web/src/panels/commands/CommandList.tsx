@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import type { CommandView } from "../../protocol";
 import { formatAge } from "../../words/age";
 import { commandName, PHASE_NAMES, phaseTone } from "../../words/names";
+import { Empty } from "../Empty";
 import { Panel } from "../Panel";
 import "./commands.css";
 
@@ -12,7 +13,7 @@ export function CommandList() {
   const newestFirst = createMemo(() => [...fleet.commands].sort((a, b) => b.id - a.id));
   return (
     <Panel title="Commands" count={newestFirst().length}>
-      <Show when={newestFirst().length > 0} fallback={<p class="panel-empty">No commands yet.</p>}>
+      <Show when={newestFirst().length > 0} fallback={<Empty>No commands yet.</Empty>}>
         <ol>
           <For each={newestFirst()}>{(command) => <CommandRow command={command} />}</For>
         </ol>

@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import type { LinkView, Severity } from "../../protocol";
 import { agedBy, formatAge } from "../../words/age";
 import { formatBytes } from "../../words/quantity";
+import { Empty } from "../Empty";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 
@@ -23,7 +24,7 @@ export function LinkList() {
   );
   return (
     <Panel title="Links" count={sorted().length}>
-      <Show when={sorted().length > 0} fallback={<p class="panel-empty">No app has connected.</p>}>
+      <Show when={sorted().length > 0} fallback={<Empty>No app has connected.</Empty>}>
         <ul>
           <For each={sorted()}>{(link) => <LinkRow link={link} />}</For>
         </ul>

@@ -1,6 +1,7 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { vehicleKey } from "../../fleet/key";
+import { Empty } from "../Empty";
 import { Panel } from "../Panel";
 import { VehicleRow } from "./VehicleRow";
 import "./vehicles.css";
@@ -38,12 +39,12 @@ function NoVehicles() {
   const { fleet } = useConsole();
   const addresses = () => fleet.station?.link_addresses ?? [];
   return (
-    <p class="panel-empty">
+    <Empty>
       No companion app has connected.
       <Show when={addresses().length > 0}>
         {" "}
         The station listens on <span class="wire-text">{addresses().join(", ")}</span>.
       </Show>
-    </p>
+    </Empty>
   );
 }
