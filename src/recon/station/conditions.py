@@ -9,6 +9,7 @@ from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
 from recon.station.alarms import Condition, Severity
 from recon.station.orders import OrderRecord
+from recon.station.settings import StationSettings
 from recon.station.state import Station
 
 
@@ -17,7 +18,8 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     for vehicle in station.fleet.vehicles.values():
         yield from _identity(vehicle)
         yield from _silence(vehicle, now_ns)
-        yield from _battery(vehicle)
+        yield from _never_heard(vehicle, station.settings.first_telemetry_s)
+        yield from _battery(vehicle, station.settings)
         yield from _landing(vehicle, station.settings.landing_wait_s)
     for link in station.fleet.unbound_links():
         yield from _unidentified(link)
@@ -60,14 +62,27 @@ def _silence(vehicle: VehicleState, now_ns: int) -> Iterator[Condition]:
         yield _about(vehicle, "link_lost", Severity.CRITICAL, text)
 
 
-def _battery(vehicle: VehicleState) -> Iterator[Condition]:
-    match vehicle.battery_warning.value:
-        case BatteryWarning.SERIOUS:
-            text = "the aircraft warns of a seriously low battery"
-            yield _about(vehicle, "battery", Severity.CRITICAL, text)
-        case BatteryWarning.LOW:
-            text = "the aircraft warns of a low battery"
-            yield _about(vehicle, "battery", Severity.WARNING, text)
+def _never_heard(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
+    if vehicle.core_received_at_ns is None and vehicle.link_id is not None:
+        text = "its app has said its serial but never where it is or whether it flies"
+        yield _about(vehicle, "no_telemetry", Severity.WARNING, text, after_s)
+
+
+def _battery(vehicle: VehicleState, settings: StationSettings) -> Iterator[Condition]:
+    """The aircraft's own warning and the level both count: either may be wrong or missing."""
+    warning = vehicle.battery_warning.value
+    level = vehicle.battery_fraction.value
+    left = 1.0 if level is None or vehicle.is_flying.value is False else level
+    if warning is BatteryWarning.SERIOUS:
+        text = "the aircraft warns of a seriously low battery"
+        yield _about(vehicle, "battery", Severity.CRITICAL, text)
+    elif left <= settings.serious_battery_fraction:
+        yield _about(vehicle, "battery", Severity.CRITICAL, f"its battery is at {left:.0%}")
+    elif warning is BatteryWarning.LOW:
+        text = "the aircraft warns of a low battery"
+        yield _about(vehicle, "battery", Severity.WARNING, text)
+    elif left <= settings.low_battery_fraction:
+        yield _about(vehicle, "battery", Severity.WARNING, f"its battery is at {left:.0%}")
 
 
 def _landing(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:

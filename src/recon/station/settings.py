@@ -35,6 +35,16 @@ class StationSettings:
     orders_kept: int = 200
     alarms_kept: int = 200
 
+    frames_kept: int = 16
+    """The newest frame of this many vehicles: 25 MB each at most."""
+
+    low_battery_fraction: float = 0.25
+    serious_battery_fraction: float = 0.10
+    """In flight; the aircraft's own warnings count as well, whichever says it first."""
+
+    first_telemetry_s: float = 3.0
+    """A vehicle known by its serial alone, without core telemetry this long, is unseen."""
+
     landing_wait_s: float = 8.0
     """A landing that waits for confirmation this long waits for somebody (decisions, 17)."""
 

@@ -104,7 +104,8 @@ def _frame(
         rgb=report.rgb,
         jpeg=report.jpeg,
     )
-    frames = {**station.frames, serial: frame}
+    others = ((key, kept) for key, kept in station.frames.items() if key != serial)
+    frames = dict([*others, (serial, frame)][-station.settings.frames_kept :])
     station = replace(station, frames=frames, next_frame_id=frame.id + 1)
     if not _is_eye(station, vehicle):
         return station, ()
