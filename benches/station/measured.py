@@ -1,0 +1,172 @@
+"""The receiving ends of the load: the station with everything measured, and a bare sink."""
+
+import asyncio
+import json
+import sys
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from benches.station.app_load import Sent
+
+from recon.link.server import LinkServer
+from recon.link.settings import LinkSettings
+from recon.model.event import CommandSent, Event, LinkClosed, PacketReceived
+from recon.model.report import CoreReport, ExtendedReport, ImageReport
+from recon.site import default_site
+from recon.station.build import first_state
+from recon.station.driver import AsyncioDriver, station_clock
+from recon.station.service import Service
+from recon.station.state import Station
+
+CONSOLE_PERIOD_S = 0.1
+ENDING_S = 30.0
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """How much is sent."""
+
+    apps: int
+    streams: int
+    seconds: float
+
+
+@dataclass(slots=True)
+class Received:
+    """What came out of the station's steps."""
+
+    core: int = 0
+    extended: int = 0
+    images: int = 0
+    latencies_s: list[float] = field(default_factory=list)
+    links_closed: int = 0
+    emergency_sent_at_s: list[float] = field(default_factory=list)
+
+    def observe(self, _before: Station, _after: Station, event: Event) -> None:
+        """Count an event the station has taken into its state, and read its age."""
+        match event:
+            case PacketReceived(_, CoreReport() as report):
+                self.core += 1
+                self.latencies_s.append(time.monotonic() - (report.reported_altitude_m or 0.0))
+            case PacketReceived(_, ExtendedReport()):
+                self.extended += 1
+            case PacketReceived(_, ImageReport()):
+                self.images += 1
+            case LinkClosed():
+                self.links_closed += 1
+            case CommandSent():
+                self.emergency_sent_at_s.append(time.monotonic())
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One measured run of the station."""
+
+    sent: Sent
+    received: Received
+    cpu_share: float
+    state_ms: list[float]
+    ordered: int
+    ordered_at_s: float
+
+    @property
+    def lost(self) -> dict[str, int]:
+        """Packets sent and not received, by kind."""
+        return {
+            kind: getattr(self.sent, kind) - getattr(self.received, kind)
+            for kind in ("core", "extended", "images")
+        }
+
+    def latency_ms(self, percentile: float) -> float:
+        """Socket-to-state latency."""
+        return 1e3 * float(np.percentile(self.received.latencies_s, percentile))
+
+    @property
+    def fan_out_sent_ms(self) -> float:
+        """From the order of "all stop" to its last packet on a socket."""
+        return 1e3 * (max(self.received.emergency_sent_at_s[: self.ordered]) - self.ordered_at_s)
+
+    @property
+    def fan_out_read_ms(self) -> float:
+        """From the order of "all stop" to the last app that has read it."""
+        return 1e3 * (max(self.sent.first_command_at_s) - self.ordered_at_s)
+
+
+async def measure_station(load: Load) -> Outcome:
+    """Run a station, with a console's worth of states, under a load; halfway order "all stop"."""
+    received, site = Received(), default_site()
+    driver = AsyncioDriver(first_state(site), station_clock(), received.observe)
+    driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
+    service = Service.around(driver, site, None)
+    await links.start("127.0.0.1", 0)
+    state_ms: list[float] = []
+    tasks = [asyncio.create_task(driver.run()), asyncio.create_task(_console(service, state_ms))]
+    cpu_s, wall_s = time.process_time(), time.monotonic()
+    sending = asyncio.create_task(_send(links.port, load))
+    async with asyncio.timeout(load.seconds + ENDING_S):
+        while received.core < load.apps * load.seconds * 5 and not sending.done():
+            await asyncio.sleep(0.01)
+    ordered_at_s = time.monotonic()
+    results = service.all_stop("bench").results
+    sent = await sending
+    cpu_share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
+    async with asyncio.timeout(ENDING_S):
+        while received.links_closed < load.apps:
+            await asyncio.sleep(0.01)
+    for task in tasks:
+        task.cancel()
+    await links.stop()
+    ordered = sum(result.accepted for result in results)
+    return Outcome(sent, received, cpu_share, state_ms, ordered, ordered_at_s)
+
+
+async def measure_sink(load: Load) -> float:
+    """Return the CPU share of a server that only counts bytes, under the same load."""
+    sinks: list[_Sink] = []
+
+    def made() -> _Sink:
+        sinks.append(_Sink())
+        return sinks[-1]
+
+    server = await asyncio.get_running_loop().create_server(made, "127.0.0.1", 0)
+    cpu_s, wall_s = time.process_time(), time.monotonic()
+    sent = await _send(server.sockets[0].getsockname()[1], load)
+    share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
+    async with asyncio.timeout(ENDING_S):
+        while sum(sink.bytes for sink in sinks) < sent.bytes:
+            await asyncio.sleep(0.01)
+    server.close()
+    return share
+
+
+class _Sink(asyncio.Protocol):
+    def __init__(self) -> None:
+        self.bytes = 0
+
+    def data_received(self, data: bytes) -> None:
+        self.bytes += len(data)
+
+
+async def _console(service: Service, state_ms: list[float]) -> None:
+    while True:
+        await asyncio.sleep(CONSOLE_PERIOD_S)
+        begin_s = time.perf_counter()
+        service.state().model_dump_json()
+        state_ms.append(1e3 * (time.perf_counter() - begin_s))
+
+
+async def _send(port: int, load: Load) -> Sent:
+    options = ["--apps", load.apps, "--streams", load.streams, "--seconds", load.seconds]
+    process = await asyncio.create_subprocess_exec(
+        sys.executable,
+        "-m",
+        "benches.station.app_load",
+        str(port),
+        *map(str, options),
+        stdout=asyncio.subprocess.PIPE,
+    )
+    said, _ = await process.communicate()
+    if process.returncode != 0:
+        raise RuntimeError(f"expected the apps to end well, got exit code {process.returncode}")
+    return Sent(**json.loads(said))
