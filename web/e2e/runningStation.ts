@@ -1,9 +1,14 @@
 import { type ChildProcess, spawn } from "node:child_process";
+import { existsSync } from "node:fs";
+import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const PROJECT = fileURLToPath(new URL("../..", import.meta.url));
+/** `make` brings uv here when the system has none. */
+const OWN_UV = ".tools/bin/uv";
+const UV = existsSync(join(PROJECT, OWN_UV)) ? OWN_UV : "uv";
 const COMMAND =
-  process.env["RECON_E2E_COMMAND"] ?? "uv run --locked recon demo --http-port 0 --link-port 0";
+  process.env["RECON_E2E_COMMAND"] ?? `${UV} run --locked recon demo --http-port 0 --link-port 0`;
 const STARTS_WITHIN_MS = 90_000;
 const ENDS_WITHIN_MS = 10_000;
 
