@@ -13,6 +13,9 @@ from recon.site import demo_site_folder, load_site
 from recon.station.run import RunConfig, Started, run
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
+ENDURANCE_MIN = 600
+"""A demo is left running: its aircraft must not land by themselves after a battery's 25 minutes."""
+FPS_HZ = 2
 
 
 def demo_command(
@@ -52,7 +55,14 @@ async def _demo(config: RunConfig, vehicles: int, seed: int) -> None:
 
 async def _start_simulator(port: int, vehicles: int, seed: int) -> asyncio.subprocess.Process:
     """The simulator is a process of its own: it speaks to the station as any app does, over TCP."""
-    options = ["--station", f"127.0.0.1:{port}", "--vehicles", str(vehicles), "--seed", str(seed)]
+    settings = {
+        "--station": f"127.0.0.1:{port}",
+        "--vehicles": vehicles,
+        "--seed": seed,
+        "--fps": FPS_HZ,
+        "--endurance-min": ENDURANCE_MIN,
+    }
+    options = [str(part) for setting in settings.items() for part in setting]
     return await asyncio.create_subprocess_exec(
         sys.executable, "-m", "recon", "sim", *options, "--airborne", "--wander"
     )

@@ -152,7 +152,7 @@ width_m = 512.0
 height_m = 512.0
 cell_m = 1.0
 """
-    return header + "".join(_vehicle_toml(serial) for serial in (EYE_SERIAL, *SERIALS))
+    return header + "".join(_vehicle_toml(serial) for serial in (*SERIALS, EYE_SERIAL))
 
 
 def _vehicle_toml(serial: str) -> str:

@@ -45,9 +45,12 @@ def state_view(station: Station, around: Surroundings, now_ns: int) -> schema.St
 
 
 def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
+    numbers = _numbers(station.fleet)
     known = [
-        _vehicle(station, vehicle, number, now_ns)
-        for number, vehicle in enumerate(station.fleet.vehicles.values(), start=1)
+        _vehicle(station, vehicle, numbers[serial], now_ns)
+        for serial, vehicle in sorted(
+            station.fleet.vehicles.items(), key=lambda item: numbers[item[0]]
+        )
     ]
     unidentified = [
         _vehicle(station, link.own_state, 0, now_ns)
@@ -55,6 +58,12 @@ def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
         if link.claimed_serial is None and link.own_state.core_received_at_ns is not None
     ]
     return known + unidentified
+
+
+def _numbers(fleet: Fleet) -> dict[str, int]:
+    """Return each serial's number: first the site's vehicles in its order, then as they came."""
+    serials = dict.fromkeys((*fleet.profiles, *fleet.vehicles))
+    return {serial: number for number, serial in enumerate(serials, start=1)}
 
 
 def _vehicle(
