@@ -1,0 +1,51 @@
+"""The package's source files as syntax trees."""
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[2] / "src" / "recon"
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+
+
+def files(*rooms: str) -> list[Path]:
+    """Every Python file of these rooms (or single files); of the whole package without any."""
+    chosen = [PACKAGE / room for room in rooms] or [PACKAGE]
+    found = [p for c in chosen for p in ([c] if c.suffix == ".py" else sorted(c.rglob("*.py")))]
+    assert found, f"no files in {rooms}"
+    return found
+
+
+def name_of(path: Path) -> str:
+    return str(path.relative_to(PACKAGE))
+
+
+def imports(path: Path) -> Iterator[str]:
+    """Every module a file imports, wherever in it; `from a import b` as a.b."""
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def dotted(node: ast.AST) -> str:
+    """`a.b.c` of a name or attribute, what cannot be named as ''."""
+    if isinstance(node, ast.Name):
+        return node.id
+    if isinstance(node, ast.Attribute):
+        return f"{dotted(node.value)}.{node.attr}"
+    return ""
+
+
+def calls(path: Path) -> Iterator[tuple[int, str]]:
+    """Every call in a file, with its line."""
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.Call):
+            yield node.lineno, dotted(node.func)

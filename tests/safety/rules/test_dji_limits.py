@@ -1,0 +1,143 @@
+"""What DJI's SDK takes, on both sides of every limit."""
+
+from dataclasses import replace
+
+import pytest
+from tests.safety.cases import (
+    STICK,
+    TAKEOFF,
+    approved,
+    command,
+    mission,
+    refused_by,
+    situation,
+    vehicle,
+    waypoint,
+)
+
+from recon.model.command import Body, StartCamera
+from recon.model.mission import Waypoint
+from recon.safety import approve
+
+
+def is_taken(body: Body, max_waypoints: int = 99) -> bool:
+    state = vehicle(replace(TAKEOFF, max_waypoints=max_waypoints))
+    answer = approve(command(body), situation(state))
+    if hasattr(answer, "rule"):
+        assert refused_by(answer) == "dji_limits"
+        return False
+    return bool(approved(answer).link_ids)
+
+
+def line(count: int, step_m: float = 10.0) -> tuple[Waypoint, ...]:
+    return tuple(waypoint(number * step_m) for number in range(count))
+
+
+class TestWaypoints:
+    @pytest.mark.parametrize(
+        ("name", "taken", "refused"),
+        [
+            ("height_above_takeoff_m", (-200.0, 500.0), (-200.01, 500.01)),
+            ("speed_mps", (0.01, 15.0), (0.0, -1.0, 15.01, 1e-60, 1e300)),
+            ("loiter_s", (0.0, 32.767, None), (-0.01, 32.768)),
+            ("gimbal_pitch_deg", (-90.0, 0.0, None), (-90.1, 0.1)),
+            ("latitude_deg", (42.001,), (90.1, -91.0)),
+            ("longitude_deg", (-93.601,), (180.1, -181.0)),
+        ],
+    )
+    def test_each_field(
+        self, name: str, taken: tuple[float | None, ...], refused: tuple[float, ...]
+    ) -> None:
+        for value in taken:
+            changed = waypoint(600.0, **{name: value})
+            assert is_taken(mission(waypoint(0.0), changed)), value
+        for value in refused:
+            changed = waypoint(600.0, **{name: value})
+            assert not is_taken(mission(waypoint(0.0), changed)), value
+
+    @pytest.mark.parametrize(("count", "taken"), [(0, 0), (1, 0), (2, 1), (99, 1), (100, 0)])
+    def test_how_many(self, count: int, taken: int) -> None:
+        body = replace(mission(), mission=replace(mission().mission, waypoints=line(count)))
+        assert is_taken(body) == bool(taken)
+
+    @pytest.mark.parametrize(("count", "taken"), [(25, True), (26, False)])
+    def test_a_legacy_app_takes_25(self, count: int, taken: bool) -> None:
+        assert is_taken(mission(*line(count)), max_waypoints=25) is taken
+
+    @pytest.mark.parametrize(
+        ("leg_m", "taken"), [(0.49, False), (0.51, True), (1999.0, True), (2001.0, False)]
+    )
+    def test_neighbours(self, leg_m: float, taken: bool) -> None:
+        assert is_taken(mission(waypoint(0.0), waypoint(leg_m))) is taken
+
+    def test_neighbours_are_apart_in_three_dimensions(self) -> None:
+        assert is_taken(mission(waypoint(0.0), waypoint(0.0, height_above_takeoff_m=41.0)))
+        assert not is_taken(mission(waypoint(0.0), waypoint(0.0, height_above_takeoff_m=40.4)))
+
+    @pytest.mark.parametrize(("back_m", "taken"), [(0.3, False), (0.7, True)])
+    def test_the_first_and_the_last(self, back_m: float, taken: bool) -> None:
+        assert is_taken(mission(waypoint(0.0), waypoint(50.0), waypoint(back_m))) is taken
+
+    @pytest.mark.parametrize(("legs", "taken"), [(15, True), (17, False)])
+    def test_the_whole_path_is_at_most_30_km(self, legs: int, taken: bool) -> None:
+        there_and_back = (waypoint(1900.0 * (n % 2) + n) for n in range(legs + 1))
+        assert is_taken(mission(*there_and_back)) is taken
+
+
+class TestCurved:
+    def corners(self, *radii_m: float) -> Body:
+        points = (waypoint(20.0 * n, corner_radius_m=r) for n, r in enumerate(radii_m))
+        return mission(*points, curved=True)
+
+    @pytest.mark.parametrize(
+        ("radii_m", "taken"),
+        [
+            ((0.2, 5.0, 0.2), True),
+            ((0.2, 0.2, 0.2), True),
+            ((0.2, 0.19, 0.2), False),
+            ((0.3, 5.0, 0.2), False),
+            ((0.2, 5.0, 0.3), False),
+            ((0.2, 19.7, 0.2), True),
+            ((0.2, 19.9, 0.2), False),
+            ((0.2, 10.1, 10.1, 0.2), False),
+            ((0.2, 1000.1, 0.2), False),
+        ],
+    )
+    def test_corner_radii(self, radii_m: tuple[float, ...], taken: bool) -> None:
+        assert is_taken(self.corners(*radii_m)) is taken
+
+    def test_radii_do_not_matter_when_the_path_is_not_curved(self) -> None:
+        assert is_taken(mission(waypoint(0.0, corner_radius_m=500.0), waypoint(50.0)))
+
+    @pytest.mark.parametrize("action", ["loiter_s", "gimbal_pitch_deg"])
+    def test_a_curved_mission_with_an_action_is_refused_not_silently_changed(
+        self, action: str
+    ) -> None:
+        points = (waypoint(0.0), waypoint(50.0, **{action: 0.0}))
+        assert not is_taken(mission(*points, curved=True))
+        assert is_taken(mission(*points))
+
+
+class TestStick:
+    @pytest.mark.parametrize(
+        ("name", "taken", "refused"),
+        [
+            ("velocity_x_mps", (-15.0, 0.0, 15.0), (-15.01, 15.01)),
+            ("velocity_y_mps", (-15.0, 0.0, 15.0), (-15.01, 15.01)),
+            ("height_above_takeoff_m", (0.0, 500.0), (-0.01, 500.01)),
+            ("timeout_s", (0.1, 5.0), (0.0, -1.0, 5.01, 1e-60)),
+            ("yaw_deg", (-720.0, 359.0), ()),
+        ],
+    )
+    def test_each_field(
+        self, name: str, taken: tuple[float, ...], refused: tuple[float, ...]
+    ) -> None:
+        assert all(is_taken(replace(STICK, **{name: value})) for value in taken)
+        assert not any(is_taken(replace(STICK, **{name: value})) for value in refused)
+
+
+@pytest.mark.parametrize(
+    ("fps_hz", "taken"), [(0.1, True), (30.0, True), (0.0, False), (30.1, False), (1e-60, False)]
+)
+def test_frame_rates(fps_hz: float, taken: bool) -> None:
+    assert is_taken(StartCamera(fps_hz)) is taken

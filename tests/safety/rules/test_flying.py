@@ -1,0 +1,90 @@
+"""Nothing leaves the ground unless the order says takeoff (decisions on the ICD, 16 and 17)."""
+
+import pytest
+from tests.safety.cases import (
+    NOW,
+    STICK,
+    S,
+    approved,
+    command,
+    mission,
+    refused_by,
+    situation,
+    vehicle,
+)
+
+from recon.model.command import Body, Hover, LandNow, ReturnHome, StartCamera, StopCamera
+from recon.model.stamped import Stamped
+from recon.safety import approve
+
+MOVES = [Hover(), ReturnHome(), mission(), STICK]
+
+
+@pytest.mark.parametrize("body", MOVES)
+class TestWithoutTakeoff:
+    def test_it_goes_to_a_vehicle_that_flies(self, body: Body) -> None:
+        assert approved(approve(command(body), situation())).link_ids == (1,)
+
+    def test_it_is_never_sent_to_a_vehicle_on_the_ground(self, body: Body) -> None:
+        judged = approve(command(body), situation(vehicle(flying=False)))
+        assert refused_by(judged) == "flying"
+
+    def test_it_is_not_sent_while_the_app_does_not_say(self, body: Body) -> None:
+        assert refused_by(approve(command(body), situation(vehicle(flying=None)))) == "flying"
+
+    @pytest.mark.parametrize(("age_s", "is_sent"), [(3.0, True), (3.000000001, False)])
+    def test_telemetry_must_be_fresh(self, body: Body, age_s: float, is_sent: bool) -> None:
+        judged = approve(command(body), situation(vehicle(age_s=age_s)))
+        assert is_sent or refused_by(judged) == "flying"
+        assert not is_sent or approved(judged)
+
+    def test_it_is_not_sent_before_any_telemetry(self, body: Body) -> None:
+        unheard = vehicle()
+        unheard = type(unheard)(serial="A", link_id=1, profile=unheard.profile)
+        assert refused_by(approve(command(body), situation(unheard))) == "flying"
+
+
+class TestWithTakeoff:
+    @pytest.mark.parametrize("body", [Hover(), mission(), STICK])
+    def test_the_operator_may_order_a_takeoff(self, body: Body) -> None:
+        judged = approve(command(body, takeoff=True), situation(vehicle(flying=False)))
+        assert approved(judged).link_ids == (1,)
+
+    def test_a_return_is_never_a_takeoff(self) -> None:
+        judged = approve(command(ReturnHome(), takeoff=True), situation(vehicle(flying=False)))
+        assert refused_by(judged) == "flying"
+
+
+@pytest.mark.parametrize("flying", [True, False, None])
+@pytest.mark.parametrize("age_s", [0.1, 600.0])
+def test_land_is_always_sent(flying: bool | None, age_s: float) -> None:
+    judged = approve(command(LandNow()), situation(vehicle(flying=flying, age_s=age_s)))
+    assert approved(judged).link_ids == (1,)
+
+
+@pytest.mark.parametrize("body", [StartCamera(1.0), StopCamera()])
+def test_camera_orders_need_no_flight(body: Body) -> None:
+    assert approved(approve(command(body), situation(vehicle(flying=False))))
+
+
+class TestRivals:
+    @pytest.mark.parametrize("body", [Hover(), ReturnHome()])
+    def test_hover_and_return_spare_a_rival_link_that_says_on_the_ground(self, body: Body) -> None:
+        now = situation(vehicle(), Stamped(False, NOW), Stamped(True, NOW), Stamped(False, 1))
+        assert approved(approve(command(body), now)).link_ids == (1, 3)
+
+    def test_the_vehicles_own_link_on_the_ground_is_spared_too(self) -> None:
+        now = situation(vehicle(flying=False), Stamped(True, NOW))
+        assert approved(approve(command(Hover()), now)).link_ids == (2,)
+
+    def test_land_goes_to_every_link_that_claims_the_serial(self) -> None:
+        now = situation(vehicle(), Stamped(False, NOW), Stamped(None, None))
+        assert approved(approve(command(LandNow()), now)).link_ids == (1, 2, 3)
+
+    def test_a_rival_that_has_said_nothing_is_held_while_the_vehicle_flies(self) -> None:
+        now = situation(vehicle(), Stamped(None, None))
+        assert approved(approve(command(Hover()), now)).link_ids == (1, 2)
+
+    def test_a_rival_whose_old_telemetry_says_flying_opens_no_door(self) -> None:
+        now = situation(vehicle(flying=False), Stamped(True, NOW - 4 * S))
+        assert refused_by(approve(command(Hover()), now)) == "flying"

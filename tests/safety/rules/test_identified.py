@@ -1,0 +1,51 @@
+"""Orders go to vehicles that are who they say; emergency orders go further."""
+
+from dataclasses import replace
+
+import pytest
+from tests.safety.cases import (
+    NOW,
+    STICK,
+    approved,
+    command,
+    mission,
+    refused_by,
+    situation,
+    vehicle,
+)
+
+from recon.model.command import Body, Hover, LandNow, ReturnHome, StartCamera, StopCamera
+from recon.model.stamped import Stamped
+from recon.safety import Claimant, Situation, approve
+
+OTHERS = [mission(), STICK, StartCamera(1.0), StopCamera()]
+EMERGENCIES = [Hover(), LandNow(), ReturnHome()]
+
+
+def unidentified() -> Situation:
+    state = replace(vehicle(), serial=None, profile=None)
+    return Situation(NOW, state, (Claimant(1, state.is_flying),))
+
+
+@pytest.mark.parametrize("body", OTHERS)
+def test_a_link_without_identity_gets_nothing_else(body: Body) -> None:
+    order = replace(command(body), serial=None, link_id=1)
+    assert refused_by(approve(order, unidentified())) == "identified"
+
+
+@pytest.mark.parametrize("body", EMERGENCIES)
+def test_a_link_without_identity_gets_emergency_orders(body: Body) -> None:
+    order = replace(command(body), serial=None, link_id=1)
+    assert approved(approve(order, unidentified())).link_ids == (1,)
+
+
+@pytest.mark.parametrize("body", OTHERS)
+def test_a_vehicle_with_rivals_gets_nothing_else(body: Body) -> None:
+    now = situation(vehicle(), Stamped(True, NOW))
+    assert refused_by(approve(command(body), now)) == "identified"
+
+
+@pytest.mark.parametrize("body", EMERGENCIES)
+def test_a_vehicle_with_rivals_gets_emergency_orders_on_every_link(body: Body) -> None:
+    now = situation(vehicle(), Stamped(True, NOW))
+    assert approved(approve(command(body), now)).link_ids == (1, 2)
