@@ -5,6 +5,9 @@ import { type RunningStation, startStation } from "./runningStation";
 /** From 50 m a vehicle needs most of a minute to be down. */
 const LANDS_WITHIN_MS = 120_000;
 
+/** The eye draws its first frame before it connects, which takes a busy machine a while. */
+const CONNECT_WITHIN_MS = 60_000;
+
 let station: RunningStation;
 
 test.beforeAll(async () => {
@@ -32,13 +35,13 @@ function watch(page: Page) {
 }
 
 test("shows four vehicles over their field, and lands one that is told to", async ({ page }) => {
-  test.setTimeout(LANDS_WITHIN_MS + 60_000);
+  test.setTimeout(LANDS_WITHIN_MS + CONNECT_WITHIN_MS + 60_000);
   const seen = watch(page);
   await page.goto(station.url);
 
   await test.step("four vehicles move on the map", async () => {
     const vehicles = page.locator("button.craft");
-    await expect(vehicles).toHaveCount(4);
+    await expect(vehicles).toHaveCount(4, { timeout: CONNECT_WITHIN_MS });
     const places = () =>
       vehicles.evaluateAll((all) => all.map((one) => (one as HTMLElement).style.transform));
     const before = await places();
