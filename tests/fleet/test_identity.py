@@ -62,6 +62,10 @@ class TestASerialIsTheIdentity:
         story = Story().opens(1).says(1, core(), extended("A")).at(1.0).closes(1).says(1, core())
         assert story.vehicle().core_received_at_ns == 0
 
+    def test_a_link_that_is_open_is_not_opened_again(self) -> None:
+        story = Story().opens(1).says(1, core(), extended("A")).opens(1)
+        assert story.fleet.links[1].claimed_serial == "A"
+
 
 class TestTakeover:
     def test_the_second_link_takes_over_when_the_old_one_is_silent_for_1_s(self) -> None:

@@ -49,6 +49,8 @@ def _is_open(fleet: Fleet, link_id: int) -> bool:
 
 
 def _opened(fleet: Fleet, link_id: int, remote_address: str, now_ns: int) -> Fleet:
+    if _is_open(fleet, link_id):
+        return fleet  # a number is given once: opening it again must not unbind its vehicle
     link = LinkRecord(
         id=link_id,
         remote_address=remote_address,

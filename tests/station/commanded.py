@@ -1,0 +1,123 @@
+"""A station, and what apps, links and operators do to it, told in seconds; no link room needed."""
+
+from collections.abc import Iterable
+
+from tests.fleet.said import S, core, extended
+
+from recon.fleet.state import Fleet
+from recon.model.command import Body, Phase
+from recon.model.event import (
+    CommandAnswered,
+    CommandDropped,
+    CommandSent,
+    Event,
+    LinkClosed,
+    LinkOpened,
+    OperatorOrder,
+    PacketReceived,
+    Tick,
+)
+from recon.model.report import Report
+from recon.model.vehicle import AltitudeReference, FlightMode, VehicleProfile
+from recon.safety import ApprovedCommand
+from recon.station.alarms import Alarm
+from recon.station.orders import OrderRecord
+from recon.station.outputs import SendCommand
+from recon.station.state import Station
+from recon.station.step import step
+
+PROFILE = VehicleProfile("A", waypoint_altitude=AltitudeReference.TAKEOFF)
+
+
+class Told:
+    """Links carry an order at once, unless `is_stuck`; time goes on in ticks of 0.1 s."""
+
+    def __init__(self) -> None:
+        self.station = Station(fleet=Fleet(profiles={"A": PROFILE}))
+        self.now_ns = 0
+        self.is_stuck = False
+        self.sent: list[tuple[float, int, int]] = []
+        """When, on which link, which order."""
+        self.handed: list[ApprovedCommand] = []
+        self.talk: dict[int, tuple[Report, ...]] = {}
+        """What each link says every 0.1 s."""
+        self._next_order = 1
+
+    def happens(self, event: Event) -> "Told":
+        self.station, outputs = step(self.station, event, self.now_ns)
+        for output in outputs:
+            if isinstance(output, SendCommand):
+                self._carry(output.approved)
+        return self
+
+    def _carry(self, approved: ApprovedCommand) -> None:
+        self.handed.append(approved)
+        for link_id in () if self.is_stuck else approved.link_ids:
+            self.sent.append((self.now_ns / S, link_id, approved.command.id))
+            self.happens(CommandSent(link_id, approved.command.id))
+
+    def opens(self, link_id: int, *reports: Report) -> "Told":
+        self.happens(LinkOpened(link_id, f"10.0.0.{link_id}:5000"))
+        return self.says(link_id, *reports)
+
+    def closes(self, link_id: int) -> "Told":
+        self.talk.pop(link_id, None)
+        return self.happens(LinkClosed(link_id, "gone"))
+
+    def says(self, link_id: int, *reports: Report) -> "Told":
+        for report in reports:
+            self.happens(PacketReceived(link_id, report))
+        return self
+
+    def keeps_saying(self, link_id: int, *reports: Report) -> "Told":
+        self.talk[link_id] = reports
+        return self
+
+    def passes(self, seconds: float) -> "Told":
+        for _ in range(round(seconds * 10)):
+            self.now_ns += S // 10
+            for link_id, reports in self.talk.items():
+                self.says(link_id, *reports)
+            self.happens(Tick())
+        return self
+
+    def order(
+        self,
+        body: Body,
+        serial: str | None = "A",
+        *,
+        link: int | None = None,
+        takeoff: bool = False,
+    ) -> int:
+        number = self._next_order
+        self._next_order += 1
+        self.happens(OperatorOrder(number, body, "test", serial, link, takeoff))
+        return number
+
+    def answered(self, order: int, positive: bool | None, link_id: int = 1) -> "Told":
+        return self.happens(CommandAnswered(link_id, order, positive))
+
+    def dropped(self, order: int, phase: Phase, link_id: int = 1) -> "Told":
+        return self.happens(CommandDropped(link_id, order, phase, "dropped"))
+
+    def record(self, order: int) -> OrderRecord:
+        return self.station.orders.records[order]
+
+    def phase(self, order: int) -> Phase:
+        return self.record(order).phase
+
+    def phases(self, order: int) -> list[Phase]:
+        return [change.phase for change in self.record(order).history]
+
+    def times_s(self, order: int) -> list[float]:
+        return [at_s for at_s, _, number in self.sent if number == order]
+
+    def alarms(self, *, active: bool = True) -> set[str]:
+        every: Iterable[Alarm] = self.station.alarms.alarms.values()
+        return {alarm.condition.rule for alarm in every if alarm.is_active is active}
+
+
+def flying(serial: str = "A") -> Told:
+    """One vehicle on link 1 that flies a mission and goes on doing so whatever it is told."""
+    reports = (core(velocity=(5.0, 0.0, 0.0)), extended(serial, mode=FlightMode.GPS_WAYPOINT))
+    return Told().opens(1, *reports).keeps_saying(1, *reports).passes(0.5)

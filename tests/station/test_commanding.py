@@ -1,0 +1,154 @@
+"""Missions, sticks and camera orders; what is sent, and what becomes of it."""
+
+import pytest
+from tests.fleet.said import core, extended
+from tests.safety.cases import STICK, mission
+from tests.station.commanded import Told, flying
+
+from recon.fleet.state import Fleet
+from recon.model.command import Body, Hover, Phase, ReturnHome, StartCamera, StopCamera
+from recon.model.report import ImageReport
+from recon.model.vehicle import AltitudeReference, FlightMode, VehicleProfile
+from recon.station.state import Station
+
+GROUND = (core(flying=False), extended(mode=FlightMode.GPS_ATTI))
+HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
+
+
+def hovering() -> Told:
+    return Told().opens(1, *HOVERING).keeps_saying(1, *HOVERING).passes(0.5)
+
+
+@pytest.mark.parametrize("body", [Hover(), ReturnHome(), mission(), STICK])
+def test_nothing_that_could_take_off_is_sent_to_a_vehicle_on_the_ground(body: Body) -> None:
+    told = Told().opens(1, *GROUND).keeps_saying(1, *GROUND)
+    order = told.order(body)
+    told.passes(10.0)
+    assert told.sent == []
+    assert told.record(order).note.startswith("flying: ")
+
+
+@pytest.mark.parametrize("body", [Hover(), mission(), STICK])
+def test_takeoff_is_always_explicit(body: Body) -> None:
+    told = Told().opens(1, *GROUND)
+    told.order(body, takeoff=True)
+    assert len(told.sent) == 1
+
+
+class TestMission:
+    def test_it_is_confirmed_when_the_mode_becomes_10(self) -> None:
+        told = hovering()
+        order = told.order(mission())
+        told.answered(order, True)
+        assert told.phase(order) is Phase.ACKNOWLEDGED
+        told.keeps_saying(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.1)
+        assert told.phase(order) is Phase.CONFIRMED
+
+    def test_an_old_mode_is_no_knowledge_of_the_mode_now(self) -> None:
+        """Mode 3 four seconds ago: it may be 10 by now, from the mission before."""
+        told = hovering().keeps_saying(1, core(velocity=(-5.0, 0.0, 0.0))).passes(4.0)
+        order = told.order(mission())
+        told.says(1, extended(mode=FlightMode.GPS_WAYPOINT)).passes(1.0)
+        assert told.phase(order) is Phase.SENT
+
+    def test_one_that_is_silently_rejected_is_an_alarm(self) -> None:
+        told = hovering()
+        order = told.order(mission())
+        told.answered(order, True).passes(8.1)
+        assert told.phase(order) is Phase.TIMED_OUT
+        assert told.alarms() == {"mission_ignored"}
+        told.keeps_saying(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.2)
+        assert told.alarms() == set()
+
+    def test_a_refusal_by_the_app_ends_it(self) -> None:
+        told = hovering()
+        order = told.order(mission())
+        told.answered(order, False).passes(20.0)
+        assert told.phase(order) is Phase.REFUSED_BY_APP
+        assert told.times_s(order) == [0.5]
+
+    def test_a_missed_acknowledgment_is_written_down_and_changes_nothing(self) -> None:
+        told = hovering()
+        order = told.order(mission())
+        told.answered(order, None)
+        assert told.phase(order) is Phase.SENT
+        assert "not acknowledged" in told.record(order).note
+
+    def test_it_is_never_repeated(self) -> None:
+        told = hovering()
+        order = told.order(mission())
+        told.passes(30.0)
+        assert len(told.times_s(order)) == 1
+
+    def test_one_that_never_left_expires(self) -> None:
+        told = hovering()
+        told.is_stuck = True
+        order = told.order(mission())
+        told.passes(5.1)
+        assert told.phase(order) is Phase.EXPIRED
+        assert not told.record(order).is_watched
+
+    def test_the_audit_says_which_altitudes_were_sent(self) -> None:
+        told = hovering()
+        assert told.record(told.order(mission())).altitudes == (
+            "sent as 40.0 to 40.0 m above takeoff"
+        )
+        profile = VehicleProfile("A", waypoint_altitude=AltitudeReference.WGS84)
+        told = Told()
+        told.station = Station(fleet=Fleet(profiles={"A": profile}))
+        told.opens(1, *HOVERING, core())
+        order = told.order(mission())
+        assert told.handed[0].altitude_offset_m == 260.0
+        assert "sent as 300.0 to 300.0 m WGS84" in (told.record(order).altitudes or "")
+
+    def test_a_vehicle_whose_altitude_reference_is_unset_gets_none(self) -> None:
+        reports = (core(), extended("B"))
+        told = Told().opens(1, *reports)
+        order = told.order(mission(), "B")
+        assert told.record(order).note.startswith("altitude_reference: ")
+        assert told.sent == []
+
+
+class TestCameraAndStick:
+    def test_a_newer_camera_order_ends_the_older(self) -> None:
+        told = hovering()
+        first = told.order(StartCamera(1.0))
+        second = told.order(StopCamera())
+        assert told.phase(first) is Phase.SUPERSEDED
+        told.passes(3.0)
+        assert told.phase(second) is Phase.CONFIRMED
+
+    def test_a_start_is_confirmed_by_an_image(self) -> None:
+        told = hovering()
+        order = told.order(StartCamera(1.0))
+        told.passes(0.1).says(1, ImageReport(target_fps_hz=1.0, jpeg=b"x")).passes(0.1)
+        assert told.phase(order) is Phase.CONFIRMED
+
+    @pytest.mark.parametrize(("body", "limit_s"), [(StartCamera(1.0), 8.0), (STICK, 2.0)])
+    def test_without_confirmation_it_times_out_quietly(self, body: Body, limit_s: float) -> None:
+        told = flying()
+        order = told.order(body)
+        told.passes(limit_s - 0.1)
+        assert told.phase(order) is Phase.SENT
+        told.passes(0.2)
+        assert told.phase(order) is Phase.TIMED_OUT
+        assert told.alarms() == set()
+
+    def test_in_a_conflict_neither_is_sent(self) -> None:
+        told = hovering().opens(2, *HOVERING)
+        for body in (STICK, StartCamera(1.0), mission()):
+            assert told.record(told.order(body)).note.startswith("identified: ")
+
+
+def test_an_order_to_nobody_is_refused() -> None:
+    told = Told()
+    assert told.phase(told.order(Hover(), "nobody")) is Phase.REFUSED_BY_STATION
+    assert told.phase(told.order(Hover(), None, link=9)) is Phase.REFUSED_BY_STATION
+    assert told.phase(told.order(Hover(), None)) is Phase.REFUSED_BY_STATION
+
+
+def test_what_a_link_says_of_an_unknown_order_is_ignored() -> None:
+    told = hovering()
+    before = told.station
+    told.answered(77, True).dropped(77, Phase.FAILED)
+    assert told.station is before

@@ -1,0 +1,60 @@
+"""The order book is bounded and forgets nothing that is alive."""
+
+from tests.safety.cases import command
+
+from recon.model.command import Command, Hover, Phase, StopCamera
+from recon.model.event import CommandDropped, CommandSent
+from recon.station.orders import (
+    OrderBook,
+    OrderRecord,
+    PhaseChange,
+    SentContext,
+    changed,
+    on_dropped,
+    on_sent,
+    put,
+)
+
+CONTEXT = SentContext(5, None, True)
+
+
+def record(number: int, *, is_watched: bool = True) -> OrderRecord:
+    order = Command(number, StopCamera(), "test", 0, 9, serial="A")
+    return OrderRecord(order, "A", (PhaseChange(Phase.QUEUED, 0, ""),), is_watched=is_watched)
+
+
+def test_the_oldest_finished_ones_are_forgotten_and_no_living_one() -> None:
+    book = put(OrderBook(), record(0), kept=5)
+    for number in range(1, 20):
+        book = put(book, record(number, is_watched=False), kept=5)
+    assert list(book.records) == [0, 16, 17, 18, 19]
+
+
+def test_only_the_first_sending_counts() -> None:
+    queued = record(1)
+    sent = on_sent(queued, CommandSent(1, 1), CONTEXT)
+    again = on_sent(sent, CommandSent(1, 1), SentContext(50, None, True))
+    assert (sent.phase, sent.times_sent) == (Phase.SENT, 1)
+    assert (again.sent, again.times_sent) == (CONTEXT, 2)
+    assert again.history == sent.history
+
+
+def test_a_repeat_dropped_unsent_changes_nothing() -> None:
+    sent = on_sent(record(1), CommandSent(1, 1), CONTEXT)
+    assert on_dropped(sent, CommandDropped(1, 1, Phase.FAILED, ""), 9).phase is Phase.SENT
+
+
+def test_an_ended_order_that_leaves_after_all_does_not_come_to_life() -> None:
+    ended = changed(record(1), Phase.SUPERSEDED, 3, is_watched=False)
+    left = on_sent(ended, CommandSent(1, 1), CONTEXT)
+    assert left.phase is Phase.SUPERSEDED
+    assert not left.is_watched
+    assert left.times_sent == 1
+
+
+def test_the_end_of_an_order_is_the_end_of_its_repeats() -> None:
+    repeating = OrderRecord(
+        command(Hover()), "A", (PhaseChange(Phase.SENT, 0, ""),), next_repeat_ns=7, repeats_left=3
+    )
+    ended = changed(repeating, Phase.CONFIRMED, 1, is_watched=False)
+    assert (ended.next_repeat_ns, ended.repeats_left) == (None, 0)
