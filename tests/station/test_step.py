@@ -1,0 +1,79 @@
+"""Frames and heavy work in the station's step."""
+
+from dataclasses import replace
+
+import numpy as np
+from tests.fleet.said import core, extended
+from tests.station.commanded import Told
+
+from recon.model.event import DeadlineMissed, WorkerResult
+from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.imagery import CameraPose, GroundImage
+from recon.model.report import ImageReport
+from recon.model.units import seconds_to_ns
+from recon.station.imaging import LAY_FRAME
+from recon.station.settings import StationSettings
+from recon.station.state import Station
+
+IMAGE = ImageReport(target_fps_hz=1.0, jpeg=b"x")
+
+
+def ground_image(captured_at_ns: int) -> GroundImage:
+    return GroundImage(
+        grid=GroundGrid(LocalFrame(GeoPoint(42.0, -93.6, 275.0)), 0.0, 1.0, 1.0, 1, 1),
+        frame_id=1,
+        captured_at_ns=captured_at_ns,
+        rgb=np.zeros((1, 1, 3), np.uint8),
+        valid=np.ones((1, 1), np.bool_),
+        pose=CameraPose(np.eye(3), np.zeros(3)),
+    )
+
+
+def test_the_newest_frame_of_each_vehicle_is_kept_with_its_capture_time() -> None:
+    told = Told().opens(1, core(), extended("A")).passes(1.0).says(1, IMAGE, IMAGE)
+    (frame,) = told.station.frames.values()
+    assert frame.id == 2
+    assert frame.received_at_ns - frame.captured_at_ns == seconds_to_ns(0.5)
+    assert frame.captured_sigma_s == 0.25
+
+
+def test_frames_of_ever_new_serials_fill_no_memory() -> None:
+    told = Told()
+    told.station = Station(settings=StationSettings(frames_kept=3))
+    told.opens(1)
+    for number in range(10):
+        told.says(1, extended(f"S{number}"), IMAGE)
+    assert list(told.station.frames) == ["S7", "S8", "S9"]
+
+
+def test_a_frame_of_a_link_without_identity_is_nobodys() -> None:
+    assert Told().opens(1, core(), IMAGE).station.frames == {}
+
+
+def test_an_older_ground_image_never_replaces_a_newer_one() -> None:
+    told = Told()
+    for captured_at_ns in (5, 9, 7):
+        told.happens(WorkerResult(1, LAY_FRAME, ground_image(captured_at_ns)))
+    image = told.station.imaging.ground_image
+    assert image is not None
+    assert image.captured_at_ns == 9
+
+
+def test_failed_work_is_an_alarm_until_work_succeeds() -> None:
+    told = Told().happens(WorkerResult(1, LAY_FRAME, None, "no pose")).passes(0.1)
+    assert told.alarms() == {"imaging"}
+    told.happens(WorkerResult(2, LAY_FRAME, ground_image(1))).passes(0.1)
+    assert told.alarms() == set()
+
+
+def test_a_missed_deadline_is_counted() -> None:
+    told = Told().happens(DeadlineMissed(1, LAY_FRAME, "late"))
+    assert told.station.imaging.frames_dropped == 1
+
+
+def test_the_eyes_telemetry_is_kept_for_its_frames() -> None:
+    told = Told()
+    imaging = replace(told.station.imaging, eye_serial="A")
+    told.station = replace(told.station, imaging=imaging)
+    told.opens(1, extended("A"), core(), core(position=None))
+    assert len(told.station.imaging.samples) == 1
