@@ -4,8 +4,9 @@
 
 Apps at 10 Hz core and 2 Hz extended telemetry, some with raw 1280x720 images at 5 fps, from a
 process of their own; beside them a console that takes a state ten times a second. Prints the
-latency from an app's write to the end of the station's step, the CPU share beside that of a bare
-sink of the same bytes in the same run, and how long "all stop" takes to reach every app.
+latency from an app's write to the end of the station's step and the CPU share, both beside those
+of a bare asyncio sink under the same load in the same run, and how long "all stop" takes to reach
+every app.
 """
 
 import argparse
@@ -13,13 +14,13 @@ import statistics
 import sys
 
 import uvloop
-from benches.station.measured import Load, Outcome, measure_sink, measure_station
+from benches.station.measured import Load, Outcome, SinkOutcome, measure_sink, measure_station
 
 P99_LIMIT_MS = 100.0
 SINK_SECONDS = 10.0
 
 
-def report(load: Load, outcome: Outcome, sink_share: float) -> None:
+def report(load: Load, outcome: Outcome, sink: SinkOutcome) -> None:
     """Print every figure."""
     sent = outcome.sent
     mib_s = sent.bytes / load.seconds / 2**20
@@ -33,8 +34,13 @@ def report(load: Load, outcome: Outcome, sink_share: float) -> None:
         f"p99 {outcome.latency_ms(99):.2f} ms, most {outcome.latency_ms(100):.2f} ms"
     )
     print(
-        f"CPU: {100 * outcome.cpu_share:.0f} % of one core, a bare sink {100 * sink_share:.0f} %: "
-        f"{outcome.cpu_share / sink_share:.1f} times"
+        f"bare sink with a deframer, same run: p50 {sink.latency_ms(50):.2f} ms, "
+        f"p99 {sink.latency_ms(99):.2f} ms; the station's p99 is "
+        f"{outcome.latency_ms(99) / sink.latency_ms(99):.1f} times that"
+    )
+    print(
+        f"CPU: {100 * outcome.cpu_share:.0f} % of one core, the sink {100 * sink.cpu_share:.0f} %: "
+        f"{outcome.cpu_share / sink.cpu_share:.1f} times"
     )
     print(
         f"state and JSON: median {statistics.median(outcome.state_ms):.1f} ms, "

@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from benches.station.app_load import Sent
 
+from recon import wire
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.event import CommandSent, Event, LinkClosed, PacketReceived
 from recon.model.report import CoreReport, ExtendedReport, ImageReport
 from recon.site import default_site
 from recon.station.build import first_state
-from recon.station.driver import AsyncioDriver, station_clock
+from recon.station.driver import AsyncioDriver, spare_what_is_loaded, station_clock
 from recon.station.service import Service
 from recon.station.state import Station
 
@@ -102,6 +103,7 @@ async def measure_station(load: Load) -> Outcome:
     await links.start("127.0.0.1", 0)
     state_ms: list[float] = []
     tasks = [asyncio.create_task(driver.run()), asyncio.create_task(_console(service, state_ms))]
+    spare_what_is_loaded()
     cpu_s, wall_s = time.process_time(), time.monotonic()
     sending = asyncio.create_task(_send(links.port, load))
     async with asyncio.timeout(load.seconds + ENDING_S):
@@ -121,31 +123,42 @@ async def measure_station(load: Load) -> Outcome:
     return Outcome(sent, received, cpu_share, state_ms, ordered, ordered_at_s)
 
 
-async def measure_sink(load: Load) -> float:
-    """Return the CPU share of a server that only counts bytes, under the same load."""
-    sinks: list[_Sink] = []
+@dataclass(frozen=True, slots=True)
+class SinkOutcome:
+    """The same load on a server that takes packets off the stream and keeps nothing."""
 
-    def made() -> _Sink:
-        sinks.append(_Sink())
-        return sinks[-1]
+    cpu_share: float
+    latencies_s: list[float]
 
-    server = await asyncio.get_running_loop().create_server(made, "127.0.0.1", 0)
+    def latency_ms(self, percentile: float) -> float:
+        """Socket-to-packet latency: what the machine was good for in this run."""
+        return 1e3 * float(np.percentile(self.latencies_s, percentile))
+
+
+async def measure_sink(load: Load) -> SinkOutcome:
+    """Run a bare asyncio server with a deframer under a load."""
+    latencies_s: list[float] = []
+    loop = asyncio.get_running_loop()
+    server = await loop.create_server(lambda: _Sink(latencies_s), "127.0.0.1", 0)
     cpu_s, wall_s = time.process_time(), time.monotonic()
     sent = await _send(server.sockets[0].getsockname()[1], load)
     share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
     async with asyncio.timeout(ENDING_S):
-        while sum(sink.bytes for sink in sinks) < sent.bytes:
+        while len(latencies_s) < sent.core:
             await asyncio.sleep(0.01)
     server.close()
-    return share
+    return SinkOutcome(share, latencies_s)
 
 
 class _Sink(asyncio.Protocol):
-    def __init__(self) -> None:
-        self.bytes = 0
+    def __init__(self, latencies_s: list[float]) -> None:
+        self.latencies_s = latencies_s
+        self.deframer = wire.Deframer()
 
     def data_received(self, data: bytes) -> None:
-        self.bytes += len(data)
+        for packet in self.deframer.feed(data):
+            if isinstance(packet, wire.CoreTelemetry):
+                self.latencies_s.append(time.monotonic() - packet.altitude_m)
 
 
 async def _console(service: Service, state_ms: list[float]) -> None:

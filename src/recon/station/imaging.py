@@ -4,10 +4,17 @@ from dataclasses import dataclass, replace
 
 from recon.camera.motion import TelemetryReference
 from recon.model.imagery import Frame, GroundImage
+from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 
 LAY_FRAME = "lay_frame"
 """The kind of work that turns a frame into a ground image."""
+
+SAMPLE_NEAR_S = 3.0
+"""Running video causes telemetry dropouts of a second or two; further from the moment of capture, a
+frame would be laid where the eye was, not where it is."""
+
+_MISSING = "no telemetry of the eye within 3 s of the frame's capture"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +60,8 @@ def with_sample(imaging: Imaging, eye: VehicleState, now_ns: int, kept: int) -> 
     )
     if telemetry is None:
         return imaging
-    samples = (*imaging.samples[-(kept - 1) :], EyeSample(now_ns, telemetry))
-    return replace(imaging, samples=samples)
+    samples = (*imaging.samples, EyeSample(now_ns, telemetry))
+    return replace(imaging, samples=samples[-kept:])
 
 
 def take_frame(
@@ -63,7 +70,7 @@ def take_frame(
     """Return the work for a frame of the eye, or None while its place cannot be told."""
     sample = _sample_at(imaging.samples, frame.captured_at_ns)
     if sample is None:
-        return imaging, None
+        return replace(imaging, latest_error=_MISSING), None
     if imaging.reference is None:
         if not is_flying:
             return imaging, None
@@ -75,5 +82,8 @@ def take_frame(
 
 
 def _sample_at(samples: tuple[EyeSample, ...], at_ns: int) -> EyeSample | None:
-    """The sample nearest in time; telemetry older than that cannot tell better."""
-    return min(samples, key=lambda sample: abs(sample.at_ns - at_ns), default=None)
+    """The sample nearest in time, unless even that one is far off."""
+    nearest = min(samples, key=lambda sample: abs(sample.at_ns - at_ns), default=None)
+    if nearest is None or abs(nearest.at_ns - at_ns) > seconds_to_ns(SAMPLE_NEAR_S):
+        return None
+    return nearest

@@ -22,7 +22,7 @@ from recon.model.errors import ReconError
 from recon.model.units import ns_to_seconds
 from recon.site import Site
 from recon.station.build import first_state, worker_tasks
-from recon.station.driver import AsyncioDriver, station_clock
+from recon.station.driver import AsyncioDriver, spare_what_is_loaded, station_clock
 from recon.station.log import log_step
 from recon.station.service import Service
 from recon.station.worker import ThreadWorker
@@ -86,6 +86,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         worker.start()
         stack.callback(worker.stop)
         server = _http_server(config, service)
+        spare_what_is_loaded()
         stack.enter_context(_stopped_by_signals(server))
         serving = asyncio.create_task(server.serve(sockets=[http_socket]))
         await on_start(_started(config, service, links, http_socket))

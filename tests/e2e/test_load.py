@@ -1,0 +1,17 @@
+"""Sixteen apps and an image stream for three seconds, over sockets: nothing is lost."""
+
+import asyncio
+
+from benches.station.measured import Load, measure_station
+
+
+def test_nothing_is_lost() -> None:
+    outcome = asyncio.run(measure_station(Load(apps=16, streams=1, seconds=3.0)))
+    assert outcome.lost == {"core": 0, "extended": 0, "images": 0}
+    assert (outcome.sent.core, outcome.sent.extended, outcome.sent.images) == (480, 96, 15)
+
+
+def test_all_stop_reaches_every_app() -> None:
+    outcome = asyncio.run(measure_station(Load(apps=16, streams=0, seconds=2.0)))
+    assert outcome.ordered == 16
+    assert len(outcome.sent.first_command_at_s) == 16

@@ -1,0 +1,82 @@
+"""The drivers' one queue, and the asyncio driver's way of letting time pass."""
+
+import asyncio
+import threading
+
+import pytest
+
+from recon.model.event import DeadlineMissed, Event, LinkOpened, Tick
+from recon.site import default_site
+from recon.station.build import first_state
+from recon.station.driver import AsyncioDriver, station_clock
+from recon.station.event_queue import EventQueue
+
+PATIENCE_S = 20.0
+
+
+class TestQueue:
+    def test_what_an_event_causes_waits_behind_those_already_there(self) -> None:
+        handled: list[int] = []
+
+        def handle(event: Event) -> None:
+            assert isinstance(event, LinkOpened)
+            handled.append(event.link_id)
+            if event.link_id < 10:
+                queue.put(LinkOpened(event.link_id * 10, ""))
+                queue.put(LinkOpened(event.link_id * 10 + 1, ""))
+                # Nothing of it has been handled inside this handling.
+                assert handled[-1] == event.link_id
+
+        queue = EventQueue(handle)
+        queue.put(LinkOpened(1, ""))
+        queue.put(LinkOpened(2, ""))
+        assert handled == [1, 10, 11, 2, 20, 21]
+
+    def test_after_an_error_it_goes_on_in_order(self) -> None:
+        handled: list[Event] = []
+
+        def handle(event: Event) -> None:
+            handled.append(event)
+            if len(handled) == 1:
+                queue.put(LinkOpened(2, ""))
+                raise RuntimeError("a fault")
+
+        queue = EventQueue(handle)
+        with pytest.raises(RuntimeError, match="a fault"):
+            queue.put(LinkOpened(1, ""))
+        queue.put(LinkOpened(3, ""))
+        assert handled == [LinkOpened(n, "") for n in (1, 2, 3)]
+
+
+class TestAsyncioDriver:
+    def test_time_passes_and_other_threads_are_heard(self) -> None:
+        async def main() -> None:
+            seen: list[Event] = []
+            driver = AsyncioDriver(
+                first_state(default_site()),
+                station_clock(),
+                lambda before, after, event: seen.append(event),
+            )
+            driver.handle_from_thread(DeadlineMissed(0, "x", "before it runs: nowhere to go"))
+            running = asyncio.create_task(driver.run())
+            while not any(isinstance(event, Tick) for event in seen):
+                await asyncio.sleep(0)
+            missed = DeadlineMissed(1, "x", "y")
+            thread = threading.Thread(target=driver.handle_from_thread, args=(missed,))
+            thread.start()
+            async with asyncio.timeout(PATIENCE_S):
+                while missed not in seen:
+                    await asyncio.sleep(0)
+            thread.join()
+            assert driver.station.imaging.frames_dropped == 1
+            running.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await running
+
+        asyncio.run(main())
+
+    def test_the_clock_begins_at_utc_and_never_runs_back(self) -> None:
+        now_ns = station_clock()
+        times = [now_ns() for _ in range(1000)]
+        assert times == sorted(times)
+        assert times[0] > 1_600_000_000 * 1_000_000_000
