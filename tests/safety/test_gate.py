@@ -1,7 +1,7 @@
 """How long an approval holds, and that all rules are asked."""
 
 import pytest
-from tests.safety.cases import NOW, STICK, S, approved, command, mission, situation
+from tests.safety.cases import NOW, STICK, S, approved, command, mission, situation, vehicle
 
 from recon.model.command import Body, Hover, LandNow, ReturnHome, StartCamera, StopCamera
 from recon.safety import approve
@@ -32,6 +32,12 @@ def test_no_approval_outlives_the_order() -> None:
     for body in (Hover(), mission(), LandNow()):
         order = command(body, expires_at_ns=NOW + S // 2)
         assert approved(approve(order, situation())).command.expires_at_ns == NOW + S // 2
+
+
+def test_the_vehicles_own_profile_goes_with_it() -> None:
+    """Its packet gap is the link's business."""
+    state = vehicle()
+    assert approved(approve(command(LandNow()), situation(state))).profile is state.profile
 
 
 def test_every_rule_has_one_file_named_after_it() -> None:
