@@ -1,0 +1,148 @@
+"""Simulated apps in a process of their own, on real sockets, with what goes wrong in the field."""
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+
+import uvloop
+
+from recon.link.server import LinkServer
+from recon.link.settings import LinkSettings
+from recon.model.command import Body, FlyMission, LandNow
+from recon.model.mission import Mission, Waypoint
+from recon.model.vehicle import AltitudeReference, VehicleProfile, VehicleState
+from recon.site import Site
+from recon.station.build import first_state
+from recon.station.driver import AsyncioDriver, station_clock
+from recon.station.service import Service
+
+PATIENCE_S = 40.0
+SERIALS = ("SIM-1", "SIM-2")
+
+
+class Field:
+    """A running station, asked as the API asks it."""
+
+    def __init__(self, driver: AsyncioDriver, service: Service) -> None:
+        self.driver = driver
+        self.service = service
+
+    def vehicle(self, serial: str) -> VehicleState | None:
+        return self.driver.station.fleet.vehicles.get(serial)
+
+    def order(self, serial: str, body: Body) -> int:
+        (result,) = self.service.order([serial], body, takeoff=False, issued_by="test").results
+        assert result.accepted, result
+        return result.command_id
+
+    def phases(self, command_id: int) -> list[str]:
+        history = self.driver.station.orders.records[command_id].history
+        return [change.phase.value for change in history]
+
+    async def until(self, is_reached: Callable[[], bool]) -> None:
+        async with asyncio.timeout(PATIENCE_S):
+            while not is_reached():
+                await asyncio.sleep(0.01)
+
+
+@asynccontextmanager
+async def field(*sim_options: str) -> AsyncIterator[Field]:
+    """Run a station and a fleet of two that flies; both end."""
+    profiles = {
+        serial: VehicleProfile(serial, waypoint_altitude=AltitudeReference.TAKEOFF)
+        for serial in SERIALS
+    }
+    site = Site(name="test", profiles=profiles)
+    driver = AsyncioDriver(first_state(site), station_clock())
+    driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
+    await links.start("127.0.0.1", 0)
+    ticking = asyncio.create_task(driver.run())
+    station = f"127.0.0.1:{links.port}"
+    options = ["--station", station, "--vehicles", "2", "--no-eye", "--airborne", *sim_options]
+    simulator = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "recon", "sim", *options, stdout=asyncio.subprocess.DEVNULL
+    )
+    here = Field(driver, Service.around(driver, site, None))
+    try:
+        await here.until(lambda: all(here.vehicle(serial) for serial in SERIALS))
+        yield here
+    finally:
+        simulator.terminate()
+        await simulator.wait()
+        ticking.cancel()
+        await links.stop()
+
+
+def short_mission(vehicle: VehicleState) -> FlyMission:
+    here = vehicle.position.value
+    assert here is not None
+    return FlyMission(
+        Mission(
+            tuple(
+                Waypoint(here.latitude_deg + north_deg, here.longitude_deg, 50.0, 5.0)
+                for north_deg in (0.0002, 0.0004)
+            )
+        )
+    )
+
+
+def test_orders_are_answered_and_confirmed_by_telemetry() -> None:
+    async def main() -> None:
+        async with field() as here:
+            await here.until(lambda: is_known_to_fly(here, "SIM-1"))
+            vehicle = here.vehicle("SIM-1")
+            assert vehicle is not None
+            flown = here.order("SIM-1", short_mission(vehicle))
+            await here.until(lambda: "confirmed" in here.phases(flown))
+            assert here.phases(flown)[:3] == ["queued", "sent", "acknowledged"]
+            landed = here.order("SIM-1", LandNow())
+            await here.until(lambda: "confirmed" in here.phases(landed))
+            assert here.vehicle("SIM-2") is not None
+
+    uvloop.run(main())
+
+
+def test_a_phone_that_changes_its_network_stays_the_same_vehicle() -> None:
+    """The old socket stays open and silent; a second after the serial came the new one counts."""
+
+    async def main() -> None:
+        async with field("--fault", "half-open:SIM-1:3:60") as here:
+            vehicle = here.vehicle("SIM-1")
+            assert vehicle is not None
+            old_id = vehicle.link_id
+            await here.until(lambda: len(here.driver.station.fleet.links) == 3)
+            await here.until(
+                lambda: (v := here.vehicle("SIM-1")) is not None and v.link_id not in (None, old_id)
+            )
+            fleet = here.driver.station.fleet
+            assert set(fleet.vehicles) == set(SERIALS)
+            assert old_id is not None
+            await here.until(lambda: not here.driver.station.fleet.links[old_id].is_open)
+            landed = here.order("SIM-1", LandNow())
+            await here.until(lambda: "confirmed" in here.phases(landed))
+
+    uvloop.run(main())
+
+
+def test_an_app_that_acknowledges_and_does_nothing_is_seen_through() -> None:
+    async def main() -> None:
+        async with field("--fault", "ack-then-nothing:SIM-2") as here:
+            await here.until(lambda: is_known_to_fly(here, "SIM-2"))
+            vehicle = here.vehicle("SIM-2")
+            assert vehicle is not None
+            flown = here.order("SIM-2", short_mission(vehicle))
+            await here.until(lambda: here.phases(flown)[-1] == "timed_out")
+            assert "acknowledged" in here.phases(flown)
+            assert "confirmed" not in here.phases(flown)
+
+    uvloop.run(main())
+
+
+def is_known_to_fly(here: Field, serial: str) -> bool:
+    vehicle = here.vehicle(serial)
+    return (
+        vehicle is not None
+        and vehicle.is_flying.value is True
+        and vehicle.flight_mode.value is not None
+    )
