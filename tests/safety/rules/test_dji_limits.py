@@ -78,6 +78,10 @@ class TestWaypoints:
     def test_the_first_and_the_last(self, back_m: float, taken: bool) -> None:
         assert is_taken(mission(waypoint(0.0), waypoint(50.0), waypoint(back_m))) is taken
 
+    @pytest.mark.parametrize(("step_m", "taken"), [(999.0, True), (1001.0, False)])
+    def test_the_last_is_at_most_2_km_from_the_first(self, step_m: float, taken: bool) -> None:
+        assert is_taken(mission(*line(3, step_m))) is taken
+
     @pytest.mark.parametrize(("legs", "taken"), [(15, True), (17, False)])
     def test_the_whole_path_is_at_most_30_km(self, legs: int, taken: bool) -> None:
         there_and_back = (waypoint(1900.0 * (n % 2) + n) for n in range(legs + 1))
