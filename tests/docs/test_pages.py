@@ -14,7 +14,7 @@ from recon.site import load_site
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
-LINK = re.compile(r"\]\((?!https?://|#|mailto:)([^)#\s]+)")
+LINK = re.compile(r"(?:\]\(|src(?:set)?=\")(?!https?://|#|mailto:)([^)#\s\"]+)")
 FENCE = re.compile(r"```(\w*)\n(.*?)```", re.DOTALL)
 SITE_HEAD = """name = "x"
 [origin]
