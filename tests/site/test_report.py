@@ -27,6 +27,5 @@ def test_the_report_says_when_the_first_frame_stands_for_the_marked_one() -> Non
 
 def test_the_report_of_no_site_says_what_is_missing() -> None:
     assert site_report(default_site()) == (
-        "site no site: 0 vehicle profiles",
-        "no eye: frames are shown as they come, none is laid on the ground",
+        "no site: nothing is known of any vehicle, no frame is laid on the ground",
     )

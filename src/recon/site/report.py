@@ -6,6 +6,8 @@ from recon.site.site import Eye, Site
 
 def site_report(site: Site) -> tuple[str, ...]:
     """Return lines that say what was read, how well the control points fit, what is assumed."""
+    if site.frame is None:
+        return ("no site: nothing is known of any vehicle, no frame is laid on the ground",)
     lines = [f"site {site.name}: {len(site.profiles)} vehicle profiles"]
     if site.ground_grid is not None:
         grid = site.ground_grid
