@@ -69,6 +69,13 @@ class TestRepeats:
         assert len(told.times_s(order)) == 4
         assert told.phase(order) is Phase.TIMED_OUT
 
+    def test_an_order_to_take_off_is_never_repeated_on_the_ground(self) -> None:
+        told = Told().opens(1, *GROUND).keeps_saying(1, *GROUND).passes(0.5)
+        order = told.order(Hover(), takeoff=True)
+        told.passes(DEAF)
+        assert len(told.times_s(order)) == 1
+        assert "order_not_confirmed" in told.alarms()
+
     @pytest.mark.parametrize("body", [Hover(), ReturnHome()])
     def test_hover_and_return_are_not_repeated_when_telemetry_says_landed(self, body: Body) -> None:
         told = flying()

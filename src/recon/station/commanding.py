@@ -224,12 +224,16 @@ def _repeat(
 ) -> tuple[OrderRecord, tuple[Output, ...]]:
     """Send an unconfirmed emergency order again if the gate still approves it now.
 
-    One that has never left is no repeat: it is judged anew and waits on, until it expires.
+    One that has never left is no repeat: it is judged anew and waits on, until it expires. A repeat
+    is never an order to take off: nothing that starts motion is sent again by itself.
     """
     left = record.repeats_left - (record.sent is not None)
     later_ns = now_ns + seconds_to_ns(station.settings.emergency_repeat_s)
     record = replace(record, repeats_left=left, next_repeat_ns=later_ns if left > 0 else None)
-    judged = approve(record.command, situation(station, record.command, now_ns))
+    command = record.command
+    if record.sent is not None:
+        command = replace(command, takeoff=False)
+    judged = approve(command, situation(station, command, now_ns))
     if isinstance(judged, Refusal):
         return record, ()
     waiting = tuple(dict.fromkeys((*record.waiting_link_ids, *judged.link_ids)))
