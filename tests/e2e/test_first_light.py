@@ -1,6 +1,5 @@
 """First light: real fisheye frames, sent by a simulated app as bytes, lie where they belong."""
 
-import os
 import shutil
 from pathlib import Path
 
@@ -37,15 +36,12 @@ control_points_image_size_px = [3840, 2160]
 
 
 @pytest.fixture(params=PLACES)
-def field(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Path, Site, float]:
+def field(
+    request: pytest.FixtureRequest, fisheye_data: Path, tmp_path: Path
+) -> tuple[Path, Site, float]:
     """A real field's folder, a site made of it, and the fit to be reached."""
     name: str = request.param
-    folder = Path(os.environ.get("RECON_DATA", "")) / "fisheye" / name
-    if "RECON_DATA" not in os.environ or not folder.is_dir():
-        reason = "real frames needed: set RECON_DATA to the folder that holds fisheye/"
-        if os.environ.get("RECON_DATA_REQUIRED") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
+    folder = fisheye_data / name
     latitude, longitude, altitude, rms_px = PLACES[name]
     shutil.copy(folder.parent / "camera-model.txt", tmp_path)
     shutil.copy(folder / "GCPs.txt", tmp_path)

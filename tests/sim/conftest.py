@@ -1,8 +1,6 @@
-"""Flying simulated aircraft and apps by hand, and real frames by $RECON_DATA."""
+"""Flying simulated aircraft and apps by hand."""
 
-import os
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import pytest
 
@@ -157,15 +155,3 @@ def mission_packet() -> Callable[..., wire.ExecuteWaypointMission]:
         )
 
     return make
-
-
-@pytest.fixture(scope="session")
-def fisheye_data() -> Path:
-    """The folder of the real fisheye frames; skips visibly without, fails when required."""
-    folder = Path(os.environ.get("RECON_DATA", "")) / "fisheye"
-    if "RECON_DATA" in os.environ and (folder / "camera-model.txt").is_file():
-        return folder
-    reason = f"real frames needed: set RECON_DATA to the folder that holds fisheye/ (now: {folder})"
-    if os.environ.get("RECON_DATA_REQUIRED") == "1":
-        pytest.fail(reason)
-    pytest.skip(reason)

@@ -1,6 +1,5 @@
 """A site made of a real frame: from the folder to the ground."""
 
-import os
 import shutil
 from pathlib import Path
 
@@ -28,17 +27,11 @@ height_m = 600.0
 
 
 @pytest.fixture
-def becker(tmp_path: Path) -> Path:
+def becker(fisheye_data: Path, tmp_path: Path) -> Path:
     """A site's folder of the real frame becker-1."""
-    fisheye = Path(os.environ.get("RECON_DATA", "")) / "fisheye"
-    if "RECON_DATA" not in os.environ or not fisheye.is_dir():
-        reason = "real frames needed: set RECON_DATA to the folder that holds fisheye/"
-        if os.environ.get("RECON_DATA_REQUIRED") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
-    shutil.copy(fisheye / "camera-model.txt", tmp_path)
+    shutil.copy(fisheye_data / "camera-model.txt", tmp_path)
     for name in ("GCPs.txt", "RefFrame.jpeg"):
-        shutil.copy(fisheye / "becker-1" / name, tmp_path)
+        shutil.copy(fisheye_data / "becker-1" / name, tmp_path)
     (tmp_path / "site.toml").write_text(SITE_TOML)
     return tmp_path
 
