@@ -43,6 +43,10 @@ def report(load: Load, outcome: Outcome, sink: SinkOutcome) -> None:
         f"{outcome.cpu_share / sink.cpu_share:.1f} times"
     )
     print(
+        f"the station waited {100 * outcome.waited_share:.0f} % as long for a core as it ran: "
+        "other programs' share in the latencies"
+    )
+    print(
         f"state and JSON: median {statistics.median(outcome.state_ms):.1f} ms, "
         f"most {max(outcome.state_ms):.1f} ms"
     )

@@ -399,6 +399,26 @@ def resident_kib() -> int:
 
 
 class TestServer:
+    def test_a_fault_in_handling_ends_one_link_and_no_other(self, loop: str) -> None:
+        async def main() -> None:
+            async with listening() as station:
+                bad_id, _, bad = await station.connect()
+                good_id, _, good = await station.connect()
+
+                def react(event: Event) -> None:
+                    if isinstance(event, PacketReceived) and event.link_id == bad_id:
+                        raise RuntimeError("a fault")
+
+                station.react = react
+                bad.write(core())
+                await station.until(lambda: station.closed_reason(bad_id) is not None)
+                assert "a fault" in (station.closed_reason(bad_id) or "")
+                good.write(core())
+                await station.until(lambda: len(station.reports(good_id)) == 1)
+                await close(bad, good)
+
+        run_on(loop, main)
+
     def test_a_port_in_use_is_an_error(self, loop: str) -> None:
         async def main() -> None:
             async with listening() as station:
