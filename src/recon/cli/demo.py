@@ -5,9 +5,9 @@ import sys
 from typing import Annotated
 
 import typer
-import uvloop
 
 from recon.cli.console_files import console_folder
+from recon.cli.event_loop import run_in_loop
 from recon.cli.run import announce
 from recon.site import demo_site_folder, load_site
 from recon.station.run import RunConfig, Started, run
@@ -35,7 +35,7 @@ def demo_command(
         http_port=http_port,
         console=console_folder(),
     )
-    uvloop.run(_demo(config, vehicles, seed))
+    run_in_loop(_demo(config, vehicles, seed))
 
 
 async def _demo(config: RunConfig, vehicles: int, seed: int) -> None:

@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-import uvloop
 
 from recon.cli.console_files import console_folder
+from recon.cli.event_loop import run_in_loop
 from recon.link.settings import LinkSettings
 from recon.site import Site, default_site, load_site, site_report
 from recon.station.run import RunConfig, Started, StartError, run
@@ -56,7 +56,7 @@ def run_command(
         link=LinkSettings(garbage_limit_bytes=garbage_limit),
     )
     describe(config.site)
-    uvloop.run(run(config, _announce))
+    run_in_loop(run(config, _announce))
 
 
 async def _announce(started: Started) -> None:

@@ -222,12 +222,14 @@ def _prepare_socket(transport: asyncio.Transport, settings: LinkSettings) -> Non
         return
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-    for option, value in (
-        (socket.TCP_KEEPIDLE, settings.keepalive_idle_s),
-        (socket.TCP_KEEPINTVL, settings.keepalive_interval_s),
-        (socket.TCP_KEEPCNT, settings.keepalive_probes),
+    for name, value in (
+        ("TCP_KEEPIDLE", settings.keepalive_idle_s),
+        ("TCP_KEEPINTVL", settings.keepalive_interval_s),
+        ("TCP_KEEPCNT", settings.keepalive_probes),
     ):
-        sock.setsockopt(socket.IPPROTO_TCP, option, value)
+        # Not every system has all three names; keepalive itself is on everywhere.
+        if hasattr(socket, name):
+            sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, settings.send_buffer_bytes)
 
 
