@@ -1,22 +1,28 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
+import { vehicleKey } from "../fleet/key";
 import { stalenessNow } from "../fleet/staleness";
 import type { VehicleView } from "../protocol";
 import type { Colours } from "./colours";
 import type { Layer } from "./layer";
 import { addFeatures, lineFeature, type Point, setFeatures } from "./lines";
+import type { LonLat } from "./localGrid";
 import { positionOf, type Scene } from "./scene";
 
 const SOURCE = "trails";
 const CASING = "trails-casing";
 const REAL = "trails-real";
 const SIMULATED = "trails-simulated";
+/** A trail may end so far behind its vehicle's point: the symbol hides it, and drawing the map is dear. */
+const HIDDEN_END_PX = 12;
 
 /** Where each vehicle has been: a line in its colour, dashed when it is simulated. */
 export class TrailLayer implements Layer {
   private map: MapLibre | null = null;
   private colours: Colours | null = null;
   private scene: Scene | null = null;
+  /** What was drawn last: which trails in which look, and where each ended. */
+  private drawn = { looks: "", ends: new Map<number, LonLat>() };
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
@@ -49,21 +55,61 @@ export class TrailLayer implements Layer {
       paint: { ...paint, "line-dasharray": [2, 1.5] },
       filter: ["get", "simulated"],
     });
+    map.on("zoom", () => this.drawIfSeen());
   }
 
   update(scene: Scene): void {
     this.scene = scene;
-    const { map, colours } = this;
-    if (map === null || colours === null) return;
-    const trails = scene.state.vehicles.flatMap((vehicle) => trail(vehicle, scene, colours) ?? []);
-    setFeatures(map, SOURCE, trails);
+    this.drawIfSeen();
   }
 
   recolour(colours: Colours): void {
     this.colours = colours;
     this.map?.setPaintProperty(CASING, "line-color", colours.casing);
-    if (this.scene !== null) this.update(this.scene);
+    this.draw();
   }
+
+  /** Draws when one would see a difference. */
+  private drawIfSeen(): void {
+    const { map, scene } = this;
+    if (map === null || scene === null) return;
+    const hasNewLook = looksOf(scene) !== this.drawn.looks;
+    if (hasNewLook || endsOf(scene).some(([key, end]) => this.isSeen(map, key, end))) this.draw();
+  }
+
+  private isSeen(map: MapLibre, key: number, end: LonLat): boolean {
+    const before = this.drawn.ends.get(key);
+    if (before === undefined) return true;
+    const a = map.project([before.lon, before.lat]);
+    const b = map.project([end.lon, end.lat]);
+    return Math.hypot(a.x - b.x, a.y - b.y) > HIDDEN_END_PX;
+  }
+
+  private draw(): void {
+    const { map, colours, scene } = this;
+    if (map === null || colours === null || scene === null) return;
+    const trails = scene.state.vehicles.flatMap((vehicle) => trail(vehicle, scene, colours) ?? []);
+    setFeatures(map, SOURCE, trails);
+    this.drawn = { looks: looksOf(scene), ends: new Map(endsOf(scene)) };
+  }
+}
+
+/** Everything that changes how trails look, other than where they end. */
+function looksOf(scene: Scene): string {
+  return scene.state.vehicles
+    .map((vehicle) => {
+      const isLive = stalenessNow(vehicle, scene.behindS) === "live";
+      const hasTrail = vehicle.track.length > 0;
+      return [vehicleKey(vehicle), vehicle.is_simulated, isLive, hasTrail].join();
+    })
+    .join(";");
+}
+
+function endsOf(scene: Scene): [number, LonLat][] {
+  return scene.state.vehicles.flatMap((vehicle): [number, LonLat][] => {
+    const here = positionOf(vehicle);
+    return here === null ? [] : [[vehicleKey(vehicle), here]];
+  });
 }
 
 function trail(vehicle: VehicleView, scene: Scene, colours: Colours): Feature | null {

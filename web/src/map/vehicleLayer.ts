@@ -1,5 +1,6 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { vehicleKey } from "../fleet/key";
+import { type LabelPlace, placeLabels } from "./labelPlaces";
 import type { Layer } from "./layer";
 import { positionOf, type Scene } from "./scene";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
@@ -8,11 +9,16 @@ import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 export class VehicleLayer implements Layer {
   private map: MapLibre | null = null;
   private readonly markers = new Map<number, VehicleMarker>();
+  private places: ReadonlyMap<number, LabelPlace> = new Map();
+  /** Tells the labels' sizes after the browser laid them out; to ask for them would force it to. */
+  private readonly sizes = new ResizeObserver((entries) => this.measure(entries));
 
   constructor(private readonly press: MarkerPress) {}
 
   add(map: MapLibre): void {
     this.map = map;
+    map.on("zoom", () => this.arrangeLabels());
+    map.on("remove", () => this.sizes.disconnect());
   }
 
   update(scene: Scene): void {
@@ -27,23 +33,53 @@ export class VehicleLayer implements Layer {
       this.markerOf(key).show(this.map, vehicle, at, scene.behindS, isSelected);
     }
     this.removeAllBut(placed);
+    this.arrangeLabels();
   }
 
   recolour(): void {}
+
+  private arrangeLabels(): void {
+    const { map } = this;
+    if (map === null) return;
+    const inOrder = [...this.markers.values()].sort(
+      (a, b) => rank(a.label.key) - rank(b.label.key),
+    );
+    const spots = inOrder.flatMap(({ label }) => label.spot(map) ?? []);
+    this.places = placeLabels(spots, this.places);
+    for (const { label } of inOrder) {
+      const place = this.places.get(label.key);
+      if (place !== undefined) label.place(place);
+    }
+  }
+
+  private measure(entries: readonly ResizeObserverEntry[]): void {
+    for (const marker of this.markers.values()) {
+      const box = entries.find(({ target }) => target === marker.label.element)?.borderBoxSize[0];
+      if (box !== undefined) marker.label.measured(box.inlineSize, box.blockSize);
+    }
+    this.arrangeLabels();
+  }
 
   private markerOf(key: number): VehicleMarker {
     const known = this.markers.get(key);
     if (known !== undefined) return known;
     const marker = new VehicleMarker(key, this.press);
     this.markers.set(key, marker);
+    this.sizes.observe(marker.label.element);
     return marker;
   }
 
   private removeAllBut(placed: ReadonlySet<number>): void {
     for (const [key, marker] of this.markers) {
       if (placed.has(key)) continue;
+      this.sizes.unobserve(marker.label.element);
       marker.remove();
       this.markers.delete(key);
     }
   }
+}
+
+/** By number; those without one have keys below zero and come last. */
+function rank(key: number): number {
+  return key > 0 ? key : Number.MAX_SAFE_INTEGER / 2 - key;
 }
