@@ -1,7 +1,7 @@
 """The session with a clock that is a number: pacing, urgency, answers, limits, the end."""
 
 import pytest
-from tests.link.approved import LINK_ID, MS, ack, approved, core, mission, stick
+from tests.link.approved import LINK_ID, MS, ack, approved, core, extended, mission, stick
 
 from recon import wire
 from recon.link.session import Session
@@ -80,6 +80,26 @@ class TestPacing:
         s.submit(approved(2, mission()))
         assert sent_ids(s, 0) == [1]
         assert sent_ids(s, 100 * MS) == [2]
+
+
+class TestWhomItIsFor:
+    def test_what_waits_for_one_aircraft_is_not_sent_to_another(self) -> None:
+        s = session()
+        s.receive(extended(b"A"), 0)
+        s.submit(approved(1, stick()))
+        s.submit(approved(2, Hover()))
+        s.submit(approved(3, StartCamera(1.0)))
+        dropped = [e for e in s.receive(extended(b"B"), MS) if isinstance(e, CommandDropped)]
+        assert {(e.command_id, e.phase) for e in dropped} == {(2, Phase.FAILED), (3, Phase.FAILED)}
+        assert sent_ids(s, SECOND) == []
+
+    def test_the_first_serial_and_the_same_again_drop_nothing(self) -> None:
+        s = session()
+        s.submit(approved(1, Hover()))
+        for serial in (b"A", b"00000", b"", b"A"):
+            events = s.receive(extended(serial), 0)
+            assert not any(isinstance(e, CommandDropped) for e in events)
+        assert sent_ids(s, SECOND) == [1]
 
 
 class TestUrgency:

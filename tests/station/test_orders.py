@@ -30,6 +30,14 @@ def test_the_oldest_finished_ones_are_forgotten_and_no_living_one() -> None:
     assert list(book.records) == [0, 16, 17, 18, 19]
 
 
+def test_the_newest_is_never_the_one_forgotten() -> None:
+    book = OrderBook()
+    for number in range(10):
+        book = put(book, record(number), kept=5)
+    book = put(book, record(10, is_watched=False), kept=5)
+    assert 10 in book.records
+
+
 def test_only_the_first_sending_counts() -> None:
     queued = record(1)
     sent = on_sent(queued, CommandSent(1, 1), CONTEXT)

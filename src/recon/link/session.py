@@ -12,7 +12,7 @@ from recon.link.outbox import Lane, Outbox
 from recon.link.settings import LinkSettings
 from recon.model.command import FlyMission
 from recon.model.event import CommandDropped, CommandSent, Event, PacketReceived
-from recon.model.report import AckReport
+from recon.model.report import AckReport, ExtendedReport
 from recon.model.units import seconds_to_ns
 from recon.safety import ApprovedCommand
 from recon.vehicles.packets import answered_kind, to_packet
@@ -45,6 +45,7 @@ class Session:
         )
         self._opened_at_ns = opened_at_ns
         self._has_spoken = False
+        self._serial: str | None = None
         self._skipped_at_last_packet = 0
         self._last_sent_at_ns: int | None = None
         self._blocked_since_ns: int | None = None
@@ -128,11 +129,22 @@ class Session:
                 answered = self.acks.answered(report, now_ns)
                 if answered is not None:
                     events.append(answered)
+            if isinstance(report, ExtendedReport):
+                events += self._other_aircraft(report.serial)
             events.append(PacketReceived(self.link_id, report))
         if packets:
             self._has_spoken = True
         self._judge_garbage(bool(packets))
         return events
+
+    def _other_aircraft(self, serial: str | None) -> list[CommandDropped]:
+        """What waits for one aircraft is not sent to another that the link now speaks for."""
+        if serial is None or serial == self._serial:
+            return []
+        is_another = self._serial is not None
+        self._serial = serial
+        reason = f"the link now speaks for {serial}"
+        return self._outbox.empty_out(reason) if is_another else []
 
     def _judge_garbage(self, has_packets: bool) -> None:
         skipped = self._deframer.counters.bytes_skipped

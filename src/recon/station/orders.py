@@ -91,10 +91,11 @@ def unsent(record: OrderRecord, phase: Phase, at_ns: int, note: str) -> OrderRec
 
 
 def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
-    """Return the book with a record in it; the oldest finished ones are forgotten."""
-    records = {**book.records, record.command.id: record}
+    """Return the book with a record in it; the oldest other finished ones are forgotten."""
+    newest_id = record.command.id
+    records = {**book.records, newest_id: record}
     if len(records) > kept:
-        finished = [key for key, r in records.items() if not r.is_watched]
+        finished = [key for key, r in records.items() if not r.is_watched and key != newest_id]
         for key in finished[: len(records) - kept]:
             del records[key]
     return OrderBook(records)
