@@ -4,9 +4,9 @@ import { createEffect, createMemo, createSignal, on, onCleanup, onMount, Show } 
 import "maplibre-gl/dist/maplibre-gl.css";
 import "./map.css";
 import { useConsole } from "../console";
-import { formatAge } from "../words/age";
 import { listNames, vehicleLabel } from "../words/names";
 import { readColours } from "./colours";
+import { GroundImageNote } from "./GroundImageNote";
 import { GhostLayer } from "./ghostLayer";
 import { GraticuleLayer } from "./graticuleLayer";
 import { GroundImageLayer } from "./groundImageLayer";
@@ -134,23 +134,6 @@ function createMap(container: HTMLElement, ground: string): MapLibre {
 
 function view(isFirst: boolean) {
   return { padding: 90, maxZoom: 19, animate: !isFirst, duration: 400 };
-}
-
-/** Which frame lies on the ground, how old it is and how well it is placed. */
-function GroundImageNote() {
-  const { source, behindS } = useConsole();
-  const image = () => source.state()?.ground_image ?? null;
-  return (
-    <Show when={image()} fallback={<p class="map-note">No ground image yet</p>}>
-      {(shown) => (
-        <p class="map-note">
-          Ground image: frame {shown().frame_id}, taken{" "}
-          {formatAge(shown().captured_age_s + behindS())} ago ±{" "}
-          {shown().captured_sigma_s.toFixed(1)} s, {shown().registration}
-        </p>
-      )}
-    </Show>
-  );
 }
 
 /** Vehicles that cannot be drawn, so that none is forgotten. */

@@ -159,6 +159,24 @@ describe("commands", () => {
       "confirmed +2.6 s",
     ]);
   });
+
+  it("tell the note of each step beside it, and none twice", () => {
+    const history = [
+      { phase: "sent", age_s: 40, note: "" },
+      { phase: "confirmed", age_s: 39.6, note: "by telemetry: descending" },
+      { phase: "confirmed", age_s: 7, note: "by telemetry: on the ground" },
+    ] as const;
+    const note = "by telemetry: on the ground";
+    const landed = command(3, { kind: "land", age_s: 40, history: [...history], note });
+    const root = show(CommandList, station([], { commands: [landed] }));
+    const life = [...root.querySelectorAll(".life li")].map((item) => item.textContent);
+    expect(life).toEqual([
+      "sent +0.0 s",
+      "confirmed +0.4 s (by telemetry: descending)",
+      "confirmed +33 s (by telemetry: on the ground)",
+    ]);
+    expect(root.textContent?.split(note)).toHaveLength(2);
+  });
 });
 
 describe("links", () => {
@@ -175,6 +193,18 @@ describe("links", () => {
       "Link 1",
     ]);
     expect(rows[0]?.textContent).toContain("2 bad hash, 40 bytes skipped");
+  });
+
+  it("are one line each until they are opened, and stay open through new states", () => {
+    const root = show(LinkList, station([], { links: [link(1), link(2, { bad_size: 1 })] }));
+    const open = () => [...root.querySelectorAll("details")].map((details) => details.open);
+    const lines = [...root.querySelectorAll("summary")].map((line) => line.textContent);
+    expect(lines).toEqual(["Link 2SN-002faultsIdentified", "Link 1SN-001Identified"]);
+    expect(open()).toEqual([false, false]);
+    find<HTMLDetailsElement>(root, "details").open = true;
+    page.say(station([], { links: [link(1), link(2, { bad_size: 2 })] }));
+    expect(open()).toEqual([true, false]);
+    expect(find(root, "details").textContent).toContain("2 bad size");
   });
 });
 

@@ -5,31 +5,33 @@ import { AllStop } from "../orders/AllStop";
 import { StateWord } from "./StateWord";
 import "./bar.css";
 
-/** The top of the page: the state word, what flies, and all stop. */
+/** The top of the page: the state word, what flies, and all stop, which keeps the right corner to itself. */
 export function TopBar(props: { onHelp: () => void }) {
   const { fleet, theme } = useConsole();
   const flying = () => fleet.vehicles.filter((vehicle) => vehicle.is_flying.value === true).length;
   return (
     <header class="bar">
-      <h1 class="bar-title">Recon</h1>
-      <StateWord />
-      <p class="bar-count">
-        <strong>{flying()}</strong> of {fleet.vehicles.length} flying
-      </p>
-      <SimulationTag />
-      <div class="bar-space" />
-      <button
-        type="button"
-        class="button"
-        aria-pressed={theme.theme() === "sun"}
-        title="High contrast for bright sun (T)"
-        onClick={() => theme.toggle()}
-      >
-        ☀ Sun
-      </button>
-      <button type="button" class="button" onClick={() => props.onHelp()} aria-label="Help">
-        ?
-      </button>
+      <div class="bar-rest">
+        <h1 class="bar-title">Recon</h1>
+        <StateWord />
+        <p class="bar-count">
+          <strong>{flying()}</strong> of {fleet.vehicles.length} flying
+        </p>
+        <SimulationTag />
+        <div class="bar-space" />
+        <button
+          type="button"
+          class="button"
+          aria-pressed={theme.theme() === "sun"}
+          title="High contrast for bright sun (T)"
+          onClick={() => theme.toggle()}
+        >
+          ☀ Sun
+        </button>
+        <button type="button" class="button" onClick={() => props.onHelp()} aria-label="Help">
+          ?
+        </button>
+      </div>
       <AllStop />
     </header>
   );

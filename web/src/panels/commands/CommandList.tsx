@@ -25,7 +25,7 @@ export function CommandList() {
 function CommandRow(props: { command: CommandView }) {
   const { behindS } = useConsole();
   return (
-    <li class="row" data-testid={`command-${props.command.id}`}>
+    <li class="row command" data-testid={`command-${props.command.id}`}>
       <div class="row-line">
         <strong class="wire-text">
           {commandName(props.command.kind)} {props.command.vehicle_name}
@@ -42,22 +42,28 @@ function CommandRow(props: { command: CommandView }) {
         <Show when={props.command.takeoff}>, takeoff allowed</Show>
         <Show when={props.command.sent_altitudes}>{(text) => <>, altitudes {text()}</>}</Show>
       </p>
-      <Show when={props.command.note !== ""}>
+      <Show when={!isNotedInLife(props.command)}>
         <p class="wire-text">{props.command.note}</p>
       </Show>
     </li>
   );
 }
 
-/** The phases a command went through, each with how long after the order it came. */
+/** Whether the command's own note stands beside one of its phases already. */
+function isNotedInLife(command: CommandView): boolean {
+  return command.note === "" || command.history.some((phase) => phase.note === command.note);
+}
+
+/** The phases a command went through, each with how long after the order it came and its note. */
 function Life(props: { command: CommandView }) {
   return (
-    <ol class="life" aria-label="Its life so far">
+    <ol class="life wire-text" aria-label="Its life so far">
       <For each={props.command.history}>
         {(phase) => (
-          <li title={phase.note}>
+          <li>
             {PHASE_NAMES[phase.phase].toLowerCase()}{" "}
             <span class="muted">+{formatAge(props.command.age_s - phase.age_s)}</span>
+            <Show when={phase.note !== ""}> ({phase.note})</Show>
           </li>
         )}
       </For>

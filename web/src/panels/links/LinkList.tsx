@@ -6,6 +6,7 @@ import { formatBytes } from "../../words/quantity";
 import { Empty } from "../Empty";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
+import "./links.css";
 
 const STATUS: Readonly<
   Record<LinkView["status"], { word: string; severity: Severity | null; rank: number }>
@@ -33,33 +34,38 @@ export function LinkList() {
   );
 }
 
+/** One line, with everything else a press away. */
 function LinkRow(props: { link: LinkView }) {
   const { behindS } = useConsole();
   const status = () => STATUS[props.link.status];
   const claim = () => props.link.claimed_serial ?? "no serial yet";
+  const lastAge = () => formatAge(agedBy(props.link.last_packet_age_s, behindS()));
   return (
-    <li class="row">
-      <div class="row-line">
-        <strong>Link {props.link.id}</strong>
-        <span class="muted wire-text">{claim()}</span>
-        <span class={`severity push tone-${status().severity ?? "info"}`}>
-          <Show when={status().severity}>
-            {(severity) => <SeverityMark severity={severity()} />}
-          </Show>
-          {status().word}
-        </span>
-      </div>
-      <p class="muted wire-text">
-        {props.link.remote_address}, {props.link.packets_received} packets,{" "}
-        {formatBytes(props.link.bytes_received)}, last{" "}
-        {formatAge(agedBy(props.link.last_packet_age_s, behindS()))} ago
-      </p>
-      <Show when={faults(props.link) !== ""}>
-        <p class="tone-warning">{faults(props.link)}</p>
-      </Show>
-      <Show when={props.link.closed_reason}>
-        {(reason) => <p class="wire-text">Closed: {reason()}</p>}
-      </Show>
+    <li class="row link">
+      <details>
+        <summary class="row-line">
+          <strong>Link {props.link.id}</strong>
+          <span class="muted link-claim">{claim()}</span>
+          <span class={`severity push tone-${status().severity ?? "info"}`}>
+            <Show when={status().severity}>
+              {(severity) => <SeverityMark severity={severity()} />}
+            </Show>
+            <Show when={faults(props.link) !== ""}>
+              <span class="tone-warning">faults</span>
+            </Show>
+            {status().word}
+          </span>
+        </summary>
+        <p class="wire-text">Claims {claim()}</p>
+        <p class="muted wire-text">
+          {props.link.remote_address}, {props.link.packets_received} packets,{" "}
+          {formatBytes(props.link.bytes_received)}, last {lastAge()} ago
+        </p>
+        <Show when={faults(props.link)}>{(text) => <p class="tone-warning">{text()}</p>}</Show>
+        <Show when={props.link.closed_reason}>
+          {(reason) => <p class="wire-text">Closed: {reason()}</p>}
+        </Show>
+      </details>
     </li>
   );
 }
