@@ -342,6 +342,22 @@ class TestBadApps:
 
         run_on(loop, main)
 
+    def test_the_counters_of_ended_links_stay_and_are_bounded(self, loop: str) -> None:
+        async def main() -> None:
+            async with listening(LinkSettings(ended_sessions_kept=2)) as station:
+                for number in range(1, 4):
+                    link_id, _, writer = await station.connect()
+                    writer.write(b"noise" * number + core())
+                    await station.until(lambda: len(station.reports(link_id)) == 1)  # noqa: B023
+                    await close(writer)
+                    await station.until(lambda: station.closed_reason(link_id) is not None)  # noqa: B023
+                skipped = {
+                    i: s.counters.bytes_skipped for i, s in station.server.sessions().items()
+                }
+                assert skipped == {2: 10, 3: 15}
+
+        run_on(loop, main)
+
     def test_a_flood_does_not_starve_the_others(self, loop: str) -> None:
         """While one link floods, another's packet is handled after a bounded number of its."""
 

@@ -40,15 +40,19 @@ def demo_command(
 
 async def _demo(config: RunConfig, vehicles: int, seed: int) -> None:
     simulators: list[asyncio.subprocess.Process] = []
+    watching: list[asyncio.Task[None]] = []
 
     async def start(started: Started) -> None:
         announce(started)
         simulators.append(await _start_simulator(started.link_port, vehicles, seed))
+        watching.append(asyncio.create_task(_tell_of_end(simulators[-1])))
         print("Open the console in a browser. Ctrl+C ends the demo.", flush=True)
 
     try:
         await run(config, start)
     finally:
+        for task in watching:
+            task.cancel()
         for simulator in simulators:
             await _end(simulator)
 
@@ -66,6 +70,12 @@ async def _start_simulator(port: int, vehicles: int, seed: int) -> asyncio.subpr
     return await asyncio.create_subprocess_exec(
         sys.executable, "-m", "recon", "sim", *options, "--airborne", "--wander"
     )
+
+
+async def _tell_of_end(simulator: asyncio.subprocess.Process) -> None:
+    """The station goes on without the simulator, as it does when real apps go; but say so."""
+    code = await simulator.wait()
+    print(f"recon: the simulator ended by itself (exit code {code})", file=sys.stderr, flush=True)
 
 
 async def _end(simulator: asyncio.subprocess.Process) -> None:

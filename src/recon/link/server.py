@@ -32,6 +32,8 @@ class LinkServer:
         self.capture = capture
         self.connections: dict[int, Connection] = {}
         self.refused_connections = 0
+        self.ended: dict[int, Session] = {}
+        """The latest sessions that are over, for their counters."""
         self._next_link_id = 1
         self._server: asyncio.Server | None = None
 
@@ -54,6 +56,18 @@ class LinkServer:
         for connection in tuple(self.connections.values()):
             connection.close("the station stops")
         await asyncio.sleep(0)
+
+    def sessions(self) -> dict[int, Session]:
+        """Return the sessions that stand and those lately ended, by link."""
+        standing = (c.session for c in self.connections.values() if c.session is not None)
+        return self.ended | {session.link_id: session for session in standing}
+
+    def forget(self, session: Session) -> None:
+        """Take a session that is over from those that stand; the oldest ended one goes."""
+        self.connections.pop(session.link_id, None)
+        self.ended[session.link_id] = session
+        if len(self.ended) > self.settings.ended_sessions_kept:
+            del self.ended[next(iter(self.ended))]
 
     def new_link_id(self) -> int:
         """Return the next connection's number."""
@@ -134,7 +148,7 @@ class Connection(asyncio.BufferedProtocol):
         """End the session, with the reason."""
         if self.session is None:
             return
-        self.server.connections.pop(self.session.link_id, None)
+        self.server.forget(self.session)
         reason = self._closing_reason or _reason(exc)
         self._events.extend(self.session.finish(reason, self.server.now_ns()))
         self._handle(len(self._events))

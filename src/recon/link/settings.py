@@ -49,6 +49,9 @@ class LinkSettings:
     """A phone that left without a word is noticed by the kernel within half a minute, so that dead
     connections do not fill the places. The system's own default is two hours."""
 
+    ended_sessions_kept: int = 32
+    """Sessions whose counters can still be read after they ended."""
+
     max_image_rows: int = 2160
     max_image_cols: int = 3840
     """A raw image larger than this is no image (decisions on the ICD, framing 2)."""

@@ -96,8 +96,7 @@ class Service:
 
     def _surroundings(self, now_ns: int) -> Surroundings:
         links = self.driver.links
-        connections = {} if links is None else links.connections
-        sessions = {i: c.session for i, c in connections.items() if c.session is not None}
+        sessions = {} if links is None else links.sessions()
         return Surroundings(sessions, self._station_view(now_ns), site_view(self.site))
 
     def _station_view(self, now_ns: int) -> schema.StationView:
