@@ -12,11 +12,15 @@ if (executablePath === undefined) {
     "No Chromium found. Install it (sudo apt-get install chromium) or name one in RECON_CHROMIUM.",
   );
 }
+// Workers read this file too and must find the same folder.
+process.env["RECON_E2E_RUN"] ??= String(process.pid);
 const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const PORT = 4173;
 
 export default defineConfig({
   testDir: "e2e",
+  globalSetup: "./e2e/servePage.ts",
+  // One folder for each run, which clears it when it begins.
+  outputDir: `test-results/${process.env["RECON_E2E_RUN"]}`,
   workers: 1,
   timeout: 60_000,
   expect: { timeout: 15_000 },
@@ -26,13 +30,9 @@ export default defineConfig({
     { name: "screens", testMatch: "screens.spec.ts" },
   ],
   use: {
-    baseURL: `http://127.0.0.1:${PORT}`,
+    // Set by the global setup, before the workers read this file.
+    baseURL: process.env["RECON_E2E_PAGE"],
     viewport: { width: 1440, height: 900 },
     launchOptions: { args, executablePath },
-  },
-  webServer: {
-    command: `npm run --silent build && npx vite preview --port ${PORT} --strictPort`,
-    url: `http://127.0.0.1:${PORT}`,
-    reuseExistingServer: false,
   },
 });

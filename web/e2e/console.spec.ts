@@ -1,19 +1,18 @@
 import { expect, test } from "@playwright/test";
-import { station, vehicle } from "../src/testing/world";
+import { at, station, vehicle } from "../src/testing/world";
 import { busyState } from "./fake/busyState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
+import { cornerFaults, overlaps } from "./layoutFaults";
 import { faintTexts, smallTargets, smallTexts } from "./legibility";
+import { LOOKS, wear } from "./looks";
 import { drawnShare } from "./mapPicture";
 
-const LOOKS = [
-  { name: "light", colorScheme: "light", sun: false },
-  { name: "dark", colorScheme: "dark", sun: false },
-  { name: "sun", colorScheme: "light", sun: true },
-] as const;
+/** From a phone in the hand to a wall. */
+const WIDTHS = [360, 480, 600, 700, 800, 1024, 1099, 1100, 1440, 2560];
 
 for (const look of LOOKS) {
-  for (const width of [1440, 800]) {
+  for (const width of [1440, 800, 360]) {
     test(`is legible: ${look.name}, ${width} px wide`, async ({ page }) => {
       await page.setViewportSize({ width, height: 1000 });
       await page.emulateMedia({ colorScheme: look.colorScheme });
@@ -21,7 +20,7 @@ for (const look of LOOKS) {
       await page.goto("/");
       await expect(page.locator("button.craft")).toHaveCount(5);
       await page.keyboard.press("1");
-      if (look.sun) await page.keyboard.press("t");
+      await wear(page, look);
       await page.locator(".state-word").click();
       expect(await smallTexts(page)).toEqual([]);
       expect(await smallTargets(page)).toEqual([]);
@@ -33,6 +32,62 @@ for (const look of LOOKS) {
     });
   }
 }
+
+for (const look of LOOKS) {
+  test(`keeps all stop in the upper right corner at every width: ${look.name}`, async ({
+    page,
+  }) => {
+    await page.emulateMedia({ colorScheme: look.colorScheme });
+    await FakeStation.behind(page, busyState(0));
+    await page.goto("/");
+    await expect(page.locator("button.craft")).toHaveCount(5);
+    await wear(page, look);
+    for (const width of WIDTHS) {
+      await page.setViewportSize({ width, height: 900 });
+      expect(await cornerFaults(page), `${width} px wide`).toEqual([]);
+      expect(await overlaps(page, "header button, header .tag, header .bar-count")).toEqual([]);
+      expect(await overlaps(page, ".orders button")).toEqual([]);
+      expect(await smallTargets(page), `${width} px wide`).toEqual([]);
+    }
+  });
+}
+
+test("keeps all stop and the orders in reach while a phone's page is scrolled", async ({
+  page,
+}) => {
+  await page.setViewportSize({ width: 360, height: 740 });
+  await FakeStation.behind(page, busyState(0));
+  await page.goto("/");
+  await page.getByRole("checkbox", { name: "Select 1 Alder too" }).check();
+  await page.getByRole("heading", { name: "Station" }).scrollIntoViewIfNeeded();
+  expect(await page.locator(".page").evaluate((element) => element.scrollTop)).toBeGreaterThan(200);
+  expect(await cornerFaults(page)).toEqual([]);
+  await expect(page.getByRole("button", { name: /^Hover 1 Alder/ })).toBeInViewport({ ratio: 1 });
+});
+
+test("keeps the labels of vehicles close together apart", async ({ page }) => {
+  const close = [1, 2, 3, 4].map((number) => {
+    const [longitude_deg, latitude_deg] = at(4 * number, 2 * number);
+    return vehicle(number, {
+      position: { longitude_deg, latitude_deg, age_s: 0.1 },
+      track: [],
+      is_simulated: true,
+    });
+  });
+  const fake = await FakeStation.behind(page, station(close));
+  await page.goto("/");
+  const labels = page.locator(".craft-label");
+  await expect(labels).toHaveCount(4);
+  await expect.poll(() => overlaps(page, ".craft-label")).toEqual([]);
+  await expect(page.locator(".craft-leader:visible")).not.toHaveCount(0);
+  const places = () => labels.evaluateAll((all) => all.map((one) => one.style.transform));
+  const before = await places();
+  for (let message = 1; message <= 10; message += 1) {
+    fake.say(station(close, { time_ns: 1e9 + message * 1e8 }));
+  }
+  await page.evaluate(() => new Promise(requestAnimationFrame));
+  expect(await places()).toEqual(before);
+});
 
 test("draws a plain map, and the ground image when there is one", async ({ page }) => {
   const fake = await FakeStation.behind(page, station([vehicle(1)]));

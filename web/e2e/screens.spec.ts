@@ -2,17 +2,16 @@ import { expect, test } from "@playwright/test";
 import { busyState } from "./fake/busyState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
+import { LOOKS, wear } from "./looks";
 import { drawnShare } from "./mapPicture";
 
 /** Pictures of the page for people to look at: `npm run screens`, then `web/screens/`. */
-const LOOKS = [
-  { name: "light", colorScheme: "light", sun: false },
-  { name: "dark", colorScheme: "dark", sun: false },
-  { name: "sun", colorScheme: "light", sun: true },
-] as const;
 const SIZES = [
   { width: 1440, height: 900 },
+  { width: 1024, height: 768 },
   { width: 800, height: 1200 },
+  { width: 480, height: 900 },
+  { width: 360, height: 740 },
 ] as const;
 
 for (const look of LOOKS) {
@@ -28,12 +27,12 @@ for (const look of LOOKS) {
         () => fake.say(busyState((performance.now() - begin_ms) / 1000)),
         100,
       );
-      if (look.sun) await page.keyboard.press("t");
+      await wear(page, look);
       await page.getByRole("button", { name: /^vehicle 1 Alder/ }).waitFor();
       await page.keyboard.press("1");
       await page.keyboard.press("Shift+Digit2");
       await page.getByText("frame 12").first().waitFor();
-      await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.2);
+      await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.1);
       await page.screenshot({ path: `screens/${look.name}-${size.width}.png` });
       clearInterval(talk);
     });

@@ -1,8 +1,22 @@
 import { describe, expect, it } from "vitest";
-import { type LabelPlace, type LabelSpot, leaderOf, MOST_LABELS, placeLabels } from "./labelPlaces";
+import {
+  type LabelPlace,
+  type LabelSpot,
+  leaderOf,
+  MOST_LABELS,
+  placeLabels as placeIn,
+} from "./labelPlaces";
 
 const SIZE = { width_px: 120, height_px: 28 };
 const NOTHING: ReadonlyMap<number, LabelPlace> = new Map();
+
+const VIEW = { width_px: 2000, height_px: 2000 };
+
+/** Places labels in the middle of a large view, where nothing sticks out. */
+function placeLabels(spots: readonly LabelSpot[], previous: ReadonlyMap<number, LabelPlace>) {
+  const moved = spots.map((one) => ({ ...one, x_px: one.x_px + 1000, y_px: one.y_px + 1000 }));
+  return placeIn(moved, previous, VIEW);
+}
 
 function spot(key: number, x_px: number, y_px: number): LabelSpot {
   return { key, x_px, y_px, ...SIZE };
@@ -61,6 +75,22 @@ describe("labels", () => {
     expect(clashes(spots, placeLabels(spots, NOTHING))).toEqual([]);
   });
 
+  it.each([
+    ["right", 1960, 500, [2, 3]],
+    ["left", 30, 500, [1, 3]],
+    ["lower", 1000, 1990, [3]],
+    ["upper", 1000, 10, [0]],
+  ])("keep inside the view at its %s edge", (_edge, x_px, y_px, slots) => {
+    const spots = [spot(1, x_px, y_px)];
+    const place = placeIn(spots, NOTHING, VIEW).get(1);
+    const box = boxOf(spots, new Map([[1, place ?? { slot: 0, dx_px: 0, dy_px: 0 }]]), 1);
+    expect(box.left).toBeGreaterThanOrEqual(0);
+    expect(box.left + SIZE.width_px).toBeLessThanOrEqual(VIEW.width_px);
+    expect(box.top).toBeGreaterThanOrEqual(0);
+    expect(box.top + SIZE.height_px).toBeLessThanOrEqual(VIEW.height_px);
+    expect(slots).toContain(place?.slot);
+  });
+
   it("stay where they are when vehicles tremble at the edge of a clash", () => {
     let places: Map<number, LabelPlace> = new Map();
     const seen = new Set<string>();
@@ -102,10 +132,10 @@ describe("labels", () => {
       },
     });
     const spots = (count: number) => Array.from({ length: count }, (_, index) => counted(index));
-    placeLabels(spots(MOST_LABELS), NOTHING);
+    placeIn(spots(MOST_LABELS), NOTHING, VIEW);
     const most = looks;
     looks = 0;
-    const places = placeLabels(spots(10 * MOST_LABELS), NOTHING);
+    const places = placeIn(spots(10 * MOST_LABELS), NOTHING, VIEW);
     expect(most).toBeLessThan(30 * MOST_LABELS);
     expect(looks).toBeLessThanOrEqual(most + 9 * MOST_LABELS);
     expect(slotsOf(places).slice(MOST_LABELS)).toEqual(Array(9 * MOST_LABELS).fill(0));

@@ -59,34 +59,43 @@ interface Box {
   readonly bottom: number;
 }
 
+/** The part of the screen the map fills, from its upper left corner. */
+export interface LabelView {
+  readonly width_px: number;
+  readonly height_px: number;
+}
+
 /**
  * Places labels one after the other, in the order of `spots`: the first free place, else the one that
- * hides least. `previous` holds where they stood in the last frame; a label leaves its place only when it
+ * hides least. What sticks out of `view` is hidden too. `previous` holds where they stood in the last frame; a label leaves its place only when it
  * is taken, or when a better one is free with some room to spare.
  */
 export function placeLabels(
   spots: readonly LabelSpot[],
   previous: ReadonlyMap<number, LabelPlace>,
+  view: LabelView,
 ): Map<number, LabelPlace> {
   const taken: Box[] = spots.slice(0, MOST_LABELS).map(symbolBox);
   const places = new Map<number, LabelPlace>();
   spots.forEach((spot, index) => {
     const isLookedAfter = index < MOST_LABELS;
-    const place = isLookedAfter ? choose(spot, previous.get(spot.key)?.slot ?? 0, taken) : null;
+    const place = isLookedAfter
+      ? choose(spot, previous.get(spot.key)?.slot ?? 0, taken, view)
+      : null;
     places.set(spot.key, place ?? placeAt(spot, 0));
     if (place !== null) taken.push(labelBox(spot, place));
   });
   return places;
 }
 
-function choose(spot: LabelSpot, kept: number, taken: readonly Box[]): LabelPlace {
+function choose(spot: LabelSpot, kept: number, taken: readonly Box[], view: LabelView): LabelPlace {
   const slots = slotsOf(spot);
   let best = slots[0] ?? placeAt(spot, 0);
   let least = Number.POSITIVE_INFINITY;
   for (const place of slots) {
     const box = labelBox(spot, place);
     const isKept = place.slot === kept;
-    const hidden = hiddenArea(isKept ? box : grown(box), taken);
+    const hidden = hiddenArea(isKept ? box : grown(box), taken) + outsideArea(box, view);
     if (hidden === 0) return place;
     // In a crowd without a free place, staying counts for something too.
     const cost = isKept ? hidden / 2 : hidden;
@@ -136,6 +145,13 @@ function hiddenArea(box: Box, taken: readonly Box[]): number {
     if (width > 0 && height > 0) area += width * height;
   }
   return area;
+}
+
+function outsideArea(box: Box, view: LabelView): number {
+  const width = Math.min(box.right, view.width_px) - Math.max(box.left, 0);
+  const height = Math.min(box.bottom, view.height_px) - Math.max(box.top, 0);
+  const inside = Math.max(0, width) * Math.max(0, height);
+  return (box.right - box.left) * (box.bottom - box.top) - inside;
 }
 
 /** The line that ties a label to its vehicle; null while it stands in its usual place. */

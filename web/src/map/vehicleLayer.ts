@@ -1,6 +1,6 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { vehicleKey } from "../fleet/key";
-import { type LabelPlace, placeLabels } from "./labelPlaces";
+import { type LabelPlace, type LabelView, placeLabels } from "./labelPlaces";
 import type { Layer } from "./layer";
 import { positionOf, type Scene } from "./scene";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
@@ -10,6 +10,7 @@ export class VehicleLayer implements Layer {
   private map: MapLibre | null = null;
   private readonly markers = new Map<number, VehicleMarker>();
   private places: ReadonlyMap<number, LabelPlace> = new Map();
+  private view: LabelView = { width_px: 0, height_px: 0 };
   /** Tells the labels' sizes after the browser laid them out; to ask for them would force it to. */
   private readonly sizes = new ResizeObserver((entries) => this.measure(entries));
 
@@ -17,7 +18,12 @@ export class VehicleLayer implements Layer {
 
   add(map: MapLibre): void {
     this.map = map;
+    this.view = viewOf(map);
     map.on("zoom", () => this.arrangeLabels());
+    map.on("resize", () => {
+      this.view = viewOf(map);
+      this.arrangeLabels();
+    });
     map.on("remove", () => this.sizes.disconnect());
   }
 
@@ -45,7 +51,7 @@ export class VehicleLayer implements Layer {
       (a, b) => rank(a.label.key) - rank(b.label.key),
     );
     const spots = inOrder.flatMap(({ label }) => label.spot(map) ?? []);
-    this.places = placeLabels(spots, this.places);
+    this.places = placeLabels(spots, this.places, this.view);
     for (const { label } of inOrder) {
       const place = this.places.get(label.key);
       if (place !== undefined) label.place(place);
@@ -77,6 +83,11 @@ export class VehicleLayer implements Layer {
       this.markers.delete(key);
     }
   }
+}
+
+function viewOf(map: MapLibre): LabelView {
+  const { clientWidth, clientHeight } = map.getContainer();
+  return { width_px: clientWidth, height_px: clientHeight };
 }
 
 /** By number; those without one have keys below zero and come last. */

@@ -2,7 +2,7 @@ import { createRoot, createSignal, type JSX } from "solid-js";
 import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
 import type { ThemeSwitch } from "../look/theme";
-import type { StationState } from "../protocol";
+import type { OrderResult, StationState } from "../protocol";
 import type { Connection, NamedOrder, StationSource } from "../source/stationSource";
 import { FakeClock } from "./fakeClock";
 
@@ -14,11 +14,21 @@ export interface RenderedPage {
   readonly orders: NamedOrder[];
   readonly acknowledged: number[];
   readonly allStops: () => number;
+  /** From now on every order is answered with this. */
+  answerWith(results: readonly OrderResult[]): void;
   say(state: StationState): void;
   connect(connection: Connection): void;
   /** How old the newest state is from now on. */
   age(behindS: number): void;
   dispose(): void;
+}
+
+/** What the page asked for, and what every order is answered with. */
+interface Asked {
+  orders: NamedOrder[];
+  acknowledged: number[];
+  allStops: number;
+  answer: readonly OrderResult[];
 }
 
 const PLAIN_THEME: ThemeSwitch = { theme: () => "auto", changes: () => 0, toggle: () => {} };
@@ -29,7 +39,7 @@ export function renderPage(part: () => JSX.Element, first: StationState | null):
   const [state, setState] = createSignal<StationState | null>(first, { equals: false });
   const [connection, setConnection] = createSignal<Connection>({ kind: "live" });
   const [now, setNow] = createSignal(clock.now());
-  const asked = { orders: [] as NamedOrder[], acknowledged: [] as number[], allStops: 0 };
+  const asked: Asked = { orders: [], acknowledged: [], allStops: 0, answer: [] };
   let behindS = 0;
   const source = fakeSource(state, connection, () => behindS, asked);
   const { shared, disposeShared } = createRoot((disposeShared) => ({
@@ -46,6 +56,9 @@ export function renderPage(part: () => JSX.Element, first: StationState | null):
     orders: asked.orders,
     acknowledged: asked.acknowledged,
     allStops: () => asked.allStops,
+    answerWith: (results) => {
+      asked.answer = results;
+    },
     say: setState,
     connect: setConnection,
     age: (seconds) => {
@@ -65,7 +78,7 @@ function fakeSource(
   state: StationSource["state"],
   connection: StationSource["connection"],
   behindS: () => number,
-  asked: { orders: NamedOrder[]; acknowledged: number[]; allStops: number },
+  asked: Asked,
 ): StationSource {
   const none = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
   return {
@@ -74,7 +87,7 @@ function fakeSource(
     behindS,
     order: async (order) => {
       asked.orders.push(order);
-      return { kind: "answered", value: [] };
+      return { kind: "answered", value: asked.answer };
     },
     allStop: async () => {
       asked.allStops += 1;

@@ -2,16 +2,19 @@ import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { badgeText, vehicleKey } from "../../fleet/key";
 import { colourOf } from "../../look/identity";
+import { createDesk } from "../../orders/desk";
 import type { VehicleView } from "../../protocol";
 import { agedBy, formatAge } from "../../words/age";
 import { Panel } from "../Panel";
+import { CameraControl } from "./CameraControl";
 import { CameraFrame } from "./CameraFrame";
 import { type Fact, factsOf } from "./facts";
 import "./detail.css";
 
 /** Everything known of the vehicle that was selected last, each value with its age. */
 export function VehicleDetail() {
-  const { fleet, selection } = useConsole();
+  const { fleet, selection, source, clock } = useConsole();
+  const cameraDesk = createDesk(source, clock);
   const shown = () => {
     const key = selection.keys().at(-1);
     return fleet.vehicles.find((vehicle) => vehicleKey(vehicle) === key);
@@ -23,6 +26,7 @@ export function VehicleDetail() {
       fallback={
         <Panel title="Vehicle">
           <p class="panel-empty">Select a vehicle to see everything it says.</p>
+          <CameraControl desk={cameraDesk} />
         </Panel>
       }
     >
@@ -39,6 +43,7 @@ export function VehicleDetail() {
           <Show when={vehicle().frame !== null}>
             <CameraFrame vehicle={vehicle()} />
           </Show>
+          <CameraControl desk={cameraDesk} />
           <dl class="facts">
             <For each={factsOf(vehicle())}>{(fact) => <FactRow fact={fact} />}</For>
           </dl>

@@ -34,7 +34,8 @@ export function LastAnswer() {
   );
 }
 
-function AnswerBody(props: { answer: Answer }) {
+/** The station's answer: what was accepted, what was refused and why, or that nothing was given. */
+export function AnswerBody(props: { answer: Answer }) {
   const problem = () => {
     const { outcome } = props.answer;
     return outcome.kind === "failed" ? outcome.problem : null;

@@ -1,0 +1,31 @@
+import { mkdtemp, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build, preview } from "vite";
+
+const ROOT = fileURLToPath(new URL("..", import.meta.url));
+
+/**
+ * Builds the page into a folder of its own and serves it on a port the system chooses, so that runs at the
+ * same time never meet. The address goes to the tests in `RECON_E2E_PAGE`.
+ */
+export default async function servePage(): Promise<() => Promise<void>> {
+  const outDir = await mkdtemp(join(tmpdir(), "recon-console-"));
+  await build({ root: ROOT, logLevel: "warn", build: { outDir, emptyOutDir: true } });
+  const server = await preview({
+    root: ROOT,
+    logLevel: "warn",
+    build: { outDir },
+    preview: { port: 0 },
+  });
+  const address = server.httpServer.address();
+  if (address === null || typeof address === "string") {
+    throw new Error(`The page's server has no port but ${address}.`);
+  }
+  process.env["RECON_E2E_PAGE"] = `http://127.0.0.1:${address.port}`;
+  return async () => {
+    await server.close();
+    await rm(outDir, { recursive: true });
+  };
+}
