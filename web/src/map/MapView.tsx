@@ -29,6 +29,8 @@ export function MapView() {
   let holder!: HTMLDivElement;
   let labels!: HTMLDivElement;
   let scaleBar!: HTMLDivElement;
+  let tools!: HTMLDivElement;
+  let notes!: HTMLDivElement;
   let layers: readonly Layer[] = [];
 
   onMount(() => {
@@ -38,7 +40,7 @@ export function MapView() {
       new GraticuleLayer(labels, scaleBar),
       new GhostLayer(),
       new TrailLayer(),
-      new VehicleLayer({ select: selection.only, toggle: selection.toggle }),
+      new VehicleLayer({ select: selection.only, toggle: selection.toggle }, [tools, notes]),
     ];
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
@@ -84,7 +86,7 @@ export function MapView() {
     <section class="map" aria-label="Map">
       <div class="map-canvas" ref={holder} />
       <div class="grid-labels" ref={labels} aria-hidden="true" />
-      <div class="map-tools">
+      <div class="map-tools" ref={tools}>
         <button type="button" class="button" onClick={() => map()?.zoomIn()} aria-label="Zoom in">
           +
         </button>
@@ -101,7 +103,7 @@ export function MapView() {
         </span>
         <div class="map-scale-bar" ref={scaleBar} />
       </div>
-      <div class="map-notes">
+      <div class="map-notes" ref={notes}>
         <GroundImageNote />
         <UnplacedNote />
       </div>

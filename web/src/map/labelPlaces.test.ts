@@ -10,7 +10,7 @@ import {
 const SIZE = { width_px: 120, height_px: 28 };
 const NOTHING: ReadonlyMap<number, LabelPlace> = new Map();
 
-const VIEW = { width_px: 2000, height_px: 2000 };
+const VIEW = { width_px: 2000, height_px: 2000, covered: [] };
 
 /** Places labels in the middle of a large view, where nothing sticks out. */
 function placeLabels(spots: readonly LabelSpot[], previous: ReadonlyMap<number, LabelPlace>) {
@@ -89,6 +89,12 @@ describe("labels", () => {
     expect(box.top).toBeGreaterThanOrEqual(0);
     expect(box.top + SIZE.height_px).toBeLessThanOrEqual(VIEW.height_px);
     expect(slots).toContain(place?.slot);
+  });
+
+  it("keep clear of what else stands on the map", () => {
+    const note = { left: 900, top: 1020, right: 1100, bottom: 1080 };
+    const places = placeIn([spot(1, 1000, 1000)], NOTHING, { ...VIEW, covered: [note] });
+    expect(places.get(1)?.slot).toBe(3);
   });
 
   it("stay where they are when vehicles tremble at the edge of a clash", () => {

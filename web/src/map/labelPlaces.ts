@@ -52,7 +52,8 @@ function cornersAt(reach: number, width: number, height: number): readonly Corne
   ];
 }
 
-interface Box {
+/** A rectangle on the screen, pixels. */
+export interface Box {
   readonly left: number;
   readonly top: number;
   readonly right: number;
@@ -63,6 +64,8 @@ interface Box {
 export interface LabelView {
   readonly width_px: number;
   readonly height_px: number;
+  /** What else stands on the map, and would hide a label. */
+  readonly covered: readonly Box[];
 }
 
 /**
@@ -75,7 +78,7 @@ export function placeLabels(
   previous: ReadonlyMap<number, LabelPlace>,
   view: LabelView,
 ): Map<number, LabelPlace> {
-  const taken: Box[] = spots.slice(0, MOST_LABELS).map(symbolBox);
+  const taken: Box[] = [...view.covered, ...spots.slice(0, MOST_LABELS).map(symbolBox)];
   const places = new Map<number, LabelPlace>();
   spots.forEach((spot, index) => {
     const isLookedAfter = index < MOST_LABELS;

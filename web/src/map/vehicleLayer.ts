@@ -10,20 +10,20 @@ export class VehicleLayer implements Layer {
   private map: MapLibre | null = null;
   private readonly markers = new Map<number, VehicleMarker>();
   private places: ReadonlyMap<number, LabelPlace> = new Map();
-  private view: LabelView = { width_px: 0, height_px: 0 };
+  private view: LabelView = { width_px: 0, height_px: 0, covered: [] };
   /** Tells the labels' sizes after the browser laid them out; to ask for them would force it to. */
   private readonly sizes = new ResizeObserver((entries) => this.measure(entries));
 
-  constructor(private readonly press: MarkerPress) {}
+  /** `covers` are the elements over the map whose children labels keep clear of. */
+  constructor(
+    private readonly press: MarkerPress,
+    private readonly covers: readonly HTMLElement[],
+  ) {}
 
   add(map: MapLibre): void {
     this.map = map;
-    this.view = viewOf(map);
     map.on("zoom", () => this.arrangeLabels());
-    map.on("resize", () => {
-      this.view = viewOf(map);
-      this.arrangeLabels();
-    });
+    for (const element of [map.getContainer(), ...this.covers]) this.sizes.observe(element);
     map.on("remove", () => this.sizes.disconnect());
   }
 
@@ -63,6 +63,7 @@ export class VehicleLayer implements Layer {
       const box = entries.find(({ target }) => target === marker.label.element)?.borderBoxSize[0];
       if (box !== undefined) marker.label.measured(box.inlineSize, box.blockSize);
     }
+    if (this.map !== null) this.view = viewOf(this.map, this.covers);
     this.arrangeLabels();
   }
 
@@ -85,9 +86,19 @@ export class VehicleLayer implements Layer {
   }
 }
 
-function viewOf(map: MapLibre): LabelView {
-  const { clientWidth, clientHeight } = map.getContainer();
-  return { width_px: clientWidth, height_px: clientHeight };
+function viewOf(map: MapLibre, covers: readonly HTMLElement[]): LabelView {
+  const frame = map.getContainer().getBoundingClientRect();
+  const children = covers.flatMap((element) => [...element.children]);
+  const covered = children.map((child) => {
+    const { left, top, right, bottom } = child.getBoundingClientRect();
+    return {
+      left: left - frame.left,
+      top: top - frame.top,
+      right: right - frame.left,
+      bottom: bottom - frame.top,
+    };
+  });
+  return { width_px: frame.width, height_px: frame.height, covered };
 }
 
 /** By number; those without one have keys below zero and come last. */
