@@ -1,4 +1,4 @@
-"""Geometry on the ground: the site's east-north-up frame and the globe."""
+"""Geometry on the ground: the site's east-north-up frame, the globe, regions and paths."""
 
 from recon.geo.local_frame import (
     enu_from_geo,
@@ -8,12 +8,20 @@ from recon.geo.local_frame import (
     point_from_enu,
     shift_east_north_m,
 )
+from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, rounded_path, straight_path
+from recon.geo.polygon import Polygon, region_fault
 
 __all__ = [
+    "DEFAULT_CHORD_ERROR_M",
+    "Path",
+    "Polygon",
     "enu_from_geo",
     "enu_from_point",
     "enu_from_points",
     "geo_from_enu",
     "point_from_enu",
+    "region_fault",
+    "rounded_path",
     "shift_east_north_m",
+    "straight_path",
 ]
