@@ -71,5 +71,10 @@ def test_examples_run(
     monkeypatch.setattr(sys, "argv", [str(example)])
     runpy.run_path(str(example), run_name="__main__")
     printed = capsys.readouterr().out
-    expected = {"01": "EmergencyCommand", "02": "confirmed", "03": "of the grid seen"}
+    expected = {
+        "01": "EmergencyCommand",
+        "02": "confirmed",
+        "03": "of the grid seen",
+        "04": "landing: confirmed",
+    }
     assert expected[example.name[:2]] in printed

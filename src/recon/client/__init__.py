@@ -1,1 +1,55 @@
-"""The async Python client of a running station."""
+"""The async Python client of a running station.
+
+async with Station("http://127.0.0.1:8080") as station:
+    vehicle = await station.vehicle("SIM-1")
+    order = await vehicle.hold()
+"""
+
+from recon.client.errors import (
+    AddressError,
+    BadAnswerError,
+    ClientError,
+    ConnectionLostError,
+    MaybeSentError,
+    RequestRefusedError,
+    StationUnreachableError,
+    TookTooLongError,
+)
+from recon.client.fleet import Fleet
+from recon.client.life import Life, PhaseChange
+from recon.client.order import Order, VehicleAnswer
+from recon.client.station import Station
+from recon.client.telemetry import Aged, Heading, Position, Telemetry, Velocity
+from recon.client.vehicle import Vehicle
+from recon.model.command import Phase, Refusal, StickFrame
+from recon.model.mission import Mission, Waypoint
+from recon.model.vehicle import Staleness
+
+__all__ = [
+    "AddressError",
+    "Aged",
+    "BadAnswerError",
+    "ClientError",
+    "ConnectionLostError",
+    "Fleet",
+    "Heading",
+    "Life",
+    "MaybeSentError",
+    "Mission",
+    "Order",
+    "Phase",
+    "PhaseChange",
+    "Position",
+    "Refusal",
+    "RequestRefusedError",
+    "Staleness",
+    "Station",
+    "StationUnreachableError",
+    "StickFrame",
+    "Telemetry",
+    "TookTooLongError",
+    "Vehicle",
+    "VehicleAnswer",
+    "Velocity",
+    "Waypoint",
+]

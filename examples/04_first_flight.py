@@ -1,0 +1,72 @@
+"""A first flight from Python: take off, fly a short leg, come back to the ground.
+
+Run: uv run python examples/04_first_flight.py            (a station and a drone of its own)
+     uv run python examples/04_first_flight.py URL SERIAL  (a station that runs; IT TAKES OFF)
+"""
+
+import asyncio
+import signal
+import sys
+
+from recon.client import Mission, Position, Refusal, Station, Waypoint
+from recon.model.geo import GeoPoint
+from recon.model.vehicle import AltitudeReference, VehicleProfile
+from recon.sim.fleet import Airborne, SimulationConfig
+from recon.sim.run import run_fleet
+from recon.site import Site
+from recon.station.run import RunConfig, Started, run
+
+HOME = GeoPoint(41.9012, -93.6034, 275.0)
+LEG_DEG = 0.0001
+"""About 11 m north."""
+
+
+async def first_flight(url: str, serial: str) -> None:
+    """Fly one leg at 10 m and land, and say what became of each order."""
+    async with Station(url) as station:
+        vehicle = await station.vehicle(serial)
+        order = await vehicle.fly(leg_north(vehicle.now().position), takeoff=True)
+        if isinstance(order, Refusal):
+            raise SystemExit(f"refused: {order.reason}")
+        print("flight:", (await order.wait()).phase.value)
+        async for state in vehicle.telemetry():
+            if state.is_live and (state.height_above_takeoff_m.value or 0.0) > 8.0:
+                break
+        order = await vehicle.land()
+        print("landing:", order if isinstance(order, Refusal) else (await order.wait()).phase.value)
+
+
+def leg_north(start: Position) -> Mission:
+    """A mission of two waypoints, from here to the north."""
+    if start.latitude_deg is None or start.longitude_deg is None:
+        raise SystemExit("the vehicle has not told its position")
+    return Mission(
+        tuple(
+            Waypoint(start.latitude_deg + north_deg, start.longitude_deg, 10.0, 3.0)
+            for north_deg in (0.0, LEG_DEG)
+        )
+    )
+
+
+async def with_a_simulated_drone() -> None:
+    """Start a station and a simulated drone on free ports, fly, and end both."""
+    profile = VehicleProfile("SIM-1", waypoint_altitude=AltitudeReference.TAKEOFF)
+    site = Site(name="first flight", profiles={"SIM-1": profile})
+
+    async def fly(started: Started) -> None:
+        config = SimulationConfig(
+            home=HOME, station_port=started.link_port, vehicle_count=1, airborne=Airborne.NONE
+        )
+        drone = asyncio.create_task(run_fleet(config, say=lambda line: None))
+        try:
+            await first_flight(started.console_url, "SIM-1")
+        finally:
+            drone.cancel()
+            signal.raise_signal(signal.SIGINT)  # as Ctrl+C would: the station ends
+
+    await run(RunConfig(site, link_port=0, http_port=0), fly)
+
+
+if __name__ == "__main__":
+    given = sys.argv[1:]
+    asyncio.run(first_flight(*given) if given else with_a_simulated_drone())

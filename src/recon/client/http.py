@@ -1,0 +1,130 @@
+"""HTTP to the station: one request, one answer, never again by itself.
+
+No connection is kept for later: an idle one may have been closed by the station just when an order
+is written to it, and then nobody could tell whether the order was heard.
+"""
+
+import asyncio
+import json
+from typing import Any, TypeVar
+
+import httpx
+
+from recon.client.address import Address
+from recon.client.errors import (
+    BadAnswerError,
+    MaybeSentError,
+    RequestRefusedError,
+    StationUnreachableError,
+)
+from recon.client.messages import ProblemMessage, decode, shown
+
+LONGEST_ANSWER_BYTES = 16 * 1024 * 1024
+ORDER_INVALID = 422
+
+M = TypeVar("M")
+
+
+class OrderInvalidError(RequestRefusedError):
+    """The station did not take the order's form; it becomes a refusal, as a value."""
+
+
+class Http:
+    """Requests to one station."""
+
+    def __init__(self, address: Address, answer_within_s: float) -> None:
+        self._address = address
+        self._answer_within_s = answer_within_s
+        self._client = httpx.AsyncClient(
+            base_url=address.http,
+            headers={**address.headers, "Accept-Encoding": "identity"},
+            timeout=answer_within_s,
+            # Proxies of the environment are for the web; the station is on this field's network.
+            trust_env=False,
+            follow_redirects=False,
+            limits=httpx.Limits(max_connections=None, max_keepalive_connections=0),
+        )
+
+    async def close(self) -> None:
+        """Close what is open."""
+        await self._client.aclose()
+
+    async def get(self, path: str, kind: type[M], what: str) -> M:
+        """Return what the station tells; raises `ClientError`."""
+        try:
+            status, data = await self._ask("GET", path, None)
+        except (httpx.HTTPError, httpx.InvalidURL, TimeoutError) as problem:
+            raise self._unreachable(problem) from problem
+        self._refuse(status, data, path)
+        return decode(data, kind, what)
+
+    async def post(self, path: str, body: Any, kind: type[M], what: str) -> M:
+        """Send an order once and return the answer.
+
+        Raises `StationUnreachableError` (nothing was sent), `RequestRefusedError` (not carried
+        out), or `MaybeSentError` (anything else).
+        """
+        content = None if body is None else json.dumps(body, allow_nan=False).encode()
+        try:
+            status, data = await self._ask("POST", path, content)
+        except (httpx.ConnectError, httpx.ConnectTimeout) as problem:
+            raise self._unreachable(problem) from problem
+        except (httpx.HTTPError, TimeoutError, BadAnswerError) as problem:
+            raise self._maybe_sent(_reason(problem, self._answer_within_s)) from problem
+        if status >= 500:
+            raise self._maybe_sent(f"HTTP {status}: {shown(data)}")
+        self._refuse(status, data, path)
+        try:
+            return decode(data, kind, what)
+        except BadAnswerError as problem:
+            raise self._maybe_sent(str(problem)) from problem
+
+    async def _ask(self, method: str, path: str, content: bytes | None) -> tuple[int, bytes]:
+        headers = {} if content is None else {"Content-Type": "application/json"}
+        async with (
+            asyncio.timeout(self._answer_within_s),
+            self._client.stream(method, path, content=content, headers=headers) as response,
+        ):
+            data = bytearray()
+            async for chunk in response.aiter_raw():
+                data += chunk
+                if len(data) > LONGEST_ANSWER_BYTES:
+                    raise BadAnswerError(
+                        f"expected an answer of up to {LONGEST_ANSWER_BYTES} bytes, got a longer "
+                        "one: is this a Recon station?"
+                    )
+            return response.status_code, bytes(data)
+
+    def _refuse(self, status: int, data: bytes, path: str) -> None:
+        if 200 <= status < 300:
+            return
+        try:
+            reason = decode(data, ProblemMessage, "a problem").error
+        except BadAnswerError:
+            reason = shown(data)
+        if status == ORDER_INVALID:
+            raise OrderInvalidError(reason)
+        raise RequestRefusedError(
+            f"{self._address.http}{path}: expected an answer, got HTTP {status}: {reason}; nothing "
+            "was carried out"
+        )
+
+    def _unreachable(self, problem: Exception) -> StationUnreachableError:
+        return StationUnreachableError(
+            f"expected a station at {self._address.http}, got none "
+            f"({_reason(problem, self._answer_within_s)}); nothing was ordered: start it with "
+            "`recon run`, or check the address"
+        )
+
+    def _maybe_sent(self, reason: str) -> MaybeSentError:
+        return MaybeSentError(
+            f"expected the station's answer to an order, got none that can be used ({reason}); the "
+            "order may have been sent and is not repeated: see what the vehicle does before "
+            "giving it again"
+        )
+
+
+def _reason(problem: Exception, answer_within_s: float) -> str:
+    if isinstance(problem, TimeoutError | httpx.TimeoutException):
+        return f"nothing within {answer_within_s:g} s"
+    return str(problem) or type(problem).__name__

@@ -1,0 +1,30 @@
+"""What became of an order so far, as the station tells it."""
+
+import msgspec
+
+from recon.model.command import Phase
+
+
+class PhaseChange(msgspec.Struct, frozen=True):
+    """One change in an order's life; `age_s` as of the message that told it."""
+
+    phase: Phase
+    age_s: float
+    note: str
+
+
+class Life(msgspec.Struct, frozen=True):
+    """An order's life; `history` ends with the present phase."""
+
+    id: int
+    kind: str
+    serial: str | None
+    vehicle_name: str
+    phase: Phase
+    note: str
+    times_sent: int
+    history: tuple[PhaseChange, ...]
+
+    def has_reached(self, phase: Phase) -> bool:
+        """Return whether the order is in this phase or has been."""
+        return phase is self.phase or any(change.phase is phase for change in self.history)

@@ -1,0 +1,68 @@
+"""An order the station accepted, and what becomes of it."""
+
+from dataclasses import dataclass, field
+
+from recon.client.errors import ConnectionLostError, TookTooLongError
+from recon.client.life import Life
+from recon.client.stream import Heard, Stream
+from recon.model.command import Phase, Refusal
+
+SAME_RUN_NS = 1_000_000
+"""The run's beginning is told as a difference of two numbers; rounding is far below this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """An accepted order. Accepted is not flown: only telemetry confirms, see `wait`."""
+
+    command_id: int
+    serial: str | None
+    link_id: int | None
+    vehicle_name: str
+    _run_started_ns: int = field(repr=False)
+    _stream: Stream = field(repr=False, compare=False)
+
+    async def wait(self, until: Phase = Phase.CONFIRMED, timeout_s: float = 30.0) -> Life:
+        """Return the order's life once it reached a phase, or ended in another one.
+
+        So look at `life.phase`: an order that timed out or was superseded is returned as well.
+        Raises `TookTooLongError`, and `ConnectionLostError` when the station was started anew and
+        knows nothing of this order.
+        """
+        deadline_ns = self._stream.now_ns() + round(timeout_s * 1e9)
+        seen, life = 0, None
+        while (left_ns := deadline_ns - self._stream.now_ns()) > 0:
+            heard = await self._stream.after(seen, left_ns / 1e9)
+            if heard is None:
+                break
+            seen = heard.number
+            life = self._life(heard) or life
+            if life is not None and (life.has_reached(until) or life.phase.is_final):
+                return life
+        state = "unknown" if life is None else f"{life.phase.value} ({life.note})"
+        raise TookTooLongError(
+            f"order {self.command_id} to {self.vehicle_name}: expected {until.value} within "
+            f"{timeout_s:g} s, its state is {state}; it goes on all the same: hold the vehicle if "
+            "it must not"
+        )
+
+    def _life(self, heard: Heard) -> Life | None:
+        if abs(heard.message.run_started_ns - self._run_started_ns) > SAME_RUN_NS:
+            raise ConnectionLostError(
+                f"order {self.command_id} to {self.vehicle_name}: expected the station that took "
+                "it, got one started anew, which does not know it; see what the vehicle does"
+            )
+        return next((c for c in heard.message.commands if c.id == self.command_id), None)
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleAnswer:
+    """What the station said to an order for one vehicle of many.
+
+    `serial` is None for a link that has told no serial; it is held by an all stop as well.
+    """
+
+    serial: str | None
+    link_id: int | None
+    vehicle_name: str
+    answer: Order | Refusal

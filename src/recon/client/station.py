@@ -1,0 +1,89 @@
+"""A running station, as a program uses it."""
+
+from types import TracebackType
+
+from recon.client.address import parse_address
+from recon.client.desk import OrderDesk
+from recon.client.errors import StationUnreachableError, TookTooLongError
+from recon.client.fleet import Fleet
+from recon.client.http import Http
+from recon.client.order import VehicleAnswer
+from recon.client.stream import Stream
+from recon.client.telemetry import Telemetry
+from recon.client.vehicle import Vehicle
+
+OPEN_WITHIN_S = 5.0
+
+
+class Station:
+    """A connection to a station; use it by `async with`.
+
+    Leaving it orders nothing: vehicles fly on.
+    """
+
+    def __init__(self, url: str, token: str | None = None, *, answer_within_s: float = 5.0) -> None:
+        """Take a station's address; raises `AddressError`. Nothing is opened yet."""
+        self.address = parse_address(url, token)
+        self._stream = Stream(self.address)
+        self._http = Http(self.address, answer_within_s)
+        self._desk = OrderDesk(self._http, self._stream)
+        self.fleet = Fleet(self._desk)
+
+    async def __aenter__(self) -> "Station":
+        """Open the stream and wait for the first state; raises `ClientError`."""
+        self._stream.start()
+        try:
+            first = await self._stream.after(0, OPEN_WITHIN_S)
+        except BaseException:
+            await self._close()
+            raise
+        if first is None:
+            await self._close()
+            raise StationUnreachableError(
+                f"expected a station at {self.address.http}, got no state within "
+                f"{OPEN_WITHIN_S:g} s ({self._stream.trouble}); start it with `recon run`, or "
+                "check the address"
+            )
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        problem: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        await self._close()
+
+    async def vehicle(self, serial: str, timeout_s: float = 30.0) -> Vehicle:
+        """Return a vehicle once it is connected and its telemetry live; `TookTooLongError`."""
+        deadline_ns = self._stream.now_ns() + round(timeout_s * 1e9)
+        seen = 0
+        while (left_ns := deadline_ns - self._stream.now_ns()) > 0:
+            heard = await self._stream.after(seen, left_ns / 1e9)
+            if heard is None:
+                break
+            seen = heard.number
+            told = heard.vehicle(serial)
+            if told is not None and told.older_by(self._stream.age_s(heard)).is_connected:
+                return Vehicle(serial, self._desk)
+        known = ", ".join(v.serial for v in self.vehicles() if v.serial is not None) or "none"
+        raise TookTooLongError(
+            f"expected {serial} to be connected within {timeout_s:g} s; the station knows {known}: "
+            "check the serial, and that its app is connected"
+        )
+
+    def vehicles(self) -> tuple[Telemetry, ...]:
+        """Return all vehicles, also those without a serial, with ages as of now."""
+        heard = self._stream.newest
+        if heard is None:
+            return ()
+        age_s = self._stream.age_s(heard)
+        return tuple(vehicle.older_by(age_s) for vehicle in heard.message.vehicles)
+
+    async def all_stop(self) -> tuple[VehicleAnswer, ...]:
+        """Hold everything that flies, with a serial or without. Never cuts motors."""
+        return await self._desk.all_stop()
+
+    async def _close(self) -> None:
+        await self._stream.stop()
+        await self._http.close()

@@ -1,0 +1,115 @@
+"""One vehicle in the verbs of a pilot. Every verb is one order: an `Order`, or a `Refusal`."""
+
+from collections.abc import AsyncIterator
+
+from recon.client.desk import OrderDesk
+from recon.client.errors import ConnectionLostError
+from recon.client.order import Order
+from recon.client.stream import Heard
+from recon.client.telemetry import Telemetry
+from recon.model.command import (
+    FlyMission,
+    Hover,
+    LandNow,
+    Refusal,
+    ReturnHome,
+    StartCamera,
+    StickFrame,
+    StopCamera,
+    VirtualStick,
+)
+from recon.model.mission import Mission
+from recon.model.units import ns_to_seconds
+
+QUIET_S = 1.0
+"""Ten states come each second; after this without one the old one is told again, as old."""
+
+
+class Vehicle:
+    """A vehicle the station knows by its serial.
+
+    Verbs raise `ClientError`s of the way to the station; what the station will not do is a
+    `Refusal`, a value. Nothing is ever sent twice.
+    """
+
+    def __init__(self, serial: str, desk: OrderDesk) -> None:
+        self.serial = serial
+        self._desk = desk
+
+    async def hold(self) -> Order | Refusal:
+        """Stop and hold the position."""
+        return await self._desk.give_one(self.serial, Hover())
+
+    async def land(self) -> Order | Refusal:
+        """Land where the vehicle is."""
+        return await self._desk.give_one(self.serial, LandNow())
+
+    async def return_home(self) -> Order | Refusal:
+        """Fly home at the aircraft's own go-home height and land."""
+        return await self._desk.give_one(self.serial, ReturnHome())
+
+    async def fly(self, mission: Mission, takeoff: bool = False) -> Order | Refusal:
+        """Fly waypoints, replacing any mission being flown.
+
+        `takeoff` is the explicit word that the vehicle may leave the ground. The mission's
+        `purpose` stays here: the station does not take it.
+        """
+        return await self._desk.give_one(self.serial, FlyMission(mission), takeoff)
+
+    async def stick(
+        self,
+        *,
+        yaw_deg: float,
+        velocity_x_mps: float,
+        velocity_y_mps: float,
+        height_above_takeoff_m: float,
+        frame: StickFrame = StickFrame.GROUND,
+        timeout_s: float = 1.0,
+    ) -> Order | Refusal:
+        """Send one virtual stick packet (ground: x north, y east; body: x forward, y right)."""
+        body = VirtualStick(
+            frame, yaw_deg, velocity_x_mps, velocity_y_mps, height_above_takeoff_m, timeout_s
+        )
+        return await self._desk.give_one(self.serial, body)
+
+    async def start_camera(self, fps_hz: float) -> Order | Refusal:
+        """Have images sent at about this rate."""
+        return await self._desk.give_one(self.serial, StartCamera(fps_hz))
+
+    async def stop_camera(self) -> Order | Refusal:
+        """Have no more images sent."""
+        return await self._desk.give_one(self.serial, StopCamera())
+
+    def now(self) -> Telemetry:
+        """Return what is known now, with ages as of now; raises `ConnectionLostError`."""
+        heard = self._desk.stream.newest
+        told = None if heard is None else heard.vehicle(self.serial)
+        if heard is None or told is None:
+            raise ConnectionLostError(f"expected a state of {self.serial}, the station tells none")
+        return told.older_by(self._desk.stream.age_s(heard))
+
+    async def telemetry(self, lost_after_s: float = 10.0) -> AsyncIterator[Telemetry]:
+        """Yield the newest state each time there is a newer one; states between are left out.
+
+        When no new one comes for a second, the last one is yielded again with its ages grown, so
+        marked late, lost or silent: an old state is never told as new. After `lost_after_s`
+        without a new one raises `ConnectionLostError`.
+        """
+        stream = self._desk.stream
+        since_ns, seen = stream.now_ns(), 0
+        last: tuple[Heard, Telemetry] | None = None
+        while True:
+            heard = await stream.after(seen, QUIET_S)
+            if heard is not None:
+                seen = heard.number
+                told = heard.vehicle(self.serial)
+                if told is not None:
+                    last, since_ns = (heard, told), heard.made_at_ns
+            if ns_to_seconds(stream.now_ns() - since_ns) > lost_after_s:
+                raise ConnectionLostError(
+                    f"expected states of {self.serial}, got none for {lost_after_s:g} s "
+                    f"({stream.trouble}); it flies on by its last order: reach it by its own "
+                    "controller, or open the station anew"
+                )
+            if last is not None:
+                yield last[1].older_by(stream.age_s(last[0]))
