@@ -64,8 +64,9 @@ def rounded_path(
 
     Two corners that do not fit their leg share it in proportion to their radii: aircraft refuse
     such a mission, but a picture of it must still hang together. What is not finite, or not on
-    the earth, is not rounded and stays in the path, so that a fence refuses it. Raises `ValueError` for a chord error that
-    is not positive, or when there is not one radius for each waypoint.
+    the earth, is not rounded and stays in the path, so that a fence refuses it.
+    Raises `ValueError` for a chord error that is not positive, or when there is not one radius for
+    each waypoint.
     """
     points = _waypoints(waypoints_m)
     radii = np.asarray(corner_radii_m, dtype=np.float64)
@@ -111,7 +112,7 @@ def _corner(waypoints_m: FloatArray, reach_m: float, chord_error_m: float) -> Fl
     """Return an odd number of points along the curve at the middle of three waypoints."""
     before, corner, after = waypoints_m[0], waypoints_m[1], waypoints_m[2]
     if reach_m <= 0.0:
-        return corner[np.newaxis]
+        return waypoints_m[1:2]
     start = corner + reach_m * _unit(before - corner)
     end = corner + reach_m * _unit(after - corner)
     # n equal steps of the parameter leave a quadratic curve |start - 2 corner + end| / (4 n^2).
