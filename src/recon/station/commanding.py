@@ -8,6 +8,7 @@ from recon.model.command import (
     CAMERA_BODIES,
     Command,
     FlyMission,
+    LandNow,
     Phase,
     Refusal,
 )
@@ -170,7 +171,8 @@ def _confirm(station: Station, record: OrderRecord, now_ns: int) -> tuple[OrderR
     states = (target, *_flying_rivals(station, record, target))
     seen = min(progress(body, sent, state, now_ns) for state in states)
     if seen is Progress.COMPLETE:
-        note = "by telemetry"
+        is_land = isinstance(body, LandNow)
+        note = "by telemetry: it is on the ground" if is_land else "by telemetry"
         return orders.changed(record, Phase.CONFIRMED, now_ns, note, is_watched=False), seen
     if record.command.is_emergency and all(pilot_took_over(sent, state) for state in states):
         note = "the pilot has taken over"
