@@ -1,0 +1,93 @@
+"""A real station on loopback sockets with simulated apps, all in this process."""
+
+import asyncio
+import socket
+from collections.abc import AsyncIterator, Coroutine
+from contextlib import AsyncExitStack, asynccontextmanager
+from typing import Any
+
+import uvicorn
+from starlette.types import ASGIApp
+
+from recon.api.app import create_app
+from recon.api.security import Access
+from recon.link.server import LinkServer
+from recon.link.settings import LinkSettings
+from recon.model.geo import GeoPoint
+from recon.model.vehicle import AltitudeReference, VehicleProfile
+from recon.sim.faults import parse_fault
+from recon.sim.fleet import Airborne, SimulationConfig
+from recon.sim.run import run_fleet
+from recon.site import Site
+from recon.station.build import first_state
+from recon.station.driver import AsyncioDriver, station_clock
+from recon.station.service import Service
+
+HOME = GeoPoint(41.9012, -93.6034, 275.0)
+SERIALS = ("SIM-1", "SIM-2")
+
+
+@asynccontextmanager
+async def serving(app: ASGIApp, port: int = 0) -> AsyncIterator[str]:
+    """Serve an application on loopback; yields its address."""
+    sock = socket.create_server(("127.0.0.1", port))
+    server = uvicorn.Server(
+        uvicorn.Config(
+            app,
+            log_level="critical",
+            ws="websockets-sansio",
+            lifespan="off",
+            timeout_graceful_shutdown=1,
+        )
+    )
+    task = asyncio.create_task(server.serve(sockets=[sock]))
+    try:
+        yield f"http://127.0.0.1:{sock.getsockname()[1]}"
+    finally:
+        server.should_exit = True
+        await task
+        sock.close()
+
+
+@asynccontextmanager
+async def beside(work: Coroutine[Any, Any, None]) -> AsyncIterator[None]:
+    """Do work beside the test; it is ended, and its end awaited."""
+    task = asyncio.create_task(work)
+    try:
+        yield
+    finally:
+        task.cancel()
+        await asyncio.wait((task,))
+
+
+@asynccontextmanager
+async def running_station(
+    *,
+    airborne: bool = True,
+    token: str | None = None,
+    vehicles: int = 2,
+    faults: tuple[str, ...] = (),
+) -> AsyncIterator[str]:
+    """Run a station and its simulated apps; yields the station's address."""
+    profiles = {
+        serial: VehicleProfile(serial, waypoint_altitude=AltitudeReference.TAKEOFF)
+        for serial in SERIALS
+    }
+    site = Site(name="test", profiles=profiles)
+    driver = AsyncioDriver(first_state(site), station_clock())
+    driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
+    async with AsyncExitStack() as stack:
+        await links.start("127.0.0.1", 0)
+        stack.push_async_callback(links.stop)
+        await stack.enter_async_context(beside(driver.run()))
+        config = SimulationConfig(
+            home=HOME,
+            station_port=links.port,
+            vehicle_count=vehicles,
+            airborne=Airborne.ALL if airborne else Airborne.NONE,
+            faults=tuple(parse_fault(text) for text in faults),
+        )
+        await stack.enter_async_context(beside(run_fleet(config, say=lambda line: None)))
+        service = Service.around(driver, site, None)
+        app = create_app(service, Access.make("127.0.0.1", token), None, "test")
+        yield await stack.enter_async_context(serving(app))

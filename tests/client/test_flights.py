@@ -1,0 +1,210 @@
+"""The client against a real station: orders are flown, refusals are values, states are new."""
+
+import asyncio
+from dataclasses import replace
+
+import pytest
+from tests.client.running_station import SERIALS, running_station
+
+from recon.client import (
+    ConnectionLostError,
+    Mission,
+    Order,
+    Phase,
+    Refusal,
+    RequestRefusedError,
+    Station,
+    TookTooLongError,
+    Vehicle,
+    Waypoint,
+)
+
+TOKEN = "a-secret-of-the-field"
+
+
+def leg_north(vehicle: Vehicle) -> Mission:
+    here = vehicle.now().position
+    assert here.latitude_deg is not None
+    assert here.longitude_deg is not None
+    return Mission(
+        tuple(
+            Waypoint(here.latitude_deg + north_deg, here.longitude_deg, 50.0, 5.0)
+            for north_deg in (0.0002, 0.0004)
+        )
+    )
+
+
+def accepted(answer: Order | Refusal) -> Order:
+    assert isinstance(answer, Order), answer
+    return answer
+
+
+def refused(answer: Order | Refusal) -> Refusal:
+    assert isinstance(answer, Refusal), answer
+    return answer
+
+
+def test_orders_are_flown_and_confirmed_by_telemetry() -> None:
+    async def main() -> None:
+        async with running_station() as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            flown = accepted(await vehicle.fly(leg_north(vehicle)))
+            life = await flown.wait()
+            assert life.phase is Phase.CONFIRMED
+            assert [change.phase for change in life.history[:3]] == [
+                Phase.QUEUED,
+                Phase.SENT,
+                Phase.ACKNOWLEDGED,
+            ]
+            assert (life.kind, life.serial, life.times_sent) == ("mission", "SIM-1", 1)
+            held = await accepted(await vehicle.hold()).wait()
+            assert (held.kind, held.phase) == ("hover", Phase.CONFIRMED)
+            stick = await vehicle.stick(
+                yaw_deg=0.0, velocity_x_mps=2.0, velocity_y_mps=0.0, height_above_takeoff_m=50.0
+            )
+            assert (await accepted(stick).wait(Phase.SENT)).kind == "stick"
+            home = await accepted(await vehicle.return_home()).wait()
+            assert (home.kind, home.phase) == ("return_home", Phase.CONFIRMED)
+            landed = await accepted(await vehicle.land()).wait()
+            assert (landed.kind, landed.phase) == ("land", Phase.CONFIRMED)
+
+    asyncio.run(main())
+
+
+def test_camera_orders_reach_the_app() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            begun = await accepted(await vehicle.start_camera(1.0)).wait(Phase.SENT)
+            assert begun.kind == "camera_start"
+            ended = await accepted(await vehicle.stop_camera()).wait(Phase.SENT)
+            assert ended.kind == "camera_stop"
+
+    asyncio.run(main())
+
+
+def test_what_the_station_will_not_do_is_a_value() -> None:
+    async def main() -> None:
+        async with running_station(airborne=False) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            leg = leg_north(vehicle)
+            assert refused(await vehicle.fly(leg)).rule == "flying"
+            nowhere = replace(leg.waypoints[0], speed_mps=float("nan"))
+            told = refused(await vehicle.fly(Mission((nowhere,)), takeoff=True))
+            assert told.rule == "finite_numbers"
+            assert "waypoints 1 speed_mps" in told.reason
+            told = refused(await vehicle.fly(Mission(leg.waypoints * 50), takeoff=True))
+            assert told.rule == "order_form"
+            assert "99" in told.reason
+            assert vehicle.now().is_flying.value is False
+            assert accepted(await vehicle.fly(leg, takeoff=True)).serial == "SIM-1"
+
+    asyncio.run(main())
+
+
+def test_all_vehicles_are_answered_for_one_by_one() -> None:
+    async def main() -> None:
+        async with running_station() as url, Station(url) as station:
+            for serial in SERIALS:
+                await station.vehicle(serial)
+            for give in (station.all_stop, station.fleet.hold, station.fleet.return_home):
+                answers = await give()
+                assert {answer.serial for answer in answers} == set(SERIALS)
+                assert len(answers) == len(SERIALS)
+                assert all(isinstance(answer.answer, Order) for answer in answers)
+            answers = await station.fleet.land()
+            lives = [await accepted(answer.answer).wait() for answer in answers]
+            assert [life.phase for life in lives] == [Phase.CONFIRMED] * 2
+
+    asyncio.run(main())
+
+
+def test_a_fleet_of_none_is_ordered_nothing() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=0) as url, Station(url) as station:
+            assert await station.fleet.hold() == ()
+            assert await station.all_stop() == ()
+
+    asyncio.run(main())
+
+
+def test_telemetry_is_new_and_passes_over_what_was_missed() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            heights_m = []
+            async for state in vehicle.telemetry():
+                assert state.is_live
+                assert state.telemetry_age_s is not None
+                assert 0.0 <= state.telemetry_age_s < 1.0
+                heights_m.append(state.height_above_takeoff_m.value)
+                if len(heights_m) == 5:
+                    break
+            assert all(height_m is not None and height_m > 10.0 for height_m in heights_m)
+
+    asyncio.run(main())
+
+
+def test_a_vehicle_whose_app_falls_silent_is_told_as_late() -> None:
+    async def main() -> None:
+        fault = ("telemetry-dropout:SIM-1:3:30",)
+        async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            async for state in vehicle.telemetry():
+                if not state.is_live:
+                    assert state.telemetry_age_s is not None
+                    assert state.telemetry_age_s >= 1.0
+                    return
+
+    asyncio.run(main())
+
+
+def test_a_vehicle_that_does_not_come_is_told_by_name() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as station:
+            await station.vehicle("SIM-1")
+            with pytest.raises(TookTooLongError, match=r"expected SIM-9 .* knows SIM-1"):
+                await station.vehicle("SIM-9", timeout_s=0.3)
+            with pytest.raises(ConnectionLostError, match="SIM-9"):
+                Vehicle("SIM-9", station._desk).now()
+
+    asyncio.run(main())
+
+
+def test_an_order_that_is_only_acknowledged_is_not_waited_for_for_ever() -> None:
+    async def main() -> None:
+        fault = ("ack-then-nothing:SIM-1",)
+        async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            order = accepted(await vehicle.fly(leg_north(vehicle)))
+            with pytest.raises(TookTooLongError, match="expected confirmed within"):
+                await order.wait(timeout_s=0.5)
+
+    asyncio.run(main())
+
+
+def test_an_order_that_ended_otherwise_is_returned_as_it_ended() -> None:
+    async def main() -> None:
+        fault = ("negative-ack:SIM-1",)
+        async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            life = await accepted(await vehicle.fly(leg_north(vehicle))).wait()
+            assert life.phase is Phase.REFUSED_BY_APP
+            assert not life.has_reached(Phase.CONFIRMED)
+
+    asyncio.run(main())
+
+
+def test_a_token_opens_a_station_and_stays_out_of_sight() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1, token=TOKEN) as url:
+            for station in (Station(url, TOKEN), Station(f"{url}/#token={TOKEN}")):
+                assert TOKEN not in repr(station.address)
+                async with station:
+                    assert isinstance(await (await station.vehicle("SIM-1")).hold(), Order)
+            for wrong in (Station(url), Station(url, "another-secret")):
+                with pytest.raises(RequestRefusedError, match="its token") as told:
+                    await wrong.__aenter__()
+                assert TOKEN not in str(told.value)
+
+    asyncio.run(main())
