@@ -11,8 +11,11 @@ from recon.camera import (
     parse_camera,
     parse_control_points,
 )
+from recon.geo import Polygon, enu_from_points
 from recon.model.vehicle import AltitudeReference
+from recon.model.zone import ZoneKind
 from recon.site import demo_site_folder, load_site
+from recon.site.demo_layers import BOUNDARY
 from recon.site.demo_site import (
     EYE_HEIGHT_M,
     EYE_SERIAL,
@@ -28,6 +31,9 @@ def test_the_shipped_files_are_those_the_generator_writes() -> None:
     shipped = {path.name: path.read_text() for path in demo_site_folder().iterdir()}
     assert shipped.keys() == written.keys()
     assert shipped["site.toml"] == written["site.toml"]
+    for name in written:
+        if name.endswith(".geojson"):
+            assert shipped[name] == written[name]
     # The fits may differ in their last digits between numeric libraries.
     ours = parse_camera(written["camera-model.txt"], "written")
     theirs = parse_camera(shipped["camera-model.txt"], "shipped")
@@ -68,6 +74,24 @@ def test_it_loads_and_its_pose_is_the_one_it_was_made_with() -> None:
     )
     assert site.eye.marked_frame == demo_marked_telemetry()
     assert not site.eye.first_frame_stands_for_marked_frame
+
+
+def test_its_layers_lie_where_they_were_drawn_and_keep_apart() -> None:
+    site = load_site(demo_site_folder())
+    layers = site.layers
+    assert site.frame is not None
+    assert layers.boundary is not None
+    assert layers.boundary.outline_m == pytest.approx(np.array(BOUNDARY), abs=0.01)
+    (farmyard,) = layers.zones
+    assert (farmyard.name, farmyard.kind) == ("farmyard", ZoneKind.KEEP_OUT)
+    field, yard = Polygon(layers.boundary), Polygon(farmyard.region)
+    pads = [profile.pad for profile in site.profiles.values() if profile.pad is not None]
+    assert field.contains(enu_from_points(site.frame, pads)[:, :2]).all()
+    assert list(layers.survey_regions) == ["west field", "south-east field"]
+    for outline in (region.outline_m for region in layers.survey_regions.values()):
+        ends = np.roll(outline, -1, axis=0)
+        assert field.holds_legs(outline, ends, 20.0).all()
+        assert yard.is_clear_of_legs(outline, ends, 20.0).all()
 
 
 def test_every_vehicle_of_the_demonstration_has_a_profile_that_can_fly_missions() -> None:

@@ -4,10 +4,11 @@ from recon.site.demo_folder import demo_site_folder
 from recon.site.errors import SiteError
 from recon.site.load import load_site
 from recon.site.report import pose_report, site_report
-from recon.site.site import Eye, Site, default_site
+from recon.site.site import Eye, Layers, Site, default_site
 
 __all__ = [
     "Eye",
+    "Layers",
     "Site",
     "SiteError",
     "default_site",

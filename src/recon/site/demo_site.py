@@ -19,6 +19,7 @@ from recon.camera import (
 from recon.geo import geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.site.demo_folder import demo_site_folder
+from recon.site.demo_layers import demo_layer_files
 
 ORIGIN = GeoPoint(41.9012, -93.6034, 275.0)
 EYE_SERIAL = "SIM-EYE"
@@ -59,6 +60,7 @@ def demo_site_files() -> dict[str, str]:
         "camera-model.txt": format_camera(camera),
         "GCPs.txt": format_control_points(_control_points(camera)),
         "site.toml": _site_toml(),
+        **demo_layer_files(LocalFrame(ORIGIN)),
     }
 
 
@@ -151,6 +153,11 @@ radius_px = {RADIUS_AT_HALF_FIELD_PX}
 width_m = 512.0
 height_m = 512.0
 cell_m = 1.0
+
+[layers]
+boundary = "boundary.geojson"
+keep_out = "keep_out.geojson"
+survey_regions = "survey_regions.geojson"
 """
     return header + "".join(_vehicle_toml(serial) for serial in (*SERIALS, EYE_SERIAL))
 

@@ -16,6 +16,7 @@ from recon.camera import (
 from recon.geo import enu_from_geo, enu_from_points
 from recon.model.geo import LocalFrame
 from recon.site.errors import SiteError
+from recon.site.reading import file_inside
 from recon.site.schema import EyeTable
 from recon.site.site import Eye
 
@@ -32,8 +33,8 @@ def eye_from_table(site_file: Path, table: EyeTable, frame: LocalFrame) -> Eye:
 
     Files lie in the site file's folder. Raises `SiteError` naming file, line or key.
     """
-    camera_file = _inside(site_file, table.camera, "eye.camera")
-    points_file = _inside(site_file, table.control_points, "eye.control_points")
+    camera_file = file_inside(site_file, table.camera, "eye.camera")
+    points_file = file_inside(site_file, table.control_points, "eye.control_points")
     try:
         camera = load_camera(camera_file)
         points = load_control_points(points_file)
@@ -68,27 +69,6 @@ def _reference(table: EyeTable) -> TelemetryReference | None:
 def _circle(table: EyeTable) -> ImageCircle | None:
     circle = table.image_circle
     return None if circle is None else ImageCircle(circle.col_px, circle.row_px, circle.radius_px)
-
-
-def _inside(site_file: Path, name: str, key: str) -> Path:
-    folder = site_file.parent
-    path = folder / name
-    try:
-        is_inside = path.resolve().is_relative_to(folder.resolve())
-        is_file = path.is_file()
-    except (OSError, RuntimeError):
-        # A name too long for the file system, or symbolic links that go round in circles.
-        is_inside, is_file = True, False
-    if not is_inside:
-        problem = "which leads out of it; put the file into the folder"
-    elif not is_file:
-        problem = "and there is no such file"
-    else:
-        return path
-    raise SiteError(
-        f"{site_file}: {key}: expected the name of a file in the site's folder, got "
-        f"{name!a}, {problem}"
-    )
 
 
 def _refuse_other_marked_frame(path: Path, eye: Eye, frame: LocalFrame) -> None:

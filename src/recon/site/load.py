@@ -3,31 +3,31 @@
 import math
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
-
-import msgspec
+from typing import Any
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.site.errors import SiteError
 from recon.site.eye import eye_from_table
+from recon.site.layers import read_layers
 from recon.site.profiles import profile_from_table
+from recon.site.reading import convert, read_bounded
 from recon.site.schema import (
     EyeTable,
     GroundImageTable,
+    LayersTable,
     OriginTable,
     SiteTable,
     VehicleTable,
 )
-from recon.site.site import Site
+from recon.site.site import Layers, Site
 
 SITE_FILE = "site.toml"
 LARGEST_FILE_BYTES = 256 * 1024
 MOST_CELLS = 4096 * 4096
 MOST_VEHICLES = 64
-
-T = TypeVar("T")
 
 
 def load_site(folder: Path) -> Site:
@@ -39,32 +39,30 @@ def load_site(folder: Path) -> Site:
     path = folder / SITE_FILE
     data = _read_toml(path)
     _refuse_non_finite(path, data, "")
-    table = _convert(path, data, SiteTable, "")
-    origin = _convert(path, table.origin, OriginTable, "origin")
+    table = convert(path, data, SiteTable, "")
+    origin = convert(path, table.origin, OriginTable, "origin")
     frame = LocalFrame(
         GeoPoint(origin.latitude_deg, origin.longitude_deg, origin.ground_altitude_m)
     )
-    ground = _convert(path, table.ground_image or {}, GroundImageTable, "ground_image")
+    ground = convert(path, table.ground_image or {}, GroundImageTable, "ground_image")
     grid = _ground_grid(path, ground, frame)
     profiles = _profiles(path, table.vehicles)
     eye = None
     if table.eye is not None:
-        eye = eye_from_table(path, _convert(path, table.eye, EyeTable, "eye"), frame)
+        eye = eye_from_table(path, convert(path, table.eye, EyeTable, "eye"), frame)
         profiles.setdefault(eye.serial, VehicleProfile(eye.serial))
-    return Site(table.name, frame, grid, eye, profiles)
+    layers = read_layers(path, convert(path, table.layers, LayersTable, "layers"), frame)
+    _give_pads(path, layers, profiles)
+    return Site(table.name, frame, grid, eye, profiles, layers)
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE_BYTES + 1)
-    except OSError as problem:
-        raise SiteError(
-            f"{path}: expected a site's file, got: {problem.strerror or problem}; give the folder "
-            f"that holds {SITE_FILE}"
-        ) from problem
-    if len(data) > LARGEST_FILE_BYTES:
-        raise SiteError(f"{path}: expected at most {LARGEST_FILE_BYTES} bytes, got more")
+    data = read_bounded(
+        path,
+        LARGEST_FILE_BYTES,
+        "a site's file",
+        f"; give the folder that holds {SITE_FILE}",
+    )
     try:
         return tomllib.loads(data.decode("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
@@ -83,18 +81,6 @@ def _refuse_non_finite(path: Path, value: object, key: str) -> None:
     elif isinstance(value, list):
         for index, item in enumerate(value):
             _refuse_non_finite(path, item, f"{key}[{index}]")
-
-
-def _convert(path: Path, data: object, kind: type[T], key: str) -> T:
-    try:
-        return msgspec.convert(data, kind, strict=True)
-    except msgspec.ValidationError as problem:
-        what, _, where = str(problem).partition(" - at `$")
-        inner = where.rstrip("`").lstrip(".")
-        place = ".".join(part for part in (key, inner) if part)
-        # An unknown key's name is the file's own text: repr keeps control characters out.
-        said = ascii(what)[1:-1].replace("`", "'")
-        raise SiteError(f"{path}: {place + ': ' if place else ''}{said}") from problem
 
 
 def _ground_grid(path: Path, table: GroundImageTable, frame: LocalFrame) -> GroundGrid:
@@ -126,10 +112,29 @@ def _profiles(path: Path, tables: list[dict[str, Any]]) -> dict[str, VehicleProf
     profiles: dict[str, VehicleProfile] = {}
     for number, data in enumerate(tables, start=1):
         key = f"vehicles (entry {number})"
-        profile = profile_from_table(_convert(path, data, VehicleTable, key), f"{path}: {key}")
+        profile = profile_from_table(convert(path, data, VehicleTable, key), f"{path}: {key}")
         if profile.serial in profiles:
             raise SiteError(
                 f"{path}: {key}.serial: expected each serial once, got {profile.serial!r} again"
             )
         profiles[profile.serial] = profile
     return profiles
+
+
+def _give_pads(path: Path, layers: Layers, profiles: dict[str, VehicleProfile]) -> None:
+    """Put the layer's pads into the profiles of the vehicles they belong to."""
+    given: set[str] = set()
+    for pad in layers.landing_pads:
+        if pad.serial is None:
+            continue
+        place = f"{path}: layers.landing_pads: pad {pad.name!a}"
+        profile = profiles.get(pad.serial)
+        if profile is None:
+            raise SiteError(f"{place}: expected a vehicle's serial, got {pad.serial!a} of none")
+        if profile.pad is not None:
+            where = "the layer" if pad.serial in given else "[[vehicles]]"
+            raise SiteError(
+                f"{place}: expected one pad for {pad.serial!a}, got another in {where} already"
+            )
+        given.add(pad.serial)
+        profiles[pad.serial] = replace(profile, pad=pad.place)

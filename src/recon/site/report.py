@@ -1,7 +1,9 @@
 """What a site's folder came to, in sentences for the operator."""
 
 from recon.camera import PoseSolution
-from recon.site.site import Eye, Site
+from recon.geo import Polygon
+from recon.model.zone import ZoneKind
+from recon.site.site import Eye, Layers, Site
 
 
 def site_report(site: Site) -> tuple[str, ...]:
@@ -18,7 +20,28 @@ def site_report(site: Site) -> tuple[str, ...]:
         lines.append("no eye: frames are shown as they come, none is laid on the ground")
     else:
         lines += _eye_report(site.eye)
+    lines += _layers_report(site.layers)
     return tuple(lines)
+
+
+def _layers_report(layers: Layers) -> list[str]:
+    counts = {
+        "boundary": [layers.boundary] if layers.boundary else [],
+        "keep_out": [z.region for z in layers.zones if z.kind is ZoneKind.KEEP_OUT],
+        "height_zones": [z.region for z in layers.zones if z.kind is ZoneKind.HEIGHT],
+        "survey_regions": list(layers.survey_regions.values()),
+    }
+    lines = []
+    for key, name in layers.files.items():
+        if key == "landing_pads":
+            holds = f"{len(layers.landing_pads)} pads"
+        else:
+            hectares = sum(Polygon(region).area_m2 for region in counts[key]) / 1e4
+            holds = f"polygons: {len(counts[key])}, together {hectares:.2f} ha"
+        lines.append(f"layer {key} from {name}: {holds}")
+    if lines:
+        lines.append("the safety gate does not yet check orders against the layers")
+    return lines
 
 
 def _eye_report(eye: Eye) -> list[str]:

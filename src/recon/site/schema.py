@@ -94,6 +94,16 @@ class VehicleTable(_Table, frozen=True):
     packet_gap_s: Seconds | None = None
 
 
+class LayersTable(_Table, frozen=True):
+    """[layers]: GeoJSON files in the folder, each optional."""
+
+    boundary: FileName | None = None
+    keep_out: FileName | None = None
+    height_zones: FileName | None = None
+    landing_pads: FileName | None = None
+    survey_regions: FileName | None = None
+
+
 class SiteTable(_Table, frozen=True):
     """The whole file. The tables are converted one by one, so that a complaint can name its own."""
 
@@ -101,4 +111,5 @@ class SiteTable(_Table, frozen=True):
     origin: dict[str, Any]
     eye: dict[str, Any] | None = None
     ground_image: dict[str, Any] | None = None
+    layers: dict[str, Any] = {}
     vehicles: list[dict[str, Any]] = []

@@ -12,6 +12,7 @@ from recon.camera import (
 )
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
+from recon.model.zone import LandingPad, Region, Zone
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +42,21 @@ class Eye:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Layers:
+    """What the site's GeoJSON layers hold, in metres of its local frame.
+
+    `files` names the file of each layer that was read. A feature of several polygons becomes as
+    many zones of one name.
+    """
+
+    files: Mapping[str, str] = field(default_factory=dict)
+    boundary: Region | None = None
+    zones: tuple[Zone, ...] = ()
+    landing_pads: tuple[LandingPad, ...] = ()
+    survey_regions: Mapping[str, Region] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Site:
     """What a site's folder says; without a folder nothing but the name is known."""
 
@@ -49,6 +65,7 @@ class Site:
     ground_grid: GroundGrid | None = None
     eye: Eye | None = None
     profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
+    layers: Layers = field(default_factory=Layers)
 
     def profile_of(self, serial: str) -> VehicleProfile:
         """Return a vehicle's profile; one that the site does not know gets the defaults."""

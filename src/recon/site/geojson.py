@@ -1,0 +1,198 @@
+"""GeoJSON layers (RFC 7946) as QGIS writes them: features with polygons or points near the site.
+
+Edges are straight in the local frame, where RFC 7946 has them straight in degrees: at 45 degrees of
+latitude the two differ by 2 cm in the middle of an edge of 1 km, by 2 m in one of 10 km.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from recon.geo import enu_from_geo, region_fault
+from recon.model.geo import LatLon, LocalFrame
+from recon.model.zone import Region
+from recon.site.errors import SiteError
+from recon.site.reading import convert, read_bounded
+
+FloatArray = npt.NDArray[np.float64]
+
+LARGEST_LAYER_BYTES = 4 * 1024 * 1024
+MOST_FEATURES = 1_000
+MOST_CORNERS = 10_000
+"""Of one feature: a drawn outline has tens, a surveyed one hundreds."""
+FARTHEST_M = 50_000.0
+"""Of a corner from the origin: more is another place, or latitude and longitude swapped."""
+ACCEPTED_CRS = frozenset(
+    {
+        "urn:ogc:def:crs:OGC:1.3:CRS84",
+        "urn:ogc:def:crs:OGC::CRS84",
+        "OGC:CRS84",
+        "urn:ogc:def:crs:EPSG::4326",
+        "EPSG:4326",
+    }
+)
+"""Names of WGS84 that programs write; the coordinates are longitude, latitude under each."""
+
+Position = Annotated[list[float], msgspec.Meta(min_length=2, max_length=3)]
+Ring = Annotated[list[Position], msgspec.Meta(min_length=4)]
+Rings = Annotated[list[Ring], msgspec.Meta(min_length=1)]
+Polygons = Annotated[list[Rings], msgspec.Meta(min_length=1)]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Feature:
+    """One feature: `place` names it in complaints; `geometry` is not looked at yet."""
+
+    place: str
+    number: int
+    properties: Mapping[str, Any]
+    geometry: Mapping[str, Any]
+
+
+def read_features(path: Path) -> tuple[Feature, ...]:
+    """Return a layer's features in the file's order. Raises `SiteError`."""
+    collection = _object(str(path), _read_json(path), "FeatureCollection")
+    features = collection.get("features")
+    if not isinstance(features, list):
+        raise SiteError(f"{path}: expected a list of features, got {_said(features)}")
+    if len(features) > MOST_FEATURES:
+        raise SiteError(f"{path}: expected at most {MOST_FEATURES} features, got {len(features)}")
+    return tuple(_feature(path, number, data) for number, data in enumerate(features, start=1))
+
+
+def regions_of(feature: Feature, frame: LocalFrame) -> tuple[Region, ...]:
+    """Return the polygons of a Polygon or MultiPolygon, checked. Raises `SiteError`."""
+    coordinates = feature.geometry.get("coordinates")
+    kind = feature.geometry.get("type")
+    if kind == "Polygon":
+        polygons = [convert(feature.place, coordinates, Rings, "coordinates")]
+    elif kind == "MultiPolygon":
+        polygons = convert(feature.place, coordinates, Polygons, "coordinates")
+    else:
+        raise SiteError(f"{feature.place}: expected a Polygon or MultiPolygon, got {_said(kind)}")
+    corners = sum(len(ring) for rings in polygons for ring in rings)
+    if corners > MOST_CORNERS:
+        raise SiteError(f"{feature.place}: expected at most {MOST_CORNERS} corners, got {corners}")
+    return tuple(_region(feature.place, rings, frame) for rings in polygons)
+
+
+def point_of(feature: Feature, frame: LocalFrame) -> LatLon:
+    """Return where a Point is; its height, if it has one, is not read. Raises `SiteError`."""
+    kind = feature.geometry.get("type")
+    if kind != "Point":
+        raise SiteError(f"{feature.place}: expected a Point, got {_said(kind)}")
+    position = convert(feature.place, feature.geometry.get("coordinates"), Position, "coordinates")
+    _local_m(feature.place, [position], frame)
+    return LatLon(latitude_deg=position[1], longitude_deg=position[0])
+
+
+def _read_json(path: Path) -> object:
+    data = read_bounded(path, LARGEST_LAYER_BYTES, "a GeoJSON file")
+    try:
+        return msgspec.json.decode(data)
+    except (msgspec.DecodeError, UnicodeDecodeError) as problem:
+        raise SiteError(f"{path}: expected a GeoJSON file, got: {problem}") from problem
+    except RecursionError as problem:
+        raise SiteError(f"{path}: expected a GeoJSON file, got one nested too deeply") from problem
+
+
+def _object(place: str, data: object, kind: str | None) -> dict[str, Any]:
+    """Return a JSON object of a GeoJSON type, any type for None, in an accepted CRS."""
+    if not isinstance(data, dict) or (kind is not None and data.get("type") != kind):
+        got = data.get("type") if isinstance(data, dict) else data
+        raise SiteError(f"{place}: expected a GeoJSON {kind or 'geometry'}, got {_said(got)}")
+    if "crs" in data:
+        crs = data["crs"]
+        properties = crs.get("properties") if isinstance(crs, dict) else None
+        name = properties.get("name") if isinstance(properties, dict) else crs
+        if not isinstance(name, str) or name not in ACCEPTED_CRS:
+            raise SiteError(
+                f"{place}: expected coordinates in WGS84 (CRS84 or EPSG:4326), got the CRS "
+                f"{_said(name)}; export the layer as EPSG:4326"
+            )
+    return data
+
+
+def _feature(path: Path, number: int, data: object) -> Feature:
+    place = f"{path}: feature {number}"
+    feature = _object(place, data, "Feature")
+    properties = feature.get("properties")
+    if properties is None:
+        properties = {}
+    if not isinstance(properties, dict):
+        raise SiteError(f"{place}: expected properties, got {_said(properties)}")
+    # An attribute left empty in QGIS is written as null.
+    properties = {key: value for key, value in properties.items() if value is not None}
+    name = properties.get("name")
+    if isinstance(name, str):
+        place += f" ({_said(name)})"
+    return Feature(place, number, properties, _object(place, feature.get("geometry"), None))
+
+
+def _region(place: str, rings: list[list[list[float]]], frame: LocalFrame) -> Region:
+    outline, *holes = (_ring(place, ring, frame) for ring in rings)
+    region = Region(outline, tuple(holes))
+    fault = region_fault(region)
+    if fault is not None:
+        raise SiteError(f"{place}: expected a polygon whose edges do not meet, but {fault}")
+    return region
+
+
+def _ring(place: str, positions: list[list[float]], frame: LocalFrame) -> FloatArray:
+    if positions[0][:2] != positions[-1][:2]:
+        raise SiteError(
+            f"{place}: expected each ring to end where it starts, got {positions[0][:2]} first and "
+            f"{positions[-1][:2]} last"
+        )
+    return _local_m(place, positions[:-1], frame)
+
+
+def _local_m(place: str, positions: list[list[float]], frame: LocalFrame) -> FloatArray:
+    """Return east-north metres (N, 2) of positions as the file has them, none of them far away."""
+    degrees = np.array([position[:2] for position in positions])
+    longitude, latitude = degrees[:, 0], degrees[:, 1]
+    enu = enu_from_geo(frame, latitude, longitude, frame.origin.ellipsoid_height_m)
+    is_far = _is_far(latitude, longitude, enu)
+    if is_far.any():
+        first = int(np.argmax(is_far))
+        swapped = enu_from_geo(frame, longitude, latitude, frame.origin.ellipsoid_height_m)
+        looks_swapped = not _is_far(longitude, latitude, swapped)[first]
+        raise SiteError(_far_away(place, degrees[first], enu[first], looks_swapped))
+    return np.ascontiguousarray(enu[:, :2])
+
+
+def _is_far(
+    latitude: FloatArray, longitude: FloatArray, enu_m: FloatArray
+) -> npt.NDArray[np.bool_]:
+    is_off_globe = (np.abs(latitude) > 90.0) | (np.abs(longitude) > 180.0)
+    # Through the earth: east and north alone are small again at its other side.
+    far: npt.NDArray[np.bool_] = is_off_globe | (np.linalg.norm(enu_m, axis=1) > FARTHEST_M)
+    return far
+
+
+def _far_away(place: str, degrees: FloatArray, enu_m: FloatArray, looks_swapped: bool) -> str:
+    got = f"longitude {degrees[0]:.6g}, latitude {degrees[1]:.6g}"
+    if looks_swapped:
+        advice = "latitude and longitude look swapped: GeoJSON writes the longitude first"
+    else:
+        advice = "is the origin in site.toml right?"
+    distance_km = float(np.linalg.norm(enu_m)) / 1_000.0
+    return (
+        f"{place}: expected corners within {FARTHEST_M / 1_000.0:g} km of the site's origin, got "
+        f"{got}, {distance_km:.0f} km away; {advice}"
+    )
+
+
+def _said(value: object) -> str:
+    """Return a value of the file in printable characters, not too many of them."""
+    if isinstance(value, dict):
+        return "an object"
+    if isinstance(value, list):
+        return "a list"
+    text = "nothing" if value is None else ascii(value)
+    return text if len(text) <= 80 else text[:77] + "..."
