@@ -69,4 +69,6 @@ async def with_a_simulated_drone() -> None:
 
 if __name__ == "__main__":
     given = sys.argv[1:]
+    if len(given) not in (0, 2):
+        sys.exit(__doc__)
     asyncio.run(first_flight(*given) if given else with_a_simulated_drone())

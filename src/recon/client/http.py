@@ -14,6 +14,7 @@ from recon.client.address import Address
 from recon.client.errors import (
     BadAnswerError,
     MaybeSentError,
+    OrderInvalidError,
     RequestRefusedError,
     StationUnreachableError,
 )
@@ -23,10 +24,6 @@ LONGEST_ANSWER_BYTES = 16 * 1024 * 1024
 ORDER_INVALID = 422
 
 M = TypeVar("M")
-
-
-class OrderInvalidError(RequestRefusedError):
-    """The station did not take the order's form; it becomes a refusal, as a value."""
 
 
 class Http:
