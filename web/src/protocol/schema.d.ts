@@ -342,6 +342,8 @@ export interface components {
             issued_by: string;
             /** Kind */
             kind: string;
+            /** Link Id */
+            link_id: number | null;
             /** Note */
             note: string;
             /**
@@ -444,6 +446,11 @@ export interface components {
          * @description One TCP connection of a companion app, with what its bytes have been like.
          */
         LinkView: {
+            /**
+             * Answers Not Believed
+             * @description acknowledgments that may answer another command
+             */
+            answers_not_believed: number;
             /** Bad Hash */
             bad_hash: number;
             /** Bad Size */
@@ -535,6 +542,8 @@ export interface components {
             accepted: boolean;
             /** Command Id */
             command_id: number;
+            /** Is Simulated */
+            is_simulated: boolean;
             /** Link Id */
             link_id: number | null;
             /** Reason */
@@ -636,8 +645,12 @@ export interface components {
          * @description The station itself.
          */
         StationView: {
+            /** Capture Dropped Bytes */
+            capture_dropped_bytes: number;
             /** Capture Folder */
             capture_folder: string | null;
+            /** Connections Refused */
+            connections_refused: number;
             /** Frames Dropped */
             frames_dropped: number;
             /** Link Addresses */
