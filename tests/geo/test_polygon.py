@@ -155,6 +155,8 @@ def test_what_is_no_polygon_is_told_in_words(
 ) -> None:
     region = Region(np.array(outline, float), tuple(np.array(hole, float) for hole in holes))
     assert fault in (region_fault(region) or "")
+    with pytest.raises(ValueError, match="expected a polygon whose edges do not meet"):
+        Polygon(region)
 
 
 @given(stars)

@@ -29,9 +29,15 @@ _FAULTS = {
 
 
 class Polygon:
-    """A region made ready for many questions; build one for each region and keep it."""
+    """A region made ready for many questions; build one for each region and keep it.
+
+    Raises `ValueError` for a region with a `region_fault`: answers about one would be arbitrary.
+    """
 
     def __init__(self, region: Region) -> None:
+        fault = region_fault(region)
+        if fault is not None:
+            raise ValueError(f"expected a polygon whose edges do not meet, but {fault}")
         self._area = _shape(region)
         self._edge = shapely.boundary(self._area)
         shapely.prepare(self._area)
