@@ -14,7 +14,8 @@ from recon.client import (
     StationUnreachableError,
 )
 from recon.client.address import parse_address
-from recon.client.http import LONGEST_ANSWER_BYTES, Http, OrderInvalidError
+from recon.client.errors import OrderInvalidError
+from recon.client.http import LONGEST_ANSWER_BYTES, Http
 from recon.client.messages import OrderMessage
 
 PROMPT_S = 5.0

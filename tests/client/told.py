@@ -1,4 +1,7 @@
-"""States as a station tells them, made by the API's own models."""
+"""States as a station tells them, by the API's own models.
+
+Keys the client does not read may be missing: the API may gain some.
+"""
 
 from typing import Any
 
@@ -10,7 +13,7 @@ RUN_STARTED_NS = 1_000_000_000_000
 def vehicle(serial: str | None = "SIM-1", age_s: float | None = 0.05) -> schema.VehicleView:
     """A vehicle that flies, every value of one age."""
     number = schema.AgedNumber(value=12.0, age_s=age_s)
-    return schema.VehicleView(
+    return schema.VehicleView.model_construct(
         number=1,
         serial=serial,
         link_id=1,
@@ -43,7 +46,7 @@ def vehicle(serial: str | None = "SIM-1", age_s: float | None = 0.05) -> schema.
 
 def command(number: int = 1, phase: schema.PhaseWord = "sent") -> schema.CommandView:
     """A hover in one phase."""
-    return schema.CommandView(
+    return schema.CommandView.model_construct(
         id=number,
         kind="hover",
         serial="SIM-1",
@@ -68,15 +71,9 @@ def state(
     commands: tuple[schema.CommandView, ...] = (),
 ) -> schema.StationState:
     """A whole state of a run of the station."""
-    return schema.StationState(
+    return schema.StationState.model_construct(
         time_ns=run_started_ns + uptime_ns,
-        station=schema.StationView(
-            version="test",
-            link_addresses=[],
-            uptime_s=uptime_ns / 1e9,
-            frames_dropped=0,
-            capture_folder=None,
-        ),
+        station=schema.StationView.model_construct(uptime_s=uptime_ns / 1e9),
         site=None,
         vehicles=list(vehicles),
         links=[],

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from recon.client.errors import ConnectionLostError, MaybeSentError
-from recon.client.http import Http, OrderInvalidError
+from recon.client.errors import ConnectionLostError, MaybeSentError, OrderInvalidError
+from recon.client.http import Http
 from recon.client.messages import OrderMessage, ResultMessage
 from recon.client.order import Order, VehicleAnswer
 from recon.client.order_form import order_form
