@@ -274,6 +274,9 @@ class TestBadApps:
         async def main() -> None:
             async with listening(LinkSettings(max_links=3)) as station:
                 links = [await station.connect() for _ in range(3)]
+                for _, _, writer in links:
+                    writer.write(core())
+                await station.until(lambda: len(station.of(PacketReceived)) == 3)
                 reader, writer = await asyncio.open_connection("127.0.0.1", station.server.port)
                 async with asyncio.timeout(PATIENCE_S):
                     with contextlib.suppress(ConnectionResetError):
@@ -284,6 +287,22 @@ class TestBadApps:
                 await station.until(lambda: len(station.server.connections) == 2)
                 links.append(await station.connect())
                 await close(*(link[2] for link in links[1:]))
+
+        run_on(loop, main)
+
+    def test_the_oldest_link_that_never_spoke_gives_way(self, loop: str) -> None:
+        async def main() -> None:
+            async with listening(LinkSettings(max_links=2)) as station:
+                spoken, _, first = await station.connect()
+                first.write(core())
+                await station.until(lambda: len(station.reports(spoken)) == 1)
+                mute, _, second = await station.connect()
+                real, _, third = await station.connect()
+                await station.until(lambda: station.closed_reason(mute) is not None)
+                assert "never spoken" in (station.closed_reason(mute) or "")
+                assert set(station.server.connections) == {spoken, real}
+                assert station.server.refused_connections == 0
+                await close(first, second, third)
 
         run_on(loop, main)
 

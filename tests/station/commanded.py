@@ -112,6 +112,10 @@ class Told:
     def times_s(self, order: int) -> list[float]:
         return [at_s for at_s, _, number in self.sent if number == order]
 
+    def bodies(self) -> list[Body]:
+        """What was handed to the links, in order."""
+        return [approved.command.body for approved in self.handed]
+
     def alarms(self, *, active: bool = True) -> set[str]:
         every: Iterable[Alarm] = self.station.alarms.alarms.values()
         return {alarm.condition.rule for alarm in every if alarm.is_active is active}

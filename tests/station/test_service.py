@@ -64,10 +64,14 @@ class TestAllStop:
         results = bench.service.all_stop("test").results
         assert [r.serial for r in results] == ["A"]
 
-    def test_a_vehicle_without_a_link_is_left_out(self, bench: Bench) -> None:
+    def test_a_vehicle_that_flew_when_its_link_closed_is_stopped_when_it_is_back(
+        self, bench: Bench
+    ) -> None:
         bench.open(1, extended(b"A"), core())
         bench.driver.handle(LinkClosed(1, "gone"))
-        assert bench.service.all_stop("test").results == []
+        (result,) = bench.service.all_stop("test").results
+        assert result.accepted
+        assert "waits until it is heard again" in (result.reason or "")
 
 
 class TestOrders:

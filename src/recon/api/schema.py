@@ -129,6 +129,7 @@ class LinkView(Message):
     meaningless: int
     bytes_skipped: int
     commands_queued: int
+    answers_not_believed: int = Field(description="acknowledgments that may answer another command")
 
 
 PhaseWord = Literal[
@@ -159,6 +160,7 @@ class CommandView(Message):
     id: int
     kind: str
     serial: str | None
+    link_id: int | None
     vehicle_name: str
     issued_by: str
     age_s: float
@@ -224,6 +226,8 @@ class StationView(Message):
     uptime_s: float
     frames_dropped: int
     capture_folder: str | None
+    capture_dropped_bytes: int
+    connections_refused: int
 
 
 class StationState(Message):
@@ -242,38 +246,44 @@ class StationState(Message):
 # --- what the station is asked -----------------------------------------------------------------
 
 
-class HoverOrder(Message):
+class Asked(Message):
+    """Base of what is asked: nothing is guessed from another type ("yes" is not true)."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class HoverOrder(Asked):
     """Stop and hold."""
 
     kind: Literal["hover"]
 
 
-class LandOrder(Message):
+class LandOrder(Asked):
     """Land where the vehicle is."""
 
     kind: Literal["land"]
 
 
-class ReturnHomeOrder(Message):
+class ReturnHomeOrder(Asked):
     """Return at the aircraft's own go-home height and land."""
 
     kind: Literal["return_home"]
 
 
-class CameraStartOrder(Message):
+class CameraStartOrder(Asked):
     """Send images."""
 
     kind: Literal["camera_start"]
     fps_hz: float
 
 
-class CameraStopOrder(Message):
+class CameraStopOrder(Asked):
     """Stop sending images."""
 
     kind: Literal["camera_stop"]
 
 
-class WaypointOrder(Message):
+class WaypointOrder(Asked):
     """One waypoint; null loiter and gimbal mean no action."""
 
     latitude_deg: float
@@ -285,7 +295,7 @@ class WaypointOrder(Message):
     gimbal_pitch_deg: float | None = None
 
 
-class MissionOrder(Message):
+class MissionOrder(Asked):
     """Fly waypoints, replacing any mission being flown."""
 
     kind: Literal["mission"]
@@ -294,7 +304,7 @@ class MissionOrder(Message):
     curved: bool = False
 
 
-class StickOrder(Message):
+class StickOrder(Asked):
     """One virtual stick packet (ground: x north, y east; body: x forward, y right)."""
 
     kind: Literal["stick"]
@@ -318,7 +328,7 @@ AnyOrder = Annotated[
 ]
 
 
-class OrderRequest(Message):
+class OrderRequest(Asked):
     """An order to named vehicles. `takeoff` is the explicit word that they may leave the ground."""
 
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=256)
@@ -332,6 +342,7 @@ class OrderResult(Message):
     serial: str | None
     link_id: int | None
     vehicle_name: str
+    is_simulated: bool
     accepted: bool
     command_id: int
     rule: str | None

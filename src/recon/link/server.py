@@ -62,6 +62,17 @@ class LinkServer:
         standing = (c.session for c in self.connections.values() if c.session is not None)
         return self.ended | {session.link_id: session for session in standing}
 
+    def has_room(self) -> bool:
+        """Return whether another link fits; the oldest that has never spoken must give way."""
+        if len(self.connections) < self.settings.max_links:
+            return True
+        for connection in tuple(self.connections.values()):
+            if connection.session is not None and not connection.session.has_spoken:
+                connection.close("others need the place, and it has never spoken")
+                self.connections.pop(connection.session.link_id, None)
+                return True
+        return False
+
     def forget(self, session: Session) -> None:
         """Take a session that is over from those that stand; the oldest ended one goes."""
         self.connections.pop(session.link_id, None)
@@ -110,7 +121,7 @@ class Connection(asyncio.BufferedProtocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin a session, or refuse the connection when there are too many."""
         self._transport = cast(asyncio.Transport, transport)
-        if len(self.server.connections) >= self.server.settings.max_links:
+        if not self.server.has_room():
             self.server.refused_connections += 1
             self._transport.abort()
             return
@@ -136,6 +147,8 @@ class Connection(asyncio.BufferedProtocol):
         now_ns = self.server.now_ns()
         self._record(Direction.FROM_APP, data, now_ns)
         self._take(self.session.receive(data, now_ns))
+        if self.session.closing_reason is not None:
+            self.close(self.session.closing_reason)
         # An answer may be what the next command has waited for.
         if self.session.commands_queued:
             self.pump()

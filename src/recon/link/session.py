@@ -60,6 +60,11 @@ class Session:
         """How many orders wait to be sent."""
         return len(self._outbox)
 
+    @property
+    def has_spoken(self) -> bool:
+        """Whether a valid packet has ever come."""
+        return self._has_spoken
+
     def receive(self, data: bytes, now_ns: int) -> list[Event]:
         """Take bytes off the socket; return what they said."""
         self.bytes_received += len(data)

@@ -128,7 +128,11 @@ class Phase(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """A command that is not sent: which rule says no, and why."""
+    """A command that is not sent: which rule says no, and why.
+
+    `is_unheard`: only because the vehicle cannot be heard now; a stop waits for that.
+    """
 
     rule: str
     reason: str
+    is_unheard: bool = False

@@ -69,9 +69,11 @@ def approve(command: Command, situation: Situation) -> ApprovedCommand | Refusal
 def _link_ids(command: Command, situation: Situation) -> tuple[int, ...]:
     """Every link that claims to be the vehicle; hover and return spare those on the ground.
 
-    On the ground, apps in the field answer hover and return with a takeoff.
+    On the ground, apps in the field answer hover and return with a takeoff. Only a hover may ask
+    for one.
     """
-    wakes = isinstance(command.body, Hover | ReturnHome) and not command.takeoff
+    is_hover = isinstance(command.body, Hover) and not command.takeoff
+    wakes = is_hover or isinstance(command.body, ReturnHome)
     return tuple(
         claimant.link_id
         for claimant in situation.claimants

@@ -8,6 +8,7 @@ from recon.model.command import (
     CAMERA_BODIES,
     Command,
     FlyMission,
+    Hover,
     LandNow,
     Phase,
     Refusal,
@@ -16,7 +17,7 @@ from recon.model.event import CommandAnswered, CommandDropped, CommandSent, Oper
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand, Claimant, Situation, approve
-from recon.station import orders
+from recon.station import orders, stick_zero
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
 from recon.station.settings import StationSettings
@@ -40,7 +41,12 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     )
     judged = approve(command, situation(station, command, now_ns))
     if isinstance(judged, Refusal):
+        if _may_wait(command, judged):
+            station = _supersede_older(station, command, now_ns)
+            return _put(station, _waiting(station, command, judged, now_ns)), ()
         return _put(station, _refused(station, command, judged, now_ns)), ()
+    if lane_of(command) is not Lane.CAMERA:
+        station = stick_zero.forget(station, command)
     station = _supersede_older(station, command, now_ns)
     return _put(station, _queued(station, command, judged, now_ns)), (SendCommand(judged),)
 
@@ -64,6 +70,7 @@ def follow(
         return station
     match event:
         case CommandSent():
+            station = stick_zero.begin(station, record.command, now_ns)
             return _put(station, orders.on_sent(record, event, _context(station, record, now_ns)))
         case CommandAnswered():
             return _put(station, orders.on_answered(record, event, now_ns))
@@ -83,7 +90,11 @@ def watch(station: Station, now_ns: int) -> Stepped:
             outputs += again
         if updated is not record:
             station = _put(station, updated)
-    return station, tuple(outputs)
+    for order in stick_zero.due(station, now_ns):
+        station = stick_zero.forget(station, order)
+        station, zero = place(station, order, now_ns)
+        outputs += zero
+    return stick_zero.give_up(station, now_ns), tuple(outputs)
 
 
 def _claimants(station: Station, command: Command) -> tuple[Claimant, ...]:
@@ -101,6 +112,24 @@ def _refused(station: Station, command: Command, refusal: Refusal, now_ns: int) 
     note = f"{refusal.rule}: {refusal.reason}"
     change = PhaseChange(Phase.REFUSED_BY_STATION, now_ns, note)
     return OrderRecord(command, _name(station, command), (change,), is_watched=False)
+
+
+def _may_wait(command: Command, refusal: Refusal) -> bool:
+    """Whether a stop is refused only because the vehicle, last known to fly, is not heard now."""
+    return isinstance(command.body, Hover) and not command.takeoff and refusal.is_unheard
+
+
+def _waiting(station: Station, command: Command, refusal: Refusal, now_ns: int) -> OrderRecord:
+    expires_at_ns = now_ns + seconds_to_ns(station.settings.stop_waits_s)
+    note = f"waits until it is heard again: {refusal.reason}"
+    return OrderRecord(
+        command=replace(command, expires_at_ns=expires_at_ns),
+        vehicle_name=_name(station, command),
+        history=(PhaseChange(Phase.QUEUED, now_ns, note),),
+        next_repeat_ns=now_ns,
+        repeats_left=station.settings.emergency_repeats,
+        waits_to_be_heard=True,
+    )
 
 
 def _queued(
@@ -173,6 +202,8 @@ def _confirm(station: Station, record: OrderRecord, now_ns: int) -> tuple[OrderR
     if seen is Progress.COMPLETE:
         is_land = isinstance(body, LandNow)
         note = "by telemetry: it is on the ground" if is_land else "by telemetry"
+        if record.phase is Phase.TIMED_OUT:
+            note += ", after its time"
         return orders.changed(record, Phase.CONFIRMED, now_ns, note, is_watched=False), seen
     if record.command.is_emergency and all(pilot_took_over(sent, state) for state in states):
         note = "the pilot has taken over"
@@ -237,7 +268,8 @@ def _repeat(
         command = replace(command, takeoff=False)
     judged = approve(command, situation(station, command, now_ns))
     if isinstance(judged, Refusal):
-        return record, ()
+        waits = record.waits_to_be_heard and record.sent is None
+        return (replace(record, next_repeat_ns=now_ns) if waits else record), ()
     waiting = tuple(dict.fromkeys((*record.waiting_link_ids, *judged.link_ids)))
     return replace(record, waiting_link_ids=waiting), (SendCommand(judged),)
 

@@ -23,7 +23,10 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _landing(vehicle, station.settings.landing_wait_s)
     for link in station.fleet.unbound_links():
         yield from _unidentified(link)
+        if link.own_state.is_flying.value is not False:
+            yield from _silence(link.own_state, now_ns)
     for record in station.orders.watched:
+        yield from _waiting(record)
         yield from _unconfirmed(record)
         yield from _stopped_landing(station, record)
     yield from _imaging(station)
@@ -96,6 +99,21 @@ def _unidentified(link: LinkRecord) -> Iterator[Condition]:
     if link.claimed_serial is None and link.own_state.is_flying.value is True:
         text = f"a vehicle without a serial is flying ({link.remote_address})"
         yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s=2.0)
+
+
+def _waiting(record: OrderRecord) -> Iterator[Condition]:
+    if not record.waits_to_be_heard or record.phase is not Phase.QUEUED:
+        return
+    name = record.vehicle_name
+    yield Condition(
+        key=f"stop_waits:{record.command.id}",
+        severity=Severity.CRITICAL,
+        rule="stop_waits",
+        vehicle_name=name,
+        text=f"{name}: a stop waits until the vehicle is heard again",
+        serial=record.command.serial,
+        link_id=record.command.link_id,
+    )
 
 
 def _unconfirmed(record: OrderRecord) -> Iterator[Condition]:

@@ -34,6 +34,8 @@ class OrderRecord:
     is_watched: bool = True
     next_repeat_ns: int | None = None
     repeats_left: int = 0
+    waits_to_be_heard: bool = False
+    """A stop for a vehicle that cannot be heard: judged anew with every word of it."""
     waiting_link_ids: tuple[int, ...] = ()
     """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""
 

@@ -51,15 +51,21 @@ class Service:
     def all_stop(self, issued_by: str) -> schema.OrderResponse:
         """Hold every link whose telemetry says flying, identified or not.
 
-        A vehicle that is on the ground, or whose telemetry is too old to tell, is in the results
-        with the gate's refusal.
+        What is on the ground or has no connection is in the results with the gate's refusal: nobody
+        that may be in the air is left out in silence.
         """
         fleet = self.driver.station.fleet
-        serials = [s for s in fleet.vehicles if fleet.link_ids_claiming(s)]
+        serials = [
+            serial
+            for serial, vehicle in fleet.vehicles.items()
+            if fleet.link_ids_claiming(serial) or vehicle.is_flying.value is not False
+        ]
         links = [
             link.id
             for link in fleet.unbound_links()
-            if link.claimed_serial is None and link.own_state.is_flying.value is True
+            if link.claimed_serial is None
+            and link.own_state.core_received_at_ns is not None
+            and link.own_state.is_flying.value is not False
         ]
         orders = [OperatorOrder(self._ids(), Hover(), issued_by, serial=s) for s in serials]
         orders += [OperatorOrder(self._ids(), Hover(), issued_by, link_id=i) for i in links]
@@ -92,7 +98,10 @@ class Service:
     def _give_one(self, order: OperatorOrder) -> schema.OrderResult:
         """Give an order and read its record at once: of many, the first are soon forgotten."""
         self.driver.handle(order)
-        return _result(self.driver.station.orders.records[order.command_id])
+        station = self.driver.station
+        target = station.target(order.serial, order.link_id)
+        is_simulated = target is not None and target.is_simulated
+        return _result(station.orders.records[order.command_id], is_simulated)
 
     def _surroundings(self, now_ns: int) -> Surroundings:
         links = self.driver.links
@@ -100,12 +109,16 @@ class Service:
         return Surroundings(sessions, self._station_view(now_ns), site_view(self.site))
 
     def _station_view(self, now_ns: int) -> schema.StationView:
+        links = self.driver.links
+        capture = None if links is None else links.capture
         return schema.StationView(
             version=__version__,
             link_addresses=self.link_addresses,
             uptime_s=ns_to_seconds(now_ns - self.driver.started_at_ns),
             frames_dropped=self.driver.station.imaging.frames_dropped,
             capture_folder=self.capture_folder,
+            capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
+            connections_refused=0 if links is None else links.refused_connections,
         )
 
 
@@ -124,15 +137,16 @@ def site_view(site: Site) -> schema.SiteView:
     )
 
 
-def _result(record: OrderRecord) -> schema.OrderResult:
+def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
     is_refused = record.phase is Phase.REFUSED_BY_STATION
     rule, _, reason = record.note.partition(": ")
     return schema.OrderResult(
         serial=record.command.serial,
         link_id=record.command.link_id,
         vehicle_name=record.vehicle_name,
+        is_simulated=is_simulated,
         accepted=not is_refused,
         command_id=record.command.id,
         rule=rule if is_refused else None,
-        reason=reason if is_refused else None,
+        reason=reason if is_refused else record.note or None,
     )

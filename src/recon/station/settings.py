@@ -16,6 +16,10 @@ class StationSettings:
     order_expiry_s: float = 5.0
     """An order not on the wire by then is not what its giver sees any more."""
 
+    stop_waits_s: float = 30.0
+    """A hover that cannot be judged now, for telemetry is old or the connection is gone, waits this
+    long for the vehicle to be heard again: a stop must not be lost in a gap of telemetry."""
+
     emergency_repeat_s: float = 0.7
     emergency_repeats: int = 3
     """Decisions on the ICD, 16: every 0.7 s, three at most, until telemetry confirms."""
@@ -32,8 +36,13 @@ class StationSettings:
     camera_confirm_s: float = 8.0
     stick_confirm_s: float = 2.0
 
+    stick_zero_waits_s: float = 3.0
+    """After a stick's time the mode may still be on its way; later than this nothing flies it."""
+
     orders_kept: int = 200
     alarms_kept: int = 200
+    app_messages_kept: int = 8
+    """Unseen messages of one app: a talkative app must not push out what matters."""
 
     frames_kept: int = 16
     """The newest frame of this many vehicles: 25 MB each at most."""

@@ -4,12 +4,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.fleet.state import Fleet
+from recon.model.command import Command, VirtualStick
 from recon.model.imagery import Frame
 from recon.model.vehicle import VehicleState
 from recon.station.alarms import AlarmBook
 from recon.station.imaging import Imaging
 from recon.station.orders import OrderBook
 from recon.station.settings import StationSettings
+
+
+@dataclass(frozen=True, slots=True)
+class PendingZero:
+    """A stick that is being held, and when its time is over."""
+
+    command: Command
+    body: VirtualStick
+    due_at_ns: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +34,8 @@ class Station:
     frames: Mapping[str, Frame] = field(default_factory=dict)
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
+    sticks: Mapping[str, PendingZero] = field(default_factory=dict)
+    """Sticks being held, by serial: each ends with a zero from the station."""
 
     def target(self, serial: str | None, link_id: int | None) -> VehicleState | None:
         """Return the state an order's target has now: a vehicle, or a link without identity.

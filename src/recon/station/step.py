@@ -38,7 +38,10 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return commanding.place(station, event, now_ns)
         case CommandSent() | CommandAnswered() | CommandDropped():
             return commanding.follow(station, event, now_ns), ()
-        case LinkOpened() | LinkClosed():
+        case LinkOpened():
+            return _fleet(station, event, now_ns)
+        case LinkClosed(link_id, reason):
+            station = _lost_unidentified(station, link_id, reason, now_ns)
             return _fleet(station, event, now_ns)
         case PacketReceived():
             return _packet(station, event, now_ns)
@@ -56,6 +59,24 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
 def _fleet(station: Station, event: Event, now_ns: int) -> Stepped:
     fleet, closing = fleet_step.step(station.fleet, event, now_ns)
     return replace(station, fleet=fleet), closing
+
+
+def _lost_unidentified(station: Station, link_id: int, reason: str, now_ns: int) -> Station:
+    """What flew without ever saying its serial is gone from the fleet, not from the air."""
+    link = station.fleet.links.get(link_id)
+    if link is None or link.claimed_serial is not None or not link.own_state.is_flying.value:
+        return station
+    name = link.own_state.display_name
+    condition = Condition(
+        key=f"unidentified_lost:{link_id}",
+        severity=Severity.CRITICAL,
+        rule="unidentified_lost",
+        vehicle_name=name,
+        text=f"{name}: a vehicle without a serial was flying when its link ended ({reason})",
+        link_id=link_id,
+    )
+    book = alarms.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book)
 
 
 def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
@@ -134,6 +155,8 @@ def _message(
         return station
     is_error = report.severity is MessageSeverity.ERROR
     who = vehicle.serial if vehicle.serial is not None else f"link {vehicle.link_id}"
+    if _unseen_messages(station, f"app:{who}:") >= station.settings.app_messages_kept:
+        return station
     condition = Condition(
         key=f"app:{who}:{report.text}",
         severity=Severity.ERROR if is_error else Severity.WARNING,
@@ -145,3 +168,8 @@ def _message(
     )
     book = alarms.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
     return replace(station, alarms=book)
+
+
+def _unseen_messages(station: Station, key_start: str) -> int:
+    alarms_kept = station.alarms.alarms.values()
+    return sum(alarm.condition.key.startswith(key_start) for alarm in alarms_kept)

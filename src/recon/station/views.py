@@ -162,6 +162,7 @@ def _link(fleet: Fleet, record: LinkRecord, around: Surroundings, now_ns: int) -
         meaningless=record.meaningless,
         bytes_skipped=0 if counters is None else counters.bytes_skipped,
         commands_queued=0 if session is None else session.commands_queued,
+        answers_not_believed=0 if session is None else session.acks.unbelieved,
     )
 
 
@@ -176,8 +177,12 @@ def _link_status(fleet: Fleet, record: LinkRecord) -> Any:
 
 
 def _commands(station: Station, now_ns: int) -> list[schema.CommandView]:
-    newest = sorted(station.orders.records.values(), key=lambda r: r.command.id, reverse=True)
+    newest = sorted(station.orders.records.values(), key=_issued, reverse=True)
     return [_command(record, now_ns) for record in newest[:SHOWN_ORDERS]]
+
+
+def _issued(record: OrderRecord) -> tuple[int, int]:
+    return record.command.issued_at_ns, record.command.id
 
 
 def _command(record: OrderRecord, now_ns: int) -> schema.CommandView:
@@ -186,11 +191,12 @@ def _command(record: OrderRecord, now_ns: int) -> schema.CommandView:
         id=command.id,
         kind=command.name,
         serial=command.serial,
+        link_id=command.link_id,
         vehicle_name=record.vehicle_name,
         issued_by=command.issued_by,
         age_s=ns_to_seconds(now_ns - command.issued_at_ns),
         phase=record.phase.value,
-        is_final=record.phase.is_final,
+        is_final=not record.is_watched,
         note=record.note,
         times_sent=record.times_sent,
         takeoff=command.takeoff,

@@ -24,6 +24,10 @@ from recon.vehicles.text import printable
 PLACEHOLDER_SERIAL = b"00000"
 """What apps send before they know the aircraft's serial."""
 
+HIGHEST_M = 20_000.0
+FASTEST_MPS = 150.0
+"""No drone is higher, lower or faster. A good hash never means plausible: beyond, it is unknown."""
+
 _E = TypeVar("_E", bound=IntEnum)
 
 
@@ -39,8 +43,8 @@ def _core(packet: wire.CoreTelemetry) -> CoreReport:
     return CoreReport(
         is_flying=_flag(packet.is_flying),
         position=_position(packet.latitude_deg, packet.longitude_deg),
-        reported_altitude_m=_finite(packet.altitude_m),
-        height_above_takeoff_m=_finite(packet.height_above_takeoff_m),
+        reported_altitude_m=_height(packet.altitude_m),
+        height_above_takeoff_m=_height(packet.height_above_takeoff_m),
         velocity_ned=_velocity(packet),
         attitude=_attitude(packet),
     )
@@ -135,9 +139,13 @@ def _position(latitude_deg: float, longitude_deg: float) -> LatLon | None:
     return point if point.is_valid() and not is_placeholder else None
 
 
+def _height(value: float) -> float | None:
+    return value if abs(value) <= HIGHEST_M else None
+
+
 def _velocity(packet: wire.CoreTelemetry) -> VelocityNed | None:
     values = (packet.velocity_north_mps, packet.velocity_east_mps, packet.velocity_down_mps)
-    return VelocityNed(*values) if all(map(isfinite, values)) else None
+    return VelocityNed(*values) if all(abs(v) <= FASTEST_MPS for v in values) else None
 
 
 def _attitude(packet: wire.CoreTelemetry) -> Attitude | None:

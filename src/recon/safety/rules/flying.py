@@ -21,13 +21,21 @@ def flying(command: Command, situation: Situation) -> Refusal | None:
         return None
     if any(_says_flying(claimant, situation) for claimant in situation.claimants):
         return None
-    return Refusal(RULE, f"{vehicle.display_name}: {_why(vehicle, situation)}")
+    reason = f"{vehicle.display_name}: {_why(vehicle, situation)}"
+    return Refusal(RULE, reason, is_unheard=_is_unheard(vehicle, situation))
 
 
 def _says_flying(claimant: Claimant, situation: Situation) -> bool:
     age_s = claimant.is_flying.age_s(situation.now_ns)
     is_fresh = age_s is not None and age_s <= situation.settings.fresh_telemetry_s
     return is_fresh and claimant.is_flying.value is True
+
+
+def _is_unheard(vehicle: VehicleState, situation: Situation) -> bool:
+    """Whether the vehicle was last known to fly and its telemetry is too old to say so now."""
+    age_s = vehicle.is_flying.age_s(situation.now_ns)
+    is_old = age_s is not None and age_s > situation.settings.fresh_telemetry_s
+    return is_old and vehicle.is_flying.value is True
 
 
 def _why(vehicle: VehicleState, situation: Situation) -> str:

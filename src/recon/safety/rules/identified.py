@@ -5,20 +5,25 @@ from recon.safety.situation import Situation
 
 
 def identified(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse anything but an emergency order without a serial, or while its owner is unsettled."""
+    """Refuse anything but an emergency order without a serial, or while its owner is unsettled.
+
+    An emergency order that may take off is one order for one known aircraft, and no exception.
+    """
     vehicle = situation.vehicle
-    if command.is_emergency or vehicle is None:
+    if vehicle is None or (command.is_emergency and not command.takeoff):
         return None
     if vehicle.serial is None:
         return Refusal(
             "identified",
-            f"link {command.link_id} has not said its serial: it takes emergency orders only",
+            f"link {command.link_id} has not said its serial: "
+            "it takes emergency orders without takeoff only",
         )
     if vehicle.rival_link_ids:
         return Refusal(
             "identified",
             f"{vehicle.display_name}: links {_listed(situation)} claim this serial; "
-            "only hold, land and return are sent until one of them closes or falls silent",
+            "only hold, land and return, none with takeoff, are sent until one of them closes or "
+            "falls silent",
         )
     return None
 

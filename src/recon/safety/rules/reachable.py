@@ -11,5 +11,9 @@ def reachable(command: Command, situation: Situation) -> Refusal | None:
         return Refusal("reachable", f"{who} is not known: no app has said this serial")
     if not situation.claimants:
         name = situation.vehicle.display_name
-        return Refusal("reachable", f"{name} has no connection: its app must connect first")
+        return Refusal(
+            "reachable",
+            f"{name} has no connection: its app must connect first",
+            is_unheard=situation.vehicle.is_flying.value is True,
+        )
     return None

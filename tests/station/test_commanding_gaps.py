@@ -1,0 +1,110 @@
+"""A stop is not lost in a gap of telemetry, and a stick ends with a zero from the station."""
+
+from dataclasses import replace
+
+from tests.fleet.said import core, extended
+from tests.safety.cases import STICK, mission
+from tests.station.commanded import Told, flying
+
+from recon.model.command import Hover, LandNow, Phase, ReturnHome, VirtualStick
+from recon.model.vehicle import FlightMode
+
+GROUND = (core(flying=False), extended(mode=FlightMode.GPS_ATTI))
+JOYSTICK = (core(velocity=(5.0, 0.0, 0.0)), extended(mode=FlightMode.JOYSTICK))
+PILOT = (core(velocity=(5.0, 0.0, 0.0)), extended(mode=FlightMode.GPS_SPORT))
+HELD = replace(STICK, velocity_x_mps=5.0, velocity_y_mps=0.0, timeout_s=1.0)
+
+
+def silent() -> Told:
+    """A vehicle in a mission that has not been heard for five seconds."""
+    told = flying()
+    told.talk.clear()
+    return told.passes(5.0)
+
+
+class TestAStopInAGap:
+    def test_it_goes_out_as_soon_as_the_vehicle_is_heard_flying(self) -> None:
+        told = silent()
+        order = told.order(Hover())
+        assert told.phase(order) is Phase.QUEUED
+        assert told.sent == []
+        told.passes(4.0)
+        assert "stop_waits" in told.alarms()
+        told.says(1, core(velocity=(5.0, 0.0, 0.0)))
+        assert told.phase(order) is Phase.SENT
+        assert "stop_waits" not in told.passes(0.1).alarms()
+
+    def test_it_goes_to_the_link_on_which_the_vehicle_comes_back(self) -> None:
+        told = silent().closes(1)
+        order = told.order(Hover())
+        told.opens(2, core(velocity=(5.0, 0.0, 0.0)), extended())
+        told.says(2, core(velocity=(5.0, 0.0, 0.0)))
+        assert told.phase(order) is Phase.SENT
+        assert {link for _, link, _ in told.sent} == {2}
+
+    def test_it_never_goes_to_a_vehicle_that_has_landed_meanwhile(self) -> None:
+        told = silent()
+        order = told.order(Hover())
+        told.keeps_saying(1, *GROUND).passes(40.0)
+        assert told.sent == []
+        assert told.phase(order) is Phase.EXPIRED
+
+    def test_what_never_went_raises_an_alarm_that_stays(self) -> None:
+        told = silent()
+        order = told.order(Hover())
+        told.passes(31.0)
+        assert told.phase(order) is Phase.EXPIRED
+        assert "order_not_confirmed" in told.passes(60.0).alarms()
+
+    def test_a_newer_order_ends_the_wait(self) -> None:
+        told = silent()
+        order = told.order(Hover())
+        told.order(LandNow())
+        assert told.phase(order) is Phase.SUPERSEDED
+
+    def test_nothing_that_starts_motion_waits(self) -> None:
+        for body in (ReturnHome(), mission(), STICK):
+            told = silent()
+            assert told.phase(told.order(body)) is Phase.REFUSED_BY_STATION
+        assert told.phase(told.order(Hover(), takeoff=True)) is not Phase.QUEUED or told.sent
+
+
+class TestTheZeroOfAStick:
+    def sticks(self, told: Told) -> list[VirtualStick]:
+        return [body for body in told.bodies() if isinstance(body, VirtualStick)]
+
+    def test_it_is_sent_when_the_time_is_over(self) -> None:
+        told = flying()
+        told.order(HELD)
+        told.keeps_saying(1, *JOYSTICK).passes(0.9)
+        assert len(self.sticks(told)) == 1
+        told.passes(0.3)
+        first, zero = self.sticks(told)
+        assert (zero.velocity_x_mps, zero.velocity_y_mps) == (0.0, 0.0)
+        assert (zero.yaw_deg, zero.height_above_takeoff_m) == (
+            first.yaw_deg,
+            first.height_above_takeoff_m,
+        )
+        told.passes(10.0)
+        assert len(self.sticks(told)) == 2
+
+    def test_a_newer_order_takes_its_place(self) -> None:
+        for newer in (Hover(), LandNow(), HELD):
+            told = flying()
+            told.order(HELD)
+            told.keeps_saying(1, *JOYSTICK).passes(0.5)
+            told.order(newer)
+            told.passes(0.8)
+            assert not any(s.velocity_x_mps == 0.0 for s in self.sticks(told))
+
+    def test_the_pilot_is_not_fought(self) -> None:
+        told = flying()
+        told.order(HELD)
+        told.keeps_saying(1, *JOYSTICK).passes(0.5).keeps_saying(1, *PILOT).passes(10.0)
+        assert len(self.sticks(told)) == 1
+
+    def test_a_standing_stick_needs_none(self) -> None:
+        told = flying()
+        told.order(replace(HELD, velocity_x_mps=0.0))
+        told.keeps_saying(1, *JOYSTICK).passes(10.0)
+        assert len(self.sticks(told)) == 1
