@@ -127,7 +127,7 @@ def test_a_damaged_capture_says_where() -> None:
 
 def test_a_missing_file_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(typer.Exit) as left:
-        inspect_command(str(tmp_path / "none"))
+        inspect_command([str(tmp_path / "none")])
     assert left.value.exit_code == 2
     told = capsys.readouterr().err
     assert told.startswith("recon inspect: cannot read ")
@@ -139,10 +139,21 @@ def test_a_file_and_a_pipe_show_the_same(
 ) -> None:
     file = tmp_path / "stream.bin"
     file.write_bytes(ACK + HOVER)
-    inspect_command(str(file))
-    program = "from recon.cli.inspect import inspect_command; inspect_command('-')"
+    inspect_command([str(file)])
+    program = "from recon.cli.inspect import inspect_command; inspect_command(['-'])"
     piped = subprocess.run(
         [sys.executable, "-c", program], input=file.read_bytes(), capture_output=True, check=True
     )
     assert piped.stdout.decode() == capsys.readouterr().out
     assert b"Acknowledgment" in piped.stdout
+
+
+def test_several_files_follow_each_other_by_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, data in (("a.bin", ACK), ("b.bin", HOVER)):
+        (tmp_path / name).write_bytes(data)
+    inspect_command([str(tmp_path / "a.bin"), str(tmp_path / "b.bin")])
+    told = capsys.readouterr().out
+    assert told.index("a.bin") < told.index("Acknowledgment") < told.index("b.bin")
+    assert told.index("b.bin") < told.index("EmergencyCommand")

@@ -33,12 +33,22 @@ class DamagedCaptureError(Exception):
 
 
 def inspect_command(
-    file: Annotated[
-        str, typer.Argument(help="Bytes as they were received, or a capture; - for stdin.")
+    files: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="FILE...", help="Bytes as they were received, or captures; - for stdin."
+        ),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
 ) -> None:
     """Print the packets of a captured byte stream, then what the deframer counted."""
+    for file in files:
+        if len(files) > 1 and not as_json:
+            typer.echo(f"== {harmless(file.encode(errors='replace'))}")
+        _inspect_file(file, as_json)
+
+
+def _inspect_file(file: str, as_json: bool) -> None:
     try:
         if file == "-":
             inspect(sys.stdin.buffer, as_json, sys.stdout)

@@ -6,6 +6,7 @@
     |- SiteError            recon.site: a site's folder
     |- RecordError          recon.record: files written of a flight
     |- SimulationError      recon.sim: options and inputs of the simulator
+    |- ClientError          recon.client: the way to a station
     |- StartError           recon.station: the station cannot start
 
 The command line prints the text of a `ReconError` as one sentence and exits with 1. Refused

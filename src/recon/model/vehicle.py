@@ -180,11 +180,6 @@ class VehicleState:
     track: tuple[TrackPoint, ...] = field(default=())
 
     @property
-    def is_identified(self) -> bool:
-        """Whether the vehicle has a serial."""
-        return self.serial is not None
-
-    @property
     def display_name(self) -> str:
         """The name people see."""
         if self.profile is not None:
