@@ -9,7 +9,7 @@ from tests.station.commanded import Told
 from recon.model.event import DeadlineMissed, WorkerResult
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
-from recon.model.report import ImageReport
+from recon.model.report import ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.station.imaging import LAY_FRAME
 from recon.station.settings import StationSettings
@@ -77,3 +77,26 @@ def test_the_eyes_telemetry_is_kept_for_its_frames() -> None:
     told.station = replace(told.station, imaging=imaging)
     told.opens(1, extended("A"), core(), core(position=None))
     assert len(told.station.imaging.samples) == 1
+
+
+class TestWhatMustNotGoUnseen:
+    def test_a_vehicle_without_a_serial_that_flew_when_its_link_ended_is_an_alarm(self) -> None:
+        told = Told().opens(1, core()).passes(0.5).closes(1).passes(1.0)
+        assert "unidentified_lost" in told.alarms(active=False)
+
+    def test_one_that_stood_on_the_ground_is_none(self) -> None:
+        told = Told().opens(1, core(flying=False)).passes(0.5).closes(1).passes(1.0)
+        assert told.alarms(active=False) == set()
+
+    def test_a_silent_vehicle_without_a_serial_is_lost_like_any_other(self) -> None:
+        told = Told().opens(1, core()).passes(4.0)
+        assert "link_lost" in told.alarms()
+
+    def test_a_talkative_app_leaves_room_for_others(self) -> None:
+        told = Told().opens(1, core(), extended("A")).opens(2, core(), extended("B"))
+        for number in range(50):
+            told.says(1, MessageReport(MessageSeverity.ERROR, f"trouble {number}"))
+        told.says(2, MessageReport(MessageSeverity.ERROR, "one thing"))
+        texts = [a.condition.text for a in told.station.alarms.alarms.values()]
+        assert sum("trouble" in text for text in texts) == 8
+        assert any("one thing" in text for text in texts)

@@ -219,3 +219,25 @@ def test_whatever_core_telemetry_says_what_is_known_is_finite(packet: wire.CoreT
 def test_two_serials_are_never_taken_for_one(a: bytes, b: bytes) -> None:
     one, other = to_serial(a), to_serial(b)
     assert a == b or one is None or one != other
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("altitude_m", 20_001.0),
+        ("height_above_takeoff_m", 1e300),
+        ("height_above_takeoff_m", -20_001.0),
+        ("velocity_north_mps", 151.0),
+        ("velocity_down_mps", -3e38),
+    ],
+)
+def test_what_no_drone_can_do_is_unknown(field: str, value: float) -> None:
+    report = to_report(wire.CoreTelemetry(**{**CORE, field: value}))
+    assert isinstance(report, CoreReport)
+    said = {
+        "altitude_m": report.reported_altitude_m,
+        "height_above_takeoff_m": report.height_above_takeoff_m,
+        "velocity_north_mps": report.velocity_ned,
+        "velocity_down_mps": report.velocity_ned,
+    }
+    assert said[field] is None
