@@ -79,6 +79,7 @@ export class FakeStation {
       serial,
       link_id: index + 1,
       vehicle_name: this.nameOf(serial),
+      is_simulated: this.isSimulated(serial),
       accepted: true,
       command_id: 40 + index,
       rule: null,
@@ -90,6 +91,10 @@ export class FakeStation {
   private stopAll() {
     this.allStops += 1;
     return { json: { results: [] } };
+  }
+
+  private isSimulated(serial: string): boolean {
+    return this.state.vehicles.find((vehicle) => vehicle.serial === serial)?.is_simulated ?? false;
   }
 
   private nameOf(serial: string): string {

@@ -2,19 +2,17 @@ import { describe, expect, it } from "vitest";
 import type { OrderResult } from "../protocol";
 import type { NamedOrder, Outcome } from "../source/stationSource";
 import { FakeClock } from "../testing/fakeClock";
-import { vehicle } from "../testing/world";
+import { orderResult, vehicle } from "../testing/world";
 import { ALL_WELL_FOR_MS, createDesk } from "./desk";
 import { targetsKey, targetsOf } from "./targets";
 
-const REFUSED: OrderResult = {
+const REFUSED = orderResult({
   serial: "A",
-  link_id: 1,
-  vehicle_name: "Alder",
   accepted: false,
   command_id: 3,
   rule: "flying",
   reason: "it is on the ground",
-};
+});
 
 type Results = Outcome<readonly OrderResult[]>;
 

@@ -147,7 +147,7 @@ describe("alarms", () => {
 describe("commands", () => {
   it("show their life with the newest first, and the reason of a refusal", () => {
     const refused = command(9, { phase: "refused_by_station", note: "flying: on the ground" });
-    const root = show(CommandList, station([], { commands: [command(8), refused] }));
+    const root = show(CommandList, station([], { commands: [refused, command(8)] }));
     const rows = [...root.querySelectorAll("[data-testid^=command-]")];
     expect(rows.map((row) => row.getAttribute("data-testid"))).toEqual(["command-9", "command-8"]);
     expect(rows[0]?.textContent).toContain("flying: on the ground");
@@ -158,6 +158,21 @@ describe("commands", () => {
       "acknowledged +0.2 s",
       "confirmed +2.6 s",
     ]);
+  });
+
+  it("stand in the station's order, and its own have negative numbers", () => {
+    const own = command(-5, { kind: "stick", issued_by: "station" });
+    const given = { commands: [own, command(8), command(-4)] };
+    const root = show(CommandList, station([], given));
+    const rows = [...root.querySelectorAll("[data-testid^=command-]")];
+    expect(rows.map((row) => row.getAttribute("data-testid"))).toEqual([
+      "command--5",
+      "command-8",
+      "command--4",
+    ]);
+    expect(rows[0]?.textContent).toContain("#-5 by station");
+    page.say(station([], { commands: [command(9), ...given.commands] }));
+    expect(root.querySelector("li")?.getAttribute("data-testid")).toBe("command-9");
   });
 
   it("tell the note of each step beside it, and none twice", () => {
@@ -195,6 +210,13 @@ describe("links", () => {
     expect(rows[0]?.textContent).toContain("2 bad hash, 40 bytes skipped");
   });
 
+  it("count the answers that were not believed, once there is one", () => {
+    const root = show(LinkList, station([], { links: [link(1)] }));
+    expect(root.textContent).not.toContain("not believed");
+    page.say(station([], { links: [link(1, { answers_not_believed: 2 })] }));
+    expect(root.textContent).toContain("2 answers not believed");
+  });
+
   it("are one line each until they are opened, and stay open through new states", () => {
     const root = show(LinkList, station([], { links: [link(1), link(2, { bad_size: 1 })] }));
     const open = () => [...root.querySelectorAll("details")].map((details) => details.open);
@@ -205,6 +227,18 @@ describe("links", () => {
     page.say(station([], { links: [link(1), link(2, { bad_size: 2 })] }));
     expect(open()).toEqual([true, false]);
     expect(find(root, "details").textContent).toContain("2 bad size");
+  });
+});
+
+describe("the station", () => {
+  it("tells of refused connections and a capture with holes, once there are any", () => {
+    const state = station([]);
+    const root = show(StationPanel, state);
+    expect(root.textContent).not.toMatch(/refused|Missing/);
+    const lossy = { ...state.station, connections_refused: 3, capture_dropped_bytes: 2_500 };
+    page.say(station([], { station: lossy }));
+    expect(root.textContent).toContain("Connections refused3");
+    expect(root.textContent).toContain("Missing from the capture2.5 kB");
   });
 });
 

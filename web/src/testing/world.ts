@@ -1,4 +1,11 @@
-import type { AlarmView, CommandView, LinkView, StationState, VehicleView } from "../protocol";
+import type {
+  AlarmView,
+  CommandView,
+  LinkView,
+  OrderResult,
+  StationState,
+  VehicleView,
+} from "../protocol";
 
 /** The field the false vehicles fly over. */
 export const FIELD = { lat: 44.7, lon: -93.07 };
@@ -70,6 +77,7 @@ export function link(id: number, changes: Partial<LinkView> = {}): LinkView {
     meaningless: 0,
     bytes_skipped: 0,
     commands_queued: 0,
+    answers_not_believed: 0,
     ...changes,
   };
 }
@@ -101,6 +109,7 @@ export function command(id: number, changes: Partial<CommandView> = {}): Command
     id,
     kind: "hover",
     serial: "SN-001",
+    link_id: 1,
     vehicle_name: "Alder",
     issued_by: "api 127.0.0.1",
     age_s: 9.0,
@@ -111,6 +120,21 @@ export function command(id: number, changes: Partial<CommandView> = {}): Command
     takeoff: false,
     sent_altitudes: null,
     history,
+    ...changes,
+  };
+}
+
+/** The station's answer to an order it accepted. */
+export function orderResult(changes: Partial<OrderResult> = {}): OrderResult {
+  return {
+    serial: "SN-001",
+    link_id: 1,
+    vehicle_name: "Alder",
+    is_simulated: false,
+    accepted: true,
+    command_id: 41,
+    rule: null,
+    reason: null,
     ...changes,
   };
 }
@@ -128,6 +152,8 @@ export function station(
       uptime_s: 840,
       frames_dropped: 0,
       capture_folder: null,
+      capture_dropped_bytes: 0,
+      connections_refused: 0,
     },
     site: {
       name: "Field by the creek",

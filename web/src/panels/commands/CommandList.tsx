@@ -1,4 +1,4 @@
-import { createMemo, For, Show } from "solid-js";
+import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { CommandView } from "../../protocol";
 import { formatAge } from "../../words/age";
@@ -7,15 +7,17 @@ import { Empty } from "../Empty";
 import { Panel } from "../Panel";
 import "./commands.css";
 
-/** Commands and what became of them, the newest first. */
+/**
+ * Commands and what became of them, the newest first, as the station sorts them. Their ids do not tell
+ * the order: those that the station gives by itself are negative.
+ */
 export function CommandList() {
   const { fleet } = useConsole();
-  const newestFirst = createMemo(() => [...fleet.commands].sort((a, b) => b.id - a.id));
   return (
-    <Panel title="Commands" count={newestFirst().length}>
-      <Show when={newestFirst().length > 0} fallback={<Empty>No commands yet.</Empty>}>
+    <Panel title="Commands" count={fleet.commands.length}>
+      <Show when={fleet.commands.length > 0} fallback={<Empty>No commands yet.</Empty>}>
         <ol>
-          <For each={newestFirst()}>{(command) => <CommandRow command={command} />}</For>
+          <For each={fleet.commands}>{(command) => <CommandRow command={command} />}</For>
         </ol>
       </Show>
     </Panel>

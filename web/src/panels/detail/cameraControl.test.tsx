@@ -1,7 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
-import type { OrderResult } from "../../protocol";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { command, station, vehicle } from "../../testing/world";
+import { command, orderResult, station, vehicle } from "../../testing/world";
 import { VehicleDetail } from "./VehicleDetail";
 
 const VEHICLES = [vehicle(1), vehicle(2), vehicle(3, { number: 0, serial: null })];
@@ -26,19 +25,6 @@ function press(name: string): void {
 async function answered(): Promise<void> {
   await Promise.resolve();
   await Promise.resolve();
-}
-
-function result(changes: Partial<OrderResult>): OrderResult {
-  return {
-    serial: "SN-001",
-    link_id: 1,
-    vehicle_name: "Alder",
-    accepted: true,
-    command_id: 41,
-    rule: null,
-    reason: null,
-    ...changes,
-  };
 }
 
 describe("the camera's control", () => {
@@ -69,7 +55,7 @@ describe("the camera's control", () => {
   });
 
   it("shows the answer and follows the command", async () => {
-    page.answerWith([result({})]);
+    page.answerWith([orderResult()]);
     page.shared.selection.only(1);
     press("Start camera");
     expect(control().textContent).toContain("Camera on 1 Alder: asking the station");
@@ -87,7 +73,7 @@ describe("the camera's control", () => {
       rule: "busy",
       reason: "one is unanswered",
     };
-    page.answerWith([result(refused)]);
+    page.answerWith([orderResult(refused)]);
     page.shared.selection.only(1);
     press("Stop camera");
     page.shared.selection.clear();

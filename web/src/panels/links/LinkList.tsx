@@ -62,6 +62,11 @@ function LinkRow(props: { link: LinkView }) {
           {formatBytes(props.link.bytes_received)}, last {lastAge()} ago
         </p>
         <Show when={faults(props.link)}>{(text) => <p class="tone-warning">{text()}</p>}</Show>
+        <Show when={props.link.answers_not_believed > 0}>
+          <p class="tone-warning">
+            {props.link.answers_not_believed} answers not believed: they may answer another command
+          </p>
+        </Show>
         <Show when={props.link.closed_reason}>
           {(reason) => <p class="wire-text">Closed: {reason()}</p>}
         </Show>

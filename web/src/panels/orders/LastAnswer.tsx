@@ -58,9 +58,15 @@ export function AnswerBody(props: { answer: Answer }) {
       </Match>
       <Match when={results()}>
         {(list) => (
-          <Show when={list().length > 0} fallback={<p class="answer-line">Nothing was flying.</p>}>
+          <Show
+            when={list().length > 0}
+            fallback={<p class="answer-line">Nothing connected says that it flies.</p>}
+          >
             <AcceptedLine accepted={list().filter((result) => result.accepted)} />
             <ul>
+              <For each={list().filter((result) => result.accepted && result.reason)}>
+                {(result) => <RemarkLine result={result} />}
+              </For>
               <For each={list().filter((result) => !result.accepted)}>
                 {(result) => <RefusedLine result={result} />}
               </For>
@@ -76,9 +82,20 @@ function nameOf(result: OrderResult): string {
   return result.vehicle_name || `link ${result.link_id ?? "unknown"}`;
 }
 
+/** A vehicle's name, with the mark of a simulated one outside it, where no name can imitate it. */
+function Name(props: { result: OrderResult }) {
+  return (
+    <>
+      <strong>{nameOf(props.result)}</strong>
+      <Show when={props.result.is_simulated}>
+        {" "}
+        <span class="tag tag-simulated">SIM</span>
+      </Show>
+    </>
+  );
+}
+
 function AcceptedLine(props: { accepted: readonly OrderResult[] }) {
-  const names = () =>
-    props.accepted.map((result) => `${nameOf(result)} (command ${result.command_id})`);
   return (
     <Show when={props.accepted.length > 0}>
       <p class="answer-line">
@@ -86,10 +103,35 @@ function AcceptedLine(props: { accepted: readonly OrderResult[] }) {
           <SeverityMark severity={null} />
         </span>
         <span>
-          Accepted: <strong>{listNames(names())}</strong>
+          {"Accepted: "}
+          <For each={props.accepted}>
+            {(result, index) => (
+              <>
+                {joint(index(), props.accepted.length)}
+                <Name result={result} /> (command {result.command_id})
+              </>
+            )}
+          </For>
         </span>
       </p>
     </Show>
+  );
+}
+
+/** What stands before one of so many names in a sentence. */
+function joint(index: number, count: number): string {
+  if (index === 0) return "";
+  return index === count - 1 ? " and " : ", ";
+}
+
+/** What the station adds to an order that it accepted, such as what it waits for. */
+function RemarkLine(props: { result: OrderResult }) {
+  return (
+    <li class="answer-line">
+      <span>
+        <Name result={props.result} />: {props.result.reason}
+      </span>
+    </li>
   );
 }
 
@@ -100,7 +142,7 @@ function RefusedLine(props: { result: OrderResult }) {
         <SeverityMark severity="error" />
       </span>
       <span>
-        Refused: <strong>{nameOf(props.result)}</strong> ({props.result.rule ?? "no rule given"}):{" "}
+        Refused: <Name result={props.result} /> ({props.result.rule ?? "no rule given"}):{" "}
         {props.result.reason}
       </span>
     </li>

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { station, vehicle } from "../../testing/world";
+import { orderResult, station, vehicle } from "../../testing/world";
 import { AllStop } from "./AllStop";
 import { OrderBar } from "./OrderBar";
 
@@ -136,5 +136,42 @@ describe("all stop", () => {
     find(page.root, ".all-stop").click();
     expect(page.allStops()).toBe(1);
     expect(page.orders).toEqual([]);
+  });
+});
+
+describe("the station's answer", () => {
+  const answer = () => find(page.root, ".answer-text");
+  const settled = async () => {
+    for (let turn = 0; turn < 3; turn += 1) await Promise.resolve();
+  };
+
+  it("marks simulated vehicles and tells what an accepted order waits for", async () => {
+    const reason = "waits for telemetry: none has come yet";
+    page.answerWith([
+      orderResult({ is_simulated: true, reason }),
+      orderResult({ serial: "SN-002", vehicle_name: "Birch", command_id: 42 }),
+      orderResult({
+        vehicle_name: "Cedar",
+        is_simulated: true,
+        accepted: false,
+        rule: "busy",
+        reason: "one is unanswered",
+      }),
+    ]);
+    const order = { serials: ["SN-001"], order: { kind: "land" } } as const;
+    await page.shared.desk.order(order, ["1 Alder"]);
+    const lines = [...answer().querySelectorAll(".answer-line > span:last-child")];
+    expect(lines.map((line) => line.textContent)).toEqual([
+      "Accepted: Alder SIM (command 41) and Birch (command 42)",
+      `Alder SIM: ${reason}`,
+      "Refused: Cedar SIM (busy): one is unanswered",
+    ]);
+    expect(answer().querySelectorAll(".tag-simulated")).toHaveLength(3);
+  });
+
+  it("to an all stop that found nobody claims no more than is known", async () => {
+    find(page.root, ".all-stop").click();
+    await settled();
+    expect(answer().textContent).toContain("Nothing connected says that it flies.");
   });
 });

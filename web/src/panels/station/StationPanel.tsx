@@ -2,7 +2,7 @@ import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteView, StationView } from "../../protocol";
 import { formatAge, UNKNOWN } from "../../words/age";
-import { formatQuantity } from "../../words/quantity";
+import { formatBytes, formatQuantity } from "../../words/quantity";
 import { Panel } from "../Panel";
 
 /** The station itself and the site it stands at. */
@@ -46,9 +46,22 @@ function StationFacts(props: { station: StationView }) {
         ["Apps connect to", props.station.link_addresses.join(", ") || UNKNOWN],
         ["Frames dropped", String(props.station.frames_dropped)],
         ["Capture", props.station.capture_folder ?? "off"],
+        ...losses(props.station),
       ]}
     />
   );
+}
+
+/** What the station had to turn away or could not keep; empty while there is nothing of it. */
+function losses(station: StationView): (readonly [string, string])[] {
+  const facts: (readonly [string, string])[] = [];
+  if (station.connections_refused > 0) {
+    facts.push(["Connections refused", String(station.connections_refused)]);
+  }
+  if (station.capture_dropped_bytes > 0) {
+    facts.push(["Missing from the capture", formatBytes(station.capture_dropped_bytes)]);
+  }
+  return facts;
 }
 
 function SiteFacts(props: { site: SiteView }) {
