@@ -44,7 +44,8 @@ def test_only_the_first_sending_counts() -> None:
     again = on_sent(sent, CommandSent(1, 1), SentContext(50, None, True))
     assert (sent.phase, sent.times_sent) == (Phase.SENT, 1)
     assert (again.sent, again.times_sent) == (CONTEXT, 2)
-    assert again.history == sent.history
+    assert again.history[:-1] == sent.history
+    assert (again.phase, again.note) == (Phase.SENT, "sent again, on link 1")
 
 
 def test_a_repeat_dropped_unsent_changes_nothing() -> None:

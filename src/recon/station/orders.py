@@ -107,7 +107,11 @@ def on_sent(record: OrderRecord, event: CommandSent, context: SentContext) -> Or
     """The packet is on its way; the first time counts for what telemetry must be newer than."""
     record = _no_longer_waiting(record, event.link_id)
     again = replace(record, times_sent=record.times_sent + 1)
-    if not record.is_watched or record.sent is not None:
+    if record.sent is not None:
+        note = f"sent again, on link {event.link_id}"
+        change = PhaseChange(record.phase, context.sent_at_ns, note)
+        return replace(again, history=(*record.history, change))
+    if not record.is_watched:
         return again
     return changed(replace(again, sent=context), Phase.SENT, context.sent_at_ns)
 
