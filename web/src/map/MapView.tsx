@@ -6,6 +6,7 @@ import "./map.css";
 import { useConsole } from "../console";
 import { listNames, vehicleLabel } from "../words/names";
 import { readColours } from "./colours";
+import { createGroundOnMap } from "./createGroundOnMap";
 import { GroundImageNote } from "./GroundImageNote";
 import { GhostLayer } from "./ghostLayer";
 import { GraticuleLayer } from "./graticuleLayer";
@@ -26,6 +27,7 @@ const LATE_STEP_S = 0.2;
 export function MapView() {
   const { source, selection, theme, behindS, fitRequests } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
+  const ground = createGroundOnMap(source);
   let holder!: HTMLDivElement;
   let labels!: HTMLDivElement;
   let scaleBar!: HTMLDivElement;
@@ -36,7 +38,7 @@ export function MapView() {
   onMount(() => {
     const made = createMap(holder, readColours(document).ground);
     layers = [
-      new GroundImageLayer((frameId) => source.groundImage(frameId)),
+      new GroundImageLayer((frameId) => source.groundImage(frameId), ground),
       new GraticuleLayer(labels, scaleBar),
       new GhostLayer(),
       new TrailLayer(),
@@ -104,7 +106,7 @@ export function MapView() {
         <div class="map-scale-bar" ref={scaleBar} />
       </div>
       <div class="map-notes" ref={notes}>
-        <GroundImageNote />
+        <GroundImageNote shown={ground.shown()} />
         <UnplacedNote />
       </div>
     </section>

@@ -43,9 +43,15 @@ function image(frame_id: number): GroundImageView {
 
 function setUp() {
   const asked: { frameId: number; answer: (outcome: Outcome<Picture>) => void }[] = [];
+  const onGround: number[] = [];
+  let run = 0;
   const layer = new GroundImageLayer(
     (frameId) => new Promise((answer) => asked.push({ frameId, answer })),
+    { run: () => run, show: (shownImage) => onGround.push(shownImage.frame_id) },
   );
+  const restart = () => {
+    run += 1;
+  };
   const { map, shown, added } = fakeMap();
   layer.add(map);
   const say = (frame_id: number, seconds = 1) =>
@@ -60,7 +66,7 @@ function setUp() {
     await Promise.resolve();
     await Promise.resolve();
   };
-  return { asked, shown, added, say, answer };
+  return { asked, shown, added, onGround, restart, say, answer };
 }
 
 let revoked: string[];
@@ -119,6 +125,43 @@ describe("the ground image", () => {
     expect(asked.map(({ frameId }) => frameId)).toEqual([1, 3]);
     await answer(1, 3);
     expect(shown).toMatchObject([{ coordinates: image(3).corners }]);
+  });
+
+  it("tells which frame lies there: the one that was shown, not the newest", async () => {
+    const { say, answer, onGround, asked } = setUp();
+    say(1);
+    expect(onGround).toEqual([]);
+    await answer(0, 1);
+    say(2);
+    say(3);
+    expect(onGround).toEqual([1]);
+    await answer(1, 2);
+    expect(onGround).toEqual([1, 2]);
+    expect(asked.map(({ frameId }) => frameId)).toEqual([1, 2]);
+  });
+
+  it("does not show a picture without its number", async () => {
+    const { say, answer, shown, onGround } = setUp();
+    say(1);
+    await answer(0, null);
+    say(1);
+    expect(shown).toEqual([]);
+    expect(onGround).toEqual([]);
+  });
+
+  it("takes no frame of a restarted station for that of the same number before", async () => {
+    const { say, answer, asked, onGround, restart } = setUp();
+    say(7);
+    await answer(0, 7);
+    restart();
+    say(7);
+    expect(asked.map(({ frameId }) => frameId)).toEqual([7, 7]);
+    restart();
+    say(3);
+    await answer(1, 7);
+    say(3);
+    await answer(2, 3);
+    expect(onGround).toEqual([7, 3]);
   });
 
   it("asks again after a while when a picture did not come", async () => {

@@ -11,21 +11,37 @@ const RETRY_NS = 2e9;
 /** Places of so many frames are remembered while their pictures are on the way. */
 const REMEMBERED = 8;
 
+/** Told what lies on the ground, and knows which run of the station the newest state is of. */
+export interface GroundWitness {
+  readonly run: () => number;
+  /** The picture of this very frame is on the map from now on. */
+  show(image: GroundImageView): void;
+}
+
+interface Place {
+  readonly image: GroundImageView;
+  readonly corners: Corners;
+}
+
 type Corner = [number, number];
 type Corners = [Corner, Corner, Corner, Corner];
 
 /** The newest frame of the imaging vehicle, laid on the ground under everything else. */
 export class GroundImageLayer implements Layer {
   private map: MapLibre | null = null;
-  private readonly places = new Map<number, Corners>();
+  private readonly places = new Map<number, Place>();
   private waiting: { readonly blob: Blob; readonly frameId: number } | null = null;
   private shownFrame: number | null = null;
   private isFetching = false;
   private address: string | null = null;
   private notBefore_ns = 0;
+  private run = 0;
 
   /** `fetchImage` brings the newest picture; which frame it is comes with it. */
-  constructor(private readonly fetchImage: (frameId: number) => Promise<Outcome<Picture>>) {}
+  constructor(
+    private readonly fetchImage: (frameId: number) => Promise<Outcome<Picture>>,
+    private readonly witness: GroundWitness,
+  ) {}
 
   add(map: MapLibre): void {
     this.map = map;
@@ -33,6 +49,7 @@ export class GroundImageLayer implements Layer {
 
   update(scene: Scene): void {
     const image = scene.state.ground_image;
+    this.noticeRestart();
     if (image === null) return;
     this.remember(image);
     this.showWaiting();
@@ -48,17 +65,32 @@ export class GroundImageLayer implements Layer {
 
   recolour(): void {}
 
-  private async bring(frameId: number): Promise<void> {
-    const outcome = await this.fetchImage(frameId);
-    if (outcome.kind === "failed") return;
-    this.waiting = { blob: outcome.value.blob, frameId: outcome.value.frameId ?? frameId };
+  /** Frame numbers start anew with the station: what was known by them is worth nothing. */
+  private noticeRestart(): void {
+    const run = this.witness.run();
+    if (run === this.run) return;
+    this.run = run;
+    this.places.clear();
+    this.waiting = null;
+    this.shownFrame = null;
+    this.notBefore_ns = 0;
+  }
+
+  private async bring(asked: number): Promise<void> {
+    const { run } = this;
+    const outcome = await this.fetchImage(asked);
+    if (outcome.kind === "failed" || run !== this.run) return;
+    const { blob, frameId } = outcome.value;
+    // Without its number nobody knows where it belongs, nor how old it is.
+    if (frameId === null) return;
+    this.waiting = { blob, frameId };
     this.notBefore_ns = 0;
     this.showWaiting();
   }
 
   private remember(image: GroundImageView): void {
     const corners = cornersOf(image);
-    if (corners !== null) this.places.set(image.frame_id, corners);
+    if (corners !== null) this.places.set(image.frame_id, { image, corners });
     for (const known of this.places.keys()) {
       if (this.places.size <= REMEMBERED) break;
       this.places.delete(known);
@@ -69,13 +101,14 @@ export class GroundImageLayer implements Layer {
   private showWaiting(): void {
     const waiting = this.waiting;
     if (waiting === null) return;
-    const corners = this.places.get(waiting.frameId);
+    const place = this.places.get(waiting.frameId);
     const newest = Math.max(...this.places.keys());
     // A state with its place may still come; after a later frame's it will not.
-    if (corners !== undefined || newest > waiting.frameId) this.waiting = null;
-    if (corners === undefined) return;
+    if (place !== undefined || newest > waiting.frameId) this.waiting = null;
+    if (place === undefined) return;
     this.shownFrame = waiting.frameId;
-    this.show(URL.createObjectURL(waiting.blob), corners);
+    this.show(URL.createObjectURL(waiting.blob), place.corners);
+    this.witness.show(place.image);
   }
 
   private show(url: string, coordinates: Corners): void {

@@ -16,6 +16,8 @@ export interface RenderedPage {
   readonly allStops: () => number;
   /** From now on every order is answered with this. */
   answerWith(results: readonly OrderResult[]): void;
+  /** From now on a vehicle's picture is brought by this. */
+  bringFrames(fetch: StationSource["vehicleFrame"]): void;
   say(state: StationState): void;
   connect(connection: Connection): void;
   /** How old the newest state is from now on. */
@@ -29,7 +31,10 @@ interface Asked {
   acknowledged: number[];
   allStops: number;
   answer: readonly OrderResult[];
+  bringFrame: StationSource["vehicleFrame"];
 }
+
+const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
 
 const PLAIN_THEME: ThemeSwitch = { theme: () => "auto", changes: () => 0, toggle: () => {} };
 
@@ -39,7 +44,13 @@ export function renderPage(part: () => JSX.Element, first: StationState | null):
   const [state, setState] = createSignal<StationState | null>(first, { equals: false });
   const [connection, setConnection] = createSignal<Connection>({ kind: "live" });
   const [now, setNow] = createSignal(clock.now());
-  const asked: Asked = { orders: [], acknowledged: [], allStops: 0, answer: [] };
+  const asked: Asked = {
+    orders: [],
+    acknowledged: [],
+    allStops: 0,
+    answer: [],
+    bringFrame: noPicture,
+  };
   let behindS = 0;
   const source = fakeSource(state, connection, () => behindS, asked);
   const { shared, disposeShared } = createRoot((disposeShared) => ({
@@ -58,6 +69,9 @@ export function renderPage(part: () => JSX.Element, first: StationState | null):
     allStops: () => asked.allStops,
     answerWith: (results) => {
       asked.answer = results;
+    },
+    bringFrames: (fetch) => {
+      asked.bringFrame = fetch;
     },
     say: setState,
     connect: setConnection,
@@ -80,7 +94,6 @@ function fakeSource(
   behindS: () => number,
   asked: Asked,
 ): StationSource {
-  const none = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
   return {
     state,
     connection,
@@ -97,9 +110,9 @@ function fakeSource(
       asked.acknowledged.push(id);
       return { kind: "answered", value: null };
     },
-    vehicleFrame: none,
-    groundImage: none,
-    groundImageFile: none,
+    vehicleFrame: (serial, frameId) => asked.bringFrame(serial, frameId),
+    groundImage: noPicture,
+    groundImageFile: noPicture,
     close: () => {},
   };
 }

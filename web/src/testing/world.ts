@@ -144,12 +144,14 @@ export function station(
   vehicles: VehicleView[],
   changes: Partial<StationState> = {},
 ): StationState {
+  const { time_ns = 1e9 } = changes;
   return {
-    time_ns: 1e9,
+    time_ns,
     station: {
       version: "0.1.0",
       link_addresses: ["127.0.0.1:3001"],
-      uptime_s: 840,
+      // One station that runs on, whatever moment is asked for.
+      uptime_s: 840 + time_ns / 1e9,
       frames_dropped: 0,
       capture_folder: null,
       capture_dropped_bytes: 0,

@@ -1,36 +1,66 @@
-import { createEffect, createSignal, onCleanup, Show } from "solid-js";
+import { createEffect, createSignal, on, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { createFrameOnScreen } from "../../fleet/createFrameOnScreen";
 import type { VehicleView } from "../../protocol";
-import { formatAge } from "../../words/age";
-import { LatestPicture } from "./latestPicture";
+import { frameCaption, lacksNewer } from "../../words/frame";
+import { LatestPicture, type ShownPicture } from "./latestPicture";
 
-/** The newest picture of a vehicle's camera, as it came. */
-export function CameraFrame(props: { vehicle: VehicleView }) {
-  const { source, behindS } = useConsole();
-  const [address, setAddress] = createSignal<string | null>(null);
-  const picture = new LatestPicture(
-    (key) => source.vehicleFrame(key.serial, key.frameId),
-    { create: (blob) => URL.createObjectURL(blob), revoke: (url) => URL.revokeObjectURL(url) },
-    setAddress,
+/** After a picture that did not come, wait so long before asking again. */
+const RETRY_MS = 2_000;
+
+/** The newest picture of one vehicle's camera that came, as it came. The caption is that picture's own. */
+export function CameraFrame(props: { serial: string; vehicle: VehicleView }) {
+  const { source, clock } = useConsole();
+  const [shown, setShown] = createSignal<ShownPicture | null>(null);
+  const onScreen = createFrameOnScreen(
+    source,
+    (state) => state.vehicles.find(({ serial }) => serial === props.serial)?.frame ?? null,
   );
-  createEffect(() => {
-    const { serial, frame } = props.vehicle;
-    if (serial !== null && frame !== null) picture.want({ serial, frameId: frame.id });
+  const picture = new LatestPicture({
+    fetch: (key) => source.vehicleFrame(key.serial, key.frameId),
+    addresses: {
+      create: (blob) => URL.createObjectURL(blob),
+      revoke: (url) => URL.revokeObjectURL(url),
+    },
+    show: (newest) => {
+      setShown(newest);
+      if (newest === null) onScreen.clear();
+      else onScreen.show(newest.frameId);
+    },
+    later: (action) => clock.after(RETRY_MS, action),
   });
+  createEffect(
+    on([() => props.serial, () => props.vehicle.frame?.id ?? null, onScreen.run], ([serial, id]) =>
+      picture.want(id === null ? null : { serial, frameId: id }),
+    ),
+  );
   onCleanup(() => picture.close());
   return (
     <figure class="camera">
-      <Show when={address()} fallback={<p class="camera-empty">Picture on its way</p>}>
-        {(url) => <img src={url()} alt={`Camera of ${props.vehicle.name}`} />}
+      <Show when={shown()} fallback={<p class="camera-empty">Picture on its way</p>}>
+        {(known) => <img src={known().url} alt={`Camera of ${props.vehicle.name}`} />}
       </Show>
-      <Show when={props.vehicle.frame}>
-        {(frame) => (
-          <figcaption class="muted">
-            Frame {frame().id}, taken {formatAge(frame().captured_age_s + behindS())} ago ±{" "}
-            {frame().captured_sigma_s.toFixed(1)} s
-          </figcaption>
-        )}
-      </Show>
+      <Caption of={onScreen.facts()} />
     </figure>
   );
+}
+
+function Caption(props: { of: ReturnType<ReturnType<typeof createFrameOnScreen>["facts"]> }) {
+  const { behindS } = useConsole();
+  return (
+    <Show when={props.of}>
+      {(frame) => (
+        <figcaption class="muted">
+          {capitalised(frameCaption(frame(), behindS()))}
+          <Show when={lacksNewer(frame(), behindS())}>
+            <span class="tone-warning">, newer not loaded</span>
+          </Show>
+        </figcaption>
+      )}
+    </Show>
+  );
+}
+
+function capitalised(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -40,8 +40,8 @@ export function VehicleDetail() {
           }
         >
           <Identity vehicle={vehicle()} />
-          <Show when={vehicle().frame !== null}>
-            <CameraFrame vehicle={vehicle()} />
+          <Show when={vehicle().frame === null ? null : vehicle().serial} keyed>
+            {(serial) => <CameraFrame serial={serial} vehicle={vehicle()} />}
           </Show>
           <CameraControl desk={cameraDesk} />
           <dl class="facts">

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Outcome, Picture } from "../../source/stationSource";
+import { FakeClock } from "../../testing/fakeClock";
 import { LatestPicture, type PictureKey } from "./latestPicture";
 
 function setUp() {
@@ -7,9 +8,10 @@ function setUp() {
   const alive = new Set<string>();
   const shown: (string | null)[] = [];
   let made = 0;
-  const picture = new LatestPicture(
-    (key) => new Promise((answer) => asked.push({ key, answer })),
-    {
+  const clock = new FakeClock();
+  const picture = new LatestPicture({
+    fetch: (key) => new Promise((answer) => asked.push({ key, answer })),
+    addresses: {
       create: () => {
         made += 1;
         alive.add(`blob:${made}`);
@@ -17,14 +19,18 @@ function setUp() {
       },
       revoke: (url) => alive.delete(url),
     },
-    (url) => shown.push(url),
-  );
-  const answer = async (index: number) => {
-    asked[index]?.answer({ kind: "answered", value: { blob: new Blob(["x"]), frameId: null } });
+    show: (newest) => shown.push(newest?.url ?? null),
+    later: (action) => clock.after(2000, action),
+  });
+  const settle = async (index: number, outcome: Outcome<Picture>) => {
+    asked[index]?.answer(outcome);
     await new Promise((resolve) => queueMicrotask(() => resolve(null)));
     await Promise.resolve();
   };
-  return { picture, asked, alive, shown, answer };
+  const answer = (index: number) =>
+    settle(index, { kind: "answered", value: { blob: new Blob(["x"]), frameId: null } });
+  const fail = (index: number) => settle(index, { kind: "failed", problem: "no" });
+  return { picture, asked, alive, shown, answer, fail, clock };
 }
 
 describe("a camera's latest picture", () => {
@@ -56,5 +62,19 @@ describe("a camera's latest picture", () => {
     expect(shown.every((url) => url === null)).toBe(true);
     await answer(1);
     expect(shown.at(-1)).toBe("blob:1");
+  });
+
+  it("asks again after a while for one that did not come, and not after it was closed", async () => {
+    const { picture, asked, fail, clock, shown } = setUp();
+    picture.want({ serial: "A", frameId: 1 });
+    await fail(0);
+    expect(asked).toHaveLength(1);
+    clock.advance(2000);
+    expect(asked.map(({ key }) => key.frameId)).toEqual([1, 1]);
+    await fail(1);
+    picture.close();
+    clock.advance(9000);
+    expect(asked).toHaveLength(2);
+    expect(shown).toEqual([]);
   });
 });
