@@ -70,7 +70,7 @@ test("shows four vehicles over their field, and lands one that is told to", asyn
     const land = page.getByRole("button", { name: /^Land \d+ Drone 1: hold/ });
     await land.hover();
     await page.mouse.down();
-    await expect(page.getByText(/^Accepted: Drone 1 \(command \d+\)$/)).toBeVisible();
+    await expect(page.getByText(/^Accepted: Drone 1 SIM \(command \d+\)$/)).toBeVisible();
     await page.mouse.up();
     const command = page.getByTestId(/^command-\d+$/).filter({ hasText: "Land Drone 1" });
     await expect(command).toHaveCount(1);
