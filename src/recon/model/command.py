@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from recon.model.authority import Leader
+from recon.model.geo import LatLon
 from recon.model.mission import Mission
 
 
@@ -62,11 +64,47 @@ class VirtualStick:
     timeout_s: float
 
 
+@dataclass(frozen=True, slots=True)
+class GoTo:
+    """Fly straight to a place and hold there, steered by the station with a stream of sticks.
+
+    `yaw_deg` None keeps the heading.
+    """
+
+    target: LatLon
+    height_above_takeoff_m: float
+    speed_mps: float
+    yaw_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Nudge:
+    """Move by this much from where the vehicle is, and hold there; steered as `GoTo` is."""
+
+    north_m: float
+    east_m: float
+    up_m: float
+    speed_mps: float = 2.0
+    turn_deg: float = 0.0
+    """Clockwise, added to the present heading."""
+
+
+@dataclass(frozen=True, slots=True)
+class HoldPosition:
+    """Hold the present position against wind and drift, steered by the station, until told else."""
+
+
 EmergencyBody = Hover | LandNow | ReturnHome
-Body = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
+SteeredBody = GoTo | Nudge | HoldPosition
+"""Never on the wire themselves: the station turns them into a stream of `VirtualStick`."""
+WireBody = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
+Body = WireBody | SteeredBody
 
 EMERGENCY_BODIES = (Hover, LandNow, ReturnHome)
 CAMERA_BODIES = (StartCamera, StopCamera)
+STEERED_BODIES = (GoTo, Nudge, HoldPosition)
+MOVING_BODIES = (FlyMission, VirtualStick, *STEERED_BODIES)
+"""What sets a vehicle on a path of the station's choosing."""
 
 BODY_NAMES: dict[type, str] = {
     Hover: "hover",
@@ -76,6 +114,9 @@ BODY_NAMES: dict[type, str] = {
     StopCamera: "camera_stop",
     FlyMission: "mission",
     VirtualStick: "stick",
+    GoTo: "goto",
+    Nudge: "nudge",
+    HoldPosition: "hold_position",
 }
 
 
@@ -83,7 +124,8 @@ BODY_NAMES: dict[type, str] = {
 class Command:
     """One order to one vehicle, or (all stop only) to one link that has no identity.
 
-    `takeoff` is the operator's explicit word that the vehicle may leave the ground.
+    `takeoff` is the operator's explicit word that the vehicle may leave the ground. `asked_as` is
+    the role of whoever asks: only the vehicle's leader sets it in motion.
     """
 
     id: int
@@ -94,6 +136,7 @@ class Command:
     serial: str | None = None
     link_id: int | None = None
     takeoff: bool = False
+    asked_as: Leader = Leader.OPERATOR
 
     @property
     def name(self) -> str:

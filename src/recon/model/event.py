@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from recon.model.authority import Leader
 from recon.model.command import Body, Phase
 from recon.model.report import Report
 
@@ -66,7 +67,8 @@ class Tick:
 class OperatorOrder:
     """Somebody orders one body for one vehicle (or one link without identity).
 
-    `command_id` is given by whoever asks, so that the answer can be told apart.
+    `command_id` is given by whoever asks, so that the answer can be told apart. `holder` names the
+    connection whose end ends a stream of sticks; None for orders that outlive their giver.
     """
 
     command_id: int
@@ -75,6 +77,61 @@ class OperatorOrder:
     serial: str | None = None
     link_id: int | None = None
     takeoff: bool = False
+    asked_as: Leader = Leader.OPERATOR
+    holder: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AuthorityTaken:
+    """Somebody explicitly takes a vehicle over, or gives it away: `leader` leads it from now on."""
+
+    serial: str
+    leader: Leader
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class HolderGone:
+    """The connection that held streams of sticks has ended."""
+
+    holder: str
+
+
+@dataclass(frozen=True, slots=True)
+class PreflightOverridden:
+    """Somebody lets a vehicle fly missions although its checklist is not passed, and says why."""
+
+    serial: str
+    by: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class GhostDismissed:
+    """Somebody has seen where a stale vehicle is, and takes it out of the air."""
+
+    serial: str
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class SeparationHoldSwitched:
+    """Somebody switches the holds of the separation watchdog on or off."""
+
+    is_on: bool
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class FleetReturnOrdered:
+    """Somebody calls vehicles home in layers, as landing missions.
+
+    The missions get the ids from `first_command_id` on, in the order of `serials`.
+    """
+
+    first_command_id: int
+    serials: tuple[str, ...]
+    by: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +170,12 @@ Event = (
     | CommandDropped
     | Tick
     | OperatorOrder
+    | AuthorityTaken
+    | HolderGone
+    | PreflightOverridden
+    | GhostDismissed
+    | SeparationHoldSwitched
+    | FleetReturnOrdered
     | AlarmAcknowledged
     | WorkerResult
     | DeadlineMissed

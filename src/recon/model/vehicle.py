@@ -70,6 +70,14 @@ class Mount(Enum):
     FIXED = "fixed"
 
 
+class Failsafe(Enum):
+    """What an aircraft does by itself when it loses its controller."""
+
+    GO_HOME = "go_home"
+    HOVER = "hover"
+    LAND = "land"
+
+
 class Staleness(Enum):
     """How old the newest core telemetry is: under 1 s, 3 s, 10 s, or older / never."""
 
@@ -95,6 +103,16 @@ class VehicleProfile:
     video_latency_s: float = 0.5
     """Capture-to-receive latency of image packets, which carry no time of their own."""
     video_latency_sigma_s: float = 0.25
+    endurance_s: float | None = None
+    """How long a full battery lasts in the air; None while nobody has said."""
+    go_home_height_m: float | None = None
+    """The height above takeoff that the aircraft climbs to before it goes home: set in the
+    aircraft, told here, for it cannot be read or set over the ICD."""
+    failsafe: Failsafe | None = None
+    camera_interval_s: float | None = None
+    """Of the interval timer that the pilot starts; there is no shutter command."""
+    priority: int = 0
+    """Of two vehicles in conflict the one with the lower number is held first."""
     packet_gap_s: float = 0.1
     """Least time between two packets to the app; some apps read one packet per segment."""
 

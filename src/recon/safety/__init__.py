@@ -3,8 +3,20 @@
 `approve(command, situation) -> ApprovedCommand | Refusal` is pure and denies by default.
 """
 
-from recon.safety.gate import ApprovedCommand, approve
+from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
+from recon.safety.gate import ApprovedCommand, approve, judge
 from recon.safety.settings import SafetySettings
-from recon.safety.situation import Claimant, Situation
+from recon.safety.situation import Claimant, Override, Situation, Traffic
 
-__all__ = ["ApprovedCommand", "Claimant", "SafetySettings", "Situation", "approve"]
+__all__ = [
+    "OPEN_AIRSPACE",
+    "ApprovedCommand",
+    "Claimant",
+    "Override",
+    "PreparedAirspace",
+    "SafetySettings",
+    "Situation",
+    "Traffic",
+    "approve",
+    "judge",
+]

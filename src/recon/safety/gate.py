@@ -5,6 +5,7 @@ from typing import Final, NoReturn
 
 from recon.model.command import (
     CAMERA_BODIES,
+    STEERED_BODIES,
     Command,
     FlyMission,
     Hover,
@@ -50,12 +51,17 @@ class ApprovedCommand:
         raise TypeError("an ApprovedCommand is not restored: ask recon.safety.approve")
 
 
+def judge(command: Command, situation: Situation) -> Refusal | None:
+    """Return the first rule's refusal, or None: nothing speaks against the command. Pure."""
+    refusals = (rule(command, situation) for rule in RULES)
+    return next((refusal for refusal in refusals if refusal is not None), None)
+
+
 def approve(command: Command, situation: Situation) -> ApprovedCommand | Refusal:
     """Return the command approved for its links, or the first rule's refusal. Pure."""
-    for rule in RULES:
-        refusal = rule(command, situation)
-        if refusal is not None:
-            return refusal
+    refusal = judge(command, situation) or _not_for_the_wire(command)
+    if refusal is not None:
+        return refusal
     return ApprovedCommand(
         command=replace(command, expires_at_ns=_holds_until_ns(command, situation)),
         link_ids=_link_ids(command, situation),
@@ -64,6 +70,13 @@ def approve(command: Command, situation: Situation) -> ApprovedCommand | Refusal
         approved_at_ns=situation.now_ns,
         key=_KEY,
     )
+
+
+def _not_for_the_wire(command: Command) -> Refusal | None:
+    """A steered order is judged as a whole, and goes out as sticks that are each approved."""
+    if not isinstance(command.body, STEERED_BODIES):
+        return None
+    return Refusal("not_for_the_wire", f"{command.name} is steered by the station with sticks")
 
 
 def _link_ids(command: Command, situation: Situation) -> tuple[int, ...]:

@@ -2,8 +2,11 @@
 
 from dataclasses import dataclass
 
+from recon.model.authority import Lead
+from recon.model.intent import Intent
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
+from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.settings import SafetySettings
 
 
@@ -16,15 +19,37 @@ class Claimant:
 
 
 @dataclass(frozen=True, slots=True)
+class Traffic:
+    """Another vehicle that is in the air or may be, and what it was last told."""
+
+    vehicle: VehicleState
+    intent: Intent = Intent()
+
+
+@dataclass(frozen=True, slots=True)
+class Override:
+    """Somebody's word that a vehicle may fly missions without its checklist."""
+
+    by: str
+    reason: str
+    at_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class Situation:
     """What is known when a command is judged.
 
     `vehicle` is the state of the command's vehicle, or of the unidentified link it names; None when
     there is neither. `claimants` are its open links, its own first; more than one while its
-    identity is unsettled.
+    identity is unsettled. `traffic` are the other vehicles in the air, those not heard included.
     """
 
     now_ns: int
     vehicle: VehicleState | None
     claimants: tuple[Claimant, ...]
     settings: SafetySettings = SafetySettings()
+    airspace: PreparedAirspace = OPEN_AIRSPACE
+    lead: Lead = Lead()
+    intent: Intent = Intent()
+    traffic: tuple[Traffic, ...] = ()
+    preflight_override: Override | None = None

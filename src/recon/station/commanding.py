@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from recon.fleet.confirmation import Progress, SentContext, pilot_took_over, progress
 from recon.link.outbox import Lane, lane_of
+from recon.model.authority import Lead
 from recon.model.command import (
     CAMERA_BODIES,
     Command,
@@ -14,15 +15,19 @@ from recon.model.command import (
     Refusal,
 )
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
+from recon.model.intent import Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.safety import ApprovedCommand, Claimant, Situation, approve
+from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve
 from recon.station import orders, stick_zero
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
 from recon.station.settings import StationSettings
 from recon.station.state import Station
 from recon.vehicles.packets import describe_altitudes
+
+_NOBODY_YET = Lead()
+_TOLD_NOTHING = Intent()
 
 Stepped = tuple[Station, tuple[Output, ...]]
 
@@ -38,6 +43,7 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
         serial=order.serial,
         link_id=order.link_id,
         takeoff=order.takeoff,
+        asked_as=order.asked_as,
     )
     judged = approve(command, situation(station, command, now_ns))
     if isinstance(judged, Refusal):
@@ -53,11 +59,35 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
 
 def situation(station: Station, command: Command, now_ns: int) -> Situation:
     """Return the snapshot the gate judges a command by."""
+    target = station.target(command.serial, command.link_id)
+    serial = "" if target is None or target.serial is None else target.serial
     return Situation(
         now_ns=now_ns,
-        vehicle=station.target(command.serial, command.link_id),
+        vehicle=target,
         claimants=_claimants(station, command),
         settings=station.settings.safety,
+        airspace=station.airspace,
+        lead=station.leads.get(serial, _NOBODY_YET),
+        intent=station.intents.get(serial, _TOLD_NOTHING),
+        traffic=_traffic(station, command, serial),
+        preflight_override=station.preflight_overrides.get(serial),
+    )
+
+
+def _traffic(station: Station, command: Command, serial: str) -> tuple[Traffic, ...]:
+    """Every other vehicle that flies or was last known to, heard or not."""
+    intents = station.intents
+    known = tuple(
+        Traffic(vehicle, intents.get(key, _TOLD_NOTHING))
+        for key, vehicle in station.fleet.vehicles.items()
+        if key != serial and vehicle.is_flying.value is not False
+    )
+    return known + tuple(
+        Traffic(link.own_state)
+        for link in station.fleet.unbound_links()
+        if link.own_state.is_flying.value is True
+        and link.id != command.link_id
+        and (link.claimed_serial is None or link.claimed_serial != command.serial)
     )
 
 

@@ -4,9 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.fleet.state import Fleet
+from recon.model.authority import Lead
 from recon.model.command import Command, VirtualStick
 from recon.model.imagery import Frame
+from recon.model.intent import Intent
 from recon.model.vehicle import VehicleState
+from recon.safety import OPEN_AIRSPACE, Override, PreparedAirspace
 from recon.station.alarms import AlarmBook
 from recon.station.imaging import Imaging
 from recon.station.orders import OrderBook
@@ -34,6 +37,13 @@ class Station:
     frames: Mapping[str, Frame] = field(default_factory=dict)
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
+    airspace: PreparedAirspace = OPEN_AIRSPACE
+    leads: Mapping[str, Lead] = field(default_factory=dict)
+    """Who leads each vehicle, by serial; the default for one that nobody has taken."""
+    intents: Mapping[str, Intent] = field(default_factory=dict)
+    """What each vehicle does on the station's word, by serial."""
+    preflight_overrides: Mapping[str, Override] = field(default_factory=dict)
+    """By serial, until the vehicle has landed."""
     sticks: Mapping[str, PendingZero] = field(default_factory=dict)
     """Sticks being held, by serial: each ends with a zero from the station."""
 

@@ -5,15 +5,21 @@ from dataclasses import replace
 from recon.fleet import step as fleet_step
 from recon.model.event import (
     AlarmAcknowledged,
+    AuthorityTaken,
     CommandAnswered,
     CommandDropped,
     CommandSent,
     DeadlineMissed,
     Event,
+    FleetReturnOrdered,
+    GhostDismissed,
+    HolderGone,
     LinkClosed,
     LinkOpened,
     OperatorOrder,
     PacketReceived,
+    PreflightOverridden,
+    SeparationHoldSwitched,
     Tick,
     WorkerResult,
 )
@@ -21,7 +27,7 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.station import alarms, commanding, imaging
+from recon.station import alarms, authority, commanding, imaging
 from recon.station.alarms import Condition, Severity
 from recon.station.commanding import Stepped
 from recon.station.conditions import conditions
@@ -52,6 +58,12 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
         case DeadlineMissed():
             dropped = station.imaging.frames_dropped + 1
             return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
+        case AuthorityTaken():
+            return authority.take(station, event, now_ns), ()
+        case HolderGone() | PreflightOverridden() | GhostDismissed() | SeparationHoldSwitched():
+            return station, ()
+        case FleetReturnOrdered():
+            return station, ()
         case AlarmAcknowledged(alarm_id, by):
             return replace(station, alarms=alarms.acknowledge(station.alarms, alarm_id, by)), ()
 

@@ -1,0 +1,67 @@
+"""What a site allows in its air: limits, boundary, zones, pads and the ground below."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.zone import LandingPad, Region, Zone
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class FlightLimits:
+    """What a site allows every vehicle; each can be set in site.toml."""
+
+    max_height_above_ground_m: float = 120.0
+    """The open category's ceiling in Europe, 400 ft (122 m) in the United States."""
+
+    min_height_above_ground_m: float = 5.0
+    """Crops, sprinklers and people stand lower; takeoff and landing are not held to it."""
+
+    max_distance_from_home_m: float = 1_000.0
+    """A small drone is seen with the naked eye to about half of this; controllers reach farther."""
+
+    max_speed_mps: float = 15.0
+    """DJI's own limit for missions and sticks."""
+
+    min_separation_horizontal_m: float = 15.0
+    """Three times what two GNSS positions may be off together (2 x 2.5 m), with room to see it."""
+
+    min_separation_vertical_m: float = 6.0
+    """Two barometers drift apart by a few metres in an hour; the return's layers are 8 m apart."""
+
+    boundary_margin_m: float = 5.0
+    """Kept to the boundary and to keep-out zones: GNSS error and a gust."""
+
+    battery_reserve_fraction: float = 0.25
+    """What must be left in the battery after coming home."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ElevationModel:
+    """The ground's ellipsoidal heights in the middle of each cell of a grid, (rows, cols).
+
+    NaN where the file tells none. Between the middles the ground is taken as bilinear.
+    """
+
+    grid: GroundGrid
+    ellipsoid_height_m: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Airspace:
+    """What holds in a site's air; without a site only the limits do.
+
+    `frame` has its origin on the ground; without `elevation` the ground is assumed to be flat at
+    that height.
+    """
+
+    limits: FlightLimits = FlightLimits()
+    frame: LocalFrame | None = None
+    boundary: Region | None = None
+    zones: tuple[Zone, ...] = ()
+    landing_pads: tuple[LandingPad, ...] = ()
+    elevation: ElevationModel | None = None
