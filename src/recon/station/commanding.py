@@ -120,8 +120,8 @@ def watch(station: Station, now_ns: int) -> Stepped:
             outputs += again
         if updated is not record:
             station = _put(station, updated)
-    for order in stick_zero.due(station, now_ns):
-        station = stick_zero.forget(station, order)
+    station, zeros = stick_zero.due(station, now_ns)
+    for order in zeros:
         station, zero = place(station, order, now_ns)
         outputs += zero
     return stick_zero.give_up(station, now_ns), tuple(outputs)

@@ -11,6 +11,7 @@ from recon.model.command import Command, VirtualStick
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode
+from recon.station.own_ids import take_id
 from recon.station.state import PendingZero, Station
 
 ISSUER = "station: end of a stick"
@@ -35,18 +36,18 @@ def forget(station: Station, newer: Command | OperatorOrder) -> Station:
     return replace(station, sticks=sticks)
 
 
-def due(station: Station, now_ns: int) -> tuple[OperatorOrder, ...]:
-    """Return the zeros that must go now, as orders for the gate."""
-    return tuple(
-        OperatorOrder(
-            command_id=-pending.command.id,
-            body=replace(pending.body, velocity_x_mps=0.0, velocity_y_mps=0.0),
-            issued_by=ISSUER,
-            serial=serial,
-        )
-        for serial, pending in station.sticks.items()
-        if now_ns >= pending.due_at_ns and _is_flown_by_sticks(station, pending, now_ns)
-    )
+def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ...]]:
+    """Return the zeros that must go now, as orders for the gate, and the station without them."""
+    orders: list[OperatorOrder] = []
+    for serial, pending in station.sticks.items():
+        if now_ns >= pending.due_at_ns and _is_flown_by_sticks(station, pending, now_ns):
+            station, number = take_id(station)
+            zero = replace(pending.body, velocity_x_mps=0.0, velocity_y_mps=0.0)
+            asked_as = pending.command.asked_as
+            orders.append(OperatorOrder(number, zero, ISSUER, serial, asked_as=asked_as))
+    waiting = {order.serial for order in orders}
+    left = {serial: p for serial, p in station.sticks.items() if serial not in waiting}
+    return replace(station, sticks=left) if orders else station, tuple(orders)
 
 
 def give_up(station: Station, now_ns: int) -> Station:
