@@ -9,9 +9,11 @@ from typing import Any
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
+from recon.site.agreement import refuse_fenced_pads, refuse_high_ways_home
 from recon.site.errors import SiteError
 from recon.site.eye import eye_from_table
 from recon.site.layers import read_layers
+from recon.site.limits import LimitsTable, limits_from_table
 from recon.site.profiles import profile_from_table
 from recon.site.reading import convert, read_bounded
 from recon.site.schema import (
@@ -53,7 +55,13 @@ def load_site(folder: Path) -> Site:
         profiles.setdefault(eye.serial, VehicleProfile(eye.serial))
     layers = read_layers(path, convert(path, table.layers, LayersTable, "layers"), frame)
     _give_pads(path, layers, profiles)
-    return Site(table.name, frame, grid, eye, profiles, layers)
+    limits = limits_from_table(
+        convert(path, table.limits, LimitsTable, "limits"), f"{path}: limits"
+    )
+    site = Site(table.name, frame, grid, eye, profiles, layers, limits)
+    refuse_high_ways_home(str(path), profiles, limits)
+    refuse_fenced_pads(path, layers, profiles, site.airspace)
+    return site
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from recon.model.geo import GeoPoint
-from recon.model.vehicle import AltitudeReference, Mount, VehicleProfile
+from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
 from recon.site.errors import SiteError
 from recon.site.schema import VehicleTable
 
@@ -24,6 +24,9 @@ _PLAIN_KEYS = (
     "video_latency_s",
     "video_latency_sigma_s",
     "packet_gap_s",
+    "go_home_height_m",
+    "camera_interval_s",
+    "priority",
 )
 
 
@@ -44,6 +47,10 @@ def profile_from_table(table: VehicleTable, place: str) -> VehicleProfile:
         values["waypoint_altitude"] = AltitudeReference(table.waypoint_altitude)
     if table.mount is not None:
         values["mount"] = Mount(table.mount)
+    if table.failsafe is not None:
+        values["failsafe"] = Failsafe(table.failsafe)
+    if table.endurance_min is not None:
+        values["endurance_s"] = 60.0 * table.endurance_min
     if table.pad is not None:
         pad = table.pad
         values["pad"] = GeoPoint(pad.latitude_deg, pad.longitude_deg, pad.altitude_m)

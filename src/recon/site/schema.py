@@ -89,6 +89,12 @@ class VehicleTable(_Table, frozen=True):
     app: Literal["legacy"] | None = None
     max_waypoints: Annotated[int, Meta(ge=2, le=99)] | None = None
     battery_factor: Annotated[float, Meta(ge=0.1, le=10.0)] | None = None
+    endurance_min: Annotated[float, Meta(ge=1.0, le=240.0)] | None = None
+    go_home_height_m: Annotated[float, Meta(ge=20.0, le=500.0)] | None = None
+    """The range is DJI's."""
+    failsafe: Literal["go_home", "hover", "land"] | None = None
+    camera_interval_s: Annotated[float, Meta(ge=0.5, le=60.0)] | None = None
+    priority: Annotated[int, Meta(ge=0, le=100)] | None = None
     video_latency_s: Seconds | None = None
     video_latency_sigma_s: Seconds | None = None
     packet_gap_s: Seconds | None = None
@@ -109,6 +115,7 @@ class SiteTable(_Table, frozen=True):
 
     name: Text
     origin: dict[str, Any]
+    limits: dict[str, Any] = {}
     eye: dict[str, Any] | None = None
     ground_image: dict[str, Any] | None = None
     layers: dict[str, Any] = {}

@@ -10,6 +10,7 @@ from recon.camera import (
     PoseSolution,
     TelemetryReference,
 )
+from recon.model.airspace import Airspace, ElevationModel, FlightLimits
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.model.zone import LandingPad, Region, Zone
@@ -66,6 +67,27 @@ class Site:
     eye: Eye | None = None
     profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
     layers: Layers = field(default_factory=Layers)
+    limits: FlightLimits = field(default_factory=FlightLimits)
+    elevation: ElevationModel | None = None
+
+    @property
+    def airspace(self) -> Airspace:
+        """What holds in the site's air; pads that only a profile tells are among the pads."""
+        layered = self.layers.landing_pads
+        owners = {pad.serial for pad in layered}
+        own = (
+            LandingPad(profile.display_name, serial, profile.pad)
+            for serial, profile in self.profiles.items()
+            if profile.pad is not None and serial not in owners
+        )
+        return Airspace(
+            limits=self.limits,
+            frame=self.frame,
+            boundary=self.layers.boundary,
+            zones=self.layers.zones,
+            landing_pads=(*layered, *own),
+            elevation=self.elevation,
+        )
 
     def profile_of(self, serial: str) -> VehicleProfile:
         """Return a vehicle's profile; one that the site does not know gets the defaults."""

@@ -8,6 +8,7 @@ from recon.fleet.state import Fleet
 from recon.geo import shift_east_north_m
 from recon.model.imagery import GroundImage
 from recon.model.vehicle import VehicleProfile
+from recon.safety import PreparedAirspace
 from recon.site import Site
 from recon.station.imaging import LAY_FRAME, Imaging, LayFrame
 from recon.station.settings import StationSettings
@@ -21,6 +22,7 @@ def first_state(site: Site, settings: StationSettings | None = None) -> Station:
     marked = None if site.eye is None else site.eye.marked_frame
     return Station(
         settings=chosen,
+        airspace=PreparedAirspace(site.airspace),
         fleet=Fleet(settings=chosen.fleet, profiles=site.profiles),
         imaging=Imaging(
             eye_serial=None if site.eye is None else site.eye.serial,
