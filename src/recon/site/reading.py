@@ -1,13 +1,16 @@
 """Reading a site's files: bounded, inside the folder, and with complaints that name the place."""
 
+import re
 from pathlib import Path
 from typing import TypeVar
 
 import msgspec
+from msgspec import inspect
 
 from recon.site.errors import SiteError
 
 T = TypeVar("T")
+K = TypeVar("K", bound=inspect.Type)
 
 
 def file_inside(site_file: Path, name: str, key: str) -> Path:
@@ -60,4 +63,21 @@ def convert(place: object, data: object, kind: type[T], key: str) -> T:
         full_key = key + joint + inner
         # An unknown key's name is the file's own text: repr keeps control characters out.
         said = ascii(what)[1:-1].replace("`", "'")
+        if what.startswith("Invalid enum value"):
+            said += f", expected {' or '.join(_words(inspect.type_info(kind), where))}"
         raise SiteError(f"{place}: {full_key + ': ' if full_key else ''}{said}") from problem
+
+
+def _words(kind: inspect.Type, where: str) -> list[str]:
+    """Return the words allowed at a place like `.pad.datum` of a type."""
+    for name in re.findall(r"\.(\w+)", where):
+        (struct,) = _choices(kind, inspect.StructType)
+        kind = next(field.type for field in struct.fields if field.encode_name == name)
+    words = [word for literal in _choices(kind, inspect.LiteralType) for word in literal.values]
+    return [repr(word) for word in words]
+
+
+def _choices(kind: inspect.Type, wanted: type[K]) -> list[K]:
+    """Return the types of one sort that a type allows: itself, or members of a union."""
+    members = kind.types if isinstance(kind, inspect.UnionType) else (kind,)
+    return [member for member in members if isinstance(member, wanted)]
