@@ -1,0 +1,124 @@
+"""An audit's folder: one file a run, numbered, read in bounded pieces."""
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import BinaryIO
+
+from recon.model.units import NS_PER_S
+from recon.record.audit import LONGEST_LINE_BYTES, AuditLine, decode_line, line_hash
+from recon.record.errors import RecordError
+
+_NAME = re.compile(r"recon-audit-(\d{6})-\d{8}T\d{6}Z\.jsonl")
+MOST_RUNS = 999_999
+READ_TAIL_BYTES = 16 * 1024 * 1024
+"""What a start reads of the last run: 64 flying vehicles write this in some two hours."""
+
+
+@dataclass(frozen=True, slots=True)
+class RawLine:
+    """A line's bytes without its break. A last one without a break is `is_torn`; of one that is
+    longer than any line of an audit, `data` is the beginning."""
+
+    data: bytes
+    is_torn: bool = False
+
+    @property
+    def is_too_long(self) -> bool:
+        """Whether no audit writes such a line."""
+        return len(self.data) > LONGEST_LINE_BYTES
+
+
+@dataclass(frozen=True, slots=True)
+class RunEnd:
+    """How a run's file ends: its last good line and that line's hash, which the next run's file
+    carries on; and how much could not be read on the way there."""
+
+    path: Path
+    last: AuditLine | None
+    last_hash: str | None
+    bad_lines: int
+    torn_bytes: int
+    is_beginning_left_out: bool
+
+
+def audit_files(folder: Path) -> list[Path]:
+    """Return the folder's audit files, the oldest run first; none when there is no folder."""
+    try:
+        names = [path.name for path in folder.iterdir() if _NAME.fullmatch(path.name)]
+    except FileNotFoundError:
+        return []
+    except OSError as problem:
+        raise RecordError(f"cannot read the audit's folder {folder}: {problem}") from problem
+    return [folder / name for name in sorted(names)]
+
+
+def run_number(path: Path) -> int:
+    """Return the number of the run in a file's name; 0 for another name."""
+    match = _NAME.fullmatch(path.name)
+    return 0 if match is None else int(match.group(1))
+
+
+def next_file_name(files: list[Path], utc_ns: int) -> str:
+    """Return the name of the next run's file. Raises `RecordError` when all numbers are used."""
+    number = max((run_number(path) for path in files), default=0) + 1
+    if number > MOST_RUNS:
+        raise RecordError(f"the audit's folder holds {MOST_RUNS} runs: move them elsewhere")
+    moment = datetime.fromtimestamp(utc_ns // NS_PER_S, UTC)
+    return f"recon-audit-{number:06d}-{moment:%Y%m%dT%H%M%SZ}.jsonl"
+
+
+def raw_lines(file: BinaryIO) -> Iterator[RawLine]:
+    """Yield the lines from where the file stands on; never holds more than the longest line."""
+    while data := file.readline(LONGEST_LINE_BYTES + 1):
+        if data.endswith(b"\n"):
+            yield RawLine(data[:-1])
+        elif len(data) <= LONGEST_LINE_BYTES:
+            yield RawLine(data, is_torn=True)
+        else:
+            yield RawLine(data)
+            _skip_line(file)
+
+
+def read_run_end(
+    path: Path, take: Callable[[AuditLine], None], at_most_bytes: int = READ_TAIL_BYTES
+) -> RunEnd:
+    """Hand the last lines of a file to `take`, the oldest first, whatever else is in it.
+
+    Raises `RecordError` when the file cannot be read.
+    """
+    last, last_hash, bad_lines, torn_bytes = None, None, 0, 0
+    try:
+        with path.open("rb") as file:
+            is_cut = _go_to_tail(file, at_most_bytes)
+            for raw in raw_lines(file):
+                if raw.is_torn:
+                    torn_bytes = len(raw.data)
+                    continue
+                try:
+                    last = decode_line(raw.data)
+                except ValueError:
+                    bad_lines += 1
+                    continue
+                last_hash = line_hash(raw.data)
+                take(last)
+    except OSError as problem:
+        raise RecordError(f"cannot read the audit {path}: {problem}") from problem
+    return RunEnd(path, last, last_hash, bad_lines, torn_bytes, is_cut)
+
+
+def _go_to_tail(file: BinaryIO, at_most_bytes: int) -> bool:
+    """Go to the first whole line of the last bytes; return whether something lies before."""
+    size = file.seek(0, 2)
+    file.seek(max(0, size - at_most_bytes))
+    if size <= at_most_bytes:
+        return False
+    _skip_line(file)
+    return True
+
+
+def _skip_line(file: BinaryIO) -> None:
+    while (data := file.readline(LONGEST_LINE_BYTES)) and not data.endswith(b"\n"):
+        pass
