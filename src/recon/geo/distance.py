@@ -4,7 +4,7 @@ The WGS84 radii of curvature at the first point make a tangent plane: within 10 
 under 0.2 % up to 60 degrees of latitude.
 """
 
-from math import cos, hypot, radians, sin, sqrt
+from math import cos, degrees, hypot, radians, sin, sqrt
 
 from recon.model.geo import LatLon
 
@@ -14,17 +14,35 @@ ECCENTRICITY_SQUARED = 6.694379990141317e-3
 
 def offset_north_east_m(origin: LatLon, point: LatLon) -> tuple[float, float]:
     """Return how far north and east of `origin` a point lies, in metres."""
-    sine = sin(radians(origin.latitude_deg))
-    w = sqrt(1.0 - ECCENTRICITY_SQUARED * sine * sine)
-    meridian_m = SEMI_MAJOR_AXIS_M * (1.0 - ECCENTRICITY_SQUARED) / w**3
-    prime_vertical_m = SEMI_MAJOR_AXIS_M / w
+    north_m, east_m = _metres_per_radian(origin)
     east_deg = (point.longitude_deg - origin.longitude_deg + 180.0) % 360.0 - 180.0
     return (
-        radians(point.latitude_deg - origin.latitude_deg) * meridian_m,
-        radians(east_deg) * prime_vertical_m * cos(radians(origin.latitude_deg)),
+        radians(point.latitude_deg - origin.latitude_deg) * north_m,
+        radians(east_deg) * east_m,
+    )
+
+
+def moved_m(origin: LatLon, north_m: float, east_m: float) -> LatLon:
+    """Return the position this far north and east of `origin`: `offset_north_east_m` undone.
+
+    Not within metres of a pole, where there is no east.
+    """
+    per_north_m, per_east_m = _metres_per_radian(origin)
+    longitude_deg = origin.longitude_deg + degrees(east_m / per_east_m)
+    return LatLon(
+        origin.latitude_deg + degrees(north_m / per_north_m),
+        (longitude_deg + 180.0) % 360.0 - 180.0,
     )
 
 
 def horizontal_distance_m(a: LatLon, b: LatLon) -> float:
     """Return the horizontal distance between two positions, in metres."""
     return hypot(*offset_north_east_m(a, b))
+
+
+def _metres_per_radian(origin: LatLon) -> tuple[float, float]:
+    """How far a radian of latitude and of longitude reaches, north and east."""
+    latitude_rad = radians(origin.latitude_deg)
+    w = sqrt(1.0 - ECCENTRICITY_SQUARED * sin(latitude_rad) ** 2)
+    meridian_m = SEMI_MAJOR_AXIS_M * (1.0 - ECCENTRICITY_SQUARED) / w**3
+    return meridian_m, SEMI_MAJOR_AXIS_M / w * cos(latitude_rad)
