@@ -1,6 +1,7 @@
 """Geometry on the ground: the site's east-north-up frame, the globe, regions and paths."""
 
 from recon.geo.local_frame import (
+    OnGlobe,
     enu_from_geo,
     enu_from_point,
     enu_from_points,
@@ -10,11 +11,14 @@ from recon.geo.local_frame import (
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, rounded_path, straight_path
 from recon.geo.polygon import Polygon, region_fault
+from recon.geo.surface import Surface
 
 __all__ = [
     "DEFAULT_CHORD_ERROR_M",
+    "OnGlobe",
     "Path",
     "Polygon",
+    "Surface",
     "enu_from_geo",
     "enu_from_point",
     "enu_from_points",

@@ -1,0 +1,226 @@
+"""The ground, bilinear between the middles of a grid's cells: heights, the highest, the lowest.
+
+Within a cell of the lattice of middles a bilinear surface has no top and no bottom of its own:
+along a straight leg it is a parabola, and over an area its extremes lie on the area's outline or in
+one of the lattice's nodes. So both are found exactly, without sampling.
+
+Where the surface is not known (a node is NaN, or the place is not between the middles) a height is
+NaN, the highest is +inf and the lowest -inf: whoever compares with them is on the careful side.
+"""
+
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.geo import GroundGrid
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+class Surface:
+    """Heights (rows, cols) in the middles of `grid`'s cells; build one for each model and keep it.
+
+    Raises `ValueError` when there is not one height for each cell, or the grid is less than two
+    cells wide or high: there is nothing between its middles then.
+    """
+
+    def __init__(self, grid: GroundGrid, heights_m: npt.ArrayLike) -> None:
+        heights = np.array(heights_m, dtype=np.float64)
+        if heights.shape != (grid.rows, grid.cols) or min(heights.shape) < 2:
+            raise ValueError(
+                f"expected ({grid.rows}, {grid.cols}) heights, at least 2 each way, got an array "
+                f"of {heights.shape}"
+            )
+        self._grid = grid
+        self._heights_m = heights
+
+    def heights_m(self, points_m: npt.ArrayLike) -> FloatArray:
+        """Return the heights (N,) at (N, 2) east-north points."""
+        nodes = self._nodes(points_m)
+        known = self._covers(nodes)
+        places = np.where(known[:, np.newaxis], nodes, 0.0)
+        return np.where(known, self._bilinear(places, self._cells(places)), np.nan)
+
+    def highest_along_m(self, starts_m: npt.ArrayLike, ends_m: npt.ArrayLike) -> FloatArray:
+        """Return the highest ground (N,) under straight legs from (N, 2) to (N, 2)."""
+        return self._top.along(self._nodes(starts_m), self._nodes(ends_m))
+
+    def lowest_along_m(self, starts_m: npt.ArrayLike, ends_m: npt.ArrayLike) -> FloatArray:
+        """Return the lowest ground (N,) under straight legs from (N, 2) to (N, 2)."""
+        return -self._bottom.along(self._nodes(starts_m), self._nodes(ends_m))
+
+    def highest_within_m(self, triangles_m: npt.ArrayLike) -> FloatArray:
+        """Return the highest ground (N,) under (N, 3, 2) triangles."""
+        return self._top.within(self._triangle_nodes(triangles_m))
+
+    def lowest_within_m(self, triangles_m: npt.ArrayLike) -> FloatArray:
+        """Return the lowest ground (N,) under (N, 3, 2) triangles."""
+        return -self._bottom.within(self._triangle_nodes(triangles_m))
+
+    @cached_property
+    def _top(self) -> "_Highest":
+        return _Highest(self._heights_m)
+
+    @cached_property
+    def _bottom(self) -> "_Highest":
+        return _Highest(-self._heights_m)
+
+    def _nodes(self, points_m: npt.ArrayLike) -> FloatArray:
+        """East-north metres as (row, col) of the lattice, (N, 2)."""
+        points = np.asarray(points_m, dtype=np.float64).reshape(-1, 2)
+        grid = self._grid
+        rows = (grid.north_m - points[:, 1]) / grid.cell_m - 0.5
+        cols = (points[:, 0] - grid.west_m) / grid.cell_m - 0.5
+        return np.stack([rows, cols], axis=1)
+
+    def _triangle_nodes(self, triangles_m: npt.ArrayLike) -> FloatArray:
+        return self._nodes(triangles_m).reshape(-1, 3, 2)
+
+    def _covers(self, nodes: FloatArray) -> npt.NDArray[np.bool_]:
+        return _are_on_lattice(nodes, self._heights_m.shape)
+
+    def _cells(self, nodes: FloatArray) -> IntArray:
+        return _cells(nodes, self._heights_m.shape)
+
+    def _bilinear(self, nodes: FloatArray, cells: IntArray) -> FloatArray:
+        return _bilinear(self._heights_m, nodes, cells)
+
+
+class _Highest:
+    """The highest of a lattice's bilinear surface; the lowest is that of the negative."""
+
+    def __init__(self, heights: FloatArray) -> None:
+        self._heights = heights
+        self._pyramid = _pyramid(np.where(np.isnan(heights), np.inf, heights))
+
+    def along(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
+        """Along straight legs between (N, 2) rows and columns, (N,)."""
+        shape = self._heights.shape
+        known = _are_on_lattice(starts, shape) & _are_on_lattice(ends, shape)
+        highest = np.full(len(starts), np.inf)
+        if known.any():
+            highest[known] = self._along_known(starts[known], ends[known])
+        return highest
+
+    def _along_known(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
+        leg, share = _lattice_crossings(starts, ends)
+        is_piece = leg[1:] == leg[:-1]
+        leg, begin, end = leg[:-1][is_piece], share[:-1][is_piece], share[1:][is_piece]
+        step = ends[leg] - starts[leg]
+        places = [starts[leg] + t[:, np.newaxis] * step for t in (begin, (begin + end) / 2.0, end)]
+        cells = _cells(places[1], self._heights.shape)
+        first, middle, last = (_bilinear(self._heights, place, cells) for place in places)
+        peaks = _parabola_top(first, middle, last)
+        highest = np.full(len(starts), -np.inf)
+        np.maximum.at(highest, leg, np.where(np.isnan(peaks), np.inf, peaks))
+        return highest
+
+    def within(self, triangles: FloatArray) -> FloatArray:
+        """Within (N, 3, 2) triangles of rows and columns, (N,)."""
+        count = len(triangles)
+        sides = np.concatenate([triangles[:, index] for index in (0, 1, 2)])
+        ends = np.concatenate([triangles[:, index] for index in (1, 2, 0)])
+        highest: FloatArray = self.along(sides, ends).reshape(3, count).max(axis=0)
+        self._raise_to_nodes_within(triangles, highest)
+        return highest
+
+    def _raise_to_nodes_within(self, triangles: FloatArray, highest: FloatArray) -> None:
+        """Raise `highest` to the highest node in each triangle, from coarse tiles to fine ones."""
+        normals, offsets = _half_planes(triangles)
+        which = np.flatnonzero(highest < np.inf)
+        tiles = np.zeros((len(which), 2), dtype=np.int64)
+        for level in range(len(self._pyramid) - 1, -1, -1):
+            tops = self._pyramid[level]
+            exists = (tiles < tops.shape).all(axis=1)
+            which, tiles = which[exists], tiles[exists]
+            top = tops[tiles[:, 0], tiles[:, 1]]
+            least, most = _sides_of_tiles(tiles, level, normals[which], offsets[which])
+            is_inside, meets = (least >= 0.0).all(axis=1), (most >= 0.0).all(axis=1)
+            np.maximum.at(highest, which[is_inside], top[is_inside])
+            goes_on = meets & ~is_inside & (top > highest[which])
+            which = np.repeat(which[goes_on], 4)
+            tiles = (2 * tiles[goes_on][:, np.newaxis] + _CHILDREN).reshape(-1, 2)
+
+
+_CHILDREN = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
+
+
+def _are_on_lattice(nodes: FloatArray, shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    is_between = (nodes >= 0.0) & (nodes <= np.array(shape) - 1.0)
+    return np.asarray(is_between.all(axis=1))
+
+
+def _cells(nodes: FloatArray, shape: tuple[int, ...]) -> IntArray:
+    """The upper-left node of the lattice's cell that each place lies in, (N, 2)."""
+    return np.clip(np.floor(nodes).astype(np.int64), 0, np.array(shape) - 2)
+
+
+def _bilinear(heights: FloatArray, nodes: FloatArray, cells: IntArray) -> FloatArray:
+    row, col = cells.T
+    down, right = (nodes - cells).T
+    upper = heights[row, col] * (1.0 - right) + heights[row, col + 1] * right
+    lower = heights[row + 1, col] * (1.0 - right) + heights[row + 1, col + 1] * right
+    between: FloatArray = upper * (1.0 - down) + lower * down
+    return between
+
+
+def _lattice_crossings(starts: FloatArray, ends: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Where legs begin, cross a line of the lattice and end: leg and share of its way, in order."""
+    count = len(starts)
+    legs = [np.arange(count), np.arange(count)]
+    shares = [np.zeros(count), np.ones(count)]
+    for axis in (0, 1):
+        start, end = starts[:, axis], ends[:, axis]
+        first = np.floor(np.minimum(start, end)).astype(np.int64) + 1
+        crossings = np.maximum(np.ceil(np.maximum(start, end)).astype(np.int64) - first, 0)
+        leg = np.repeat(np.arange(count), crossings)
+        number = np.arange(len(leg)) - np.repeat(np.cumsum(crossings) - crossings, crossings)
+        legs.append(leg)
+        shares.append((first[leg] + number - start[leg]) / (end - start)[leg])
+    leg, share = np.concatenate(legs), np.concatenate(shares)
+    order = np.lexsort((share, leg))
+    return leg[order], share[order]
+
+
+def _parabola_top(first: FloatArray, middle: FloatArray, last: FloatArray) -> FloatArray:
+    """The highest of parabolas over an interval, from both ends and the middle; NaN from NaN."""
+    slope, bend = last - first, 2.0 * (first + last - 2.0 * middle)
+    has_top = np.abs(slope) < -bend
+    rise = np.divide(slope**2, -4.0 * bend, out=np.zeros_like(slope), where=has_top)
+    top = np.where(has_top, middle + rise, np.maximum(first, last))
+    known: FloatArray = top + 0.0 * middle
+    return known
+
+
+def _half_planes(triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Inward normals (N, 3, 2) and offsets (N, 3): inside where normal . place + offset >= 0."""
+    edges = np.roll(triangles, -1, axis=1) - triangles
+    normals = np.stack([-edges[..., 1], edges[..., 0]], axis=-1)
+    turn = edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]
+    normals = np.where(turn[:, np.newaxis, np.newaxis] < 0.0, -normals, normals)
+    return normals, -(normals * triangles).sum(axis=-1)
+
+
+def _sides_of_tiles(
+    tiles: IntArray, level: int, normals: FloatArray, offsets: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The least and the most of each half-plane's function over each tile's nodes, (N, 3) each."""
+    low = (tiles << level).astype(np.float64)[:, np.newaxis]
+    high = low + ((1 << level) - 1)
+    at_low, at_high = normals * low, normals * high
+    least: FloatArray = np.minimum(at_low, at_high).sum(axis=-1) + offsets
+    most: FloatArray = np.maximum(at_low, at_high).sum(axis=-1) + offsets
+    return least, most
+
+
+def _pyramid(heights: FloatArray) -> list[FloatArray]:
+    """The nodes, and the highest of each 2 x 2 of the level below, up to a single tile."""
+    levels = [heights]
+    while max(levels[-1].shape) > 1:
+        below = levels[-1]
+        padded = np.pad(below, [(0, size % 2) for size in below.shape], constant_values=-np.inf)
+        rows, cols = padded.shape
+        levels.append(padded.reshape(rows // 2, 2, cols // 2, 2).max(axis=(1, 3)))
+    return levels

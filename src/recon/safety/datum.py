@@ -1,0 +1,153 @@
+"""Where things are in one frame: east, north and up in metres, for everything safety compares.
+
+East and north are in the tangent plane of the frame's origin, at the origin's height; up is the
+ellipsoidal height minus the origin's. Every function returns None for what is not known.
+
+A vehicle reports heights above its own takeoff point. How high that point is, is told by the pad
+it took off from (within 10 m: its own first, else the nearest), else by the elevation model, else
+it is taken for as high as the frame's origin: "flat assumed". Without a site nobody knows the
+ground: the frame is put at the vehicle itself, and all ground is flat, at its origin's height.
+"""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.geo import OnGlobe, enu_from_geo
+from recon.geo.distance import horizontal_distance_m
+from recon.model.geo import GeoPoint, LatLon, LocalFrame
+from recon.model.mission import Mission
+from recon.model.vehicle import VehicleState
+from recon.safety.airspace import PreparedAirspace
+
+FloatArray = npt.NDArray[np.float64]
+
+NEAR_PAD_M = 10.0
+"""Where a vehicle took off and where its pad is are both known by GNSS: twice 2.5 m off, and a
+pilot steps aside."""
+
+
+def frame_for(airspace: PreparedAirspace, vehicle: VehicleState) -> LocalFrame | None:
+    """Return the site's frame, or one put at the vehicle; None without a site or a position."""
+    if airspace.airspace.frame is not None:
+        return airspace.airspace.frame
+    position = vehicle.position.value
+    if position is None:
+        return None
+    return LocalFrame(GeoPoint(position.latitude_deg, position.longitude_deg, 0.0))
+
+
+def places_m(frame: LocalFrame, places: Iterable[OnGlobe]) -> FloatArray:
+    """Return east and north (N, 2) of N places; (0, 2) for none."""
+    degrees = np.array(
+        [(place.latitude_deg, place.longitude_deg) for place in places], dtype=np.float64
+    ).reshape(-1, 2)
+    return enu_from_geo(frame, degrees[:, 0], degrees[:, 1], frame.origin.ellipsoid_height_m)[:, :2]
+
+
+def home(vehicle: VehicleState) -> LatLon | None:
+    """Return where the vehicle would go home to.
+
+    On the ground it is where the vehicle stands, for there it will take off. In the air it is where
+    the station saw it take off, or else its own pad: the aircraft does not tell its home.
+    """
+    if vehicle.is_flying.value is False and vehicle.position.value is not None:
+        return vehicle.position.value
+    if vehicle.takeoff_point is not None:
+        return vehicle.takeoff_point
+    pad = None if vehicle.profile is None else vehicle.profile.pad
+    return None if pad is None else LatLon(pad.latitude_deg, pad.longitude_deg)
+
+
+def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | None:
+    """Return how high the vehicle's takeoff point is.
+
+    None when nobody knows where it took off, or the elevation model tells no ground there. Without
+    a site it is always 0.
+    """
+    frame = airspace.airspace.frame
+    if frame is None:
+        return 0.0
+    point = home(vehicle)
+    if point is None:
+        return None
+    pad = _pad_at(airspace, vehicle, point)
+    if pad is not None:
+        return pad.ellipsoid_height_m - frame.origin.ellipsoid_height_m
+    ground_m = float(airspace.ground_up_m(places_m(frame, [point]))[0])
+    return None if np.isnan(ground_m) else ground_m
+
+
+def is_ground_assumed_flat(airspace: PreparedAirspace) -> bool:
+    """Return whether no elevation model tells the ground's heights."""
+    return airspace.airspace.elevation is None
+
+
+def vehicle_enu_m(
+    airspace: PreparedAirspace, vehicle: VehicleState, frame: LocalFrame | None = None
+) -> FloatArray | None:
+    """Return where the vehicle was last heard to be, (3,).
+
+    `frame` is for comparing several vehicles where there is no site; else the airspace's own.
+    """
+    frame = frame or frame_for(airspace, vehicle)
+    position, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
+    takeoff_m = takeoff_up_m(airspace, vehicle)
+    if frame is None or position is None or height_m is None or takeoff_m is None:
+        return None
+    enu_m: FloatArray = _raised(places_m(frame, [position]), [takeoff_m + height_m])[0]
+    return enu_m
+
+
+def home_enu_m(
+    airspace: PreparedAirspace, vehicle: VehicleState, frame: LocalFrame | None = None
+) -> FloatArray | None:
+    """Return the takeoff point that the vehicle goes home to, (3,)."""
+    frame = frame or frame_for(airspace, vehicle)
+    point, takeoff_m = home(vehicle), takeoff_up_m(airspace, vehicle)
+    if frame is None or point is None or takeoff_m is None:
+        return None
+    enu_m: FloatArray = _raised(places_m(frame, [point]), [takeoff_m])[0]
+    return enu_m
+
+
+def waypoints_enu_m(
+    airspace: PreparedAirspace,
+    vehicle: VehicleState,
+    mission: Mission,
+    frame: LocalFrame | None = None,
+) -> FloatArray | None:
+    """Return where the mission's N waypoints are for this vehicle, (N, 3)."""
+    frame = frame or frame_for(airspace, vehicle)
+    takeoff_m = takeoff_up_m(airspace, vehicle)
+    if frame is None or takeoff_m is None:
+        return None
+    heights_m = [takeoff_m + waypoint.height_above_takeoff_m for waypoint in mission.waypoints]
+    return _raised(places_m(frame, mission.waypoints), heights_m)
+
+
+def _pad_at(airspace: PreparedAirspace, vehicle: VehicleState, point: LatLon) -> GeoPoint | None:
+    """The pad that a takeoff here was from: the vehicle's own when it is near, else the nearest."""
+    own = [] if vehicle.profile is None else [vehicle.profile.pad]
+    pads = airspace.airspace.landing_pads
+    own += [pad.place for pad in pads if pad.serial is not None and pad.serial == vehicle.serial]
+    mine = [pad for pad in own if pad is not None]
+    return _nearest(mine, point) or _nearest([pad.place for pad in pads], point)
+
+
+def _nearest(pads: Sequence[GeoPoint], point: LatLon) -> GeoPoint | None:
+    near = (
+        (horizontal_distance_m(point, LatLon(pad.latitude_deg, pad.longitude_deg)), pad)
+        for pad in pads
+    )
+    return min(
+        ((far_m, pad) for far_m, pad in near if far_m <= NEAR_PAD_M),
+        key=lambda found: found[0],
+        default=(0.0, None),
+    )[1]
+
+
+def _raised(points_m: FloatArray, up_m: Sequence[float]) -> FloatArray:
+    """East and north (N, 2) with their heights (N,), as (N, 3)."""
+    return np.column_stack([points_m, np.asarray(up_m, dtype=np.float64)])
