@@ -135,6 +135,13 @@ class FleetReturnOrdered:
 
 
 @dataclass(frozen=True, slots=True)
+class AuditTroubled:
+    """The audit cannot be written, for this reason; None: it can again."""
+
+    problem: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class AlarmAcknowledged:
     """A person has seen an alarm."""
 
@@ -177,6 +184,7 @@ Event = (
     | SeparationHoldSwitched
     | FleetReturnOrdered
     | AlarmAcknowledged
+    | AuditTroubled
     | WorkerResult
     | DeadlineMissed
 )

@@ -30,6 +30,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _unconfirmed(record)
         yield from _stopped_landing(station, record)
     yield from _imaging(station)
+    yield from _audit(station)
 
 
 def _about(
@@ -152,4 +153,15 @@ def _imaging(station: Station) -> Iterator[Condition]:
             vehicle_name=imaging.eye_serial or "",
             text=f"the eye's frame was not laid on the ground: {imaging.latest_error}",
             serial=imaging.eye_serial,
+        )
+
+
+def _audit(station: Station) -> Iterator[Condition]:
+    if station.audit_problem is not None:
+        yield Condition(
+            key="audit",
+            severity=Severity.ERROR,
+            rule="audit",
+            vehicle_name="",
+            text=f"{station.audit_problem}; flying goes on, the record of it has a gap",
         )

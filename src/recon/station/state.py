@@ -44,6 +44,8 @@ class Station:
     """What each vehicle does on the station's word, by serial."""
     preflight_overrides: Mapping[str, Override] = field(default_factory=dict)
     """By serial, until the vehicle has landed."""
+    audit_problem: str | None = None
+    """Why the audit cannot be written, while it cannot."""
     next_own_id: int = -1
     """The number of the next command the station gives by itself; see `own_ids`."""
     sticks: Mapping[str, PendingZero] = field(default_factory=dict)

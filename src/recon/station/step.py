@@ -5,6 +5,7 @@ from dataclasses import replace
 from recon.fleet import step as fleet_step
 from recon.model.event import (
     AlarmAcknowledged,
+    AuditTroubled,
     AuthorityTaken,
     CommandAnswered,
     CommandDropped,
@@ -64,6 +65,8 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return station, ()
         case FleetReturnOrdered():
             return station, ()
+        case AuditTroubled(problem):
+            return replace(station, audit_problem=problem), ()
         case AlarmAcknowledged(alarm_id, by):
             return replace(station, alarms=alarms.acknowledge(station.alarms, alarm_id, by)), ()
 
