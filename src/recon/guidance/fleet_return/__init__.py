@@ -1,0 +1,30 @@
+"""Calling a fleet home: a height of its own for each vehicle, a way to its pad, and its turn.
+
+`plan_return` is pure: places, pads and what the site allows in; flights in waves out. `hindrance`
+says whether a planned flight may begin now. `mission_of` makes the landing mission of it.
+"""
+
+from recon.guidance.fleet_return.airspace import WayHome, way_home
+from recon.guidance.fleet_return.flight import Flight, LeftOut, Pad, Place, Returning, ReturnPlan
+from recon.guidance.fleet_return.mission import mission_of
+from recon.guidance.fleet_return.plan import plan_return
+from recon.guidance.fleet_return.settings import FleetReturnSettings
+from recon.guidance.fleet_return.turn import UnderWay, hindrance
+from recon.guidance.fleet_return.volume import Separation
+
+__all__ = [
+    "FleetReturnSettings",
+    "Flight",
+    "LeftOut",
+    "Pad",
+    "Place",
+    "ReturnPlan",
+    "Returning",
+    "Separation",
+    "UnderWay",
+    "WayHome",
+    "hindrance",
+    "mission_of",
+    "plan_return",
+    "way_home",
+]

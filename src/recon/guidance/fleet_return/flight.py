@@ -1,0 +1,92 @@
+"""What goes into a plan and what comes out. Places are (east, north, up) metres of the site.
+
+Up counts from the height of the frame's origin, in one datum for all vehicles: each one's own
+height above takeoff is added to the height of its takeoff point before it comes in here.
+"""
+
+from dataclasses import dataclass
+
+from recon.guidance.fleet_return.volume import Volume, column, level_legs
+
+Place = tuple[float, float, float]
+EastNorth = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Pad:
+    """Where a vehicle lands."""
+
+    name: str
+    east_m: float
+    north_m: float
+    up_m: float
+
+    @property
+    def east_north_m(self) -> EastNorth:
+        """Its place on the ground."""
+        return self.east_m, self.north_m
+
+
+@dataclass(frozen=True, slots=True)
+class Returning:
+    """A vehicle that hovers and is called home. `battery_fraction` None: not known, taken for
+    the lowest."""
+
+    serial: str
+    name: str
+    place_m: Place
+    takeoff_up_m: float
+    pad: Pad
+    battery_fraction: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """One way home: up or down to the layer on the spot, along `way_m` in it, down at the pad.
+
+    `way_m` begins over the vehicle's place and ends over its pad, at least two points. `wave`
+    counts from 1.
+    """
+
+    serial: str
+    name: str
+    start_m: Place
+    takeoff_up_m: float
+    pad: Pad
+    layer_up_m: float
+    way_m: tuple[EastNorth, ...]
+    wave: int
+
+    @property
+    def volumes(self) -> tuple[Volume, ...]:
+        """Every place it passes, in order: its column, its way, the pad's column."""
+        east_m, north_m, up_m = self.start_m
+        return (
+            column((east_m, north_m), up_m, self.layer_up_m),
+            *level_legs(self.way_m, self.layer_up_m),
+            column(self.pad.east_north_m, self.layer_up_m, self.pad.up_m),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A vehicle without a flight, and why, in words for its operator."""
+
+    serial: str
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnPlan:
+    """Flights in the order of their turn, and those left out. `layers_up_m` from the lowest."""
+
+    layers_up_m: tuple[float, ...]
+    flights: tuple[Flight, ...]
+    left_out: tuple[LeftOut, ...]
+
+    @property
+    def waves(self) -> tuple[tuple[Flight, ...], ...]:
+        """The flights by wave; in a wave every vehicle has a layer of its own."""
+        numbers = sorted({flight.wave for flight in self.flights})
+        return tuple(tuple(f for f in self.flights if f.wave == number) for number in numbers)

@@ -1,0 +1,39 @@
+"""The fleet return's thresholds, each with its reason."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class FleetReturnSettings:
+    """Distances in metres, speeds in metres per second."""
+
+    layer_spacing_m: float = 8.0
+    """Two barometers drift apart by a few metres in an hour; 6 m must be left between vehicles."""
+
+    lowest_layer_m: float = 20.0
+    """Above the highest ground on the ways: over vans, masts and the trees of a field's edge."""
+
+    ceiling_margin_m: float = 1.0
+    """Left below the ceiling: an aircraft overshoots a climb by less than this."""
+
+    zone_margin_m: float = 6.0
+    """Left above a zone that is flown over: as much as between two vehicles."""
+
+    horizontal_slack_m: float = 3.0
+    """Added to the least separation: a hovering vehicle drifts by a metre or two, and telemetry of
+    a vehicle at 8 m/s is a few tenths of a second old."""
+
+    vertical_slack_m: float = 1.0
+    """As above; less than what the layers' 8 m leave over the least separation's 6 m."""
+
+    detour_slack_m: float = 1.0
+    """Added to the margin at boundary and zones: a waypoint is rounded, a corner is not."""
+
+    speed_mps: float = 8.0
+    """Between the layers' ends: half of what DJI allows, braking takes 13 m."""
+
+    over_pad_m: float = 3.0
+    """Nearer than this a vehicle counts as over its pad."""
+
+    at_layer_m: float = 2.0
+    """Nearer than this a vehicle counts as in its layer."""

@@ -1,0 +1,131 @@
+"""Level ways: straight where nothing is shut, else the shortest around (a visibility graph)."""
+
+from collections.abc import Sequence
+from heapq import heappop, heappush
+from math import cos, hypot, pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import shapely  # type: ignore[import-untyped, unused-ignore]
+
+from recon.guidance.fleet_return.airspace import WayHome
+from recon.guidance.fleet_return.flight import EastNorth
+
+CLEARANCE_M = 0.25
+"""Corners of a way stand this far off what they go around, so that rounding never touches it."""
+
+CORNERS_OF_A_CIRCLE = 12
+
+
+class Ways:
+    """Finds ways in one site's air at any height; keeps what it has worked out of each height."""
+
+    def __init__(self, home: WayHome) -> None:
+        self._home = home
+        self._shut_at: dict[float, shapely.Geometry] = {}
+        self._inside = _shrunk(home.boundary, home.margin_m)
+        self._inside_corners = _corners(_shrunk(home.boundary, home.margin_m + CLEARANCE_M))
+        shapely.prepare(self._inside)
+
+    def find(
+        self,
+        start_m: EastNorth,
+        end_m: EastNorth,
+        up_m: float,
+        hovering_m: Sequence[EastNorth],
+        circle_m: float,
+    ) -> tuple[EastNorth, ...] | None:
+        """Return a way at a height that keeps `circle_m` from hovering vehicles, or None."""
+        shut = self._shut(up_m)
+        if hovering_m:
+            shut = shapely.union_all([shut, *(_circle(p, circle_m) for p in hovering_m)])
+        shapely.prepare(shut)
+        if self._is_open(np.array([[start_m, end_m]]), shut)[0]:
+            return start_m, end_m
+        around = shapely.buffer(shut, CLEARANCE_M, join_style="mitre", mitre_limit=2.0)
+        nodes = np.array([start_m, end_m, *_corners(around), *self._inside_corners])
+        return _shortest(nodes, self._open_legs(nodes, shut))
+
+    def is_in_reach(self, place_m: EastNorth, up_m: float) -> bool:
+        """Return whether a place at a height is inside the site and not shut."""
+        return bool(self._is_open(np.array([[place_m, place_m]]), self._shut(up_m))[0])
+
+    def _shut(self, up_m: float) -> shapely.Geometry:
+        if up_m not in self._shut_at:
+            areas = [
+                piece.area for piece in self._home.shut if piece.low_up_m < up_m < piece.high_up_m
+            ]
+            margin_m = self._home.margin_m
+            self._shut_at[up_m] = shapely.union_all(
+                [shapely.buffer(area, margin_m, quad_segs=4) for area in areas]
+            )
+        return self._shut_at[up_m]
+
+    def _open_legs(self, nodes: npt.NDArray[np.float64], shut: Any) -> npt.NDArray[np.bool_]:
+        """Which of all legs between nodes are open, (N, N)."""
+        count = len(nodes)
+        first, second = np.triu_indices(count, 1)
+        is_open = np.zeros((count, count), dtype=np.bool_)
+        legs = np.stack([nodes[first], nodes[second]], axis=1)
+        is_open[first, second] = self._is_open(legs, shut)
+        return is_open | is_open.T
+
+    def _is_open(self, legs_m: npt.NDArray[np.float64], shut: Any) -> npt.NDArray[np.bool_]:
+        lines = shapely.linestrings(legs_m)
+        is_point = (legs_m[:, 0] == legs_m[:, 1]).all(axis=1)
+        lines[is_point] = shapely.points(legs_m[is_point, 0])
+        is_open: npt.NDArray[np.bool_] = ~shapely.intersects(shut, lines)
+        if self._inside is not None:
+            is_open &= shapely.covers(self._inside, lines)
+        return is_open
+
+
+def _shrunk(boundary: shapely.Geometry | None, margin_m: float) -> shapely.Geometry | None:
+    return None if boundary is None else shapely.buffer(boundary, -margin_m, join_style="mitre")
+
+
+def _circle(place_m: EastNorth, radius_m: float) -> shapely.Geometry:
+    """A polygon around a circle, nowhere nearer than its radius."""
+    outside_m = radius_m / cos(pi / CORNERS_OF_A_CIRCLE)
+    angles = np.arange(CORNERS_OF_A_CIRCLE) * (2.0 * pi / CORNERS_OF_A_CIRCLE)
+    offsets = np.column_stack([np.cos(angles), np.sin(angles)]) * outside_m
+    return shapely.Polygon(np.asarray(place_m) + offsets)
+
+
+def _corners(area: shapely.Geometry | None) -> list[EastNorth]:
+    if area is None:
+        return []
+    return [(float(east), float(north)) for east, north in shapely.get_coordinates(area)]
+
+
+def _shortest(
+    nodes: npt.NDArray[np.float64], is_open: npt.NDArray[np.bool_]
+) -> tuple[EastNorth, ...] | None:
+    """The shortest way from node 0 to node 1 along open legs (Dijkstra)."""
+    best_m = {0: 0.0}
+    came_from: dict[int, int] = {}
+    waiting = [(0.0, 0)]
+    done: set[int] = set()
+    while waiting:
+        far_m, node = heappop(waiting)
+        if node == 1:
+            return _traced(nodes, came_from)
+        if node in done:
+            continue
+        done.add(node)
+        for following in np.flatnonzero(is_open[node]):
+            key = int(following)
+            step_m = hypot(*(nodes[key] - nodes[node]))
+            if far_m + step_m < best_m.get(key, float("inf")):
+                best_m[key] = far_m + step_m
+                came_from[key] = node
+                heappush(waiting, (far_m + step_m, key))
+    return None
+
+
+def _traced(nodes: npt.NDArray[np.float64], came_from: dict[int, int]) -> tuple[EastNorth, ...]:
+    way = [1]
+    while way[-1] != 0:
+        way.append(came_from[way[-1]])
+    return tuple((float(nodes[n][0]), float(nodes[n][1])) for n in reversed(way))

@@ -1,0 +1,169 @@
+"""Flies a planned fleet return in 10 Hz steps, with motion and distances of its own.
+
+Knows only what the plan says of heights, ways and pads; asks `hindrance` for leave to begin. Every
+vehicle has its own speeds, hovers with a drift of its own and waits before it touches down.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from math import hypot, sqrt
+from random import Random
+
+from recon.guidance.fleet_return import (
+    FleetReturnSettings,
+    Flight,
+    Place,
+    ReturnPlan,
+    Separation,
+    UnderWay,
+    hindrance,
+)
+
+STEP_S = 0.1
+DRIFT_M = 1.2
+
+
+@dataclass
+class Flier:
+    """One vehicle: hovers, then flies point after point, then is on the ground."""
+
+    name: str
+    place_m: Place
+    rng: Random
+    targets_m: list[Place] = field(default_factory=list)
+    is_on_ground: bool = False
+    began_s: float | None = None
+    landed_s: float | None = None
+    waits_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.level_mps = self.rng.uniform(4.0, 8.0)
+        self.upright_mps = self.rng.uniform(1.0, 3.0)
+        self.drift_m = tuple(self.rng.uniform(-DRIFT_M, DRIFT_M) / sqrt(2.0) for _ in range(2))
+
+    @property
+    def true_place_m(self) -> Place:
+        east_m, north_m, up_m = self.place_m
+        return east_m + self.drift_m[0], north_m + self.drift_m[1], up_m
+
+    def begin(self, flight: Flight, now_s: float) -> None:
+        layer_m, pad = flight.layer_up_m, flight.pad
+        self.began_s = now_s
+        self.waits_s = self.rng.uniform(0.5, 4.0)
+        self.targets_m = [
+            (*self.place_m[:2], layer_m),
+            *((east_m, north_m, layer_m) for east_m, north_m in flight.way_m[1:]),
+            (pad.east_m, pad.north_m, pad.up_m + 0.3),
+        ]
+
+    def step(self, now_s: float) -> None:
+        if self.began_s is None or self.is_on_ground:
+            return
+        if now_s - self.began_s < self.waits_s:
+            return
+        if not self.targets_m:
+            self.is_on_ground, self.landed_s = True, now_s
+            return
+        offset = [t - p for t, p in zip(self.targets_m[0], self.place_m, strict=True)]
+        far_m = sqrt(sum(part * part for part in offset))
+        is_level = abs(offset[2]) < 0.01
+        reach_m = (self.level_mps if is_level else self.upright_mps) * STEP_S
+        if far_m <= reach_m:
+            self.place_m = self.targets_m.pop(0)
+            return
+        east_m, north_m, up_m = (
+            p + part * reach_m / far_m for p, part in zip(self.place_m, offset, strict=True)
+        )
+        self.place_m = (east_m, north_m, up_m)
+
+
+@dataclass
+class Flown:
+    """What came of it."""
+
+    fliers: dict[str, Flier]
+    nearest: tuple[float, float, str] | None
+    """Of the worst pair in the air: level and height distance, and who."""
+    most_at_once: int
+    lasted_s: float
+    heights: list[tuple[float, dict[str, float]]]
+    pad_users: list[tuple[float, dict[str, list[str]]]]
+
+
+def fly(
+    plan: ReturnPlan,
+    others: dict[str, Place],
+    separation: Separation,
+    least: Separation,
+    settings: FleetReturnSettings,
+    seed: int,
+    at_most_s: float = 20_000.0,
+) -> Flown:
+    """Fly a plan to its end; `others` hover all the time."""
+    rng = Random(seed)
+    fliers = {f.name: Flier(f.name, f.start_m, Random(rng.random())) for f in plan.flights}
+    hoverers = {n: Flier(n, place, Random(rng.random())) for n, place in others.items()}
+    flown = Flown(fliers | hoverers, None, 0, 0.0, [], [])
+    waiting = list(plan.flights)
+    under_way: list[Flight] = []
+    for count in range(round(at_most_s / STEP_S)):
+        now_s = count * STEP_S
+        if count % 10 == 0:
+            _begin(waiting, under_way, flown.fliers, separation, settings, now_s)
+            under_way[:] = [f for f in under_way if not flown.fliers[f.name].is_on_ground]
+            _note(flown, under_way, now_s)
+        for flier in fliers.values():
+            flier.step(now_s)
+        _watch(flown, least)
+        flown.lasted_s = now_s
+        if all(flier.is_on_ground for flier in fliers.values()):
+            break
+    return flown
+
+
+def _begin(
+    waiting: list[Flight],
+    under_way: list[Flight],
+    fliers: dict[str, Flier],
+    separation: Separation,
+    settings: FleetReturnSettings,
+    now_s: float,
+) -> None:
+    flying = {n: f.place_m for n, f in fliers.items() if not f.is_on_ground}
+    moving = {f.name for f in under_way}
+    for flight in tuple(waiting):
+        hovering = {n: p for n, p in flying.items() if n != flight.name and n not in moving}
+        now = [UnderWay(f, flying[f.name]) for f in under_way if f.name in flying]
+        before = waiting[: waiting.index(flight)]
+        if hindrance(flight, before, now, hovering, separation, settings) is None:
+            fliers[flight.name].begin(flight, now_s)
+            waiting.remove(flight)
+            under_way.append(flight)
+            moving.add(flight.name)
+
+
+def _note(flown: Flown, under_way: Sequence[Flight], now_s: float) -> None:
+    moving = [f for f in under_way if flown.fliers[f.name].began_s is not None]
+    flown.most_at_once = max(flown.most_at_once, len(moving))
+    flown.heights.append(
+        (now_s, {n: f.place_m[2] for n, f in flown.fliers.items() if not f.is_on_ground})
+    )
+    users: dict[str, list[str]] = {}
+    for flight in moving:
+        flier = flown.fliers[flight.name]
+        if len(flier.targets_m) <= 1:
+            users.setdefault(flight.pad.name, []).append(flight.name)
+    flown.pad_users.append((now_s, users))
+
+
+def _watch(flown: Flown, least: Separation) -> None:
+    flying = [f for f in flown.fliers.values() if not f.is_on_ground]
+    for one, other in combinations(flying, 2):
+        a, b = one.true_place_m, other.true_place_m
+        up_m = abs(a[2] - b[2])
+        if up_m >= least.vertical_m:
+            continue
+        level_m = hypot(a[0] - b[0], a[1] - b[1])
+        if flown.nearest is None or level_m < flown.nearest[0]:
+            flown.nearest = (level_m, up_m, f"{one.name} and {other.name}")
