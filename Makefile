@@ -9,7 +9,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-rust test-python test-web test-e2e check format bench fuzz docs web clean
+.PHONY: help setup demo run test test-rust test-python test-web test-e2e check format bench fuzz study mutants docs web clean
 
 help: ## Show what can be made
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -79,8 +79,17 @@ fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nig
 			-- -max_total_time=$(FUZZ_SECONDS) -max_len=4096 || exit 1; \
 	done
 
+study: setup ## Long runs: the session for 100,000 simulated seconds, and the mutants (about half an hour)
+	$(RUN) python -m studies.session --seconds 100000
+	@$(MAKE) mutants
+
+mutants: setup ## Change the gate's rules everywhere: a test must notice each change
+	rm -rf mutants
+	$(RUN) --group study python -m studies.mutants
+
 docs: setup web/node_modules/.stamp ## Bring generated files up to date: the API's description and the console's types
 	$(RUN) recon openapi > web/openapi.json
+	$(RUN) python -c "from recon.fleet.flight_table_page import markdown as page; print(page(), end='')" > docs/flight-table.md
 	npm --prefix web run generate --silent
 
 format: setup web/node_modules/.stamp ## Format all sources
