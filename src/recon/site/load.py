@@ -9,7 +9,8 @@ from typing import Any
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
-from recon.site.agreement import refuse_fenced_pads, refuse_high_ways_home
+from recon.site.agreement import refuse_high_ways_home, refuse_misplaced_pads, refuse_sunken_pads
+from recon.site.elevation import ElevationTable, read_elevation
 from recon.site.errors import SiteError
 from recon.site.eye import eye_from_table
 from recon.site.layers import read_layers
@@ -60,7 +61,12 @@ def load_site(folder: Path) -> Site:
     )
     site = Site(table.name, frame, grid, eye, profiles, layers, limits)
     refuse_high_ways_home(str(path), profiles, limits)
-    refuse_fenced_pads(path, layers, profiles, site.airspace)
+    refuse_misplaced_pads(path, site)
+    if table.elevation is None:
+        return site
+    elevation = convert(path, table.elevation, ElevationTable, "elevation")
+    site = replace(site, elevation=read_elevation(path, elevation, site.airspace))
+    refuse_sunken_pads(path, site)
     return site
 
 

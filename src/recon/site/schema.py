@@ -119,4 +119,5 @@ class SiteTable(_Table, frozen=True):
     eye: dict[str, Any] | None = None
     ground_image: dict[str, Any] | None = None
     layers: dict[str, Any] = {}
+    elevation: dict[str, Any] | None = None
     vehicles: list[dict[str, Any]] = []

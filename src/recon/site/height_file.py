@@ -1,0 +1,188 @@
+"""A GeoTIFF with heights, opened with care: bounded, georeferenced, in metres, one band.
+
+The file is read whole into memory first and opened by the GeoTIFF driver alone, so that it can name
+no other file or address; nothing is asked of the network.
+"""
+
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pyproj
+import rasterio
+from pyproj.exceptions import ProjError
+from pyproj.network import set_network_enabled  # type: ignore[attr-defined]
+from rasterio.errors import NotGeoreferencedWarning, RasterioError
+from rasterio.io import DatasetReader, MemoryFile
+from rasterio.transform import Affine
+from rasterio.windows import Window
+
+from recon.geo import geo_from_enu
+from recon.model.geo import LocalFrame
+from recon.site.errors import SiteError
+from recon.site.reading import read_bounded
+
+FloatArray = npt.NDArray[np.float64]
+
+LARGEST_FILE_BYTES = 64 * 1024 * 1024
+MOST_PIXELS = 16_000_000
+"""Read at once: 128 MB. A field of 2 km with pixels of half a metre."""
+LARGEST_BLOCK_BYTES = 128 * 1024 * 1024
+"""A strip or tile is unpacked whole, whatever is asked of it."""
+HEIGHT_TYPES = frozenset({"int16", "uint16", "int32", "uint32", "float32", "float64"})
+METRES = frozenset({None, "", "m", "metre", "meter", "metres", "meters"})
+LOWEST_M, HIGHEST_M = -1_000.0, 10_000.0
+"""What an altitude in site.toml may be."""
+GDAL_OPTIONS = {"GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR", "CPL_DEBUG": "OFF"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeightFile:
+    """An open file; `crs` is its whole reference system, `place` leads complaints."""
+
+    place: str
+    dataset: DatasetReader
+    crs: pyproj.CRS
+    _pixel_from_map: Affine
+    _map_from_globe: pyproj.Transformer
+
+    def pixels(self, frame: LocalFrame, east_north_m: FloatArray) -> FloatArray:
+        """Return the (row, column) of (N, 2) points at the origin's height, centres at integers.
+
+        (N, 2); NaN where the file's projection knows no place. The height hardly matters: 100 m
+        more shift a point 1 km from the origin by 2 cm.
+        """
+        points = np.column_stack([east_north_m, np.zeros(len(east_north_m))])
+        latitude, longitude, _ = geo_from_enu(frame, points)
+        x, y = self._map_from_globe.transform(longitude, latitude)
+        col, row = self._pixel_from_map @ (np.asarray(x), np.asarray(y))
+        pixels = np.column_stack([row - 0.5, col - 0.5])
+        return np.where(np.isfinite(pixels), pixels, np.nan)
+
+    def heights_m(self, first: tuple[int, int], size: tuple[int, int]) -> FloatArray:
+        """Return a window of the file's heights, NaN where it tells none. Raises `SiteError`."""
+        if size[0] * size[1] > MOST_PIXELS:
+            raise SiteError(
+                f"{self.place}: expected at most {MOST_PIXELS} pixels around the site, got "
+                f"{size[1]} x {size[0]}; export it with larger pixels, or set a smaller "
+                "limits.max_distance_from_home_m"
+            )
+        window = Window(first[1], first[0], size[1], size[0])
+        try:
+            raw = self.dataset.read(1, window=window, masked=True)
+        except (RasterioError, ValueError, MemoryError) as problem:
+            raise SiteError(
+                f"{self.place}: expected a whole GeoTIFF, got one cut short or "
+                f"damaged: {said(problem)}"
+            ) from problem
+        scale, offset = self.dataset.scales[0], self.dataset.offsets[0]
+        with np.errstate(all="ignore"):
+            heights: FloatArray = raw.astype(np.float64).filled(np.nan) * scale + offset
+        _refuse_no_heights(self.place, heights)
+        return heights
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[HeightFile]:
+    """Open a file of heights; raises `SiteError` for anything else."""
+    data = read_bounded(path, LARGEST_FILE_BYTES, "a GeoTIFF with heights")
+    if not data:
+        raise SiteError(f"{path}: expected a GeoTIFF, got: an empty file")
+    # No datum shift is fetched: what PROJ has at hand is good to a metre or two.
+    set_network_enabled(False)
+    place = str(path)
+    with (
+        _without_chatter(),
+        rasterio.Env(**GDAL_OPTIONS),
+        MemoryFile(data) as memory,
+        _dataset(place, memory) as dataset,
+    ):
+        _refuse_other_rasters(place, dataset)
+        yield _height_file(place, dataset)
+
+
+@contextmanager
+def _without_chatter() -> Iterator[None]:
+    """GDAL's notes on odd tags are not for the operator: what matters becomes a `SiteError`."""
+    log = logging.getLogger("rasterio._env")
+    was_disabled, log.disabled = log.disabled, True
+    try:
+        yield
+    finally:
+        log.disabled = was_disabled
+
+
+def _dataset(place: str, memory: MemoryFile) -> DatasetReader:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            return memory.open(driver="GTiff")
+    except (RasterioError, ValueError, MemoryError) as problem:
+        raise SiteError(f"{place}: expected a GeoTIFF, got: {said(problem)}") from problem
+
+
+def _refuse_other_rasters(place: str, dataset: DatasetReader) -> None:
+    if dataset.count != 1 or dataset.dtypes[0] not in HEIGHT_TYPES:
+        raise SiteError(
+            f"{place}: expected one band of heights ({', '.join(sorted(HEIGHT_TYPES))}), got "
+            f"{dataset.count} of {dataset.dtypes[0]}; is it a picture?"
+        )
+    rows, cols = dataset.block_shapes[0]
+    block_bytes = rows * cols * np.dtype(dataset.dtypes[0]).itemsize
+    if block_bytes > LARGEST_BLOCK_BYTES:
+        raise SiteError(
+            f"{place}: expected strips or tiles of at most {LARGEST_BLOCK_BYTES} bytes, got "
+            f"{cols} x {rows} pixels in one; export it tiled"
+        )
+    if dataset.units[0] not in METRES:
+        raise SiteError(
+            f"{place}: expected heights in metres, got the unit {dataset.units[0]!a}; convert them"
+        )
+
+
+def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
+    transform = dataset.transform
+    is_placed = all(np.isfinite(transform)) and abs(transform.determinant) > 0.0
+    if dataset.crs is None or not is_placed or transform == Affine.identity():
+        raise SiteError(
+            f"{place}: expected a GeoTIFF with a coordinate reference system and its place in it, "
+            "got one without; export it from QGIS with its CRS"
+        )
+    try:
+        crs = pyproj.CRS.from_user_input(dataset.crs.to_wkt())
+        flat = horizontal(crs)
+        globe = pyproj.Transformer.from_crs("EPSG:4326", flat, always_xy=True)
+    except (ProjError, RasterioError) as problem:
+        raise SiteError(
+            f"{place}: expected a coordinate reference system that PROJ knows, got: {said(problem)}"
+        ) from problem
+    if not (flat.is_geographic or flat.is_projected):
+        raise SiteError(f"{place}: expected geographic or projected coordinates, got {flat.name!a}")
+    return HeightFile(place, dataset, crs, ~transform, globe)
+
+
+def horizontal(crs: pyproj.CRS) -> pyproj.CRS:
+    """Return the horizontal part of a reference system."""
+    if crs.is_bound and crs.source_crs is not None:
+        return horizontal(crs.source_crs)
+    return crs.sub_crs_list[0] if crs.is_compound else crs.to_2d()
+
+
+def _refuse_no_heights(place: str, heights_m: FloatArray) -> None:
+    is_wild = (heights_m < LOWEST_M) | (heights_m > HIGHEST_M)
+    if is_wild.any():
+        raise SiteError(
+            f"{place}: expected heights of {LOWEST_M:g} to {HIGHEST_M:g} m, got "
+            f"{float(heights_m[is_wild][0]):g}; if that stands for no data, declare it as such"
+        )
+
+
+def said(problem: BaseException) -> str:
+    """Return a library's complaint in printable characters, on one line, not too long."""
+    text = ascii(" ".join(str(problem).split()))[1:-1]
+    return text if len(text) <= 200 else text[:197] + "..."
