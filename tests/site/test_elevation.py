@@ -193,7 +193,7 @@ PICTURE = np.zeros((3, 160, 160), np.uint8)
         (b"II*\x00", "expected a GeoTIFF, got: "),
         (b"<VRTDataset rasterXSize='1' rasterYSize='1'/>", "expected a GeoTIFF, got: "),
         (flat()[:2_000], "expected a whole GeoTIFF, got one cut short or damaged: "),
-        (flat()[:200], "expected a GeoTIFF, got: "),
+        (flat()[:200], "expected a GeoTIFF"),
         (bytes(64 * 1024 * 1024 + 1), "expected at most 67108864 bytes, got more"),
         (flat(bands=PICTURE), "got 3 of uint8; is it a picture?"),
         (flat(bands=PICTURE[0]), "got 1 of uint8; is it a picture?"),
