@@ -297,6 +297,14 @@ def test_the_file_lies_in_the_folder(tmp_path: Path) -> None:
         load_site(tmp_path)
 
 
+def test_a_pad_that_lies_in_the_air_or_the_ground_is_refused(tmp_path: Path) -> None:
+    pad = "pad = { latitude_deg = 41.9012, longitude_deg = -93.6034, altitude_m = 244 }"
+    assert (
+        "/site.toml: vehicles (entry 1).pad: expected an altitude within 10 m of the elevation "
+        "model's ground, got one -31.0 m from it; altitudes count from the WGS84 ellipsoid"
+    ) in refusal(tmp_path, flat(), more=f'[[vehicles]]\nserial = "A"\n{pad}\n')
+
+
 WHOLE = geotiff(plane, pixel=20.0, dtype="float32", compress="deflate")
 
 

@@ -226,7 +226,7 @@ ONE = FILE + "feature 1: "
         (
             "keep_out",
             collection(polygon(ring(SQUARE), floor_m=3, datum="msl")),
-            "properties.datum: Invalid enum value 'msl'",
+            "properties.datum: Invalid enum value 'msl', expected 'ground' or 'wgs84'",
         ),
         (
             "height_zones",
@@ -276,6 +276,59 @@ def test_a_pad_told_twice_is_refused(tmp_path: Path) -> None:
         "pad = { latitude_deg = 41.9, longitude_deg = -93.6, altitude_m = 275 }\n"
     )
     assert "got another in [[vehicles]] already" in refusal(tmp_path, "landing_pads", text, more)
+
+
+def fenced(folder: Path, *pads: dict[str, Any], more: str = "") -> str:
+    """Return what a site with a square boundary, a keep-out yard and these pads is told."""
+    (folder / "fence.geojson").write_text(collection(polygon(ring(SQUARE))))
+    yard = polygon(ring([(40, 40), (60, 40), (60, 60), (40, 60)]), name="yard")
+    loft = polygon(ring(HOLE), name="loft", floor_m=30, datum="ground")
+    roof = polygon(ring(HOLE), name="roof", floor_m=300, datum="wgs84")
+    (folder / "yard.geojson").write_text(collection(yard, loft, roof))
+    lines = 'boundary = "fence.geojson"\nkeep_out = "yard.geojson"\n'
+    try:
+        load(folder, "landing_pads", collection(*pads), lines + more)
+    except SiteError as problem:
+        return str(problem).replace(str(folder), "")
+    return "read"
+
+
+def test_pads_lie_inside_the_boundary_and_out_of_zones_with_the_margin(tmp_path: Path) -> None:
+    assert fenced(tmp_path, pad(0, 0, name="a", altitude_m=275)) == "read"
+    assert fenced(tmp_path, pad(94, 0, name="a", altitude_m=275)) == "read"
+    near = [pad(0, 0, name="a", altitude_m=275), pad(97, 0, name="b", altitude_m=275)]
+    assert fenced(tmp_path, *near) == (
+        "/layer.geojson: feature 2 ('b'): expected a place inside the boundary in fence.geojson, "
+        "5 m from its edge at least, got one 3.0 m inside"
+    )
+    assert "got one 20.0 m outside" in fenced(tmp_path, pad(0, 120, name="a", altitude_m=275))
+    assert fenced(tmp_path, pad(50, 36, name="a", altitude_m=275)) == (
+        "/layer.geojson: feature 1 ('a'): expected a place 5 m outside the keep-out zone 'yard' at "
+        "least, got one 4.0 m outside"
+    )
+    vehicle = (
+        '[[vehicles]]\nserial = "A"\n'
+        "pad = { latitude_deg = 41.9112, longitude_deg = -93.6034, altitude_m = 275 }\n"
+    )
+    assert "/site.toml: vehicles (entry 1).pad: expected a place inside the b" in fenced(
+        tmp_path, more=vehicle
+    )
+
+
+def test_the_airspace_holds_what_the_layers_do_and_the_pads_of_profiles(tmp_path: Path) -> None:
+    vehicles = (
+        '[[vehicles]]\nserial = "A"\n[[vehicles]]\nserial = "B"\nname = "Bea"\n'
+        "pad = { latitude_deg = 41.9012, longitude_deg = -93.6034, altitude_m = 274 }\n"
+    )
+    said = fenced(tmp_path, pad(9, 9, serial="A", altitude_m=275), more=vehicles)
+    assert said == "read"
+    site = load_site(tmp_path)
+    airspace = site.airspace
+    assert (airspace.frame, airspace.elevation) == (FRAME, None)
+    assert airspace.boundary is site.layers.boundary
+    assert [zone.name for zone in airspace.zones] == ["yard", "loft", "roof"]
+    assert [(p.name, p.serial) for p in airspace.landing_pads] == [("A", "A"), ("Bea", "B")]
+    assert airspace.landing_pads[1].place == GeoPoint(41.9012, -93.6034, 274.0)
 
 
 @pytest.mark.parametrize(

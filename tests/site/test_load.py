@@ -1,5 +1,6 @@
 """Reading a site's folder: what it may say, and what a bad one gets."""
 
+import dataclasses
 import shutil
 from pathlib import Path
 
@@ -7,8 +8,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint
-from recon.model.vehicle import AltitudeReference, Mount, VehicleProfile
+from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
 from recon.site import SiteError, default_site, demo_site_folder, load_site
 
 ORIGIN = "[origin]\nlatitude_deg = 41.9012\nlongitude_deg = -93.6034\nground_altitude_m = 275.0\n"
@@ -84,6 +86,11 @@ battery_factor = 2
 video_latency_s = 0.8
 video_latency_sigma_s = 0.3
 packet_gap_s = 0.2
+endurance_min = 27.5
+go_home_height_m = 48
+failsafe = "land"
+camera_interval_s = 2
+priority = 7
 """
     profile = load_site(write(folder, MINIMAL + table)).profiles["0K1CE9R0050123"]
     assert profile == VehicleProfile(
@@ -98,6 +105,11 @@ packet_gap_s = 0.2
         video_latency_s=0.8,
         video_latency_sigma_s=0.3,
         packet_gap_s=0.2,
+        endurance_s=1650.0,
+        go_home_height_m=48.0,
+        failsafe=Failsafe.LAND,
+        camera_interval_s=2.0,
+        priority=7,
     )
 
 
@@ -106,6 +118,24 @@ def test_the_legacy_preset_limits_missions_unless_the_file_says_otherwise(folder
     assert load_site(write(folder, MINIMAL + table)).profiles["A"].max_waypoints == 25
     table += "max_waypoints = 30\n"
     assert load_site(write(folder, MINIMAL + table)).profiles["A"].max_waypoints == 30
+
+
+def test_limits_that_are_not_given_keep_their_defaults(folder: Path) -> None:
+    assert load_site(write(folder, MINIMAL)).airspace.limits == FlightLimits()
+    told = "[limits]\nmax_height_above_ground_m = 90\nbattery_reserve_fraction = 0.4\n"
+    assert load_site(write(folder, MINIMAL + told)).airspace.limits == FlightLimits(
+        max_height_above_ground_m=90.0, battery_reserve_fraction=0.4
+    )
+
+
+@pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(FlightLimits)])
+def test_every_limit_can_be_set_and_is_held_to_a_range(folder: Path, field: str) -> None:
+    value = getattr(FlightLimits(), field)
+    site = load_site(write(folder, MINIMAL + f"[limits]\n{field} = {value}\n"))
+    assert site.limits == FlightLimits()
+    for wrong in ("-1", "1e9"):
+        text = MINIMAL + f"[limits]\n{field} = {wrong}\n"
+        assert f"/site.toml: limits.{field}: Expected 'float' " in refusal(folder, text)
 
 
 def vehicle(line: str) -> str:
@@ -135,7 +165,32 @@ def vehicle(line: str) -> str:
         (vehicle('name = "B"'), "vehicles (entry 2): Object missing required field 'serial'"),
         (
             vehicle('serial = "B"\nwaypoint_altitude = "agl"'),
-            "vehicles (entry 2).waypoint_altitude: Invalid enum value 'agl'",
+            "vehicles (entry 2).waypoint_altitude: Invalid enum value 'agl', expected 'takeoff' or "
+            "'wgs84'",
+        ),
+        (vehicle('serial = "B"\nfailsafe = "rth"'), "expected 'go_home' or 'hover' or 'land'"),
+        (vehicle('serial = "B"\ngo_home_height_m = 19'), "Expected 'float' >= 20.0"),
+        (vehicle('serial = "B"\ngo_home_height_m = 501'), "Expected 'float' <= 500.0"),
+        (
+            vehicle('serial = "B"\ngo_home_height_m = 130'),
+            "vehicles (entry 2).go_home_height_m: expected at most "
+            "limits.max_height_above_ground_m, 120 m, got 130 m; set a lower one in the aircraft",
+        ),
+        (vehicle('serial = "B"\nendurance_min = 0'), "endurance_min: Expected 'float' >= 1.0"),
+        (vehicle('serial = "B"\ncamera_interval_s = 0'), "interval_s: Expected 'float' >= 0.5"),
+        (vehicle('serial = "B"\npriority = -1'), "priority: Expected 'int' >= 0"),
+        (
+            vehicle(
+                'serial = "B"\npad = { latitude_deg = -93.6, longitude_deg = 41.9, altitude_m = 1 }'
+            ).replace("-93.6,", "-9.36,"),
+            "vehicles (entry 2).pad: expected a place within 50 km of the site's origin, got one",
+        ),
+        (MINIMAL + "[limits]\nmax_speed_mps = 16", "limits.max_speed_mps: Expected 'float' <= 15"),
+        (MINIMAL + "[limits]\nceiling = 16", "limits: Object contains unknown field 'ceiling'"),
+        (
+            MINIMAL + "[limits]\nmax_height_above_ground_m = 20\nmin_height_above_ground_m = 20",
+            "limits.min_height_above_ground_m: expected less than max_height_above_ground_m, 20 m, "
+            "got 20 m",
         ),
         (vehicle('serial = "B"\nmax_waypoints = 100'), "max_waypoints: Expected 'int' <= 99"),
         (vehicle('serial = "B"\nmax_waypoints = 9.5'), "max_waypoints: Expected 'int"),
@@ -227,7 +282,8 @@ values = st.recursive(
     ),
     max_leaves=6,
 )
-keys = st.sampled_from(["name", "origin", "eye", "ground_image", "vehicles", "colour"])
+TABLES = ["name", "origin", "limits", "eye", "ground_image", "layers", "elevation", "vehicles"]
+keys = st.sampled_from([*TABLES, "colour"])
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -237,3 +293,44 @@ def test_any_toml_gives_a_refusal_that_names_the_file(
 ) -> None:
     text = "\n".join(f"{key} = {value}" for key, value in tables.items())
     assert refusal(tmp_path, text).startswith("/site.toml: ")
+
+
+scalars = st.one_of(
+    st.floats(-1e3, 1e3).map(repr),
+    st.integers(-5, 600).map(str),
+    st.sampled_from(['"go_home"', '"takeoff"', '"x"', '"site.toml"', '"wgs84"', "nan", "[]", "{}"]),
+)
+LIMITS = [field.name for field in dataclasses.fields(FlightLimits)]
+KEYS = ["name", "failsafe", "endurance_min", "go_home_height_m", "camera_interval_s", "priority"]
+told_limits = st.dictionaries(st.sampled_from(LIMITS), scalars, max_size=3)
+told_vehicle = st.dictionaries(st.sampled_from([*KEYS, "pad", "mount"]), scalars, max_size=3)
+told_elevation = st.dictionaries(
+    st.sampled_from(["file", "datum", "geoid_height_m"]), scalars, max_size=3
+)
+
+
+@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(told_limits, told_vehicle, st.none() | told_elevation)
+def test_whatever_keys_say_a_site_is_read_or_refused_in_a_sentence(
+    tmp_path: Path,
+    limits: dict[str, str],
+    vehicle: dict[str, str],
+    elevation: dict[str, str] | None,
+) -> None:
+    text = MINIMAL + table("[limits]", limits) + table('[[vehicles]]\nserial = "A"', vehicle)
+    text += "" if elevation is None else table("[elevation]", elevation)
+    said = outcome(write(tmp_path, text))
+    assert said.isprintable()
+    assert said == "read" or said.startswith(f"{tmp_path}/site.toml: ")
+
+
+def table(head: str, items: dict[str, str]) -> str:
+    return "".join(f"{line}\n" for line in (head, *(f"{k} = {v}" for k, v in items.items())))
+
+
+def outcome(folder: Path) -> str:
+    try:
+        load_site(folder)
+    except SiteError as problem:
+        return str(problem)
+    return "read"
