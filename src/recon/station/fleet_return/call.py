@@ -1,0 +1,76 @@
+"""Calling vehicles home: each is told to hold, so that the plan begins with vehicles that stand."""
+
+from dataclasses import replace
+
+from recon.model.authority import Leader
+from recon.model.command import Hover, Phase, Refusal
+from recon.model.event import FleetReturnOrdered, OperatorOrder
+from recon.safety.datum import frame_for
+from recon.station import commanding
+from recon.station.commanding import Stepped
+from recon.station.fleet_return.record import ENDED, FleetReturn, Member, Stage
+from recon.station.outputs import Output
+from recon.station.state import Station
+
+RULE = "fleet_return"
+
+
+def call(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
+    """Begin a fleet return, or let more vehicles join the one that goes on.
+
+    Each serial gets one order, with a number of its own: the hold that it begins with, or a
+    refusal. Missions come later, each judged by the gate when its turn comes.
+    """
+    outputs: list[Output] = []
+    for command_id, serial in enumerate(event.serials, event.first_command_id):
+        order = OperatorOrder(command_id, Hover(), f"{event.by}: fleet return", serial=serial)
+        refusal = _refusal(station, serial)
+        if refusal is not None:
+            station = commanding.refuse(station, order, refusal, now_ns)
+            continue
+        station, sent = commanding.place(station, order, now_ns)
+        outputs += sent
+        if station.orders.records[command_id].phase is not Phase.REFUSED_BY_STATION:
+            station = _joined(station, order, event.by, now_ns)
+    return station, tuple(outputs)
+
+
+def _refusal(station: Station, serial: str) -> Refusal | None:
+    """Why a vehicle is not called at all; whether it flies is the gate's question."""
+    name, vehicle = _name(station, serial), station.fleet.vehicles.get(serial)
+    if vehicle is not None and frame_for(station.airspace, vehicle) is None:
+        return Refusal(RULE, f"{name}: expected a position, it has told none: hold it, or land it")
+    lead = station.leads.get(serial)
+    if lead is not None and lead.leader is not Leader.OPERATOR:
+        return Refusal(
+            RULE,
+            f"{name} is led by {lead.leader.value} ({lead.reason}): take it over first, then call "
+            "it home",
+        )
+    running = station.fleet_return
+    member = None if running is None else running.members.get(serial)
+    if member is not None and member.stage not in ENDED:
+        return Refusal(RULE, f"{name} is already on its way home or waits for its turn")
+    return None
+
+
+def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Station:
+    serial = order.serial or ""
+    vehicle = station.fleet.vehicles[serial]
+    running = station.fleet_return
+    if running is None or running.is_over:
+        frame = frame_for(station.airspace, vehicle)
+        assert frame is not None  # or it was refused
+        running = FleetReturn(by, now_ns, frame)
+    hold_id = order.command_id
+    name = vehicle.display_name
+    member = Member(serial, name, vehicle.link_id, hold_id, Stage.STOPPING, now_ns)
+    return replace(station, fleet_return=running.put(member))
+
+
+def _name(station: Station, serial: str) -> str:
+    vehicle = station.fleet.vehicles.get(serial)
+    if vehicle is not None:
+        return vehicle.display_name
+    profile = station.fleet.profiles.get(serial)
+    return serial if profile is None else profile.display_name

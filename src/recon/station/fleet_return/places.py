@@ -1,0 +1,110 @@
+"""Where vehicles and pads are: the station's state in the words of the fleet return's plan."""
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from recon.guidance.fleet_return import (
+    Pad,
+    Place,
+    Returning,
+    Separation,
+    WayHome,
+    way_home,
+)
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.vehicle import VehicleState
+from recon.safety.datum import home_enu_m, places_m, takeoff_up_m, vehicle_enu_m
+from recon.station.fleet_return.settings import ReturnSettings
+from recon.station.state import Station
+
+AROUND_M = 50.0
+"""Ground this far around all places and pads counts: detours leave the straight ways."""
+
+
+def place_of(station: Station, serial: str, frame: LocalFrame) -> Place | None:
+    """Return where a vehicle was last heard to be."""
+    vehicle = station.fleet.vehicles.get(serial)
+    return None if vehicle is None else _place(station, vehicle, frame)
+
+
+def hovering(station: Station, frame: LocalFrame, without: Collection[str]) -> dict[str, Place]:
+    """Return by name where everything else is that flies or may."""
+    links = station.fleet.unbound_links()
+    flying = [
+        vehicle
+        for serial, vehicle in station.fleet.vehicles.items()
+        if serial not in without and vehicle.is_flying.value is not False
+    ]
+    flying += [link.own_state for link in links if link.own_state.is_flying.value is True]
+    places = ((vehicle.display_name, _place(station, vehicle, frame)) for vehicle in flying)
+    return {name: place for name, place in places if place is not None}
+
+
+def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | str:
+    """Return a vehicle as the plan needs it, or what is not known of it."""
+    vehicle = station.fleet.vehicles[serial]
+    place_m = _place(station, vehicle, frame)
+    takeoff_m = takeoff_up_m(station.airspace, vehicle)
+    pad = _pad(station, vehicle, frame)
+    if place_m is None or takeoff_m is None or pad is None:
+        return (
+            "expected its position and its takeoff point to be known, for its heights count from "
+            "there; give it a pad in the site's file"
+        )
+    battery = vehicle.battery_fraction.value
+    return Returning(serial, vehicle.display_name, place_m, takeoff_m, pad, battery)
+
+
+def air(station: Station, vehicles: Sequence[Returning], settings: ReturnSettings) -> WayHome:
+    """Return what the site's air leaves between these vehicles and their pads."""
+    points = [v.place_m[:2] for v in vehicles] + [v.pad.east_north_m for v in vehicles]
+    corners = _box(points)
+    prepared = station.airspace
+    lowest_m = float(np.min(prepared.lowest_ground_within_up_m(corners)))
+    highest_m = float(np.max(prepared.highest_ground_within_up_m(corners)))
+    return way_home(prepared.airspace, (lowest_m, highest_m), points, settings.plan)
+
+
+def separation(station: Station, settings: ReturnSettings) -> Separation:
+    """Return how far apart the plan keeps vehicles."""
+    limits = station.airspace.airspace.limits
+    return Separation(
+        limits.min_separation_horizontal_m + settings.plan.horizontal_slack_m,
+        limits.min_separation_vertical_m + settings.plan.vertical_slack_m,
+    )
+
+
+def _place(station: Station, vehicle: VehicleState, frame: LocalFrame) -> Place | None:
+    found = vehicle_enu_m(station.airspace, vehicle, frame)
+    return None if found is None else (float(found[0]), float(found[1]), float(found[2]))
+
+
+def _pad(station: Station, vehicle: VehicleState, frame: LocalFrame) -> Pad | None:
+    """Its own pad, of the layer or the profile; else where it took off."""
+    for pad in station.airspace.airspace.landing_pads:
+        if pad.serial is not None and pad.serial == vehicle.serial:
+            return _pad_at(station, pad.name, pad.place, frame)
+    if vehicle.profile is not None and vehicle.profile.pad is not None:
+        return _pad_at(station, "of its own", vehicle.profile.pad, frame)
+    home_m = home_enu_m(station.airspace, vehicle, frame)
+    if home_m is None:
+        return None
+    return Pad("at its takeoff point", float(home_m[0]), float(home_m[1]), float(home_m[2]))
+
+
+def _pad_at(station: Station, name: str, point: GeoPoint, frame: LocalFrame) -> Pad:
+    (east_m, north_m), *_ = places_m(frame, [point])
+    origin_m = frame.origin.ellipsoid_height_m
+    is_site = station.airspace.airspace.frame is not None
+    up_m = point.ellipsoid_height_m - origin_m if is_site else 0.0
+    return Pad(name, float(east_m), float(north_m), up_m)
+
+
+def _box(
+    points: Sequence[tuple[float, float]],
+) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Two triangles that cover all points and the ground around them, (2, 3, 2)."""
+    low = np.min(points, axis=0) - AROUND_M
+    high = np.max(points, axis=0) + AROUND_M
+    return np.array([[low, (high[0], low[1]), high], [low, high, (low[0], high[1])]])

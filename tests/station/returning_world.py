@@ -1,0 +1,164 @@
+"""A site with pads, a fleet in the air over its field, and a station that calls it home."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from math import hypot
+
+from tests.station.station_world import HOME, World
+
+from recon.geo import point_from_enu
+from recon.model.airspace import Airspace, FlightLimits
+from recon.model.event import FleetReturnOrdered
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
+from recon.model.zone import LandingPad, Zone
+from recon.safety import PreparedAirspace
+from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
+from recon.station.build import first_state
+from recon.station.fleet_return.record import Member, Stage
+from recon.station.virtual import VirtualDriver
+from recon.site import Site
+
+FRAME = LocalFrame(HOME)
+LEAST_LEVEL_M, LEAST_HEIGHT_M = 15.0, 6.0
+
+
+@dataclass(slots=True)
+class Nearest:
+    """The worst pair seen: its level distance where heights were too near, and who."""
+
+    level_m: float = float("inf")
+    who: str = ""
+    pad_users: int = 0
+
+
+@dataclass(slots=True)
+class ReturningWorld:
+    """Runs a world and watches the true distances of all that fly."""
+
+    world: World
+    pads_m: dict[str, tuple[float, float]]
+    nearest: Nearest = field(default_factory=Nearest)
+    heights_m: dict[str, list[tuple[float, float, float]]] = field(default_factory=dict)
+    """Of each vehicle: time, height over the site, distance to its pad."""
+
+    def call(self, *serials: str) -> None:
+        first = 1000 + len(self.world.driver.station.orders.records)
+        self.world.driver.handle(FleetReturnOrdered(first, serials, "test"))
+
+    def member(self, serial: str) -> Member:
+        running = self.world.driver.station.fleet_return
+        assert running is not None
+        return running.members[serial]
+
+    def stages(self) -> dict[str, Stage]:
+        running = self.world.driver.station.fleet_return
+        return {} if running is None else {m.serial: m.stage for m in running.members.values()}
+
+    def place_m(self, serial: str) -> tuple[float, float, float]:
+        """Where it truly is, east, north, up of the site."""
+        motion, pad = self.world.app(serial).aircraft.motion, self.pads_m[serial]
+        return pad[0] + motion.east_m, pad[1] + motion.north_m, motion.height_m
+
+    def flies(self, serial: str) -> bool:
+        return self.world.app(serial).aircraft.is_flying
+
+    def runs(self, seconds: float) -> None:
+        for _ in range(round(seconds * 10)):
+            self.world.run_for(0.1)
+            self._watch()
+
+    def runs_until_over(self, at_most_s: float) -> bool:
+        for _ in range(round(at_most_s)):
+            self.runs(1.0)
+            running = self.world.driver.station.fleet_return
+            if running is not None and running.is_over:
+                return True
+        return False
+
+    def alarms(self) -> set[tuple[str, str | None]]:
+        book = self.world.driver.station.alarms.alarms.values()
+        return {(a.condition.rule, a.condition.serial) for a in book if a.is_active}
+
+    def _watch(self) -> None:
+        now_s = self.world.driver.now_ns / 1e9
+        flying = [serial for serial in self.pads_m if self.flies(serial)]
+        places = {serial: self.place_m(serial) for serial in flying}
+        for serial, (east_m, north_m, up_m) in places.items():
+            pad = self.pads_m[serial]
+            far_m = hypot(east_m - pad[0], north_m - pad[1])
+            self.heights_m.setdefault(serial, []).append((now_s, up_m, far_m))
+        for one, other in combinations(flying, 2):
+            a, b = places[one], places[other]
+            level_m = hypot(a[0] - b[0], a[1] - b[1])
+            if abs(a[2] - b[2]) < LEAST_HEIGHT_M and level_m < self.nearest.level_m:
+                self.nearest.level_m, self.nearest.who = level_m, f"{one} and {other}"
+
+
+def returning_world(
+    places_m: Sequence[tuple[float, float, float]],
+    pads_m: Sequence[tuple[float, float]],
+    *,
+    max_height_m: float = 120.0,
+    zones: tuple[Zone, ...] = (),
+    seed: int = 0,
+    go_home_height_m: float | None = None,
+) -> ReturningWorld:
+    """Return a fleet that hovers at (east, north, up) places, each with its pad.
+
+    Pads may be the same place for several vehicles. `go_home_height_m` is set in all aircraft.
+    """
+    serials = [f"SIM-{number}" for number in range(1, len(places_m) + 1)]
+    points = {
+        serial: point_from_enu(FRAME, (*pad, 0.0))
+        for serial, pad in zip(serials, pads_m, strict=True)
+    }
+    points = {
+        s: GeoPoint(p.latitude_deg, p.longitude_deg, HOME.ellipsoid_height_m)
+        for s, p in points.items()
+    }
+    config = SimulationConfig(
+        home=HOME,
+        vehicle_count=len(serials),
+        airborne=Airborne.ALL,
+        seed=seed,
+        pads=points,
+    )
+    apps = build_fleet(config, 0)
+    profiles = {
+        serial: VehicleProfile(
+            serial,
+            waypoint_altitude=AltitudeReference.TAKEOFF,
+            pad=points[serial],
+            endurance_s=1500.0,
+            go_home_height_m=go_home_height_m or app.aircraft.settings.go_home_height_m,
+            failsafe=Failsafe.GO_HOME,
+            camera_interval_s=2.0,
+        )
+        for serial, app in zip(serials, apps, strict=True)
+    }
+    for app, place, pad in zip(apps, places_m, pads_m, strict=True):
+        motion = app.aircraft.motion
+        app.aircraft.motion = replace(
+            motion, east_m=place[0] - pad[0], north_m=place[1] - pad[1], height_m=place[2]
+        )
+        if go_home_height_m is not None:
+            settings = app.aircraft.settings
+            app.aircraft.settings = replace(settings, go_home_height_m=go_home_height_m)
+    airspace = Airspace(
+        limits=FlightLimits(max_height_above_ground_m=max_height_m),
+        frame=FRAME,
+        zones=zones,
+        landing_pads=tuple(
+            LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items()
+        ),
+    )
+    station = first_state(Site(name="test", profiles=profiles))
+    station = replace(station, airspace=PreparedAirspace(airspace))
+    world = World(VirtualDriver(station, keeps_log=False))
+    for app in apps:
+        world.connect(app)
+    made = ReturningWorld(world, dict(zip(serials, map(tuple, pads_m), strict=True)))
+    made.runs(3.0)
+    return made
