@@ -65,6 +65,10 @@ class Outbox:
             for lane in late
         ]
 
+    def waiting(self, lane: Lane) -> ApprovedCommand | None:
+        """Return the order in a place, which stays there."""
+        return self._places.get(lane)
+
     def take(self, may_go: Callable[[Lane, ApprovedCommand], bool]) -> ApprovedCommand | None:
         """Remove and return the most urgent order that may go now."""
         for lane in Lane:

@@ -10,7 +10,7 @@ from recon import wire
 from recon.link.acks import AckBook
 from recon.link.outbox import Lane, Outbox
 from recon.link.settings import LinkSettings
-from recon.model.command import FlyMission
+from recon.model.command import FlyMission, VirtualStick
 from recon.model.event import CommandDropped, CommandSent, Event, PacketReceived
 from recon.model.report import AckReport, ExtendedReport
 from recon.model.units import seconds_to_ns
@@ -48,6 +48,7 @@ class Session:
         self._serial: str | None = None
         self._skipped_at_last_packet = 0
         self._last_sent_at_ns: int | None = None
+        self._last_was_stick = False
         self._blocked_since_ns: int | None = None
 
     @property
@@ -102,6 +103,7 @@ class Session:
         command = approved.command
         self.acks.sent(answered_kind(command.body), command.id, now_ns)
         self._last_sent_at_ns = now_ns
+        self._last_was_stick = isinstance(command.body, VirtualStick)
         packet = to_packet(command.body, approved.altitude_offset_m or 0.0)
         return Outgoing(wire.encode(packet), CommandSent(self.link_id, command.id))
 
@@ -117,14 +119,37 @@ class Session:
             return False
         if lane is Lane.EMERGENCY:
             return True
-        gap_s = approved.profile.packet_gap_s if approved.profile else self.settings.packet_gap_s
         last_ns = self._last_sent_at_ns
-        if last_ns is not None and now_ns - last_ns < seconds_to_ns(gap_s):
+        if last_ns is not None and now_ns - last_ns < seconds_to_ns(self._gap_s(approved)):
             return False
+        return not self._waits_for_answer(lane, approved) and not self._gives_way(approved)
+
+    def _waits_for_answer(self, lane: Lane, approved: ApprovedCommand) -> bool:
         needs_answer_first = lane is Lane.CAMERA or isinstance(approved.command.body, FlyMission)
-        return not (
-            needs_answer_first and self.acks.is_waiting(answered_kind(approved.command.body))
+        return needs_answer_first and self.acks.is_waiting(answered_kind(approved.command.body))
+
+    def _gives_way(self, approved: ApprovedCommand) -> bool:
+        """Whether a stick that follows a stick leaves this turn to a camera order.
+
+        A stream of sticks leaves no gap for anything else: without this a camera order would wait
+        until the stream ends. It costs the stream one stick.
+        """
+        camera = self._outbox.waiting(Lane.CAMERA)
+        return (
+            camera is not None
+            and self._last_was_stick
+            and isinstance(approved.command.body, VirtualStick)
+            and not self._waits_for_answer(Lane.CAMERA, camera)
         )
+
+    def _gap_s(self, approved: ApprovedCommand) -> float:
+        """Return the least time since the packet before; from stick to stick it is shorter."""
+        settings = self.settings
+        gap_s = approved.profile.packet_gap_s if approved.profile else settings.packet_gap_s
+        is_in_stream = self._last_was_stick and isinstance(approved.command.body, VirtualStick)
+        if is_in_stream and gap_s < settings.longest_stick_gap_s:
+            return min(gap_s, settings.stick_gap_s)
+        return gap_s
 
     def _events(self, packets: list[wire.Packet], now_ns: int) -> list[Event]:
         events: list[Event] = []

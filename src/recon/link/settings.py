@@ -14,6 +14,14 @@ class LinkSettings:
     what follows in the same read. A vehicle's profile may set its own. Emergency orders wait for
     no gap."""
 
+    stick_gap_s: float = 0.075
+    """Least time from one stick to the next, where the app's gap is longer than that and shorter
+    than `longest_stick_gap_s`: a stream at 10 Hz whose beat wavers by some milliseconds must not
+    wait for the next tick each time. One lost in the app's read is made good by the next."""
+
+    longest_stick_gap_s: float = 0.2
+    """A profile that asks for a longer gap than this is of an app that is slow, and is kept to."""
+
     ack_timeout_s: float = 2.0
     """Apps acknowledge before they act, so an answer takes a round trip; video delays it."""
 

@@ -64,6 +64,11 @@ class Tick:
 
 
 @dataclass(frozen=True, slots=True)
+class SticksDue:
+    """The time of the next stick of a stream has come: beats come exact, ticks only often."""
+
+
+@dataclass(frozen=True, slots=True)
 class OperatorOrder:
     """Somebody orders one body for one vehicle (or one link without identity).
 
@@ -88,6 +93,13 @@ class AuthorityTaken:
     serial: str
     leader: Leader
     by: str
+
+
+@dataclass(frozen=True, slots=True)
+class HolderCame:
+    """A connection has opened that may hold streams of sticks."""
+
+    holder: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,8 +188,10 @@ Event = (
     | CommandAnswered
     | CommandDropped
     | Tick
+    | SticksDue
     | OperatorOrder
     | AuthorityTaken
+    | HolderCame
     | HolderGone
     | PreflightOverridden
     | GhostDismissed

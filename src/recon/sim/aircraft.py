@@ -22,6 +22,10 @@ class AircraftSettings:
     limits: Limits = field(default_factory=Limits)
     go_home_height_m: float = 30.0
     endurance_s: float = 1500.0
+    stick_drift_north_mps: float = 0.0
+    stick_drift_east_mps: float = 0.0
+    """What wind pushes the aircraft past the velocity that a virtual stick asks for. In position
+    mode and in missions the flight controller holds against it."""
     landing_confirmation_s: float = 1.0
     """The app confirms a landing this long after the aircraft stopped at 0.3 m."""
 

@@ -135,6 +135,8 @@ class CommandReader:
                 height_m=packet.height_above_takeoff_m,
                 timeout_s=packet.timeout_s,
                 limits=self._aircraft.settings.limits,
+                drift_north_mps=self._aircraft.settings.stick_drift_north_mps,
+                drift_east_mps=self._aircraft.settings.stick_drift_east_mps,
             )
         )
         return "stick" if not self._aircraft.is_on_ground else "stick: nothing, on the ground"

@@ -170,6 +170,8 @@ class Stick:
     height_m: float
     timeout_s: float
     limits: Limits
+    drift_north_mps: float = 0.0
+    drift_east_mps: float = 0.0
     mode: FlightMode = FlightMode.JOYSTICK
     _elapsed_s: float = 0.0
 
@@ -181,6 +183,7 @@ class Stick:
             x = y = 0.0
         north, east = (x, y) if not self.is_body_frame else _from_body(x, y, motion.yaw_deg)
         up = hold_height_mps(motion.height_m, self.height_m, self.limits)
+        north, east = north + self.drift_north_mps, east + self.drift_east_mps
         return Demand(north, east, up, self.yaw_deg)
 
     def successor(self, motion: Motion) -> Manoeuvre | None:

@@ -7,6 +7,7 @@ from recon.link.outbox import Lane, lane_of
 from recon.model.authority import Lead
 from recon.model.command import (
     CAMERA_BODIES,
+    STEERED_BODIES,
     Command,
     FlyMission,
     Hover,
@@ -18,12 +19,13 @@ from recon.model.event import CommandAnswered, CommandDropped, CommandSent, Oper
 from recon.model.intent import Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve
-from recon.station import orders, stick_zero
+from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve, judge
+from recon.station import orders, stick_zero, streams
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
 from recon.station.settings import StationSettings
 from recon.station.state import Station
+from recon.station.stream_ends import Ask, Driven
 from recon.vehicles.packets import describe_altitudes
 
 _NOBODY_YET = Lead()
@@ -34,7 +36,72 @@ Stepped = tuple[Station, tuple[Output, ...]]
 
 def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     """Judge an order; send it when the gate approves, record the refusal when not."""
-    command = Command(
+    command = command_of(station, order, now_ns)
+    if isinstance(command.body, STEERED_BODIES):
+        return _steer(station, order, command, now_ns)
+    judged = approve(command, situation(station, command, now_ns))
+    if isinstance(judged, Refusal):
+        if _may_wait(command, judged):
+            station = streams.release(station, command.serial)
+            station = _supersede_older(station, command, now_ns)
+            return _put(station, _waiting(station, command, judged, now_ns)), ()
+        station = _put(station, _refused(station, command, judged, now_ns))
+        return _end_stream_for(station, command, now_ns)
+    if lane_of(command) is not Lane.CAMERA:
+        station = stick_zero.forget(station, command)
+        station = streams.release(station, command.serial)
+    station = _supersede_older(station, command, now_ns)
+    return _put(station, _queued(station, command, judged, now_ns)), (SendCommand(judged),)
+
+
+def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int) -> Stepped:
+    """Judge a steered order as a whole; lease its vehicle to it and send its first stick."""
+    refusal = judge(command, situation(station, command, now_ns))
+    refusal = refusal or streams.unsteerable(station, order, now_ns)
+    if refusal is not None:
+        return _put(station, _refused(station, command, refusal, now_ns)), ()
+    station = stick_zero.forget(station, command)
+    station = streams.release(station, command.serial)
+    station = _supersede_older(station, command, now_ns)
+    queued = PhaseChange(Phase.QUEUED, now_ns, "")
+    station = _put(station, OrderRecord(command, _name(station, command), (queued,)))
+    station = streams.lease_out(station, command, order.holder, now_ns)
+    return drive_streams(station, now_ns)
+
+
+def drive_streams(station: Station, now_ns: int) -> Stepped:
+    """Send the sticks that are due, and end the streams that are over."""
+    return _after(streams.drive(station, now_ns, _ask(now_ns)), now_ns)
+
+
+def _end_stream_for(station: Station, refused: Command, now_ns: int) -> Stepped:
+    """Who asks for a stop does not want to be steered on, even where the stop itself is refused."""
+    if not refused.is_emergency:
+        return station, ()
+    why = f"{refused.name.replace('_', ' ')} was ordered, and refused"
+    return _after(streams.end(station, refused.serial, why, now_ns, _ask(now_ns)), now_ns)
+
+
+def holder_gone(station: Station, holder: str, now_ns: int) -> Stepped:
+    """End the streams that a connection held: zero, then hold."""
+    return _after(streams.end_held_by(station, holder, now_ns, _ask(now_ns)), now_ns)
+
+
+def _ask(now_ns: int) -> Ask:
+    return lambda station, command: approve(command, situation(station, command, now_ns))
+
+
+def _after(driven: Driven, now_ns: int) -> Stepped:
+    station, outputs = driven.station, driven.outputs
+    for order in driven.holds:
+        station, sent = place(station, order, now_ns)
+        outputs += sent
+    return station, outputs
+
+
+def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
+    """Return an order as the command the gate judges."""
+    return Command(
         id=order.command_id,
         body=order.body,
         issued_by=order.issued_by,
@@ -45,16 +112,12 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
         takeoff=order.takeoff,
         asked_as=order.asked_as,
     )
-    judged = approve(command, situation(station, command, now_ns))
-    if isinstance(judged, Refusal):
-        if _may_wait(command, judged):
-            station = _supersede_older(station, command, now_ns)
-            return _put(station, _waiting(station, command, judged, now_ns)), ()
-        return _put(station, _refused(station, command, judged, now_ns)), ()
-    if lane_of(command) is not Lane.CAMERA:
-        station = stick_zero.forget(station, command)
-    station = _supersede_older(station, command, now_ns)
-    return _put(station, _queued(station, command, judged, now_ns)), (SendCommand(judged),)
+
+
+def refuse(station: Station, order: OperatorOrder, refusal: Refusal, now_ns: int) -> Station:
+    """Return the station with an order on record that is refused before the gate is asked."""
+    command = command_of(station, order, now_ns)
+    return _put(station, _refused(station, command, refusal, now_ns))
 
 
 def situation(station: Station, command: Command, now_ns: int) -> Situation:
@@ -97,7 +160,9 @@ def follow(
     """Take what a link says of a command into its life."""
     record = station.orders.records.get(event.command_id)
     if record is None:
-        return station
+        return (
+            streams.on_sent(station, event, now_ns) if isinstance(event, CommandSent) else station
+        )
     match event:
         case CommandSent():
             station = stick_zero.begin(station, record.command, now_ns)
@@ -112,6 +177,8 @@ def watch(station: Station, now_ns: int) -> Stepped:
     """Let time and telemetry change the orders still alive; repeat emergency orders."""
     outputs: list[Output] = []
     for record in station.orders.watched:
+        if isinstance(record.command.body, STEERED_BODIES):
+            continue  # its stream tells its life
         updated, seen = _confirm(station, record, now_ns)
         if updated.is_watched:
             updated = _time_out(updated, seen, station.settings, now_ns)

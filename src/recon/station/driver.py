@@ -7,14 +7,16 @@ from collections.abc import Callable
 
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
-from recon.model.event import Event, Tick
+from recon.model.event import Event, SticksDue, Tick
+from recon.model.units import NS_PER_S
 from recon.station.event_queue import EventQueue
 from recon.station.outputs import Output, SendCommand, StartWork
 from recon.station.state import Station
 from recon.station.step import step
+from recon.station.streams import next_due_ns
 from recon.station.worker import Worker
 
-TICK_S = 0.05
+TICK_NS = 50_000_000
 """Twenty times a second: takeovers, repeats and alarms are at most this late."""
 
 
@@ -64,11 +66,21 @@ class AsyncioDriver:
     async def run(self) -> None:
         """Let time pass until cancelled."""
         self._loop = asyncio.get_running_loop()
+        tick_ns = self.now_ns() + TICK_NS
         while True:
-            await asyncio.sleep(TICK_S)
-            if self.links is not None:
-                self.links.tick()
-            self.handle(Tick())
+            due_ns = next_due_ns(self.station)
+            wake_ns = tick_ns if due_ns is None else min(tick_ns, due_ns)
+            await asyncio.sleep(max(0, wake_ns - self.now_ns()) / NS_PER_S)
+            now_ns = self.now_ns()
+            if due_ns is not None and now_ns >= due_ns:
+                # Sticks go first: what a tick has to do would shift their beat.
+                self.handle(SticksDue())
+            if now_ns >= tick_ns:
+                # What was slept through is not caught up with.
+                tick_ns = max(tick_ns + TICK_NS, now_ns)
+                if self.links is not None:
+                    self.links.tick()
+                self.handle(Tick())
 
     def _step(self, event: Event) -> None:
         before = self.station

@@ -3,7 +3,10 @@
 from dataclasses import dataclass, field
 
 from recon.fleet.settings import FleetSettings
+from recon.guidance.steering import SteeringSettings
 from recon.safety import SafetySettings
+from recon.station.lease import StreamSettings
+from recon.station.restart_settings import RestartSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,6 +15,7 @@ class StationSettings:
 
     fleet: FleetSettings = field(default_factory=FleetSettings)
     safety: SafetySettings = field(default_factory=SafetySettings)
+    restart: RestartSettings = field(default_factory=RestartSettings)
 
     order_expiry_s: float = 5.0
     """An order not on the wire by then is not what its giver sees any more."""
@@ -38,6 +42,9 @@ class StationSettings:
 
     stick_zero_waits_s: float = 3.0
     """After a stick's time the mode may still be on its way; later than this nothing flies it."""
+
+    steering: SteeringSettings = field(default_factory=SteeringSettings)
+    streams: StreamSettings = field(default_factory=StreamSettings)
 
     orders_kept: int = 200
     alarms_kept: int = 200

@@ -11,9 +11,12 @@ from recon.model.intent import Intent
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, Override, PreparedAirspace
 from recon.station.alarms import AlarmBook
+from recon.station.fleet_return.record import FleetReturn
 from recon.station.imaging import Imaging
+from recon.station.lease import Lease
 from recon.station.orders import OrderBook
 from recon.station.settings import StationSettings
+from recon.station.sighting import Sighting
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +47,18 @@ class Station:
     """What each vehicle does on the station's word, by serial."""
     preflight_overrides: Mapping[str, Override] = field(default_factory=dict)
     """By serial, until the vehicle has landed."""
+    restored_flights: Mapping[str, Sighting] = field(default_factory=dict)
+    """Vehicles that flew when the last run saw them last, by serial, until each is heard."""
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
     next_own_id: int = -1
     """The number of the next command the station gives by itself; see `own_ids`."""
+    streams: Mapping[str, Lease] = field(default_factory=dict)
+    """Steered orders being carried out, by serial; never brought back after a restart."""
+    holders: frozenset[str] = frozenset()
+    """Open connections that may hold a steered order."""
+    fleet_return: FleetReturn | None = None
+    """The newest fleet return, until the station is started anew or another one begins."""
     sticks: Mapping[str, PendingZero] = field(default_factory=dict)
     """Sticks being held, by serial: each ends with a zero from the station."""
 

@@ -14,6 +14,7 @@ from recon.model.event import (
     Event,
     FleetReturnOrdered,
     GhostDismissed,
+    HolderCame,
     HolderGone,
     LinkClosed,
     LinkOpened,
@@ -21,6 +22,7 @@ from recon.model.event import (
     PacketReceived,
     PreflightOverridden,
     SeparationHoldSwitched,
+    SticksDue,
     Tick,
     WorkerResult,
 )
@@ -28,10 +30,12 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.station import alarms, authority, commanding, imaging
+from recon.station import alarms, authority, commanding, imaging, restart
 from recon.station.alarms import Condition, Severity
 from recon.station.commanding import Stepped
 from recon.station.conditions import conditions
+from recon.station.fleet_return.advance import advance as advance_fleet_return
+from recon.station.fleet_return.call import call as fleet_return_call
 from recon.station.outputs import Output, StartWork
 from recon.station.state import Station
 
@@ -61,10 +65,16 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
         case AuthorityTaken():
             return authority.take(station, event, now_ns), ()
-        case HolderGone() | PreflightOverridden() | GhostDismissed() | SeparationHoldSwitched():
+        case SticksDue():
+            return commanding.drive_streams(station, now_ns)
+        case HolderCame(holder):
+            return replace(station, holders=station.holders | {holder}), ()
+        case HolderGone(holder):
+            return commanding.holder_gone(station, holder, now_ns)
+        case PreflightOverridden() | GhostDismissed() | SeparationHoldSwitched():
             return station, ()
         case FleetReturnOrdered():
-            return station, ()
+            return fleet_return_call(station, event, now_ns)
         case AuditTroubled(problem):
             return replace(station, audit_problem=problem), ()
         case AlarmAcknowledged(alarm_id, by):
@@ -99,6 +109,8 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     vehicle = station.fleet.vehicle_of_link(event.link_id)
     if vehicle is None:
         return station, outputs
+    if vehicle.serial in station.restored_flights:
+        station = restart.recheck(station, vehicle.serial, now_ns)
     match event.report:
         case CoreReport() if vehicle.serial is not None and _is_eye(station, vehicle):
             kept = station.settings.pose_history_samples
@@ -115,10 +127,12 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
 
 def _tick(station: Station, now_ns: int) -> Stepped:
     station, closing = _fleet(station, Tick(), now_ns)
+    station, sticks = commanding.drive_streams(station, now_ns)
     station, orders = commanding.watch(station, now_ns)
+    station, homewards = advance_fleet_return(station, now_ns)
     kept = station.settings.alarms_kept
     book = alarms.update(station.alarms, conditions(station, now_ns), now_ns, kept)
-    return replace(station, alarms=book), (*closing, *orders)
+    return replace(station, alarms=book), (*closing, *sticks, *orders, *homewards)
 
 
 def _is_eye(station: Station, vehicle: VehicleState) -> bool:

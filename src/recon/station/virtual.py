@@ -13,12 +13,13 @@ from typing import Protocol
 from recon.fleet.step import CloseLink
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
-from recon.model.event import Event, LinkClosed, LinkOpened, Tick
+from recon.model.event import Event, LinkClosed, LinkOpened, SticksDue, Tick
 from recon.model.units import seconds_to_ns
 from recon.station.event_queue import EventQueue
 from recon.station.outputs import Output, SendCommand, StartWork
 from recon.station.state import Station
 from recon.station.step import step
+from recon.station.streams import next_due_ns
 from recon.station.worker import Task, do_work
 
 STEP_NS = 10_000_000
@@ -144,6 +145,9 @@ class VirtualDriver:
                 self._post_to_station(link_id, wire, chunk)
         while self._due and self._due[0][0] <= self.now_ns:
             heapq.heappop(self._due)[2]()
+        due_ns = next_due_ns(self.station)
+        if due_ns is not None and due_ns <= self.now_ns:
+            self.handle(SticksDue())
         if self._steps % TICK_EVERY_STEPS == 0:
             self._tick()
 
