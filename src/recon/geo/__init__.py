@@ -1,5 +1,6 @@
 """Geometry on the ground: the site's east-north-up frame, the globe, regions and paths."""
 
+from recon.geo.footprints import Footprints
 from recon.geo.local_frame import (
     OnGlobe,
     enu_from_geo,
@@ -9,16 +10,18 @@ from recon.geo.local_frame import (
     point_from_enu,
     shift_east_north_m,
 )
-from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, rounded_path, straight_path
+from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
 from recon.geo.polygon import Polygon, region_fault
 from recon.geo.surface import Surface
 
 __all__ = [
     "DEFAULT_CHORD_ERROR_M",
+    "Footprints",
     "OnGlobe",
     "Path",
     "Polygon",
     "Surface",
+    "corner_hulls",
     "enu_from_geo",
     "enu_from_point",
     "enu_from_points",

@@ -11,7 +11,7 @@ from math import ceil, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from recon.geo.polygon import FARTHEST_M
+from recon.geo.footprints import FARTHEST_M
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -91,6 +91,35 @@ def corner_reaches_m(waypoints_m: FloatArray, corner_radii_m: FloatArray) -> Flo
     reaches[:-1] = np.minimum(reaches[:-1], radii[:-1] * share)
     reaches[1:] = np.minimum(reaches[1:], radii[1:] * share)
     return reaches
+
+
+def corner_hulls(waypoints_m: FloatArray, corner_radii_m: FloatArray) -> FloatArray:
+    """Return the triangles (N - 2, 3, D) that hold the corners at the inner of N waypoints.
+
+    A radius is taken for both things that it is taken for in the field: the distance from the
+    waypoint at which the corner starts, and the radius of an arc that touches both legs (it starts
+    radius x tan(half the turn) before). The farther one counts, up to the whole of each leg. Each
+    triangle is where the corner starts, its waypoint, and where it ends.
+    """
+    before, corner, after = waypoints_m[:-2], waypoints_m[1:-1], waypoints_m[2:]
+    back, back_m = _units(before - corner)
+    ahead, ahead_m = _units(after - corner)
+    cosine = -(back * ahead).sum(axis=1)
+    half_turn = np.sqrt(np.maximum(1.0 - cosine, 0.0) / np.maximum(1.0 + cosine, _REVERSAL))
+    reach_m = corner_radii_m[1:-1] * np.maximum(1.0, half_turn)
+    starts = corner + np.minimum(reach_m, back_m)[:, np.newaxis] * back
+    ends = corner + np.minimum(reach_m, ahead_m)[:, np.newaxis] * ahead
+    return np.stack([starts, corner, ends], axis=1)
+
+
+_REVERSAL = 1e-12
+"""Of 1 + the cosine of the turn: below, the path turns back on itself and its arc is endless."""
+
+
+def _units(offsets: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Directions (N, D) of length 1, or 0 where there is none, and lengths (N,)."""
+    lengths = np.linalg.norm(offsets, axis=1)
+    return offsets / np.where(lengths > 0.0, lengths, 1.0)[:, np.newaxis], lengths
 
 
 def _rounded(points: FloatArray, reaches: FloatArray, chord_error_m: float) -> Path:

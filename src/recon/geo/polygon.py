@@ -9,13 +9,11 @@ import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
+from recon.geo.footprints import Footprints, finite_points, is_on_earth
 from recon.model.zone import Region
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
-
-FARTHEST_M = 1e8
-"""No place on the earth is farther from any other; GEOS overflows on far larger numbers."""
 
 _FAULTS = {
     "Self-intersection": "its edges cross or overlap",
@@ -28,6 +26,10 @@ _FAULTS = {
 """GEOS's words for what makes a polygon none, in plain ones."""
 
 
+QUARTER_CIRCLE_SEGMENTS = 64
+"""Of a rounded corner of a polygon made larger or smaller: it is off by 8e-5 of the distance."""
+
+
 class Polygon:
     """A region made ready for many questions; build one for each region and keep it.
 
@@ -38,10 +40,15 @@ class Polygon:
         fault = region_fault(region)
         if fault is not None:
             raise ValueError(f"expected a polygon whose edges do not meet, but {fault}")
-        self._area = _shape(region)
-        self._edge = shapely.boundary(self._area)
+        self._take(_shape(region))
+
+    def _take(self, area: shapely.Polygon) -> None:
+        self._area = area
+        self._edge = shapely.boundary(area)
         shapely.prepare(self._area)
         shapely.prepare(self._edge)
+        west, south, east, north = shapely.bounds(self._area)
+        self._least_m, self._most_m = np.array([west, south]), np.array([east, north])
 
     @property
     def area_m2(self) -> float:
@@ -50,7 +57,7 @@ class Polygon:
 
     def contains(self, points_m: npt.ArrayLike) -> BoolArray:
         """Return which of the (N, 2) east-north points lie in the region or on its edge, (N,)."""
-        points, is_finite = _finite_points(points_m)
+        points, is_finite = finite_points(points_m)
         inside: BoolArray = shapely.covers(self._area, shapely.points(points)) & is_finite
         return inside
 
@@ -59,7 +66,7 @@ class Polygon:
 
         Positive inside the region and negative outside; NaN for a point that is not finite.
         """
-        points, is_finite = _finite_points(points_m)
+        points, is_finite = finite_points(points_m)
         places = shapely.points(points)
         distance_m: FloatArray = shapely.distance(self._edge, places)
         signed_m = np.where(shapely.covers(self._area, places), distance_m, -distance_m)
@@ -91,6 +98,61 @@ class Polygon:
         clear: BoolArray = (far_m > 0.0) & (far_m >= margin_m) & is_finite
         return clear
 
+    def holds(self, footprints: Footprints, inset_m: float = 0.0) -> BoolArray:
+        """Return which of N footprints lie inside as a whole, (N,).
+
+        Every point of one is then inside and more than `inset_m` from the edge; with none, on the
+        edge is inside. With a negative inset every point is inside, or outside by that at most.
+        """
+        if inset_m < 0.0:
+            return self._resized(-inset_m).holds(footprints)
+        inside: BoolArray = shapely.covers(self._area, footprints.shapes) & footprints.is_finite
+        if inset_m > 0.0 and inside.any():
+            inside[inside] = ~shapely.dwithin(self._edge, footprints.shapes[inside], inset_m)
+        return inside
+
+    def is_clear_of(self, footprints: Footprints, gap_m: float = 0.0) -> BoolArray:
+        """Return which of N footprints lie outside as a whole, (N,).
+
+        Every point of one is then outside and more than `gap_m` away; on the edge is not outside.
+        With a negative gap every point is outside, or less than that from the edge.
+        """
+        if gap_m < 0.0:
+            return self._resized(gap_m).is_clear_of(footprints)
+        is_near = (footprints.least_m <= self._most_m + gap_m).all(axis=1)
+        is_near &= (footprints.most_m >= self._least_m - gap_m).all(axis=1)
+        clear = footprints.is_finite & ~is_near
+        ask = footprints.is_finite & is_near
+        if ask.any():
+            clear[ask] = ~shapely.dwithin(self._area, footprints.shapes[ask], gap_m)
+        return clear
+
+    def room_m(self, footprints: Footprints) -> FloatArray:
+        """Return how far inside each of N footprints stays, (N,): its least distance to the edge.
+
+        For one that does not lie inside: minus how far outside the farthest corner is of its part
+        outside. NaN for one that is not finite.
+        """
+        shapes = footprints.shapes
+        room_m: FloatArray = shapely.distance(self._edge, shapes)
+        for index in np.flatnonzero(~shapely.covers(self._area, shapes)):
+            outside = shapely.difference(shapes[index], self._area)
+            corners = shapely.points(shapely.get_coordinates(outside))
+            room_m[index] = -shapely.distance(self._area, corners).max()
+        return np.where(footprints.is_finite, room_m, np.nan)
+
+    def gap_m(self, footprints: Footprints) -> FloatArray:
+        """Return how far each of N footprints is from the region, (N,); 0 when it touches it."""
+        gap_m: FloatArray = shapely.distance(self._area, footprints.shapes)
+        return np.where(footprints.is_finite, gap_m, np.nan)
+
+    def _resized(self, outward_m: float) -> "Polygon":
+        """The region made larger, or smaller: every point up to that far outside, or inside."""
+        area = shapely.buffer(self._area, outward_m, quad_segs=QUARTER_CIRCLE_SEGMENTS)
+        resized = Polygon.__new__(Polygon)
+        resized._take(area)
+        return resized
+
 
 def region_fault(region: Region) -> str | None:
     """Return what keeps a region from being a polygon, in words, or None when it is one.
@@ -100,7 +162,7 @@ def region_fault(region: Region) -> str | None:
     rings = (region.outline_m, *region.holes_m)
     if any(len(ring) < 3 for ring in rings):
         return "it has fewer than three corners"
-    if not all(_is_on_earth(ring).all() for ring in rings):
+    if not all(is_on_earth(ring).all() for ring in rings):
         return "it has a corner that is not finite or not on the earth"
     shape = _shape(region)
     reason, _, place = str(shapely.is_valid_reason(shape)).partition("[")
@@ -118,25 +180,11 @@ def _shape(region: Region) -> shapely.Polygon:
     return shapely.Polygon(region.outline_m, list(region.holes_m))
 
 
-def _is_on_earth(points_m: FloatArray) -> BoolArray:
-    """Return which (N, 2) points are finite and no farther than anything is, (N,)."""
-    # NaN compares as false.
-    near: BoolArray = np.abs(points_m).max(axis=1, initial=0.0) <= FARTHEST_M
-    return near
-
-
-def _finite_points(points_m: npt.ArrayLike) -> tuple[FloatArray, BoolArray]:
-    """Return (N, 2) points with zeros for those not finite, and which are, (N,)."""
-    points = np.asarray(points_m, dtype=np.float64).reshape(-1, 2)
-    is_finite = _is_on_earth(points)
-    return np.where(is_finite[:, np.newaxis], points, 0.0), is_finite
-
-
 def _legs(
     starts_m: npt.ArrayLike, ends_m: npt.ArrayLike
 ) -> tuple[npt.NDArray[np.object_], BoolArray]:
-    starts, start_is_finite = _finite_points(starts_m)
-    ends, end_is_finite = _finite_points(ends_m)
+    starts, start_is_finite = finite_points(starts_m)
+    ends, end_is_finite = finite_points(ends_m)
     legs: npt.NDArray[np.object_] = shapely.linestrings(np.stack([starts, ends], axis=1))
     is_point = (starts == ends).all(axis=1)
     # GEOS takes a line without length for nothing at all, which lies in no region.

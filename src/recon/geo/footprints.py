@@ -1,0 +1,46 @@
+"""What things cover on the ground, made ready for questions to many polygons."""
+
+import numpy as np
+import numpy.typing as npt
+import shapely  # type: ignore[import-untyped, unused-ignore]
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+ShapeArray = npt.NDArray[np.object_]
+
+FARTHEST_M = 1e8
+"""No place on the earth is farther from any other; GEOS overflows on far larger numbers."""
+
+
+class Footprints:
+    """Each of N footprints is the hull of three points, given as (N, 3, 2) east-north metres.
+
+    The same point twice makes a leg, three times a place. `least_m` and `most_m` (N, 2) are the
+    boxes around them. One with a point that is not finite, or not on the earth, is not `is_finite`
+    and its other values mean nothing.
+    """
+
+    def __init__(self, triangles_m: npt.ArrayLike) -> None:
+        points, is_finite = finite_points(triangles_m)
+        corners = points.reshape(-1, 3, 2)
+        self.is_finite: BoolArray = np.asarray(is_finite.reshape(-1, 3).all(axis=1))
+        self.shapes: ShapeArray = shapely.convex_hull(shapely.multipoints(corners))
+        self.least_m: FloatArray = corners.min(axis=1)
+        self.most_m: FloatArray = corners.max(axis=1)
+
+    def __len__(self) -> int:
+        return len(self.shapes)
+
+
+def is_on_earth(points_m: FloatArray) -> BoolArray:
+    """Return which (N, 2) points are finite and no farther than anything is, (N,)."""
+    # NaN compares as false.
+    near: BoolArray = np.abs(points_m).max(axis=1, initial=0.0) <= FARTHEST_M
+    return near
+
+
+def finite_points(points_m: npt.ArrayLike) -> tuple[FloatArray, BoolArray]:
+    """Return (N, 2) points with zeros for those not on the earth, and which are on it, (N,)."""
+    points = np.asarray(points_m, dtype=np.float64).reshape(-1, 2)
+    is_finite = is_on_earth(points)
+    return np.where(is_finite[:, np.newaxis], points, 0.0), is_finite
