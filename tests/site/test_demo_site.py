@@ -1,5 +1,9 @@
 """The demonstration's site: the shipped files are what the generator writes, and they work."""
 
+import shutil
+from itertools import combinations
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -12,13 +16,17 @@ from recon.camera import (
     parse_control_points,
 )
 from recon.geo import Polygon, enu_from_points
-from recon.model.vehicle import AltitudeReference
+from recon.model.geo import LocalFrame
+from recon.model.vehicle import AltitudeReference, Failsafe
 from recon.model.zone import ZoneKind
+from recon.safety import PreparedAirspace
 from recon.site import demo_site_folder, load_site
+from recon.site.demo_elevation import ELEVATION_FILE, demo_elevation_bytes
 from recon.site.demo_layers import BOUNDARY
 from recon.site.demo_site import (
     EYE_HEIGHT_M,
     EYE_SERIAL,
+    ORIGIN,
     SERIALS,
     demo_camera,
     demo_marked_telemetry,
@@ -28,7 +36,8 @@ from recon.site.demo_site import (
 
 def test_the_shipped_files_are_those_the_generator_writes() -> None:
     written = demo_site_files()
-    shipped = {path.name: path.read_text() for path in demo_site_folder().iterdir()}
+    files = [path for path in demo_site_folder().iterdir() if path.name != ELEVATION_FILE]
+    shipped = {path.name: path.read_text() for path in files}
     assert shipped.keys() == written.keys()
     assert shipped["site.toml"] == written["site.toml"]
     for name in written:
@@ -82,8 +91,9 @@ def test_its_layers_lie_where_they_were_drawn_and_keep_apart() -> None:
     assert site.frame is not None
     assert layers.boundary is not None
     assert layers.boundary.outline_m == pytest.approx(np.array(BOUNDARY), abs=0.01)
-    (farmyard,) = layers.zones
+    farmyard, trees = layers.zones
     assert (farmyard.name, farmyard.kind) == ("farmyard", ZoneKind.KEEP_OUT)
+    assert (trees.name, trees.kind, trees.floor_m) == ("tree line", ZoneKind.HEIGHT, 35.0)
     field, yard = Polygon(layers.boundary), Polygon(farmyard.region)
     pads = [profile.pad for profile in site.profiles.values() if profile.pad is not None]
     assert field.contains(enu_from_points(site.frame, pads)[:, :2]).all()
@@ -94,6 +104,30 @@ def test_its_layers_lie_where_they_were_drawn_and_keep_apart() -> None:
         assert yard.is_clear_of_legs(outline, ends, 20.0).all()
 
 
+def test_its_ground_is_flat_as_the_simulators_is(tmp_path: Path) -> None:
+    shipped = load_site(demo_site_folder())
+    shutil.copytree(demo_site_folder(), tmp_path / "made")
+    (tmp_path / "made" / ELEVATION_FILE).write_bytes(demo_elevation_bytes(LocalFrame(ORIGIN)))
+    for site in (shipped, load_site(tmp_path / "made")):
+        ground = PreparedAirspace(site.airspace)
+        corners = [(east, north) for east in (-740.0, 740.0) for north in (-740.0, 740.0)]
+        assert ground.ground_up_m([*BOUNDARY, *corners]) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_two_can_land_at_once_and_all_ways_home_are_apart_and_legal() -> None:
+    site = load_site(demo_site_folder())
+    limits = site.limits
+    pads = enu_from_points(site.frame, [pad.place for pad in site.airspace.landing_pads])
+    assert len(pads) == 5
+    apart_m = [float(np.hypot(*(a - b)[:2])) for a, b in combinations(pads, 2)]
+    assert min(apart_m) > limits.min_separation_horizontal_m + 5.0
+    heights = sorted(profile.go_home_height_m or 0.0 for profile in site.profiles.values())
+    assert np.diff(heights) == pytest.approx(8.0)
+    assert heights[0] >= max(zone.floor_m or 0.0 for zone in site.layers.zones) + 5.0
+    assert heights[-1] <= limits.max_height_above_ground_m
+    assert limits.max_height_above_ground_m > EYE_HEIGHT_M
+
+
 def test_every_vehicle_of_the_demonstration_has_a_profile_that_can_fly_missions() -> None:
     site = load_site(demo_site_folder())
     assert set(site.profiles) == {EYE_SERIAL, *SERIALS}
@@ -101,6 +135,9 @@ def test_every_vehicle_of_the_demonstration_has_a_profile_that_can_fly_missions(
         assert profile.waypoint_altitude is AltitudeReference.TAKEOFF
         assert profile.pad is not None
         assert profile.name
+        assert profile.endurance_s == 1500.0
+        assert profile.failsafe is Failsafe.GO_HOME
+        assert (profile.camera_interval_s is None) == (profile.serial == EYE_SERIAL)
 
 
 def test_the_eye_sees_the_whole_ground_image() -> None:

@@ -136,6 +136,11 @@ def sim_command(
             seed=seed,
             faults=tuple(parse_fault(text) for text in fault or ()),
             pads=_pads(place) if home is None and replay_site is None else {},
+            go_home_heights_m={
+                serial: profile.go_home_height_m
+                for serial, profile in place.profiles.items()
+                if profile.go_home_height_m is not None
+            },
         )
         asyncio.run(_run(config))
     except ReconError as problem:

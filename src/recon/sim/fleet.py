@@ -21,6 +21,7 @@ from recon.sim.rig import EyeRig
 
 EYE_SERIAL = "SIM-EYE"
 EYE_HEIGHT_M = 130.0
+PADS_TO_A_ROW, PAD_SPACING_M = 8, 20.0
 LARGEST_BIAS_M = 40.0
 """DJI's absolute altitude is off by tens of metres."""
 
@@ -62,7 +63,9 @@ class SimulationConfig:
     seed: int = 0
     faults: tuple[Fault, ...] = ()
     pads: Mapping[str, GeoPoint] = field(default_factory=dict)
-    """Start positions by serial; the others start in a row beside home."""
+    """Start positions by serial; the others start in rows beside home."""
+    go_home_heights_m: Mapping[str, float] = field(default_factory=dict)
+    """What is set in the aircraft, by serial; the others are set 8 m apart."""
 
 
 def fleet_serials(config: SimulationConfig) -> tuple[str, ...]:
@@ -110,12 +113,14 @@ def _build_app(
     )
     is_eye = serial == EYE_SERIAL
     settings = AircraftSettings(
-        go_home_height_m=30.0 + 5.0 * number, endurance_s=config.endurance_s
+        go_home_height_m=config.go_home_heights_m.get(serial, _go_home_height_m(number)),
+        endurance_s=config.endurance_s,
     )
     motion = _eye_start(config) if is_eye else _survey_start(config, number)
     manoeuvre: Manoeuvre = Grounded() if motion.height_m == 0.0 else Hold()
     if config.wanders and not is_eye:
-        manoeuvre = _wandering(settings, motion, number, random)
+        east_m, north_m, _ = enu_from_point(LocalFrame(config.home), home)
+        manoeuvre = _wandering(settings, motion, number, random, (float(north_m), float(east_m)))
     aircraft = Aircraft(start_ns, settings, motion, manoeuvre, battery=battery)
     if not is_eye or config.eye is None:
         return SimulatedApp(app, aircraft)
@@ -134,7 +139,14 @@ def _home_of(config: SimulationConfig, serial: str, number: int) -> GeoPoint:
         return GeoPoint(beneath.latitude_deg, beneath.longitude_deg, ground_m - up_m)
     if serial in config.pads:
         return config.pads[serial]
-    return point_from_enu(LocalFrame(config.home), (15.0 * (number - 1), 0.0, 0.0))
+    row, place = divmod(number - 1, PADS_TO_A_ROW)
+    away_m = (PAD_SPACING_M * (place - 4), -PAD_SPACING_M * (row + 2.5), 0.0)
+    return point_from_enu(LocalFrame(config.home), away_m)
+
+
+def _go_home_height_m(number: int) -> float:
+    """Return heights 8 m apart, as many as lie under 120 m, then the same again."""
+    return 40.0 + 8.0 * ((number - 1) % 10)
 
 
 def _eye_start(config: SimulationConfig) -> Motion:
@@ -153,15 +165,25 @@ def _survey_start(config: SimulationConfig, number: int) -> Motion:
 
 
 def _survey_height_m(number: int) -> float:
-    # Ten metres apart, because nothing in the air keeps simulated pilots from meeting.
-    return 30.0 + 10.0 * number
+    # Ten metres apart, because nothing in the air keeps simulated pilots from meeting; never over
+    # the heights that are allowed: from the ninth on somebody else is as high.
+    return 40.0 + 10.0 * ((number - 1) % 8)
 
 
 def _wandering(
-    settings: AircraftSettings, motion: Motion, number: int, random: Random
+    settings: AircraftSettings,
+    motion: Motion,
+    number: int,
+    random: Random,
+    home_m: tuple[float, float],
 ) -> Manoeuvre:
-    """Return rows flown to and fro over a field of this vehicle's own."""
-    north_m, east_m = random.uniform(-160.0, 40.0), random.uniform(-180.0, 60.0)
+    """Return rows flown to and fro over a field of this vehicle's own.
+
+    The field lies inside the demonstration's boundary and beside its farmyard; `home_m` is how far
+    north and east of the fleet's home the vehicle's own is.
+    """
+    north_m = random.uniform(-180.0, 40.0) - home_m[0]
+    east_m = random.uniform(-200.0, -40.0) - home_m[1]
     length_m, spacing_m, rows = random.uniform(100.0, 160.0), 25.0, 6
     corners = []
     for row in range(rows):

@@ -1,10 +1,12 @@
-"""The demonstration's GeoJSON layers: a boundary, a farmyard to keep out of, two fields to survey.
+"""The demonstration's GeoJSON layers: a boundary, a farmyard to keep out of, trees to stay above,
+pads, two fields to survey.
 
 The outlines are in metres east and north of the origin, here only; the files hold degrees.
 """
 
 import json
 from collections.abc import Mapping
+from typing import Any
 
 from recon.geo import geo_from_enu
 from recon.model.geo import LocalFrame
@@ -17,6 +19,17 @@ SURVEY: Mapping[str, Outline] = {
     "west field": ((-200, 20), (-60, 30), (-50, 200), (-190, 190)),
     "south-east field": ((40, -200), (190, -190), (200, -60), (90, -40)),
 }
+TREES: Outline = ((-200, 210), (120, 214), (120, 234), (-200, 230))
+TREES_FLOOR_M = 35.0
+"""Trees of 25 m and room above them."""
+PADS: Mapping[str, tuple[str | None, tuple[float, float]]] = {
+    "Eye": ("SIM-EYE", (0.0, 0.0)),
+    "Drone 1": ("SIM-1", (-24.0, -8.0)),
+    "Drone 2": ("SIM-2", (-4.0, -26.0)),
+    "Drone 3": ("SIM-3", (20.0, -16.0)),
+    "spare": (None, (30.0, 14.0)),
+}
+"""Each pad's vehicle and place: further apart than two landing vehicles must be."""
 DECIMALS = 8
 """Of a degree: a millimetre."""
 
@@ -24,31 +37,51 @@ DECIMALS = 8
 def demo_layer_files(frame: LocalFrame) -> dict[str, str]:
     """Return the text of each layer's file around a frame's origin; the same at each call."""
     return {
-        "boundary.geojson": _collection("boundary", {"demo field": BOUNDARY}, frame),
-        "keep_out.geojson": _collection("keep_out", {"farmyard": FARMYARD}, frame),
-        "survey_regions.geojson": _collection("survey_regions", SURVEY, frame),
+        "boundary.geojson": _collection("boundary", _areas({"demo field": BOUNDARY}, frame)),
+        "keep_out.geojson": _collection("keep_out", _areas({"farmyard": FARMYARD}, frame)),
+        "height_zones.geojson": _collection(
+            "height_zones",
+            _areas({"tree line": TREES}, frame, floor_m=TREES_FLOOR_M, datum="ground"),
+        ),
+        "landing_pads.geojson": _collection("landing_pads", _pads(frame)),
+        "survey_regions.geojson": _collection("survey_regions", _areas(SURVEY, frame)),
     }
 
 
-def _collection(name: str, outlines: Mapping[str, Outline], frame: LocalFrame) -> str:
-    features = ",\n".join(
-        json.dumps(
-            {
-                "type": "Feature",
-                "properties": {"name": feature},
-                "geometry": {"type": "Polygon", "coordinates": [_ring(outline, frame)]},
-            }
-        )
-        for feature, outline in outlines.items()
-    )
-    return (
-        f'{{\n"type": "FeatureCollection",\n"name": "{name}",\n"features": [\n{features}\n]\n}}\n'
-    )
+def _collection(name: str, features: list[dict[str, Any]]) -> str:
+    lines = ",\n".join(json.dumps({"type": "Feature", **feature}) for feature in features)
+    return f'{{\n"type": "FeatureCollection",\n"name": "{name}",\n"features": [\n{lines}\n]\n}}\n'
 
 
-def _ring(outline: Outline, frame: LocalFrame) -> list[list[float]]:
-    """Return longitude, latitude pairs, the first again at the end."""
-    points = [(east_m, north_m, 0.0) for east_m, north_m in (*outline, outline[0])]
+def _areas(
+    outlines: Mapping[str, Outline], frame: LocalFrame, **properties: object
+) -> list[dict[str, Any]]:
+    return [
+        {
+            "properties": {"name": name, **properties},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [_positions((*outline, outline[0]), frame)],
+            },
+        }
+        for name, outline in outlines.items()
+    ]
+
+
+def _pads(frame: LocalFrame) -> list[dict[str, Any]]:
+    ground_m = frame.origin.ellipsoid_height_m
+    return [
+        {
+            "properties": {"name": name, "serial": serial, "altitude_m": ground_m},
+            "geometry": {"type": "Point", "coordinates": _positions((place,), frame)[0]},
+        }
+        for name, (serial, place) in PADS.items()
+    ]
+
+
+def _positions(places: Outline, frame: LocalFrame) -> list[list[float]]:
+    """Return longitude, latitude pairs."""
+    points = [(east_m, north_m, 0.0) for east_m, north_m in places]
     latitudes, longitudes, _ = geo_from_enu(frame, points)
     return [
         [round(float(longitude), DECIMALS), round(float(latitude), DECIMALS)]

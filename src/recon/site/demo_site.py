@@ -18,6 +18,7 @@ from recon.camera import (
 )
 from recon.geo import geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
+from recon.site.demo_elevation import ELEVATION_FILE, demo_elevation_bytes
 from recon.site.demo_folder import demo_site_folder
 from recon.site.demo_layers import demo_layer_files
 
@@ -45,22 +46,21 @@ POINTS_EAST_NORTH_M = {
     "G": (-190.0, -70.0),
     "H": (40.0, 30.0),
 }
-PADS_EAST_NORTH_M = {
-    EYE_SERIAL: (0.0, 0.0),
-    "SIM-1": (-12.0, -6.0),
-    "SIM-2": (-4.0, -12.0),
-    "SIM-3": (6.0, -12.0),
-}
+GO_HOME_HEIGHTS_M = {EYE_SERIAL: 40, "SIM-1": 48, "SIM-2": 56, "SIM-3": 64}
+"""8 m apart, above the trees' zone; the eye, which hovers at 120 m, comes home from there."""
+ENDURANCE_MIN = 25
+"""What a simulated battery lasts, unless the simulator is told another time."""
 
 
 def demo_site_files() -> dict[str, str]:
-    """Return the text of each file of the demonstration's site; the same at each call."""
+    """Return the text of each text file of the demonstration's site; the same at each call."""
     camera = demo_camera()
+    frame = LocalFrame(ORIGIN)
     return {
         "camera-model.txt": format_camera(camera),
         "GCPs.txt": format_control_points(_control_points(camera)),
         "site.toml": _site_toml(),
-        **demo_layer_files(LocalFrame(ORIGIN)),
+        **demo_layer_files(frame),
     }
 
 
@@ -130,6 +130,10 @@ latitude_deg = {ORIGIN.latitude_deg}
 longitude_deg = {ORIGIN.longitude_deg}
 ground_altitude_m = {ORIGIN.ellipsoid_height_m}
 
+[limits]
+max_height_above_ground_m = 130.0  # the eye hovers at {EYE_HEIGHT_M:g} m
+max_distance_from_home_m = 500.0
+
 [eye]
 serial = "{EYE_SERIAL}"
 camera = "camera-model.txt"
@@ -157,15 +161,22 @@ cell_m = 1.0
 [layers]
 boundary = "boundary.geojson"
 keep_out = "keep_out.geojson"
+height_zones = "height_zones.geojson"
+landing_pads = "landing_pads.geojson"
 survey_regions = "survey_regions.geojson"
+
+[elevation]
+file = "{ELEVATION_FILE}"
+datum = "wgs84"
 """
     return header + "".join(_vehicle_toml(serial) for serial in (*SERIALS, EYE_SERIAL))
 
 
 def _vehicle_toml(serial: str) -> str:
-    pad_enu = [(*PADS_EAST_NORTH_M[serial], 0.0)]
-    (latitude,), (longitude,), _ = geo_from_enu(LocalFrame(ORIGIN), pad_enu)
-    name = "Eye" if serial == EYE_SERIAL else f"Drone {serial[-1]}"
+    is_eye = serial == EYE_SERIAL
+    name = "Eye" if is_eye else f"Drone {serial[-1]}"
+    # The eye sees the whole field: of two in conflict it is held last.
+    more = "priority = 10" if is_eye else "camera_interval_s = 2.0"
     return f"""
 [[vehicles]]
 serial = "{serial}"
@@ -173,9 +184,10 @@ name = "{name}"
 model = "simulated"
 waypoint_altitude = "takeoff"
 mount = "gimbal"
-pad = {{ latitude_deg = {latitude:.7f}, longitude_deg = {longitude:.7f}, altitude_m = {
-        ORIGIN.ellipsoid_height_m
-    } }}
+endurance_min = {ENDURANCE_MIN}
+go_home_height_m = {GO_HOME_HEIGHTS_M[serial]}
+failsafe = "go_home"
+{more}
 """
 
 
@@ -185,6 +197,7 @@ def main() -> None:
     folder.mkdir(exist_ok=True)
     for name, text in demo_site_files().items():
         (folder / name).write_text(text, encoding="utf-8")
+    (folder / ELEVATION_FILE).write_bytes(demo_elevation_bytes(LocalFrame(ORIGIN)))
 
 
 if __name__ == "__main__":
