@@ -1,13 +1,14 @@
 """Commands that came through the real gate, and packets as apps send them."""
 
+from dataclasses import replace
+
+from tests.safety import cases
+
 from recon import wire
 from recon.model.command import Body, Command, FlyMission, StickFrame, VirtualStick
-from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
 from recon.model.units import seconds_to_ns
-from recon.model.vehicle import AltitudeReference, VehicleProfile, VehicleState
-from recon.safety import ApprovedCommand, Claimant, Situation, approve
+from recon.safety import ApprovedCommand, Claimant, approve
 
 LINK_ID = 7
 MS = 1_000_000
@@ -24,16 +25,8 @@ def approved(
 ) -> ApprovedCommand:
     """Let the gate approve a command for a vehicle that flies and is identified."""
     gap = {} if packet_gap_s is None else {"packet_gap_s": packet_gap_s}
-    profile = VehicleProfile("A", waypoint_altitude=AltitudeReference.TAKEOFF, **gap)
-    flying = Stamped(True, now_ns)
-    vehicle = VehicleState(
-        serial="A",
-        link_id=link_ids[0],
-        profile=profile,
-        is_flying=flying,
-        position=Stamped(LatLon(41.9, -93.6), now_ns),
-        core_received_at_ns=now_ns,
-    )
+    profile = replace(cases.TAKEOFF, **gap)
+    vehicle = cases.vehicle(profile, now_ns=now_ns, age_s=0.0, link_id=link_ids[0])
     command = Command(
         id=command_id,
         body=body,
@@ -42,8 +35,9 @@ def approved(
         expires_at_ns=now_ns + seconds_to_ns(expires_after_s),
         serial="A",
     )
-    claimants = tuple(Claimant(link_id, flying) for link_id in link_ids)
-    judged = approve(command, Situation(now_ns, vehicle, claimants))
+    claimants = tuple(Claimant(link_id, vehicle.is_flying) for link_id in link_ids)
+    now = replace(cases.situation(vehicle), now_ns=now_ns, claimants=claimants)
+    judged = approve(command, now)
     assert isinstance(judged, ApprovedCommand), judged
     return judged
 
@@ -51,7 +45,7 @@ def approved(
 def mission(waypoint_count: int = 2) -> FlyMission:
     """Return a mission that every rule allows."""
     waypoints = tuple(
-        Waypoint(41.9 + 1e-4 * number, -93.6, 30.0, 5.0) for number in range(waypoint_count)
+        Waypoint(42.0 + 1e-4 * number, -93.6, 30.0, 5.0) for number in range(waypoint_count)
     )
     return FlyMission(Mission(waypoints))
 
@@ -65,7 +59,7 @@ def core(**changes: float) -> bytes:
     """Return an encoded core telemetry packet of a vehicle that hovers at 30 m."""
     values: dict[str, float] = {
         "is_flying": 1,
-        "latitude_deg": 41.9,
+        "latitude_deg": 42.0,
         "longitude_deg": -93.6,
         "altitude_m": 300.0,
         "height_above_takeoff_m": 30.0,

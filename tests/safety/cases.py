@@ -3,16 +3,36 @@
 from dataclasses import replace
 
 from recon.model.command import Body, Command, FlyMission, Refusal, StickFrame, VirtualStick
+from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.stamped import Stamped
-from recon.model.vehicle import AltitudeReference, VehicleProfile, VehicleState
+from recon.model.vehicle import (
+    AltitudeReference,
+    Attitude,
+    BatteryWarning,
+    Failsafe,
+    FlightMode,
+    VehicleProfile,
+    VehicleState,
+    VelocityNed,
+)
 from recon.safety import ApprovedCommand, Claimant, Situation
 
 S = 1_000_000_000
 NOW = 100 * S
 
-TAKEOFF = VehicleProfile("A", waypoint_altitude=AltitudeReference.TAKEOFF)
-WGS84 = VehicleProfile("A", waypoint_altitude=AltitudeReference.WGS84)
+PLACE = LatLon(42.0, -93.6)
+"""Where the vehicle is, and where it took off."""
+
+TAKEOFF = VehicleProfile(
+    "A",
+    waypoint_altitude=AltitudeReference.TAKEOFF,
+    endurance_s=1_500.0,
+    go_home_height_m=60.0,
+    failsafe=Failsafe.GO_HOME,
+    camera_interval_s=2.0,
+)
+WGS84 = replace(TAKEOFF, waypoint_altitude=AltitudeReference.WGS84)
 
 STICK = VirtualStick(StickFrame.GROUND, 90.0, 1.0, 2.0, 30.0, 1.0)
 
@@ -41,18 +61,41 @@ def vehicle(
     *,
     flying: bool | None = True,
     age_s: float = 0.1,
+    now_ns: int = NOW,
     offset_m: float | None = 260.0,
     offset_at_takeoff_m: float | None = 260.0,
+    **changes: object,
 ) -> VehicleState:
-    at_ns = NOW - round(age_s * S)
-    return VehicleState(
+    """A vehicle 40 m over the place where it took off, or there on the ground; all values of one
+    age. `changes` are fields of its state, made stamped with that age where they must be."""
+    at_ns = now_ns - round(age_s * S)
+    state = VehicleState(
         serial="A",
         link_id=1,
         profile=profile,
         is_flying=Stamped(flying, at_ns),
+        position=Stamped(PLACE, at_ns),
+        height_above_takeoff_m=Stamped(0.0 if flying is False else 40.0, at_ns),
+        velocity_ned=Stamped(VelocityNed(0.0, 0.0, 0.0), at_ns),
+        attitude=Stamped(Attitude(0.0, 0.0, 0.0), at_ns),
+        battery_fraction=Stamped(0.9, at_ns),
+        battery_warning=Stamped(BatteryWarning.NONE, at_ns),
+        gnss_satellite_count=Stamped(14, at_ns),
+        gnss_signal_level=Stamped(4, at_ns),
+        wind_level=Stamped(0, at_ns),
+        flight_mode=Stamped(FlightMode.GPS_ATTI, at_ns),
+        core_received_at_ns=at_ns,
+        extended_received_at_ns=at_ns,
         altitude_offset_m=Stamped(offset_m, at_ns),
         altitude_offset_at_takeoff_m=offset_at_takeoff_m,
+        takeoff_point=PLACE,
     )
+    stamped = {
+        name: Stamped(value, at_ns)
+        for name, value in changes.items()
+        if isinstance(getattr(state, name), Stamped) and not isinstance(value, Stamped)
+    }
+    return replace(state, **{**changes, **stamped})  # type: ignore[arg-type]
 
 
 def situation(state: VehicleState | None = None, *rivals: Stamped[bool]) -> Situation:

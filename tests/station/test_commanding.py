@@ -7,6 +7,7 @@ from tests.station.commanded import Told, flying
 
 from recon.fleet.state import Fleet
 from recon.model.command import Body, Hover, Phase, ReturnHome, StartCamera, StopCamera
+from recon.model.event import CommandSent
 from recon.model.report import ImageReport
 from recon.model.vehicle import AltitudeReference, FlightMode, VehicleProfile
 from recon.station.state import Station
@@ -46,8 +47,10 @@ class TestMission:
 
     def test_an_old_mode_is_no_knowledge_of_the_mode_now(self) -> None:
         """Mode 3 four seconds ago: it may be 10 by now, from the mission before."""
-        told = hovering().keeps_saying(1, core(velocity=(-5.0, 0.0, 0.0))).passes(4.0)
+        told = hovering().keeps_saying(1, core(velocity=(-5.0, 0.0, 0.0))).passes(2.5)
+        told.is_stuck = True
         order = told.order(mission())
+        told.passes(1.5).happens(CommandSent(1, order))
         told.says(1, extended(mode=FlightMode.GPS_WAYPOINT)).passes(1.0)
         assert told.phase(order) is Phase.SENT
 

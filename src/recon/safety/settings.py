@@ -11,6 +11,19 @@ class SafetySettings:
     """Telemetry this old still tells whether a vehicle flies: running video causes dropouts of a
     second or two, and within three no aircraft lands and disarms unseen."""
 
+    motion_telemetry_s: float = 1.0
+    """Motion is ordered on core telemetry this young at most: at 15 m/s a second is 15 m, as far as
+    two vehicles are kept apart."""
+    motion_extended_s: float = 3.0
+    """Extended telemetry comes at 1 to 2 Hz: older, its mode, battery and GNSS may not hold."""
+
+    min_satellites: int = 8
+    """Six give a position; with two more one may go behind a tree and it still holds."""
+    min_gnss_level: int = 3
+    """Of DJI's levels 0 to 5 the first at which the aircraft holds its place by GNSS."""
+    min_gnss_level_on_ground: int = 4
+    """The first level at which DJI's aircraft record their home point: without, none comes back."""
+
     approval_holds_s: float = 1.5
     """An approved order to move is sent within this time or not at all: what made it safe (it
     flies, telemetry is fresh) may not hold any longer. Unsent emergency orders are judged anew

@@ -40,7 +40,7 @@ class Station:
     frames: Mapping[str, Frame] = field(default_factory=dict)
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
-    airspace: PreparedAirspace = OPEN_AIRSPACE
+    airspace: PreparedAirspace = field(default=OPEN_AIRSPACE, repr=False)
     leads: Mapping[str, Lead] = field(default_factory=dict)
     """Who leads each vehicle, by serial; the default for one that nobody has taken."""
     intents: Mapping[str, Intent] = field(default_factory=dict)

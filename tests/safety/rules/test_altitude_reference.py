@@ -30,6 +30,11 @@ def judged(state: VehicleState) -> ApprovedCommand | Refusal:
     return approve(command(mission()), situation(state))
 
 
+def aged(age_s: float) -> Stamped[float]:
+    """The offset of takeoff, told this long ago."""
+    return Stamped(260.0, NOW - round(age_s * S))
+
+
 @pytest.mark.parametrize("profile", [None, VehicleProfile("A")])
 def test_unset_is_refused_and_says_how_to_set_it(profile: VehicleProfile | None) -> None:
     answer = judged(vehicle(profile))
@@ -55,7 +60,7 @@ class TestWgs84:
 
     @pytest.mark.parametrize(("age_s", "is_sent"), [(2.0, True), (2.000000001, False)])
     def test_an_offset_older_than_2_s_is_refused(self, age_s: float, is_sent: bool) -> None:
-        answer = judged(vehicle(WGS84, age_s=age_s))
+        answer = judged(vehicle(WGS84, altitude_offset_m=aged(age_s)))
         assert is_sent or refused_by(answer) == "altitude_reference"
         assert not is_sent or approved(answer)
 
@@ -79,7 +84,7 @@ class TestWgs84:
         assert approved(approve(command(mission(), takeoff=True), situation(state)))
 
     def test_the_approval_ends_with_the_offsets_2_s(self) -> None:
-        answer = approved(judged(vehicle(WGS84, age_s=1.5)))
+        answer = approved(judged(vehicle(WGS84, altitude_offset_m=aged(1.5))))
         assert answer.command.expires_at_ns == NOW + S // 2 + 1
 
     @given(

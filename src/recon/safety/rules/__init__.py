@@ -7,8 +7,11 @@ from recon.safety.rules.altitude_reference import altitude_reference
 from recon.safety.rules.dji_limits import dji_limits
 from recon.safety.rules.finite_numbers import finite_numbers
 from recon.safety.rules.flying import flying
+from recon.safety.rules.gnss import gnss
 from recon.safety.rules.identified import identified
 from recon.safety.rules.known_order import known_order
+from recon.safety.rules.leader import leader
+from recon.safety.rules.link_age import link_age
 from recon.safety.rules.not_expired import not_expired
 from recon.safety.rules.reachable import reachable
 from recon.safety.situation import Situation
@@ -21,7 +24,10 @@ RULES: tuple[Rule, ...] = (
     identified,
     not_expired,
     finite_numbers,
+    leader,
     dji_limits,
     altitude_reference,
     flying,
+    link_age,
+    gnss,
 )

@@ -1,0 +1,38 @@
+"""What sets a vehicle in motion needs to know where it is now, not where it was."""
+
+from recon.model.command import MOVING_BODIES, Command, Refusal
+from recon.model.stamped import Stamped
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "link_age"
+
+
+def link_age(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse motion on core telemetry older than 1 s, or extended telemetry older than 3 s.
+
+    A stick without velocity stops the vehicle: it may go as long as telemetry still tells whether
+    it flies, whatever the extended telemetry's age.
+    """
+    vehicle, limits = situation.vehicle, situation.settings
+    if vehicle is None or not isinstance(command.body, MOVING_BODIES):
+        return None
+    is_stop = is_zero_stick(command.body)
+    core_s = limits.fresh_telemetry_s if is_stop else limits.motion_telemetry_s
+    fault = _fault("core", vehicle.core_received_at_ns, core_s, situation)
+    if fault is None and not is_stop:
+        heard_at_ns = vehicle.extended_received_at_ns
+        fault = _fault("extended", heard_at_ns, limits.motion_extended_s, situation)
+    return None if fault is None else Refusal(RULE, f"{vehicle.display_name}: {fault}")
+
+
+def _fault(kind: str, heard_at_ns: int | None, most_s: float, situation: Situation) -> str | None:
+    age_s = Stamped(True, heard_at_ns).age_s(situation.now_ns)
+    if age_s is None:
+        return f"its app has sent no {kind} telemetry yet: wait for it, or look at the app"
+    if age_s <= most_s:
+        return None
+    return (
+        f"its {kind} telemetry is {age_s:.1f} s old, {most_s:g} s at most is needed to set it in "
+        "motion: wait until the link is back. Hold, land and return are open"
+    )

@@ -1,0 +1,115 @@
+"""What is set in motion must know where it is, and hold its place by it."""
+
+from dataclasses import replace
+
+import pytest
+from tests.safety.cases import STICK, command, mission, situation, vehicle
+
+from recon.model.command import Body, GoTo, HoldPosition, Hover, Nudge, Refusal, StopCamera
+from recon.model.geo import LatLon
+from recon.model.stamped import Stamped
+from recon.model.vehicle import FlightMode
+from recon.safety import SafetySettings
+from recon.safety.rules.gnss import gnss
+
+MOVES: list[Body] = [
+    mission(),
+    STICK,
+    GoTo(LatLon(42.0, -93.6), 40.0, 5.0),
+    Nudge(1.0, 0.0, 0.0),
+    HoldPosition(),
+]
+ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0)
+WITHOUT = {FlightMode.MANUAL, FlightMode.ATTI, FlightMode.ATTI_COURSE_LOCK, FlightMode.UNKNOWN}
+
+
+def judged(body: Body = MOVES[0], *, flying: bool | None = True, **changes: object) -> str | None:
+    """The reason of a refusal, None when there is none."""
+    answer = gnss(command(body), situation(vehicle(flying=flying, **changes)))
+    assert answer is None or (answer.rule, answer.reason[:3]) == ("gnss", "A: ")
+    return None if answer is None else answer.reason
+
+
+@pytest.mark.parametrize("body", MOVES)
+def test_motion_needs_a_fix(body: Body) -> None:
+    assert judged(body) is None
+    assert judged(body, position=Stamped()) == "A: it reports no position: wait for a fix"
+
+
+@pytest.mark.parametrize("body", [ZERO, Hover(), StopCamera()])
+def test_what_stops_or_looks_needs_none(body: Body) -> None:
+    assert judged(body, position=Stamped()) is None
+
+
+@pytest.mark.parametrize(("count", "goes"), [(8, True), (7, False), (0, False), (None, False)])
+def test_eight_satellites_are_needed(count: int | None, goes: bool) -> None:
+    assert (judged(gnss_satellite_count=count) is None) is goes
+
+
+@pytest.mark.parametrize("flying", [True, None])
+@pytest.mark.parametrize(
+    ("level", "goes"), [(3, True), (5, True), (10, True), (2, False), (0, False), (None, False)]
+)
+def test_in_the_air_the_level_at_which_it_holds_its_place(
+    level: int | None, goes: bool, flying: bool | None
+) -> None:
+    assert (judged(gnss_signal_level=level, flying=flying) is None) is goes
+
+
+@pytest.mark.parametrize(("level", "goes"), [(4, True), (3, False), (None, False)])
+def test_on_the_ground_the_level_at_which_it_records_its_home(
+    level: int | None, goes: bool
+) -> None:
+    assert (judged(gnss_signal_level=level, flying=False) is None) is goes
+
+
+@pytest.mark.parametrize("mode", [None, *FlightMode])
+def test_modes_without_gnss_are_the_pilots(mode: FlightMode | None) -> None:
+    assert (judged(flight_mode=mode) is None) is (mode is not None and mode not in WITHOUT)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        (
+            {"gnss_satellite_count": None},
+            "how many satellites it sees is not known: wait for extended telemetry",
+        ),
+        (
+            {"gnss_satellite_count": 7},
+            "it sees 7 satellites, 8 are needed: wait, or go where the sky is open",
+        ),
+        (
+            {"gnss_signal_level": None},
+            "its GNSS signal level is none or unknown, 3 of 5 is needed: wait, or go where the sky "
+            "is open",
+        ),
+        (
+            {"gnss_signal_level": 2},
+            "its GNSS signal level is 2, 3 of 5 is needed: wait, or go where the sky is open",
+        ),
+        (
+            {"gnss_signal_level": 3, "flying": False},
+            "its GNSS signal level is 3, 4 of 5 is needed before a takeoff, to record its home: "
+            "wait, or go where the sky is open",
+        ),
+        (
+            {"flight_mode": None},
+            "its flight mode is not known, so neither whether it holds its place by GNSS",
+        ),
+        (
+            {"flight_mode": FlightMode.ATTI},
+            "it flies in ATTI, without GNSS: the pilot has to steer it",
+        ),
+    ],
+)
+def test_a_refusal_says_what_is_needed_what_came_and_what_to_do(
+    changes: dict[str, object], reason: str
+) -> None:
+    assert judged(**changes) == f"A: {reason}"  # type: ignore[arg-type]
+
+
+def test_the_thresholds_are_settings() -> None:
+    strict = replace(situation(), settings=SafetySettings(min_satellites=20))
+    assert isinstance(gnss(command(mission()), strict), Refusal)
+    assert gnss(command(mission()), replace(strict, vehicle=None)) is None
