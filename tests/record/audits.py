@@ -4,7 +4,6 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
-from threading import Event
 
 from recon.record.audit import AuditEntry
 from recon.record.audit_files import audit_files, read_run_end
@@ -23,21 +22,6 @@ def until(is_reached: Callable[[], bool]) -> None:
     while not is_reached():
         assert time.monotonic() < end_s, "it never came"
         os.sched_yield()
-
-
-class Told:
-    """What an audit's thread tells, waited for without sleeping."""
-
-    def __init__(self) -> None:
-        self.all: list[str | None] = []
-        self._is_told = {True: Event(), False: Event()}
-
-    def __call__(self, problem: str | None) -> None:
-        self.all.append(problem)
-        self._is_told[problem is not None].set()
-
-    def wait(self, *, trouble: bool) -> None:
-        assert self._is_told[trouble].wait(PATIENCE_S)
 
 
 def written(folder: Path, count: int, put: Callable[[AuditLog], None] | None = None) -> Path:

@@ -8,7 +8,7 @@ import threading
 from pathlib import Path
 
 import pytest
-from tests.record.audits import PATIENCE_S, Told, entry, until, written
+from tests.record.audits import PATIENCE_S, entry, until, written
 
 from recon.record import audit_log
 from recon.record.audit_check import check_audit
@@ -27,7 +27,7 @@ class Disk:
         self.is_reached = threading.Event()
         self._write = os.write
         monkeypatch.setattr(audit_log.os, "write", self.write)
-        monkeypatch.setattr(audit_log, "RETRY_AFTER_S", 0.001)
+        monkeypatch.setattr(audit_log, "RETRY_AFTER_S", 0.3)
 
     def write(self, file: int, data: bytes) -> int:
         self.is_reached.set()
@@ -90,17 +90,16 @@ def test_a_line_written_in_pieces_is_one_line(tmp_path: Path, disk: Disk) -> Non
 def test_a_full_disk_is_told_and_nothing_is_lost_when_it_has_room_again(
     tmp_path: Path, disk: Disk
 ) -> None:
-    told = Told()
-    log = AuditLog(tmp_path, told)
+    log = AuditLog(tmp_path)
     disk.is_full = True
     log.start()
     log.put(entry("one"), 1)
-    told.wait(trouble=True)
+    until(lambda: log.problem is not None)
     log.put(entry("two"), 2)
     assert log.problem is not None
     assert "No space left on device" in log.problem
     disk.is_full = False
-    told.wait(trouble=False)
+    until(lambda: log.problem is None)
     log.put(entry("three"), 3)
     log.close()
     assert [line["text"] for line in read(log.path)][1:] == ["one", "two", "three"]
@@ -133,15 +132,15 @@ def test_nobody_waits_for_a_disk_that_hangs(tmp_path: Path, disk: Disk) -> None:
 def test_a_folder_that_cannot_be_made_is_trouble_until_it_can(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(audit_log, "RETRY_AFTER_S", 0.001)
-    told, folder = Told(), tmp_path / "audit"
+    monkeypatch.setattr(audit_log, "RETRY_AFTER_S", 0.3)
+    folder = tmp_path / "audit"
     folder.write_text("a file where the folder should be")
-    log = AuditLog(folder, told)
+    log = AuditLog(folder)
     log.start()
     log.put(entry("waits"), 1)
-    told.wait(trouble=True)
+    until(lambda: log.problem is not None)
     folder.unlink()
-    told.wait(trouble=False)
+    until(lambda: log.problem is None)
     log.close()
     assert [line["text"] for line in read(log.path)][1:] == ["waits"]
 
@@ -149,9 +148,8 @@ def test_a_folder_that_cannot_be_made_is_trouble_until_it_can(
 def test_a_deleted_file_is_told_and_another_begun(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(audit_log, "RETRY_AFTER_S", 0.001)
-    told = Told()
-    log = AuditLog(tmp_path, told)
+    monkeypatch.setattr(audit_log, "RETRY_AFTER_S", 0.3)
+    log = AuditLog(tmp_path)
     log.start()
     log.put(entry("before"), 1)
     until(lambda: b"before" in content(log))
@@ -159,10 +157,10 @@ def test_a_deleted_file_is_told_and_another_begun(
     assert first is not None
     first.unlink()
     log.put(entry("after"), 2)
-    told.wait(trouble=True)
-    told.wait(trouble=False)
+    until(lambda: log.problem is not None)
+    assert "deleted" in str(log.problem)
+    until(lambda: log.problem is None)
     log.close()
-    assert "deleted" in str(told.all[0])
     assert [line["text"] for line in read(log.path)][1:] == ["after"]
     assert check_audit(log.path or tmp_path).missing_before == first.name
 

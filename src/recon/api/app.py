@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Annotated, TypeVar
 
-from fastapi import FastAPI, HTTPException, Request, Response, WebSocket
+from fastapi import FastAPI, HTTPException, Query, Request, Response, WebSocket
 from fastapi import Path as InPath
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
@@ -13,6 +13,7 @@ from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException as AnyHTTPException
 
 from recon.api import pictures, schema
+from recon.api.audit_stream import MOST_ON_A_PAGE, AuditStream
 from recon.api.orders import to_body
 from recon.api.port import StationPort
 from recon.api.security import Access, Doorman
@@ -51,7 +52,7 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
 
 
 def _add_state_routes(app: FastAPI, port: StationPort) -> None:
-    stream = StateStream(port)
+    stream, changes = StateStream(port), AuditStream(port)
 
     @app.get("/api/state")
     async def state() -> schema.StationState:
@@ -79,6 +80,20 @@ def _add_state_routes(app: FastAPI, port: StationPort) -> None:
         """One command and its life."""
         found = next((c for c in port.state().commands if c.id == command_id), None)
         return _found(found, f"no command {command_id} is among the latest")
+
+    @app.get("/api/audit")
+    async def audit(
+        after: Annotated[int, Query(ge=0)] = 0,
+        at_most: Annotated[int, Query(ge=1, le=MOST_ON_A_PAGE)] = MOST_ON_A_PAGE,
+    ) -> schema.AuditPage:
+        """Entries of this run's audit after a number, the oldest first."""
+        return port.audit(after, at_most)
+
+    @app.websocket("/api/audit/stream")
+    async def audit_stream(
+        socket: WebSocket, after: Annotated[int, Query(ge=0)] = 0
+    ) -> None:
+        await changes.serve(socket, after)
 
     @app.websocket("/api/stream")
     async def state_stream(socket: WebSocket) -> None:

@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from recon.api.schema import OrderResponse, StationState
+from recon.api.schema import AuditPage, OrderResponse, StationState
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
 
@@ -23,6 +23,9 @@ class StationPort(Protocol):
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         """Mark an alarm as seen; False when there is none of that number."""
+
+    def audit(self, after: int, at_most: int) -> AuditPage:
+        """Return the audit's entries after a number, the oldest first."""
 
     def frame(self, serial: str) -> Frame | None:
         """Return a vehicle's newest camera frame."""

@@ -5,7 +5,7 @@ since. `value: null` means unknown. Heights are above the vehicle's own takeoff 
 otherwise.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -241,6 +241,32 @@ class StationState(Message):
     commands: list[CommandView]
     alarms: list[AlarmView]
     ground_image: GroundImageView | None
+
+
+class AuditEntryView(Message):
+    """One entry of the audit: what happened, who asked, about which vehicle."""
+
+    n: int
+    utc: str
+    kind: str
+    by: str
+    serial: str | None
+    vehicle: str
+    text: str
+    details: dict[str, Any]
+
+
+class AuditPage(Message):
+    """Entries of this run after a number, the oldest first.
+
+    `first_n` is the oldest entry in memory: what came before it is only in the file.
+    """
+
+    entries: list[AuditEntryView]
+    first_n: int
+    last_n: int
+    file: str | None
+    problem: str | None = Field(description="why the audit cannot be written, while it cannot")
 
 
 # --- what the station is asked -----------------------------------------------------------------

@@ -44,7 +44,7 @@ class StateStream:
             self._readers -= 1
 
     async def _send_until_gone(self, socket: WebSocket) -> None:
-        gone = asyncio.ensure_future(_until_gone(socket))
+        gone = asyncio.ensure_future(until_gone(socket))
         try:
             while not gone.done():
                 await socket.send_text(self._newest())
@@ -59,7 +59,7 @@ class StateStream:
         return self._text
 
 
-async def _until_gone(socket: WebSocket) -> None:
+async def until_gone(socket: WebSocket) -> None:
     """Read and ignore what a reader sends, to learn when it goes."""
     try:
         while (await socket.receive())["type"] != "websocket.disconnect":

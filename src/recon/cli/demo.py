@@ -10,6 +10,7 @@ from recon.cli.console_files import console_folder
 from recon.cli.event_loop import run_in_loop
 from recon.cli.run import announce
 from recon.site import demo_site_folder, load_site
+from recon.station.audit_start import default_place
 from recon.station.run import RunConfig, Started, run
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
@@ -31,8 +32,11 @@ def demo_command(
     """Run the station with simulated drones over a made-up field, until Ctrl+C."""
     config = RunConfig(
         site=load_site(demo_site_folder()),
+        site_folder=demo_site_folder(),
         link_port=link_port,
         http_port=http_port,
+        # A demonstration goes on with nothing: its drones start anew with it.
+        audit=default_place(link_port=0),
         console=console_folder(),
     )
     run_in_loop(_demo(config, vehicles, seed))

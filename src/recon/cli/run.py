@@ -9,7 +9,9 @@ import typer
 from recon.cli.console_files import console_folder
 from recon.cli.event_loop import run_in_loop
 from recon.link.settings import LinkSettings
+from recon.record.audit import shown
 from recon.site import Site, default_site, load_site, site_report
+from recon.station.audit_start import AuditPlace
 from recon.station.run import RunConfig, Started, StartError, run
 
 SHORTEST_TOKEN = 16
@@ -39,6 +41,10 @@ def run_command(
     capture: Annotated[
         Path | None, typer.Option(help="Folder to write every link's raw bytes to.")
     ] = None,
+    audit: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the audit; default is one for the link port, see the guide."),
+    ] = None,
     garbage_limit: Annotated[
         int, typer.Option(min=1024, help="Close a link after so many bytes without a packet.")
     ] = LinkSettings().garbage_limit_bytes,
@@ -50,7 +56,9 @@ def run_command(
         link_port=link_port,
         http_host=http_host,
         http_port=http_port,
+        site_folder=site,
         capture_folder=capture,
+        audit=None if audit is None else AuditPlace(audit),
         token=None if token_file is None else read_token(token_file),
         console=console_folder(),
         link=LinkSettings(garbage_limit_bytes=garbage_limit),
@@ -73,6 +81,9 @@ def announce(started: Started) -> None:
     """Print every address the station listens on."""
     for address in started.link_addresses:
         print(f"companion apps: {address}", flush=True)
+    print(f"audit: {started.audit_folder}", flush=True)
+    if started.taken_up:
+        print(f"from the last run: {shown(started.taken_up)}; nothing is ordered", flush=True)
     print(f"console: {started.console_url}", flush=True)
 
 

@@ -145,6 +145,11 @@ def harmless(value: Any, depth: int = 0) -> Any:
     return harmless(str(value))
 
 
+def shown(text: str) -> str:
+    """Return text with what is not printable as escapes: for terminals and logs."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
 def _json(values: dict[str, Any]) -> bytes:
     # ASCII alone: whatever a wire or a program said, a terminal that shows the file stays itself.
     # DEL is ASCII and the one control character that JSON does not escape.

@@ -46,8 +46,6 @@ RETRY_AFTER_S = 1.0
 CLOSE_WITHIN_S = 3.0
 """A disk that hangs must not keep a stopped station from ending."""
 
-Tell = Callable[[str | None], None]
-
 
 class AuditLog:
     """Writes one run's audit into a folder. `put` and `after` belong to one thread."""
@@ -55,15 +53,14 @@ class AuditLog:
     def __init__(
         self,
         folder: Path,
-        tell: Tell = lambda problem: None,
         utc_ns: Callable[[], int] = time.time_ns,
     ) -> None:
-        """Take the folder; `tell` is called on the writing thread with what is wrong, and with
-        None when it no longer is."""
+        """Take the folder; nothing is opened before `start`."""
         self.folder = folder
         self.path: Path | None = None
+        """This run's file, once there is one."""
         self.problem: str | None = None
-        self._tell = tell
+        """Why nothing can be written, while that is so."""
         self._utc_ns = utc_ns
         self._waiting: queue.SimpleQueue[Stamped | None] = queue.SimpleQueue()
         self._kept: deque[Stamped] = deque(maxlen=KEPT_ENTRIES)
@@ -110,6 +107,11 @@ class AuditLog:
             return []
         first = max(0, n + 1 - self._kept[0].n)
         return [self._kept[i] for i in range(first, min(first + at_most, len(self._kept)))]
+
+    @property
+    def first_n(self) -> int:
+        """The number of the oldest entry in memory; 0 before the first."""
+        return self._kept[0].n if self._kept else 0
 
     @property
     def last_n(self) -> int:
@@ -164,9 +166,9 @@ class AuditLog:
                 self._sync()
         except (OSError, RecordError) as problem:
             reason = problem.strerror if isinstance(problem, OSError) else str(problem)
-            self._say(f"the audit cannot be written to {self.folder}: {reason}")
+            self.problem = f"the audit cannot be written to {self.folder}: {reason}"
             return False
-        self._say(None)
+        self.problem = None
         return True
 
     def _encode(self, batch: list[Stamped]) -> None:
@@ -228,11 +230,6 @@ class AuditLog:
 
     def _file_before(self, path: Path) -> dict[str, Any]:
         return {"file": path.name, "n": self._written_n, "hash": self._hash}
-
-    def _say(self, problem: str | None) -> None:
-        if problem != self.problem:
-            self.problem = problem
-            self._tell(problem)
 
 
 def refuse_other_writer(folder: Path) -> None:

@@ -1,61 +1,57 @@
-"""What the station did, one line an event, for the person at the terminal and the log file."""
+"""What the station did, one line an event, for the person at the terminal and the log file.
+
+The lines are the audit's, in words. A terminal can stand still (Ctrl+S, a pipe that nobody reads):
+they are printed on a thread of their own, which may wait while the station flies on.
+"""
+
+import queue
+import threading
 
 import structlog
 
-from recon.model.event import Event, LinkClosed, LinkOpened
-from recon.station.state import Station
+from recon.record.audit import AuditEntry, shown
+from recon.station.sightings import SEEN_KIND
 
 _log = structlog.get_logger("recon")
 
+WAITING_LINES = 1000
+CLOSE_WITHIN_S = 1.0
 
-def log_step(before: Station, after: Station, event: Event) -> None:
-    """Write what a step changed that a person wants to read later."""
-    match event:
-        case LinkOpened(link_id, remote_address):
-            _log.info("app connected", link=link_id, address=remote_address)
-        case LinkClosed(link_id, reason):
-            _log.info("app gone", link=link_id, reason=reason)
-    if after.fleet.vehicles is not before.fleet.vehicles:
-        _log_identities(before, after)
-    if after.orders is not before.orders:
-        _log_orders(before, after)
-    if after.alarms is not before.alarms:
-        _log_alarms(before, after)
+_QUIET_KINDS = frozenset({SEEN_KIND})
+_LOUD_KINDS = ("alarm.raised", "alarm.worse", "order.refused", "order.failed", "audit.trouble")
 
 
-def _log_identities(before: Station, after: Station) -> None:
-    for serial, vehicle in after.fleet.vehicles.items():
-        old = before.fleet.vehicles.get(serial)
-        if old is None or old.link_id != vehicle.link_id:
-            _log.info(
-                "vehicle on link",
-                vehicle=vehicle.display_name,
-                serial=serial,
-                link=vehicle.link_id,
-                simulated=vehicle.is_simulated,
-            )
+class LogPrinter:
+    """Prints entries in their order; what a terminal that stands still cannot take is counted."""
 
+    def __init__(self) -> None:
+        self.left_out = 0
+        self._waiting: queue.SimpleQueue[AuditEntry | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._print, name="log", daemon=True)
 
-def _log_orders(before: Station, after: Station) -> None:
-    for key, record in after.orders.records.items():
-        old = before.orders.records.get(key)
-        if old is record or (old is not None and old.history is record.history):
-            continue
-        _log.info(
-            "order",
-            id=key,
-            kind=record.command.name,
-            vehicle=record.vehicle_name,
-            phase=record.phase.value,
-            note=record.note,
-            by=record.command.issued_by,
-            altitudes=record.altitudes,
-        )
+    def start(self) -> None:
+        """Begin to print."""
+        self._thread.start()
 
+    def put(self, entry: AuditEntry) -> None:
+        """Take an entry; never waits."""
+        if entry.kind in _QUIET_KINDS:
+            return
+        if self._waiting.qsize() >= WAITING_LINES:
+            self.left_out += 1
+            return
+        self._waiting.put(entry)
 
-def _log_alarms(before: Station, after: Station) -> None:
-    for key, alarm in after.alarms.alarms.items():
-        if key not in before.alarms.alarms:
-            _log.warning(
-                "alarm", severity=alarm.condition.severity.value, text=alarm.condition.text
-            )
+    def close(self) -> None:
+        """Print what waits, as far as the terminal takes it in time."""
+        if self._thread.is_alive():
+            self._waiting.put(None)
+            self._thread.join(CLOSE_WITHIN_S)
+
+    def _print(self) -> None:
+        while (entry := self._waiting.get()) is not None:
+            if self.left_out:
+                _log.warning(f"{self.left_out} lines were left out: nothing took them")
+                self.left_out = 0
+            say = _log.warning if entry.kind.startswith(_LOUD_KINDS) else _log.info
+            say(shown(entry.text), by=shown(entry.by))

@@ -6,7 +6,7 @@ import signal
 import socket
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import AsyncExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import structlog
@@ -20,11 +20,24 @@ from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.errors import ReconError
 from recon.model.units import ns_to_seconds
+from recon.record.errors import RecordError
 from recon.site import Site
+from recon.site.digest import site_digest
+from recon.station.audit_start import (
+    AuditPlace,
+    Begun,
+    begin_audit,
+    default_place,
+    started_entry,
+    stopped_entry,
+)
+from recon.station.auditor import Auditor
 from recon.station.build import first_state, worker_tasks
 from recon.station.driver import AsyncioDriver, spare_what_is_loaded, station_clock
-from recon.station.log import log_step
+from recon.station.log import LogPrinter
+from recon.station.restart import first_ids, restart_entries, restored
 from recon.station.service import Service
+from recon.station.state import Station
 from recon.station.worker import ThreadWorker
 
 _log = structlog.get_logger("recon")
@@ -46,7 +59,11 @@ class RunConfig:
     link_port: int = 3001
     http_host: str = "127.0.0.1"
     http_port: int = 8080
+    site_folder: Path | None = None
+    """Where the site was read from; its digest goes into the audit."""
     capture_folder: Path | None = None
+    audit: AuditPlace | None = None
+    """None: the place in the user's state folder that belongs to the link port."""
     token: str | None = None
     console: Path | None = None
     link: LinkSettings = field(default_factory=LinkSettings)
@@ -59,6 +76,9 @@ class Started:
     link_addresses: list[str]
     link_port: int
     console_url: str
+    audit_folder: str = ""
+    taken_up: str = ""
+    """What the last run left that this one goes on with, in words; empty for nothing."""
 
 
 OnStart = Callable[[Started], Awaitable[None]]
@@ -67,10 +87,16 @@ OnStart = Callable[[Started], Awaitable[None]]
 async def run(config: RunConfig, on_start: OnStart) -> None:
     """Run a station until SIGINT or SIGTERM. Raises `StartError` when it cannot start."""
     _refuse_open_door(config)
+    begun = _begin_audit(config)
     http_socket = _listen(config.http_host, config.http_port, "--http-port")
     async with AsyncExitStack() as stack:
         stack.callback(http_socket.close)
-        driver = AsyncioDriver(first_state(config.site), station_clock(), log_step)
+        clock = station_clock()
+        station = restored(first_state(config.site), begun.last, clock())
+        auditor = _start_auditor(config, begun, clock, stack)
+        auditor.put(restart_entries(station))
+        driver = AsyncioDriver(station, clock, auditor.observe)
+        auditor.handle = driver.handle
         capture = _start_capture(config, driver)
         if capture is not None:
             stack.callback(capture.close)
@@ -78,7 +104,9 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         driver.worker = worker
         links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
         driver.links = links
-        service = Service.around(driver, config.site, _text(config.capture_folder))
+        service = Service.around(
+            driver, config.site, _text(config.capture_folder), begun.log, first_ids(begun.last)[0]
+        )
         service.link_addresses = await _start_links(links, config)
         stack.push_async_callback(links.stop)
         ticking = asyncio.create_task(driver.run())
@@ -89,7 +117,10 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         spare_what_is_loaded()
         stack.enter_context(_stopped_by_signals(server))
         serving = asyncio.create_task(server.serve(sockets=[http_socket]))
-        await on_start(_started(config, service, links, http_socket))
+        started = _started(config, service, links, http_socket)
+        taken_up = _taken_up(station, begun)
+        audit_folder = str(begun.log.folder)
+        await on_start(replace(started, audit_folder=audit_folder, taken_up=taken_up))
         done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
         # A loop that died must not leave a station that looks alive.
         server.should_exit = True
@@ -104,6 +135,43 @@ def _refuse_open_door(config: RunConfig) -> None:
             f"the console would be open to everyone who reaches {config.http_host}: give "
             "--token-file FILE with a secret of 16 characters or more, or leave it on 127.0.0.1"
         )
+
+
+def _begin_audit(config: RunConfig) -> Begun:
+    try:
+        return begin_audit(config.audit or default_place(config.link_port))
+    except RecordError as problem:
+        raise StartError(str(problem)) from problem
+
+
+def _start_auditor(
+    config: RunConfig, begun: Begun, clock: Callable[[], int], stack: AsyncExitStack
+) -> Auditor:
+    """Begin the audit; its last line is written after everything else has ended."""
+    printer = LogPrinter()
+    auditor = Auditor(begun.log, printer, clock)
+    printer.start()
+    stack.callback(printer.close)
+    begun.log.start()
+    stack.callback(begun.log.close)
+    stack.callback(lambda: auditor.put([stopped_entry()]))
+    settings, folder = first_state(config.site).settings, config.site_folder
+    site = {
+        "name": config.site.name,
+        "folder": _text(folder),
+        "sha256": None if folder is None else site_digest(folder),
+    }
+    auditor.put([started_entry(settings, site, begun.last, begun.troubles)])
+    return auditor
+
+
+def _taken_up(station: Station, begun: Begun) -> str:
+    """What a person must know who starts a station after one that ended in flight."""
+    names = [station.fleet.vehicles[serial].display_name for serial in station.restored_flights]
+    words = [f"flying when last seen: {', '.join(names)}"] if names else []
+    if station.orders.records:
+        words.append(f"{len(station.orders.records)} orders were interrupted")
+    return "; ".join((*words, *begun.troubles))
 
 
 def _listen(host: str, port: int, option: str) -> socket.socket:

@@ -12,7 +12,9 @@ from recon.model.event import AlarmAcknowledged, OperatorOrder
 from recon.model.imagery import Frame, GroundImage
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
+from recon.record.audit_log import AuditLog
 from recon.site import Site
+from recon.station.audit_view import audit_page
 from recon.station.driver import AsyncioDriver
 from recon.station.orders import OrderRecord
 from recon.station.views import Surroundings, state_view
@@ -26,12 +28,20 @@ class Service:
     site: Site
     link_addresses: list[str]
     capture_folder: str | None
+    audit_log: AuditLog | None
     _ids: Callable[[], int]
 
     @classmethod
-    def around(cls, driver: AsyncioDriver, site: Site, capture_folder: str | None) -> "Service":
-        """Return the service of a driver that is about to run."""
-        return cls(driver, site, [], capture_folder, count(1).__next__)
+    def around(
+        cls,
+        driver: AsyncioDriver,
+        site: Site,
+        capture_folder: str | None,
+        audit_log: AuditLog | None = None,
+        first_id: int = 1,
+    ) -> "Service":
+        """Return the service of a driver that is about to run; orders are numbered from a first."""
+        return cls(driver, site, [], capture_folder, audit_log, count(first_id).__next__)
 
     def state(self) -> schema.StationState:
         """Return everything a console shows, as of now."""
@@ -77,6 +87,10 @@ class Service:
             return False
         self.driver.handle(AlarmAcknowledged(alarm_id, by))
         return True
+
+    def audit(self, after: int, at_most: int) -> schema.AuditPage:
+        """Return the audit's entries after a number, as far as they are in memory."""
+        return audit_page(self.audit_log, after, at_most)
 
     def frame(self, serial: str) -> Frame | None:
         """Return a vehicle's newest frame."""

@@ -1,0 +1,141 @@
+"""What the audit of the last run tells a new start. The file may be damaged, huge or made up: every
+value is checked, everything is bounded, and what does not fit is left out."""
+
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
+
+import msgspec
+
+from recon.model.authority import Leader
+from recon.model.command import BODY_NAMES, Body, Phase
+from recon.record.audit import STARTED_KIND, STOPPED_KIND, AuditLine
+from recon.station.sighting import Sighting
+from recon.station.sightings import SIGHTING_KINDS
+
+MOST_VEHICLES = 256
+MOST_ORDERS = 200
+LARGEST_ID = 2**52
+"""Beyond it a JavaScript number, and so the console, could not tell two orders apart."""
+
+_KINDS_WITH_IDS = ("order.", "sticks.", "fleet_return.", "vehicle.", STARTED_KIND)
+
+_BODIES = {name: kind for kind, name in BODY_NAMES.items()}
+
+Id = Annotated[int, msgspec.Meta(ge=-LARGEST_ID, le=LARGEST_ID)]
+
+
+class _Order(msgspec.Struct):
+    id: Id
+    phase: Phase
+    body: dict[str, Any] | None = None
+    order: str = ""
+    takeoff: bool = False
+    link_id: int | None = None
+
+
+class _Lead(msgspec.Struct):
+    leader: Leader
+    holder: str = ""
+
+
+class _Ids(msgspec.Struct):
+    id: Id = 0
+    first_id: Id = 0
+    count: Annotated[int, msgspec.Meta(ge=0, le=1_000_000)] = 0
+    last_command_id: Id = 0
+    next_own_id: Id = 0
+
+
+@dataclass(frozen=True, slots=True)
+class OpenOrder:
+    """An order whose life had not ended."""
+
+    id: int
+    body: Body
+    phase: Phase
+    by: str
+    serial: str | None
+    link_id: int | None
+    vehicle: str
+    takeoff: bool
+    given_at_ns: int
+
+
+@dataclass(slots=True)
+class LastRun:
+    """Collects what the lines tell, the oldest first."""
+
+    sightings: dict[str, Sighting] = field(default_factory=dict)
+    leads: dict[str, tuple[Leader, str]] = field(default_factory=dict)
+    orders: dict[int, OpenOrder] = field(default_factory=dict)
+    last_id: int = 0
+    least_own_id: int = 0
+    last_at_ns: int | None = None
+    lines: int = 0
+    was_stopped: bool = False
+
+    def take(self, line: AuditLine) -> None:
+        """Take a line; one whose values are not what they should be tells nothing."""
+        self.lines += 1
+        self.last_at_ns = line.t_ns
+        self.was_stopped = line.kind == STOPPED_KIND
+        try:
+            self._take_ids(line)
+            self._take_kind(line)
+        except msgspec.ValidationError:
+            return
+
+    def _take_kind(self, line: AuditLine) -> None:
+        serial = line.serial
+        if line.kind == STARTED_KIND:
+            # What was open before has been told as ended by that start.
+            self.orders.clear()
+        elif line.kind.startswith("order."):
+            self._take_order(line)
+        elif serial is None:
+            return
+        elif line.kind in SIGHTING_KINDS:
+            self._take_sighting(serial, msgspec.convert(line.details, Sighting))
+        elif line.kind == "authority.taken":
+            lead = msgspec.convert(line.details, _Lead)
+            self._take_lead(serial, lead.leader, lead.holder)
+        elif line.kind == "ghost.dismissed":
+            self.sightings.pop(serial, None)
+
+    def _take_sighting(self, serial: str, sighting: Sighting) -> None:
+        if serial in self.sightings or len(self.sightings) < MOST_VEHICLES:
+            self.sightings[serial] = sighting
+            self._take_lead(serial, sighting.leader, sighting.holder)
+
+    def _take_lead(self, serial: str, leader: Leader, holder: str) -> None:
+        if serial in self.leads or len(self.leads) < MOST_VEHICLES:
+            self.leads[serial] = (leader, holder)
+
+    def _take_order(self, line: AuditLine) -> None:
+        order = msgspec.convert(line.details, _Order)
+        if order.body is not None and order.order in _BODIES:
+            body: Body = msgspec.convert(order.body, _BODIES[order.order])
+            self.orders[order.id] = OpenOrder(
+                id=order.id,
+                body=body,
+                phase=order.phase,
+                by=line.by,
+                serial=line.serial,
+                link_id=order.link_id,
+                vehicle=line.vehicle,
+                takeoff=order.takeoff,
+                given_at_ns=line.t_ns,
+            )
+        elif order.id in self.orders:
+            self.orders[order.id] = replace(self.orders[order.id], phase=order.phase)
+        if order.phase.is_final:
+            self.orders.pop(order.id, None)
+        while len(self.orders) > MOST_ORDERS:
+            del self.orders[next(iter(self.orders))]
+
+    def _take_ids(self, line: AuditLine) -> None:
+        if not line.kind.startswith(_KINDS_WITH_IDS):
+            return
+        ids = msgspec.convert(line.details, _Ids)
+        self.last_id = max(self.last_id, ids.id, ids.first_id + ids.count, ids.last_command_id)
+        self.least_own_id = min(self.least_own_id, ids.id, ids.next_own_id)

@@ -1,0 +1,21 @@
+"""How far what an earlier run of the station saw is believed."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class RestartSettings:
+    """Times in seconds; each with its reason."""
+
+    forgotten_after_s: float = 5_400.0
+    """Nothing that the aircraft of this size can carry keeps them in the air for an hour; half an
+    hour more for a clock that was set."""
+
+    fastest_mps: float = 25.0
+    """Over the ground, with the wind, faster than any of these aircraft flies."""
+    fastest_climb_mps: float = 10.0
+    place_error_m: float = 30.0
+    height_error_m: float = 5.0
+    battery_gain_fraction: float = 0.03
+    """A battery in flight only loses charge; one that gained more than its gauge errs was changed
+    on the ground."""
