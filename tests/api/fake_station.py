@@ -60,6 +60,9 @@ class FakeStation:
 
 
 def application(
+    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
+        return self.service.fleet_return(serials, issued_by)
+
     station: FakeStation, *, token: str | None = None, console: Path | None = None
 ) -> FastAPI:
     return create_app(station, Access.make("127.0.0.1", token), console, "1.2.3")

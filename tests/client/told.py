@@ -80,6 +80,7 @@ def state(
         commands=list(commands),
         alarms=[],
         ground_image=None,
+        fleet_return=None,
     )
 
 

@@ -150,9 +150,7 @@ def returning_world(
         limits=FlightLimits(max_height_above_ground_m=max_height_m),
         frame=FRAME,
         zones=zones,
-        landing_pads=tuple(
-            LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items()
-        ),
+        landing_pads=tuple(LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items()),
     )
     station = first_state(Site(name="test", profiles=profiles))
     station = replace(station, airspace=PreparedAirspace(airspace))

@@ -119,6 +119,16 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
 
     @app.post("/api/alarms/{alarm_id}/acknowledge", responses=_PROBLEMS, status_code=204)
     async def acknowledge(alarm_id: int, request: Request) -> None:
+    @app.post("/api/fleet-return")
+    async def fleet_return(
+        asked: schema.FleetReturnRequest, request: Request
+    ) -> schema.OrderResponse:
+        """Call vehicles home as landing missions, each at a height of its own.
+
+        Each result is the hold it begins with; `fleet_return` of the state tells the rest.
+        """
+        return port.fleet_return(asked.serials, _who(request))
+
         """Mark an alarm as seen by a person; it stays until its cause ends."""
         if not port.acknowledge(alarm_id, _who(request)):
             raise HTTPException(404, f"there is no alarm {alarm_id}")

@@ -35,3 +35,9 @@ class StationPort(Protocol):
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""
+    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
+        """Call vehicles home in layers; None calls every one that flies or may.
+
+        The results tell of the hold that each begins with; flights and waves are in the state.
+        """
+

@@ -230,6 +230,31 @@ class StationView(Message):
     connections_refused: int
 
 
+class ReturningView(Message):
+    """One vehicle of a fleet return; without a flight (yet) wave, heights and pad are null."""
+
+    serial: str
+    vehicle_name: str
+    stage: Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
+    since_age_s: float
+    reason: str | None = Field(description="why it waits, was released or is left out")
+    wave: int | None
+    layer_height_m: float | None = Field(description="above the site's ground altitude")
+    layer_height_above_takeoff_m: float | None
+    pad: str | None
+    hold_command_id: int
+    mission_command_id: int | None
+
+
+class FleetReturnView(Message):
+    """The newest fleet return; vehicles by wave and height."""
+
+    called_by: str
+    age_s: float
+    is_over: bool
+    vehicles: list[ReturningView]
+
+
 class StationState(Message):
     """Everything a console shows; the stream pushes one of these at up to 10 Hz."""
 
@@ -241,6 +266,7 @@ class StationState(Message):
     commands: list[CommandView]
     alarms: list[AlarmView]
     ground_image: GroundImageView | None
+    fleet_return: FleetReturnView | None
 
 
 class AuditEntryView(Message):
@@ -385,3 +411,21 @@ class Problem(Message):
     """Why a request was not carried out."""
 
     error: str
+    holder: Annotated[str, Field(max_length=64)] | None = None
+
+    @model_validator(mode="after")
+    def _names_its_holder(self) -> Self:
+        if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.holder:
+            raise ValueError(
+                f"{self.order.kind} needs a holder, the name of an open stream "
+                "(/api/stream?holder=NAME) whose end stops the vehicle"
+            )
+        return self
+
+
+class FleetReturnRequest(Asked):
+    """Vehicles to call home in layers; null calls every one that flies or may."""
+
+    serials: list[Annotated[str, Field(max_length=2048)]] | None = Field(
+        default=None, min_length=1, max_length=256
+    )

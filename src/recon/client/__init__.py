@@ -18,6 +18,7 @@ from recon.client.errors import (
 from recon.client.fleet import Fleet
 from recon.client.life import Life, PhaseChange
 from recon.client.order import Order, VehicleAnswer
+from recon.client.returning import Returning
 from recon.client.station import Station
 from recon.client.telemetry import Aged, Heading, Position, Telemetry, Velocity
 from recon.client.vehicle import Vehicle
@@ -42,6 +43,7 @@ __all__ = [
     "Position",
     "Refusal",
     "RequestRefusedError",
+    "Returning",
     "Staleness",
     "Station",
     "StationUnreachableError",

@@ -52,6 +52,15 @@ class OrderDesk:
 
     def _run_started_ns(self) -> int:
         """The run of the station before the order was sent: that one knows the command's number."""
+    async def fleet_return(self, serials: Sequence[str] | None) -> tuple[VehicleAnswer, ...]:
+        """Call vehicles home in layers; None calls every one that flies or may."""
+        run_started_ns = self._run_started_ns()
+        asked = {"serials": None if serials is None else list(serials)}
+        answer = await self.http.post(
+            "/api/fleet-return", asked, OrderMessage, "results of a fleet return"
+        )
+        return tuple(self._answer(result, run_started_ns) for result in answer.results)
+
         if self.stream.newest is None:
             raise ConnectionLostError(
                 "expected an open station, got one that was never entered: use "

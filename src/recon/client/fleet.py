@@ -1,8 +1,11 @@
 """All vehicles at once."""
 
+from collections.abc import Sequence
+
 from recon.client.desk import OrderDesk
 from recon.client.messages import StateMessage
 from recon.client.order import VehicleAnswer
+from recon.client.returning import Returning
 from recon.model.command import Body, Hover, LandNow, ReturnHome
 
 
@@ -24,8 +27,23 @@ class Fleet:
         return await self._give(LandNow())
 
     async def return_home(self) -> tuple[VehicleAnswer, ...]:
-        """Fly every vehicle home."""
+        """Fly every vehicle home at once, each at the height set in the aircraft."""
         return await self._give(ReturnHome())
+
+    async def return_in_layers(
+        self, serials: Sequence[str] | None = None
+    ) -> tuple[VehicleAnswer, ...]:
+        """Call vehicles home, each at a height of its own, one at a time at each pad.
+
+        None calls every one that flies or may. Each answer is the hold that it begins with; what
+        follows is told by `returning`.
+        """
+        return await self._desk.fleet_return(serials)
+
+    async def returning(self) -> tuple[Returning, ...]:
+        """Return how far each vehicle of the newest return in layers has come."""
+        state = await self._desk.http.get("/api/state", StateMessage, "a state")
+        return () if state.fleet_return is None else state.fleet_return.vehicles
 
     async def _give(self, body: Body) -> tuple[VehicleAnswer, ...]:
         # Asked anew: the stream's list may be old, and a vehicle left out is a vehicle that flies.

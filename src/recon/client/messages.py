@@ -6,6 +6,7 @@ import msgspec
 
 from recon.client.errors import BadAnswerError
 from recon.client.life import Life
+from recon.client.returning import FleetReturnMessage
 from recon.client.telemetry import Telemetry
 from recon.model.units import seconds_to_ns
 
@@ -27,6 +28,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     station: StationMessage
     vehicles: tuple[Telemetry, ...]
     commands: tuple[Life, ...]
+    fleet_return: FleetReturnMessage | None = None
 
     @property
     def run_started_ns(self) -> int:

@@ -138,7 +138,8 @@ class SeparationHoldSwitched:
 class FleetReturnOrdered:
     """Somebody calls vehicles home in layers, as landing missions.
 
-    The missions get the ids from `first_command_id` on, in the order of `serials`.
+    The holds that it begins with get the ids from `first_command_id` on, in the order of `serials`;
+    the missions that follow have the station's own.
     """
 
     first_command_id: int

@@ -8,6 +8,7 @@ from recon.model.command import Phase
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
 from recon.station.alarms import Condition, Severity
+from recon.station.fleet_return import told as fleet_return
 from recon.station.orders import OrderRecord
 from recon.station.settings import StationSettings
 from recon.station.state import Station
@@ -29,6 +30,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _waiting(record)
         yield from _unconfirmed(record)
         yield from _stopped_landing(station, record)
+    yield from fleet_return.conditions(station)
     yield from _imaging(station)
     yield from _audit(station)
 

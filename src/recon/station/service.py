@@ -8,7 +8,13 @@ from itertools import count
 from recon import __version__
 from recon.api import schema
 from recon.model.command import Body, Hover, Phase
-from recon.model.event import AlarmAcknowledged, OperatorOrder
+from recon.model.event import (
+    AlarmAcknowledged,
+    FleetReturnOrdered,
+    HolderCame,
+    HolderGone,
+    OperatorOrder,
+)
 from recon.model.imagery import Frame, GroundImage
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
@@ -93,6 +99,11 @@ class Service:
         return audit_page(self.audit_log, after, at_most)
 
     def frame(self, serial: str) -> Frame | None:
+    def fleet_return(self, serials: list[str] | None, issued_by: str) -> schema.OrderResponse:
+        """Call vehicles home in layers; None calls every one that flies or may."""
+        called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
+        return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
+
         """Return a vehicle's newest frame."""
         return self.driver.station.frames.get(serial)
 
@@ -124,6 +135,15 @@ class Service:
 
     def _station_view(self, now_ns: int) -> schema.StationView:
         links = self.driver.links
+        return self._outcome(order.command_id)
+
+    def _call_one(self, serial: str, issued_by: str) -> schema.OrderResult:
+        """Let one more vehicle join the return; it is planned with the next tick."""
+        command_id = self._ids()
+        self.driver.handle(FleetReturnOrdered(command_id, (serial,), issued_by))
+        return self._outcome(command_id)
+
+    def _outcome(self, command_id: int) -> schema.OrderResult:
         capture = None if links is None else links.capture
         return schema.StationView(
             version=__version__,

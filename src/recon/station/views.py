@@ -14,6 +14,7 @@ from recon.model.units import ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.alarms import Alarm
 from recon.station.corners import corners_lon_lat
+from recon.station.fleet_return import told as fleet_return
 from recon.station.orders import OrderRecord
 from recon.station.state import Station
 
@@ -41,6 +42,7 @@ def state_view(station: Station, around: Surroundings, now_ns: int) -> schema.St
         commands=_commands(station, now_ns),
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
         ground_image=_ground_image(station, now_ns),
+        fleet_return=fleet_return.view(station, now_ns),
     )
 
 

@@ -171,6 +171,7 @@ export function station(
     commands: [],
     alarms: [],
     ground_image: null,
+    fleet_return: null,
     ...changes,
   };
 }
