@@ -90,9 +90,7 @@ def _add_state_routes(app: FastAPI, port: StationPort) -> None:
         return port.audit(after, at_most)
 
     @app.websocket("/api/audit/stream")
-    async def audit_stream(
-        socket: WebSocket, after: Annotated[int, Query(ge=0)] = 0
-    ) -> None:
+    async def audit_stream(socket: WebSocket, after: Annotated[int, Query(ge=0)] = 0) -> None:
         await changes.serve(socket, after)
 
     @app.websocket("/api/stream")

@@ -9,7 +9,6 @@ from contextlib import AsyncExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import structlog
 import uvicorn
 
 from recon import __version__
@@ -39,8 +38,6 @@ from recon.station.restart import first_ids, restart_entries, restored
 from recon.station.service import Service
 from recon.station.state import Station
 from recon.station.worker import ThreadWorker
-
-_log = structlog.get_logger("recon")
 
 HTTP_BACKLOG = 128
 SHUTDOWN_S = 2

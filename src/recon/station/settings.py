@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from recon.fleet.settings import FleetSettings
 from recon.guidance.steering import SteeringSettings
 from recon.safety import SafetySettings
-from recon.station.restart_settings import RestartSettings
 from recon.station.lease import StreamSettings
 from recon.station.restart_settings import RestartSettings
 
