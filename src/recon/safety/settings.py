@@ -1,6 +1,9 @@
 """The gate's thresholds, each with its reason."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from recon.safety.fence_settings import FenceSettings
+from recon.safety.prediction.settings import PredictionSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,3 +62,9 @@ class SafetySettings:
 
     max_camera_fps_hz: float = 30.0
     """No DJI video feed is faster."""
+
+    fences: FenceSettings = field(default_factory=FenceSettings)
+    """What the rules about places and heights need besides the site's limits."""
+
+    prediction: PredictionSettings = field(default_factory=PredictionSettings)
+    """How far and how surely vehicles' paths are foreseen."""

@@ -14,6 +14,7 @@ from recon.safety.rules.leader import leader
 from recon.safety.rules.link_age import link_age
 from recon.safety.rules.not_expired import not_expired
 from recon.safety.rules.reachable import reachable
+from recon.safety.rules.separation import separation
 from recon.safety.situation import Situation
 
 Rule = Callable[[Command, Situation], Refusal | None]
@@ -30,4 +31,5 @@ RULES: tuple[Rule, ...] = (
     flying,
     link_age,
     gnss,
+    separation,
 )

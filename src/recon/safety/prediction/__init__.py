@@ -1,0 +1,30 @@
+"""Where vehicles will be: courses from their state and what they were told."""
+
+from recon.safety.prediction.course import FOREVER_S, Course, Part, part_words
+from recon.safety.prediction.flyer import Flyer, flyer
+from recon.safety.prediction.foresee import foresee_order, foresee_traffic
+from recon.safety.prediction.ghost import Ghost, ghost_courses, ghost_of
+from recon.safety.prediction.intents import Follower
+from recon.safety.prediction.meetings import Meeting, Separation, first_meeting
+from recon.safety.prediction.plane import Plane
+from recon.safety.prediction.settings import PredictionSettings
+
+__all__ = [
+    "FOREVER_S",
+    "Course",
+    "Flyer",
+    "Follower",
+    "Ghost",
+    "Meeting",
+    "Part",
+    "Plane",
+    "PredictionSettings",
+    "Separation",
+    "first_meeting",
+    "flyer",
+    "foresee_order",
+    "foresee_traffic",
+    "ghost_courses",
+    "ghost_of",
+    "part_words",
+]

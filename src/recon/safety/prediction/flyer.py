@@ -1,0 +1,135 @@
+"""What foreseeing needs to know of a vehicle, in the plane."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from recon.model.geo import LatLon
+from recon.model.stamped import Stamped
+from recon.model.units import NS_PER_S
+from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
+from recon.safety.airspace import PreparedAirspace
+from recon.safety.datum import home, takeoff_up_m
+from recon.safety.prediction.course import ALL_HEIGHTS_M
+from recon.safety.prediction.plane import Plane
+from recon.safety.prediction.settings import PredictionSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Flyer:
+    """A vehicle as it was last heard, `age_s` ago.
+
+    `low_m` and `high_m` are equal but for a vehicle whose height nobody knows. `velocity_mps` is
+    east, north, up. `go_home_up_m` is the height of its way home, None when it is not known;
+    `home_m` the place in the plane.
+    """
+
+    state: VehicleState
+    plane: Plane
+    east_m: float
+    north_m: float
+    low_m: float
+    high_m: float
+    velocity_mps: tuple[float, float, float]
+    speed_mps: float
+    age_s: float
+    takeoff_up_m: float | None
+    home_m: tuple[float, float] | None
+    go_home_up_m: float | None
+    goes_home: bool
+    """Whether it may go home by itself when nobody controls it."""
+
+    @property
+    def name(self) -> str:
+        """The name people see."""
+        return self.state.display_name
+
+    def up_m(self, height_above_takeoff_m: float) -> tuple[float, float]:
+        """Return the band of heights that one above its takeoff point is in."""
+        if self.takeoff_up_m is None:
+            return -ALL_HEIGHTS_M, ALL_HEIGHTS_M
+        up_m = self.takeoff_up_m + height_above_takeoff_m
+        return up_m, up_m
+
+
+def flyer(
+    state: VehicleState,
+    airspace: PreparedAirspace,
+    plane: Plane,
+    now_ns: int,
+    settings: PredictionSettings,
+) -> Flyer | None:
+    """Return a vehicle in the plane; None when it has never told where it is.
+
+    One that tells no position now is where it was last seen, as long ago as that was.
+    """
+    place, at_ns = _last_place(state)
+    if place is None:
+        return None
+    base_m = takeoff_height_m(airspace, state)
+    height_m = state.height_above_takeoff_m.value
+    known = base_m is not None and height_m is not None
+    up_m = base_m + height_m if base_m is not None and height_m is not None else 0.0
+    profile, home_place = state.profile, home(state)
+    go_home_m = None if profile is None else profile.go_home_height_m
+    velocity_mps, speed_mps = _velocity(state, settings)
+    east_m, north_m = plane.east_north_m(place)
+    return Flyer(
+        state=state,
+        plane=plane,
+        east_m=east_m,
+        north_m=north_m,
+        low_m=up_m if known else -ALL_HEIGHTS_M,
+        high_m=up_m if known else ALL_HEIGHTS_M,
+        velocity_mps=velocity_mps,
+        speed_mps=speed_mps,
+        age_s=max(0.0, (now_ns - at_ns) / NS_PER_S),
+        takeoff_up_m=base_m,
+        home_m=None if home_place is None else plane.east_north_m(home_place),
+        go_home_up_m=None if go_home_m is None or base_m is None else base_m + go_home_m,
+        goes_home=profile is None or profile.failsafe in (None, Failsafe.GO_HOME),
+    )
+
+
+def takeoff_height_m(airspace: PreparedAirspace, state: VehicleState) -> float | None:
+    """Return the datum's height of the vehicle's takeoff point, remembered while it holds."""
+    if state.is_flying.value is False:
+        return takeoff_up_m(airspace, state)  # where it stands, which may change with each packet
+    return _takeoff_height_m(airspace, state.serial, state.profile, state.takeoff_point)
+
+
+@lru_cache(maxsize=256)
+def _takeoff_height_m(
+    airspace: PreparedAirspace,
+    serial: str | None,
+    profile: VehicleProfile | None,
+    takeoff_point: LatLon | None,
+) -> float | None:
+    """Depends on nothing else; asked for each vehicle ten times a second."""
+    in_flight = VehicleState(serial, profile=profile, takeoff_point=takeoff_point)
+    return takeoff_up_m(airspace, in_flight)
+
+
+def _last_place(state: VehicleState) -> tuple[LatLon | None, int]:
+    position: Stamped[LatLon] = state.position
+    if position.value is not None:
+        return position.value, position.received_at_ns or 0
+    if not state.track:
+        return None, 0
+    last = state.track[-1]
+    return LatLon(last.latitude_deg, last.longitude_deg), last.at_ns
+
+
+def _velocity(
+    state: VehicleState, settings: PredictionSettings
+) -> tuple[tuple[float, float, float], float]:
+    """The velocity east, north, up and its plausible horizontal speed; unknown counts as fast."""
+    velocity = state.velocity_ned.value
+    if velocity is None:
+        return (0.0, 0.0, 0.0), settings.unknown_speed_mps
+    speed_mps = float((velocity.north_mps**2 + velocity.east_mps**2) ** 0.5)
+    plausible_mps = min(speed_mps, settings.plausible_speed_mps)
+    share = 1.0 if speed_mps <= plausible_mps else plausible_mps / speed_mps
+    return (
+        (velocity.east_mps * share, velocity.north_mps * share, -velocity.down_mps),
+        plausible_mps,
+    )

@@ -1,0 +1,97 @@
+"""A stale vehicle is a hazard, not an absence: where one may be that nobody hears.
+
+It is somewhere in a circle about its last place, or on its way home. The circle grows with its last
+plausible speed and reaches down to the ground, for its battery ends somewhere.
+"""
+
+from dataclasses import dataclass
+
+from recon.model.intent import Commanded, Intent
+from recon.safety.prediction.course import ALL_HEIGHTS_M, FOREVER_S, Course, CourseWriter, Part
+from recon.safety.prediction.flyer import Flyer
+from recon.safety.prediction.intents import go_home_top_m
+from recon.safety.prediction.legs import stopping_distance_m
+from recon.safety.prediction.settings import PredictionSettings
+
+LONGEST_RISE_S = 10.0
+"""A climb that was under way is taken to go on this long at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ghost:
+    """Where a stale vehicle may be, in the plane; heights are bands of up metres.
+
+    `radius_m` is now's, and grows by `growth_mps` up to `largest_m`. `home_m` ends its corridor,
+    None when it is not expected to go home, or nobody knows where that is.
+    """
+
+    name: str
+    serial: str | None
+    age_s: float
+    east_m: float
+    north_m: float
+    radius_m: float
+    growth_mps: float
+    largest_m: float
+    low_m: float
+    high_m: float
+    home_m: tuple[float, float] | None
+    corridor_low_m: float
+    corridor_half_m: float
+
+
+def ghost_of(flyer: Flyer, intent: Intent, settings: PredictionSettings) -> Ghost | None:
+    """Return the ghost of a vehicle that is too long unheard; None of one that is heard."""
+    if flyer.age_s <= settings.stale_s:
+        return None
+    growth_mps = max(_plausible_mps(flyer, intent), settings.ghost_least_speed_mps)
+    largest_m = max(settings.ghost_radius_m, stopping_distance_m(growth_mps, settings))
+    rise_m = max(0.0, flyer.velocity_mps[2]) * min(flyer.age_s, LONGEST_RISE_S)
+    top_m = flyer.high_m + rise_m
+    if flyer.goes_home:
+        top_m = max(top_m, go_home_top_m(flyer, settings))
+    return Ghost(
+        name=flyer.name,
+        serial=flyer.state.serial,
+        age_s=flyer.age_s,
+        east_m=flyer.east_m,
+        north_m=flyer.north_m,
+        radius_m=min(largest_m, growth_mps * flyer.age_s),
+        growth_mps=growth_mps,
+        largest_m=largest_m,
+        low_m=-ALL_HEIGHTS_M,
+        high_m=top_m,
+        home_m=flyer.home_m if flyer.goes_home else None,
+        corridor_low_m=flyer.low_m,
+        corridor_half_m=settings.corridor_m,
+    )
+
+
+def ghost_courses(ghost: Ghost) -> tuple[Course, ...]:
+    """Return the ghost's volumes as courses: the circle, the way home, the place of landing."""
+    circle = CourseWriter(ghost.east_m, ghost.north_m, ghost.low_m, ghost.high_m)
+    circle.radius_m = ghost.radius_m
+    if ghost.radius_m < ghost.largest_m:
+        grows_s = (ghost.largest_m - ghost.radius_m) / ghost.growth_mps
+        circle.grows(ghost.largest_m, grows_s, Part.UNSEEN)
+    circle.stays(Part.UNSEEN)
+    writers = [circle]
+    if ghost.home_m is not None:
+        way = CourseWriter(ghost.east_m, ghost.north_m, ghost.corridor_low_m, ghost.high_m)
+        way.radius_m = ghost.corridor_half_m
+        way.moves(*ghost.home_m, FOREVER_S, Part.UNSEEN)
+        landing = CourseWriter(*ghost.home_m, ghost.low_m, ghost.high_m)
+        landing.radius_m = ghost.corridor_half_m
+        landing.stays(Part.UNSEEN)
+        writers += [way, landing]
+    return tuple(writer.course(ghost.name, ghost.serial) for writer in writers)
+
+
+def _plausible_mps(flyer: Flyer, intent: Intent) -> float:
+    """What it flew last, or what it was told to fly."""
+    told_mps = 0.0
+    if intent.commanded is Commanded.MISSION and intent.mission is not None:
+        told_mps = max(w.speed_mps for w in intent.mission.waypoints)
+    elif intent.commanded is Commanded.STICK:
+        told_mps = intent.speed_mps or 0.0
+    return max(flyer.speed_mps, told_mps)

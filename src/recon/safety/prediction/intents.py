@@ -1,0 +1,224 @@
+"""The course of a vehicle that does what it was told."""
+
+from math import hypot
+
+from recon.model.geo import LatLon
+from recon.model.intent import Commanded, Intent
+from recon.model.mission import Mission
+from recon.safety.prediction.course import ALL_HEIGHTS_M, FOREVER_S, CourseWriter, Part
+from recon.safety.prediction.flyer import Flyer
+from recon.safety.prediction.legs import (
+    LEAST_M,
+    STANDING_MPS,
+    Leg,
+    corner_bulge_m,
+    fly,
+    stop,
+    stopping_distance_m,
+)
+from recon.safety.prediction.settings import PredictionSettings
+
+UNHOMED_RADIUS_M = 150.0
+"""A vehicle told to return whose home nobody knows: the station's ghosts grow as far."""
+
+
+class Follower:
+    """Writes one vehicle's course; `until_s` ends the work early when no more is asked.
+
+    `exactly` writes phases of gaining and losing speed, for looking a few seconds ahead.
+    """
+
+    def __init__(
+        self,
+        flyer: Flyer,
+        settings: PredictionSettings,
+        *,
+        until_s: float = FOREVER_S,
+        exactly: bool = False,
+    ) -> None:
+        self.flyer = flyer
+        self.settings = settings
+        self.until_s = until_s
+        self.exactly = exactly
+        self.writer = CourseWriter(flyer.east_m, flyer.north_m, flyer.low_m, flyer.high_m)
+        self.writer.time_s = -flyer.age_s
+
+    def follow(self, intent: Intent) -> None:
+        """Write what an intent makes a vehicle do."""
+        match intent.commanded:
+            case Commanded.MISSION if intent.mission is not None:
+                self.fly_mission(intent.mission, intent.passed)
+            case Commanded.STICK if intent.target is not None:
+                height_m = intent.target_height_above_takeoff_m
+                speed_mps = intent.speed_mps or self.settings.go_home_speed_mps
+                self.go_to(intent.target, height_m, speed_mps)
+                self.writer.stays(Part.HOVERING)
+            case Commanded.STICK:
+                self.go_straight_on(self.settings.stick_horizon_s)
+                self.hold()
+            case Commanded.HOLD:
+                self.hold()
+            case Commanded.LAND:
+                self.land()
+            case Commanded.RETURN:
+                self.return_home()
+            case _:
+                self.drift()
+
+    def fly_mission(self, mission: Mission, passed: int) -> None:
+        """The rest of a mission, and for ever what it ends with."""
+        waypoints, writer, plane = mission.waypoints, self.writer, self.flyer.plane
+        start_mps: float | None = None
+        for index in range(passed, len(waypoints)):
+            if writer.time_s > self.until_s:
+                return
+            waypoint = waypoints[index]
+            is_last = index + 1 == len(waypoints)
+            speed_mps = waypoints[max(0, index - 1)].speed_mps
+            end_mps = 0.0
+            if mission.curved and not is_last:
+                end_mps = min(speed_mps, waypoint.speed_mps)
+            writer.radius_m = self._bulge_m(mission, index)
+            place_m = plane.east_north_m(waypoint)
+            band_m = self.flyer.up_m(waypoint.height_above_takeoff_m)
+            if index == 0:
+                writer.widens(*band_m)  # it may climb or sink first, last or on the way
+            leg = Leg(
+                *place_m,
+                (writer.low_m, writer.high_m) if index == 0 else band_m,
+                self._towards_mps(*place_m) if start_mps is None else start_mps,
+                speed_mps,
+                end_mps,
+                index,
+            )
+            fly(writer, leg, self.settings, exactly=self.exactly)
+            writer.low_m, writer.high_m = band_m
+            start_mps = end_mps
+            if waypoint.loiter_s is not None and waypoint.loiter_s > 0.0:
+                writer.waits(waypoint.loiter_s, index)
+        writer.radius_m = 0.0
+        if mission.land_at_end:
+            self.sink_here(Part.LANDING)
+        else:
+            writer.stays(Part.HOVERING)
+
+    def go_to(self, target: LatLon, height_m: float | None, speed_mps: float) -> None:
+        """Straight to a place, at any height between here and there."""
+        writer = self.writer
+        band_m = (writer.low_m, writer.high_m) if height_m is None else self.flyer.up_m(height_m)
+        place_m = self.flyer.plane.east_north_m(target)
+        writer.widens(*band_m)
+        start_mps = self._towards_mps(*place_m)
+        both_m = writer.low_m, writer.high_m
+        leg = Leg(*place_m, both_m, start_mps, speed_mps, 0.0, Part.GOING_TO)
+        fly(writer, leg, self.settings, exactly=self.exactly)
+        writer.low_m, writer.high_m = band_m
+
+    def go_straight_on(self, seconds: float, part: int = Part.STEERED) -> None:
+        """Keep the present velocity for a while."""
+        east_mps, north_mps, up_mps = self.flyer.velocity_mps
+        writer, rise_m = self.writer, up_mps * seconds
+        writer.moves(
+            writer.east_m + east_mps * seconds,
+            writer.north_m + north_mps * seconds,
+            seconds,
+            part,
+            band_m=(writer.low_m + rise_m, writer.high_m + rise_m),
+        )
+
+    def hold(self) -> None:
+        """Brake and stand for ever."""
+        stop(self.writer, self.flyer.velocity_mps, self.settings, reaction_s=0.0)
+        self.writer.stays(Part.HOVERING)
+
+    def land(self) -> None:
+        """Brake and be anywhere between here and the ground."""
+        stop(self.writer, self.flyer.velocity_mps, self.settings, reaction_s=0.0)
+        self.sink_here(Part.LANDING)
+
+    def sink_here(self, part: int) -> None:
+        """Sink from where the course has come to, anywhere between there and the ground; then be
+        down, which ends the course. A few seconds ahead only so far as it can sink in them."""
+        writer, settings = self.writer, self.settings
+        if self.exactly:
+            low_m = writer.low_m - self.until_s * settings.sink_mps
+            band_m = low_m, writer.high_m
+            writer.moves(writer.east_m, writer.north_m, self.until_s, part, band_m=band_m)
+            return
+        base_m = self.flyer.takeoff_up_m
+        high_m = settings.unknown_climb_m if base_m is None else max(0.0, writer.high_m - base_m)
+        writer.widens(-ALL_HEIGHTS_M, writer.high_m)
+        high_m = min(high_m, settings.unknown_climb_m)
+        writer.waits(high_m / settings.landing_mps + settings.landing_wait_s, part)
+
+    def return_home(self) -> None:
+        """Climb to the go-home height unless higher, fly home, sink."""
+        flyer, writer, settings = self.flyer, self.writer, self.settings
+        if flyer.home_m is None:
+            writer.widens(-ALL_HEIGHTS_M, ALL_HEIGHTS_M)
+            writer.grows(UNHOMED_RADIUS_M, UNHOMED_RADIUS_M / settings.go_home_speed_mps, Part.FREE)
+            writer.stays(Part.FREE)
+            return
+        towards_mps = self._towards_mps(*flyer.home_m)
+        if towards_mps < STANDING_MPS:
+            stop(writer, flyer.velocity_mps, settings, reaction_s=0.0)
+        top_m = go_home_top_m(flyer, settings)
+        if top_m > writer.high_m:
+            low_m, climb_s = writer.low_m, (top_m - writer.high_m) / settings.climb_mps
+            writer.moves(
+                writer.east_m,
+                writer.north_m,
+                climb_s,
+                Part.CLIMBING_HOME,
+                band_m=(low_m, top_m),
+            )
+            if flyer.go_home_up_m is not None:
+                writer.low_m = top_m
+        speed_mps = max(settings.go_home_speed_mps, towards_mps)
+        band_m = (writer.low_m, writer.high_m)
+        leg = Leg(*flyer.home_m, band_m, towards_mps, speed_mps, 0.0, Part.GOING_HOME)
+        fly(writer, leg, settings, exactly=self.exactly)
+        self.sink_here(Part.LANDING)
+
+    def drift(self) -> None:
+        """Use the present speed in any direction for a while: a pilot may have it, or the wind."""
+        flyer, writer, settings = self.flyer, self.writer, self.settings
+        up_mps = flyer.velocity_mps[2]
+        if max(flyer.speed_mps, abs(up_mps)) < STANDING_MPS:
+            writer.stays(Part.HOVERING)
+            return
+        rise_m = up_mps * settings.free_s
+        writer.widens(writer.low_m + min(rise_m, 0.0), writer.high_m + max(rise_m, 0.0))
+        reach_m = flyer.speed_mps * settings.free_s
+        reach_m += stopping_distance_m(flyer.speed_mps, settings)
+        writer.grows(reach_m, settings.free_s, Part.FREE)
+        writer.stays(Part.FREE)
+
+    def _towards_mps(self, east_m: float, north_m: float) -> float:
+        """How fast the vehicle flies now towards a place."""
+        ahead_m = east_m - self.writer.east_m, north_m - self.writer.north_m
+        far_m = hypot(*ahead_m)
+        if far_m < LEAST_M:
+            return 0.0
+        east_mps, north_mps, _up_mps = self.flyer.velocity_mps
+        return max(0.0, (ahead_m[0] * east_mps + ahead_m[1] * north_mps) / far_m)
+
+    def _bulge_m(self, mission: Mission, index: int) -> float:
+        """How far corners at either end of the leg to a waypoint may carry the vehicle off it."""
+        if not mission.curved:
+            return 0.0
+        waypoints, plane = mission.waypoints, self.flyer.plane
+        bulges_m = [0.0]
+        for corner in (index - 1, index):
+            if 0 < corner < len(waypoints) - 1:
+                places_m = [plane.east_north_m(w) for w in waypoints[corner - 1 : corner + 2]]
+                radius_m = waypoints[corner].corner_radius_m
+                bulges_m.append(corner_bulge_m(places_m[0], places_m[1], places_m[2], radius_m))
+        return max(bulges_m)
+
+
+def go_home_top_m(flyer: Flyer, settings: PredictionSettings) -> float:
+    """Return the height of the way home: the go-home height unless already higher."""
+    if flyer.go_home_up_m is None:
+        return min(flyer.high_m + settings.unknown_climb_m, ALL_HEIGHTS_M)
+    return max(flyer.high_m, flyer.go_home_up_m)

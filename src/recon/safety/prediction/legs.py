@@ -1,0 +1,171 @@
+"""Straight ways flown with limited acceleration, and stopping: rows for a course."""
+
+from dataclasses import dataclass
+from math import hypot, sqrt
+
+from recon.safety.prediction.course import CourseWriter, Part
+from recon.safety.prediction.settings import PredictionSettings
+
+LEAST_M = 1e-3
+LEAST_S = 1e-3
+LEAST_SPEED_MPS = 0.1
+"""Nothing waits for ever for a vehicle told to fly at no speed."""
+
+STANDING_MPS = 0.5
+"""Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
+
+VERTICAL_BRAKING_MPS2 = 2.0
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A straight way to a place: the heights at its end, the speeds at its start, in it and at its
+    end, and which part of the flight it is."""
+
+    east_m: float
+    north_m: float
+    band_m: tuple[float, float]
+    start_mps: float
+    speed_mps: float
+    end_mps: float
+    part: int
+
+
+def fly(writer: CourseWriter, leg: Leg, settings: PredictionSettings, *, exactly: bool) -> None:
+    """Write a leg: as its phases of gaining, keeping and losing speed, or as one even row."""
+    long_m = hypot(leg.east_m - writer.east_m, leg.north_m - writer.north_m)
+    if not exactly:
+        seconds = _even_seconds(long_m, leg, settings.braking_mps2)
+        phases = []
+    else:
+        phases = _phases(long_m, leg, settings.braking_mps2) if long_m > LEAST_M else []
+        seconds = sum(_seconds(*phase) for phase in phases)
+    rise_s = max(
+        (leg.band_m[1] - writer.high_m) / settings.climb_mps,
+        (writer.low_m - leg.band_m[0]) / settings.sink_mps,
+    )
+    if exactly and seconds > rise_s:
+        _write_phases(writer, leg, long_m, phases)
+        return
+    longest_s = max(seconds, min(rise_s, 600.0), LEAST_S)
+    writer.moves(leg.east_m, leg.north_m, longest_s, leg.part, band_m=leg.band_m)
+
+
+def stop(
+    writer: CourseWriter,
+    velocity_mps: tuple[float, float, float],
+    settings: PredictionSettings,
+    *,
+    reaction_s: float,
+    part: int = Part.STOPPING,
+) -> None:
+    """Go on for the reaction's time and brake in a straight line; velocity is east, north, up."""
+    east_mps, north_mps, up_mps = velocity_mps
+    speed_mps = hypot(east_mps, north_mps)
+    rise_m = up_mps * reaction_s + up_mps * abs(up_mps) / (2.0 * VERTICAL_BRAKING_MPS2)
+    band_m = (writer.low_m + rise_m, writer.high_m + rise_m)
+    if speed_mps < LEAST_SPEED_MPS:
+        writer.moves(writer.east_m, writer.north_m, max(reaction_s, LEAST_S), part, band_m=band_m)
+        return
+    if reaction_s > 0.0:
+        writer.moves(
+            writer.east_m + east_mps * reaction_s,
+            writer.north_m + north_mps * reaction_s,
+            reaction_s,
+            part,
+            band_m=band_m,
+        )
+    braking_s = speed_mps / settings.braking_mps2
+    writer.moves(
+        writer.east_m + 0.5 * east_mps * braking_s,
+        writer.north_m + 0.5 * north_mps * braking_s,
+        braking_s,
+        part,
+        curve=-1.0 / braking_s**2,
+        band_m=band_m,
+    )
+
+
+def stopping_distance_m(speed_mps: float, settings: PredictionSettings) -> float:
+    """Return how far a vehicle flies on from an order to stop."""
+    return speed_mps * settings.reaction_s + speed_mps**2 / (2.0 * settings.braking_mps2)
+
+
+def corner_bulge_m(before_m: Point, corner_m: Point, after_m: Point, radius_m: float) -> float:
+    """Return how far from both its legs a rounded corner's path may run.
+
+    An app takes the radius for where the curve leaves the leg, or for the radius of an arc; neither
+    reaches farther than the legs are long. Any curve between its two ends and the corner stays
+    within half the reach times the sine of the corner's angle.
+    """
+    back = before_m[0] - corner_m[0], before_m[1] - corner_m[1]
+    on = after_m[0] - corner_m[0], after_m[1] - corner_m[1]
+    back_m, on_m = hypot(*back), hypot(*on)
+    if back_m < LEAST_M or on_m < LEAST_M:
+        return 0.0
+    cosine = max(-1.0, min(1.0, (back[0] * on[0] + back[1] * on[1]) / (back_m * on_m)))
+    sine = sqrt(1.0 - cosine**2)
+    if sine < LEAST_M:
+        return 0.0
+    arc_reach_m = radius_m * (1.0 + cosine) / sine  # radius / tan(half the corner's angle)
+    reach_m = min(max(radius_m, arc_reach_m), back_m, on_m)
+    return 0.5 * reach_m * sine
+
+
+def _even_seconds(long_m: float, leg: Leg, braking_mps2: float) -> float:
+    """How long a leg takes with gaining speed at its start and losing it at its end."""
+    reached_mps = max(sqrt(braking_mps2 * long_m), leg.start_mps, leg.end_mps)
+    speed_mps = max(min(leg.speed_mps, reached_mps), LEAST_SPEED_MPS)
+    gaining_mps, losing_mps = speed_mps - leg.start_mps, speed_mps - leg.end_mps
+    lost_s = (gaining_mps**2 + losing_mps**2) / (2.0 * braking_mps2 * speed_mps)
+    return long_m / speed_mps + lost_s if long_m > LEAST_M else 0.0
+
+
+def _phases(long_m: float, leg: Leg, braking_mps2: float) -> list[tuple[float, float, float]]:
+    """Return (distance, speed at its start, speed at its end) for each phase of a leg."""
+    speed_mps = max(leg.speed_mps, LEAST_SPEED_MPS)
+    start_mps = min(max(leg.start_mps, 0.0), sqrt(leg.end_mps**2 + 2.0 * braking_mps2 * long_m))
+    end_mps = min(leg.end_mps, sqrt(start_mps**2 + 2.0 * braking_mps2 * long_m))
+    gaining_m = abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2)
+    losing_m = max(0.0, speed_mps**2 - end_mps**2) / (2.0 * braking_mps2)
+    if gaining_m + losing_m > long_m:
+        peak = 0.5 * (start_mps**2 + end_mps**2) + braking_mps2 * long_m
+        speed_mps = min(sqrt(peak), max(speed_mps, start_mps))
+        gaining_m = abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2)
+        gaining_m = min(gaining_m, long_m)
+        losing_m = long_m - gaining_m
+    steady_m = long_m - gaining_m - losing_m
+    phases = (
+        (gaining_m, start_mps, speed_mps),
+        (steady_m, speed_mps, speed_mps),
+        (losing_m, speed_mps, end_mps),
+    )
+    return [phase for phase in phases if phase[0] > LEAST_M]
+
+
+def _seconds(long_m: float, from_mps: float, to_mps: float) -> float:
+    return 2.0 * long_m / max(from_mps + to_mps, LEAST_SPEED_MPS)
+
+
+def _write_phases(
+    writer: CourseWriter, leg: Leg, long_m: float, phases: list[tuple[float, float, float]]
+) -> None:
+    east_m, north_m = writer.east_m, writer.north_m
+    low_m, high_m = writer.low_m, writer.high_m
+    gone_m = 0.0
+    for distance_m, from_mps, to_mps in phases:
+        gone_m += distance_m
+        share = gone_m / long_m
+        seconds = _seconds(distance_m, from_mps, to_mps)
+        writer.moves(
+            east_m + share * (leg.east_m - east_m),
+            north_m + share * (leg.north_m - north_m),
+            seconds,
+            leg.part,
+            curve=(to_mps - from_mps) / (2.0 * distance_m * seconds),
+            band_m=(
+                low_m + share * (leg.band_m[0] - low_m),
+                high_m + share * (leg.band_m[1] - high_m),
+            ),
+        )

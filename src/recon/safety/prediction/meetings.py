@@ -1,0 +1,209 @@
+"""Where and when one vehicle's course comes too near to others'."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.safety.prediction.course import FOREVER_S, Course, FloatArray, Part
+from recon.safety.prediction.sampling import Samples, sample
+from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.prediction.tubes import IntArray, Tubes, cut
+
+BoolArray = npt.NDArray[np.bool_]
+
+_APART_S = 4.0 * FOREVER_S
+"""Courses' times are laid one behind the other on one axis, this far apart."""
+
+CLOSER_M = 0.5
+"""Two vehicles led apart may seem this much nearer by the noise of their positions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Separation:
+    """What two vehicles must keep: the one horizontally, or the other vertically."""
+
+    horizontal_m: float
+    vertical_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """When a course first comes too near to another, and how near it comes on these two parts."""
+
+    other: int
+    """Index into the others' courses."""
+    own_part: int
+    other_part: int
+    at_s: float
+    horizontal_m: float
+    vertical_m: float
+
+
+def first_meeting(
+    own: Course,
+    others: Sequence[Course],
+    need: Separation,
+    settings: PredictionSettings,
+    start_delay_s: float = 0.0,
+) -> Meeting | None:
+    """Return where `own` first comes nearer than `need` to any other course; None if it does not.
+
+    To another that is too near already, for the first seconds only coming nearer counts.
+    """
+    if not others:
+        return None
+    mine = cut([own], settings, start_delay_s)
+    theirs = cut(others, settings, 0.0)
+    pairs = _pairs(mine, theirs)
+    vertical_m = _vertical_gap_m(mine, theirs, pairs)
+    pairs = _kept(pairs, (vertical_m < need.vertical_m) & _may_be_near(mine, theirs, pairs, need))
+    if len(pairs.own) == 0:
+        return None
+    apart_m = _apart_m(mine, theirs, pairs)
+    gap_m = apart_m - mine.radius_m[pairs.own] - theirs.radius_m[pairs.other]
+    is_near = gap_m < need.horizontal_m
+    near_now_m = _near_now_m(own, others, theirs, need)
+    is_leaving = mine.at_s[pairs.own] < settings.escape_s
+    comes_nearer = apart_m < near_now_m[pairs.course] - CLOSER_M
+    is_meeting = is_near & (comes_nearer | ~is_leaving)
+    if not is_meeting.any():
+        return None
+    met = _kept(pairs, is_meeting)
+    first = int(np.argmin(mine.at_s[met.own]))
+    same = met.course == met.course[first]
+    for tubes, piece in ((mine, met.own), (theirs, met.other)):
+        same &= tubes.part[piece] == tubes.part[piece[first]]
+    vertical_m = _vertical_gap_m(mine, theirs, met)
+    return Meeting(
+        other=int(met.course[first]),
+        own_part=int(mine.part[met.own[first]]),
+        other_part=int(theirs.part[met.other[first]]),
+        at_s=max(0.0, float(mine.at_s[met.own[first]])),
+        horizontal_m=max(0.0, float(gap_m[is_meeting][same].min())),
+        vertical_m=max(0.0, float(vertical_m[same].min())),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pairs:
+    """Pieces that may be flown at the same time: indices (P,) of mine, theirs and their course."""
+
+    own: IntArray
+    other: IntArray
+    course: IntArray
+
+
+def _kept(pairs: _Pairs, mask: BoolArray) -> _Pairs:
+    return _Pairs(pairs.own[mask], pairs.other[mask], pairs.course[mask])
+
+
+def _pairs(mine: Tubes, theirs: Tubes) -> _Pairs:
+    """In a course both ends of the pieces' times ascend, so those that overlap lie together."""
+    counts_of = np.diff(theirs.first)
+    shift_s = np.arange(len(counts_of)) * _APART_S
+    piece_shift_s = np.repeat(shift_s, counts_of)
+    asked_early = mine.early_s[:, np.newaxis] + shift_s
+    asked_late = mine.late_s[:, np.newaxis] + shift_s
+    low = np.searchsorted(theirs.late_s + piece_shift_s, asked_early, side="left")
+    high = np.searchsorted(theirs.early_s + piece_shift_s, asked_late, side="right")
+    low, high = np.maximum(low, theirs.first[:-1]), np.minimum(high, theirs.first[1:])
+    counts = np.maximum(high - low, 0).ravel()
+    group = np.repeat(np.arange(len(counts)), counts)
+    step = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
+    own, course = np.divmod(group, len(counts_of))
+    return _Pairs(own, low.ravel()[group] + step, course)
+
+
+def _vertical_gap_m(mine: Tubes, theirs: Tubes, pairs: _Pairs) -> FloatArray:
+    below = theirs.low_m[pairs.other] - mine.high_m[pairs.own]
+    above = mine.low_m[pairs.own] - theirs.high_m[pairs.other]
+    gap: FloatArray = np.maximum(below, above)
+    return gap
+
+
+def _may_be_near(mine: Tubes, theirs: Tubes, pairs: _Pairs, need: Separation) -> BoolArray:
+    """Whether their boxes are: cheap, and right for all but the few that are then looked at."""
+    reach_m = need.horizontal_m + mine.radius_m[pairs.own] + theirs.radius_m[pairs.other]
+    mine_low, mine_high = _box(mine)
+    their_low, their_high = _box(theirs)
+    is_near = np.ones(len(pairs.own), dtype=np.bool_)
+    for axis in range(2):
+        is_near &= their_low[pairs.other, axis] - mine_high[pairs.own, axis] < reach_m
+        is_near &= mine_low[pairs.own, axis] - their_high[pairs.other, axis] < reach_m
+    return is_near
+
+
+def _box(tubes: Tubes) -> tuple[FloatArray, FloatArray]:
+    low: FloatArray = np.minimum(tubes.starts_m, tubes.ends_m)
+    high: FloatArray = np.maximum(tubes.starts_m, tubes.ends_m)
+    return low, high
+
+
+def _apart_m(mine: Tubes, theirs: Tubes, pairs: _Pairs) -> FloatArray:
+    """How far the straight lines of each pair are apart, (P,)."""
+    return segments_apart_m(
+        mine.starts_m[pairs.own],
+        mine.ends_m[pairs.own],
+        theirs.starts_m[pairs.other],
+        theirs.ends_m[pairs.other],
+    )
+
+
+def _near_now_m(
+    own: Course, others: Sequence[Course], theirs: Tubes, need: Separation
+) -> FloatArray:
+    """How far each other is from here now if that is too near already; else infinite, (G,)."""
+    here = sample([own.rows], [0.0])
+    now = sample([course.rows for course in others], [0.0])
+    place_m = np.column_stack([here.east_m[:, 0], here.north_m[:, 0]])
+    starts_m = np.column_stack([now.east_m[:, 0], now.north_m[:, 0]])
+    ends_m = starts_m.copy()
+    # A way home that nobody sees is all of it now.
+    is_unseen = theirs.part[theirs.first[:-1]] == Part.UNSEEN
+    starts_m[is_unseen] = theirs.starts_m[theirs.first[:-1][is_unseen]]
+    ends_m[is_unseen] = theirs.ends_m[theirs.first[:-1][is_unseen]]
+    place_m = np.broadcast_to(place_m, starts_m.shape)
+    apart_m = segments_apart_m(place_m, place_m, starts_m, ends_m)
+    gap_m = apart_m - here.radius_m[0, 0] - now.radius_m[:, 0]
+    is_near = (gap_m < need.horizontal_m) & (_vertical_now_m(here, now) < need.vertical_m)
+    near_m: FloatArray = np.where(is_near, apart_m, np.inf)
+    return near_m
+
+
+def _vertical_now_m(here: Samples, now: Samples) -> FloatArray:
+    gap: FloatArray = np.maximum(
+        now.low_m[:, 0] - here.high_m[0, 0], here.low_m[0, 0] - now.high_m[:, 0]
+    )
+    return gap
+
+
+def segments_apart_m(p0: FloatArray, p1: FloatArray, q0: FloatArray, q1: FloatArray) -> FloatArray:
+    """Return how far apart the segments p0-p1 and q0-q1 are, each (P, 2); 0 where they cross."""
+    nearest = np.minimum(
+        np.minimum(_to_segment_m(p0, q0, q1), _to_segment_m(p1, q0, q1)),
+        np.minimum(_to_segment_m(q0, p0, p1), _to_segment_m(q1, p0, p1)),
+    )
+    crosses = (_side(p0, p1, q0) * _side(p0, p1, q1) < 0.0) & (
+        _side(q0, q1, p0) * _side(q0, q1, p1) < 0.0
+    )
+    apart: FloatArray = np.where(crosses, 0.0, nearest)
+    return apart
+
+
+def _to_segment_m(point: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    along = end - start
+    to_point = point - start
+    squared = np.maximum((along**2).sum(axis=1), 1e-12)
+    share = np.clip((to_point * along).sum(axis=1) / squared, 0.0, 1.0)
+    off = to_point - share[:, np.newaxis] * along
+    far: FloatArray = np.hypot(off[:, 0], off[:, 1])
+    return far
+
+
+def _side(start: FloatArray, end: FloatArray, point: FloatArray) -> FloatArray:
+    """On which side of the line each point lies: positive left, negative right."""
+    along, to_point = end - start, point - start
+    side: FloatArray = along[:, 0] * to_point[:, 1] - along[:, 1] * to_point[:, 0]
+    return side

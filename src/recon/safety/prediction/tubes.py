@@ -1,0 +1,135 @@
+"""Courses cut into pieces that are compared in space and time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.safety.prediction.course import (
+    CURVE,
+    EAST_0,
+    EAST_1,
+    END_S,
+    HIGH_0,
+    HIGH_1,
+    LOW_0,
+    LOW_1,
+    NORTH_0,
+    NORTH_1,
+    PART,
+    RADIUS_0,
+    RADIUS_1,
+    START_S,
+    Course,
+    FloatArray,
+    Part,
+)
+from recon.safety.prediction.settings import PredictionSettings
+
+IntArray = npt.NDArray[np.int64]
+
+MOST_PIECES = 400
+"""Of one row: enough for 2 km at a walking pace; a slower one is cut coarser, never shortened."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tubes:
+    """N pieces of courses: within the time from `early_s` to `late_s` the vehicle may be anywhere
+    within `radius_m` of the straight line and between the two heights. Each array is (N,).
+
+    `at_s` is when it is thought to enter the piece. `first` (G + 1,) says where each course begins.
+    """
+
+    early_s: FloatArray
+    late_s: FloatArray
+    at_s: FloatArray
+    starts_m: FloatArray
+    """(N, 2)"""
+    ends_m: FloatArray
+    """(N, 2)"""
+    low_m: FloatArray
+    high_m: FloatArray
+    radius_m: FloatArray
+    part: IntArray
+    first: IntArray
+
+
+def cut(courses: Sequence[Course], settings: PredictionSettings, start_delay_s: float) -> Tubes:
+    """Return the courses in pieces, each with the time it may be flown in."""
+    rows = np.concatenate([course.rows for course in courses])
+    counts = np.array([len(course.rows) for course in courses])
+    pieces = _pieces(rows, settings)
+    index = np.repeat(np.arange(len(rows)), pieces)
+    number = np.arange(len(index)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    found, of = rows[index], pieces[index]
+    lasts_s = found[:, END_S] - found[:, START_S]
+    start, end = number / of, (number + 1) / of
+    share_0, share_1 = _share(found, start, lasts_s), _share(found, end, lasts_s)
+    enters_s = found[:, START_S] + start * lasts_s
+    leaves_s = found[:, START_S] + end * lasts_s
+    row_first = np.concatenate([[0], np.cumsum(pieces)])
+    return Tubes(
+        early_s=_earlier(enters_s, settings),
+        late_s=_later(leaves_s, settings) + start_delay_s,
+        at_s=enters_s,
+        starts_m=_place(found, share_0),
+        ends_m=_place(found, share_1),
+        low_m=_extreme(found, LOW_0, LOW_1, share_0, share_1, np.minimum),
+        high_m=_extreme(found, HIGH_0, HIGH_1, share_0, share_1, np.maximum),
+        radius_m=_extreme(found, RADIUS_0, RADIUS_1, start, end, np.maximum),
+        part=found[:, PART].astype(np.int64),
+        first=row_first[np.concatenate([[0], np.cumsum(counts)])],
+    )
+
+
+def _pieces(rows: FloatArray, settings: PredictionSettings) -> IntArray:
+    """How many pieces each row needs; what does not move needs one."""
+    lasts_s = rows[:, END_S] - rows[:, START_S]
+    piece_s = np.maximum(settings.piece_s, settings.time_uncertainty * rows[:, START_S])
+    moved = (rows[:, EAST_0] != rows[:, EAST_1]) | (rows[:, NORTH_0] != rows[:, NORTH_1])
+    sinks = (rows[:, LOW_0] != rows[:, LOW_1]) | (rows[:, HIGH_0] != rows[:, HIGH_1])
+    grows = rows[:, RADIUS_0] != rows[:, RADIUS_1]
+    moves = (moved | sinks | grows) & (rows[:, PART] != Part.UNSEEN)
+    wanted = np.where(moves, np.ceil(lasts_s / piece_s), 1.0)
+    return np.clip(wanted, 1, MOST_PIECES).astype(np.int64)
+
+
+def _share(found: FloatArray, in_time: FloatArray, lasts_s: FloatArray) -> FloatArray:
+    """How far along its row each is, at a share of the row's time."""
+    bend = found[:, CURVE] * lasts_s**2
+    share: FloatArray = (1.0 - bend) * in_time + bend * in_time**2
+    return share
+
+
+def _place(found: FloatArray, share: FloatArray) -> FloatArray:
+    east = found[:, EAST_0] + share * (found[:, EAST_1] - found[:, EAST_0])
+    north = found[:, NORTH_0] + share * (found[:, NORTH_1] - found[:, NORTH_0])
+    return np.column_stack([east, north])
+
+
+def _extreme(
+    found: FloatArray,
+    start: int,
+    end: int,
+    share_0: FloatArray,
+    share_1: FloatArray,
+    pick: np.ufunc,
+) -> FloatArray:
+    change = found[:, end] - found[:, start]
+    value: FloatArray = pick(found[:, start] + share_0 * change, found[:, start] + share_1 * change)
+    return value
+
+
+def _earlier(at_s: FloatArray, settings: PredictionSettings) -> FloatArray:
+    return at_s - settings.time_uncertainty * np.maximum(at_s, 0.0) - _slack_s(at_s, settings)
+
+
+def _later(at_s: FloatArray, settings: PredictionSettings) -> FloatArray:
+    return at_s + settings.time_uncertainty * np.maximum(at_s, 0.0) + _slack_s(at_s, settings)
+
+
+def _slack_s(at_s: FloatArray, settings: PredictionSettings) -> FloatArray:
+    """Grows in the first seconds: now's place is known."""
+    slack_s: FloatArray = np.clip(0.5 + 0.5 * at_s, 0.5, settings.slack_s)
+    return slack_s

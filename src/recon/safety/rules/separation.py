@@ -1,0 +1,103 @@
+"""Vehicles keep apart: predicted paths are compared in space and time.
+
+The course of the order is foreseen to its end, and so is that of every other vehicle in the air,
+from its state and what it was last told. They must stay apart horizontally or vertically at all
+times that they may be there together; how exactly those times are known falls with the time ahead.
+A vehicle that is not heard any more is a hazard about its last place and along its way home.
+"""
+
+from math import ceil
+
+from recon.model.command import MOVING_BODIES, Command, FlyMission, Refusal
+from recon.safety.datum import frame_for
+from recon.safety.prediction import (
+    Course,
+    Flyer,
+    Meeting,
+    Part,
+    Plane,
+    Separation,
+    first_meeting,
+    flyer,
+    foresee_order,
+    foresee_traffic,
+    part_words,
+)
+from recon.safety.prediction.foresee import may_enter, surroundings
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "separation"
+
+
+def separation(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a path that comes too near to another vehicle's, or to where one may be unseen."""
+    body = command.body
+    if not isinstance(body, MOVING_BODIES) or is_zero_stick(body) or not situation.traffic:
+        return None
+    vehicle = situation.vehicle
+    frame = None if vehicle is None else frame_for(situation.airspace, vehicle)
+    if vehicle is None or frame is None:
+        return _refusal("this vehicle", "it does not tell where it is, and others are in the air")
+    plane = Plane(frame.origin)
+    prediction = situation.settings.prediction
+    own = flyer(vehicle, situation.airspace, plane, situation.now_ns, prediction)
+    if own is None:
+        return _refusal(
+            vehicle.display_name, "it does not tell where it is, and others are in the air"
+        )
+    course = foresee_order(own, body, prediction)
+    others = _others(own, course, plane, situation)
+    if isinstance(others, Refusal):
+        return others
+    need = _need(situation)
+    delay_s = prediction.start_delay_s if isinstance(body, FlyMission) else 0.0
+    meeting = first_meeting(course, others, need, prediction, delay_s)
+    if meeting is None:
+        return None
+    return _refusal(own.name, _words(meeting, others[meeting.other], need))
+
+
+def _others(
+    own: Flyer, course: Course, plane: Plane, situation: Situation
+) -> tuple[Course, ...] | Refusal:
+    """The courses of all traffic that can come near the order's course while it lasts."""
+    prediction = situation.settings.prediction
+    around = surroundings(course, _need(situation), prediction)
+    courses: list[Course] = []
+    for other in situation.traffic:
+        seen = flyer(other.vehicle, situation.airspace, plane, situation.now_ns, prediction)
+        if seen is None:
+            if other.vehicle.core_received_at_ns is None:
+                continue  # an app without an aircraft: nothing has said that it flies
+            name = other.vehicle.display_name
+            text = f"{name} may be in the air and has never told where: land it or dismiss it"
+            return _refusal(own.name, text)
+        if may_enter(seen, other.intent, around, prediction):
+            courses += foresee_traffic(seen, other.intent, prediction, around.until_s)
+    return tuple(courses)
+
+
+def _need(situation: Situation) -> Separation:
+    limits = situation.airspace.airspace.limits
+    return Separation(limits.min_separation_horizontal_m, limits.min_separation_vertical_m)
+
+
+def _words(meeting: Meeting, other: Course, need: Separation) -> str:
+    where, when_s = part_words(meeting.own_part), ceil(meeting.at_s)
+    if meeting.other_part == Part.UNSEEN:
+        return (
+            f"{where}, about {when_s} s from now, it would come within "
+            f"{meeting.horizontal_m:.0f} m of where {other.name} may be, which is not heard any "
+            "more; wait until it is heard, or dismiss its ghost when you have seen where it is"
+        )
+    return (
+        f"{where}, about {when_s} s from now, it could come within {meeting.horizontal_m:.0f} m "
+        f"and {meeting.vertical_m:.0f} m in height of {other.name} "
+        f"({part_words(meeting.other_part)}); {need.horizontal_m:g} m, or {need.vertical_m:g} m in "
+        "height, must be kept: fly at another height, elsewhere, or later"
+    )
+
+
+def _refusal(name: str, why: str) -> Refusal:
+    return Refusal(RULE, f"{name}: {why}")

@@ -1,0 +1,321 @@
+"""Paths are kept apart in space and time; what is not heard is a hazard."""
+
+from dataclasses import replace
+
+import pytest
+from tests.safety.traffic import AIR, NOW, aircraft, at, flies, judged, route
+
+from recon.model.airspace import Airspace
+from recon.model.command import (
+    FlyMission,
+    GoTo,
+    HoldPosition,
+    Hover,
+    LandNow,
+    Nudge,
+    Refusal,
+    ReturnHome,
+    StickFrame,
+    VirtualStick,
+)
+from recon.model.intent import Commanded, Intent
+from recon.model.mission import Mission
+from recon.model.stamped import Stamped
+from recon.model.vehicle import Failsafe, TrackPoint, VehicleState
+from recon.safety import PreparedAirspace, Traffic
+
+NORTH = route((0.0, 0.0), (200.0, 0.0))
+
+
+def refused(found: Refusal | None, *words: str) -> None:
+    assert found is not None
+    assert found.rule == "separation"
+    for word in words:
+        assert word in found.reason
+
+
+class TestStanding:
+    def test_a_path_past_a_standing_vehicle_is_refused_with_leg_time_and_distance(self) -> None:
+        own, other = aircraft("A"), aircraft("B", (100.0, 10.0))
+        found = judged(NORTH, own, other)
+        refused(found, "A: between waypoints 1 and 2", "about 1", "10 m", "of B", "15 m", "6 m")
+
+    @pytest.mark.parametrize(("east_m", "height_m"), [(15.5, 40.0), (0.0, 46.5), (10.0, 33.5)])
+    def test_it_passes_beside_above_and_below(self, east_m: float, height_m: float) -> None:
+        assert judged(NORTH, aircraft("A"), aircraft("B", (100.0, east_m), height_m)) is None
+
+    @pytest.mark.parametrize(("east_m", "height_m"), [(14.5, 40.0), (0.0, 45.5), (10.0, 34.5)])
+    def test_nearer_than_both_is_refused(self, east_m: float, height_m: float) -> None:
+        refused(judged(NORTH, aircraft("A"), aircraft("B", (100.0, east_m), height_m)))
+
+    def test_the_sites_own_limits_hold(self) -> None:
+        limits = replace(
+            AIR.airspace.limits, min_separation_horizontal_m=30.0, min_separation_vertical_m=9.0
+        )
+        wide = PreparedAirspace(replace(AIR.airspace, limits=limits))
+        for place, height_m, passes in (
+            ((100.0, 29.0), 40.0, False),
+            ((100.0, 31.0), 40.0, True),
+            ((100.0, 0.0), 48.5, False),
+            ((100.0, 0.0), 49.5, True),
+        ):
+            found = judged(NORTH, aircraft("A"), aircraft("B", place, height_m), airspace=wide)
+            assert (found is None) is passes
+
+    def test_the_mission_ends_hovering_in_others_way(self) -> None:
+        crossing = route((200.0, -900.0), (200.0, 900.0))
+        late = Traffic(aircraft("B", (200.0, -900.0)), flies(crossing, passed=1))
+        refused(judged(NORTH, aircraft("A"), late), "while it hovers")
+
+    def test_a_mission_that_lands_is_out_of_the_way_some_time_later(self) -> None:
+        landing = route((0.0, 0.0), (100.0, 0.0), land=True)
+        crossing = route((100.0, -1900.0), (100.0, 900.0))
+        late = Traffic(aircraft("B", (100.0, -1900.0)), flies(crossing, passed=1))
+        assert judged(landing, aircraft("A"), late) is None
+        refused(judged(route((0.0, 0.0), (100.0, 0.0)), aircraft("A"), late))
+
+
+class TestTime:
+    def test_the_same_place_at_different_times_passes(self) -> None:
+        crossing = route((100.0, -20.0), (100.0, 600.0))
+        soon = Traffic(aircraft("B", (100.0, -20.0)), flies(crossing, passed=1))
+        start = aircraft("A", (-900.0, 0.0))
+        assert judged(route((-900.0, 0.0), (200.0, 0.0)), start, soon) is None
+
+    def test_the_same_place_at_the_same_time_is_refused(self) -> None:
+        crossing = route((100.0, -100.0), (100.0, 600.0))
+        same = Traffic(aircraft("B", (100.0, -100.0)), flies(crossing, passed=1))
+        refused(judged(NORTH, aircraft("A"), same), "between waypoints 1 and 2")
+
+    def test_uncertainty_grows_with_time(self) -> None:
+        """60 s between two crossings pass when they are near, and not after ten minutes."""
+        for far_m, passes in ((300.0, True), (3000.0, False)):
+            own = aircraft("A", (-far_m, 0.0))
+            crossing = route((0.0, -far_m - 300.0), (0.0, 600.0))
+            other = Traffic(aircraft("B", (0.0, -far_m - 300.0)), flies(crossing, passed=1))
+            found = judged(route((-far_m, 0.0), (600.0, 0.0)), own, other)
+            assert (found is None) is passes
+
+    def test_a_mission_may_start_seconds_late(self) -> None:
+        crossing = route((20.0, -45.0), (20.0, 600.0))
+        other = Traffic(aircraft("B", (20.0, -45.0)), flies(crossing, passed=1))
+        own = aircraft("A", (-30.0, 0.0))
+        refused(judged(route((-30.0, 0.0), (100.0, 0.0)), own, other))
+
+    def test_layers_and_areas_pass_however_long(self) -> None:
+        def survey(north_m: float, height_m: float) -> Mission:
+            lines = [
+                (north_m + 20.0 * row, 300.0 * ((row + end) % 2), height_m)
+                for row in range(40)
+                for end in range(2)
+            ]
+            return route(*lines)
+
+        own = aircraft("A", (0.0, 0.0))
+        above = Traffic(aircraft("B", (0.0, 0.0), 48.0), flies(survey(0.0, 48.0)))
+        beside = Traffic(aircraft("C", (-820.0, 0.0)), flies(survey(-820.0, 40.0)))
+        assert judged(survey(0.0, 40.0), own, above, beside) is None
+        refused(judged(survey(0.0, 44.0), aircraft("A", (0.0, 0.0), 44.0), above))
+
+
+class TestOrders:
+    own = aircraft("A")
+    wall = aircraft("B", (40.0, 0.0))
+
+    @pytest.mark.parametrize(
+        "body",
+        [
+            GoTo(at(100.0, 0.0), 40.0, 5.0),
+            Nudge(30.0, 0.0, 0.0),
+            VirtualStick(StickFrame.GROUND, 0.0, 15.0, 0.0, 40.0, 1.0),
+            FlyMission(NORTH),
+        ],
+    )
+    def test_each_way_to_move_is_judged(self, body: object) -> None:
+        refused(judged(body, self.own, self.wall))  # type: ignore[arg-type]
+
+    @pytest.mark.parametrize(
+        "body",
+        [
+            GoTo(at(-100.0, 0.0), 40.0, 5.0),
+            GoTo(at(20.0, 0.0), 40.0, 5.0),
+            Nudge(-10.0, 0.0, 3.0),
+            HoldPosition(),
+            VirtualStick(StickFrame.GROUND, 0.0, 3.0, 0.0, 40.0, 1.0),
+            VirtualStick(StickFrame.GROUND, 0.0, 0.0, 15.0, 40.0, 1.0),
+            VirtualStick(StickFrame.BODY, 0.0, 0.0, 15.0, 40.0, 1.0),
+        ],
+    )
+    def test_each_way_elsewhere_passes(self, body: object) -> None:
+        assert judged(body, self.own, self.wall) is None  # type: ignore[arg-type]
+
+    @pytest.mark.parametrize("body", [Hover(), LandNow(), ReturnHome()])
+    def test_stops_are_never_refused(self, body: object) -> None:
+        assert judged(body, self.own, aircraft("B", (5.0, 0.0))) is None  # type: ignore[arg-type]
+
+    def test_a_zero_stick_is_never_refused(self) -> None:
+        zero = VirtualStick(StickFrame.GROUND, 0.0, 0.0, 0.0, 40.0, 1.0)
+        rushing = aircraft("A", velocity=(10.0, 0.0, 0.0))
+        assert judged(zero, rushing, aircraft("B", (30.0, 0.0))) is None
+
+    def test_a_stick_looks_at_its_own_few_seconds_only(self) -> None:
+        stick = VirtualStick(StickFrame.GROUND, 0.0, 2.0, 0.0, 40.0, 1.0)
+        coming = Traffic(aircraft("B", (300.0, 0.0)), flies(route((300.0, 0.0), (0.0, 0.0)), 1))
+        assert judged(stick, self.own, coming) is None
+        refused(judged(FlyMission(NORTH), self.own, coming))
+
+    def test_without_traffic_nothing_is_asked(self) -> None:
+        assert judged(NORTH, aircraft("A", None)) is None
+
+    def test_without_a_site_the_frame_is_the_vehicle(self) -> None:
+        nowhere = PreparedAirspace(Airspace())
+        refused(judged(NORTH, self.own, self.wall, airspace=nowhere))
+        assert judged(NORTH, self.own, aircraft("B", (40.0, 30.0)), airspace=nowhere) is None
+
+
+class TestLeadingApart:
+    """Two that are too near already may be led apart, and not nearer."""
+
+    own = aircraft("A")
+    near = aircraft("B", (8.0, 0.0), 42.0)
+
+    @pytest.mark.parametrize(
+        ("body", "passes"),
+        [
+            (GoTo(at(-50.0, 0.0), 40.0, 5.0), True),
+            (GoTo(at(50.0, 0.0), 40.0, 5.0), False),
+            (Nudge(0.0, 0.0, -10.0), True),
+            (route((-20.0, 0.0), (-100.0, 0.0)), True),
+            (route((-20.0, 0.0), (-100.0, 0.0), (0.0, 0.0)), False),
+        ],
+    )
+    def test_nearer_is_refused_and_away_passes(self, body: object, passes: bool) -> None:
+        assert (judged(body, self.own, self.near) is None) is passes  # type: ignore[arg-type]
+
+
+class TestUnseen:
+    def test_a_ghost_is_kept_clear_of_as_wide_as_it_may_grow(self) -> None:
+        own = aircraft("A", (0.0, -400.0))
+        ghost = aircraft("B", (0.0, 0.0), age_s=3.1, failsafe=Failsafe.HOVER)
+        for east_m, passes in ((-170.0, True), (-160.0, False)):
+            found = judged(route((0.0, -400.0), (0.0, east_m)), own, ghost)
+            assert (found is None) is passes
+        refused(
+            judged(route((0.0, -400.0), (0.0, -100.0)), own, ghost),
+            "of where B may be, which is not heard any more",
+            "dismiss its ghost",
+        )
+
+    def test_at_3_s_it_is_still_a_vehicle(self) -> None:
+        late = aircraft("B", (0.0, 0.0), age_s=3.0)
+        own = aircraft("A", (0.0, -400.0))
+        assert judged(route((0.0, -400.0), (0.0, -100.0)), own, late) is None
+
+    @pytest.mark.parametrize(
+        ("failsafe", "passes"),
+        [(Failsafe.GO_HOME, False), (None, False), (Failsafe.HOVER, True), (Failsafe.LAND, True)],
+    )
+    def test_its_way_home_is_kept_clear_of(self, failsafe: Failsafe | None, passes: bool) -> None:
+        ghost = aircraft("B", (0.0, 800.0), failsafe=failsafe, age_s=60.0)
+        crossing = route((-100.0, 400.0, 50.0), (100.0, 400.0, 50.0))
+        found = judged(crossing, aircraft("A", (-100.0, 400.0), 50.0), ghost)
+        assert (found is None) is passes
+
+    @pytest.mark.parametrize(("height_m", "passes"), [(30.0, True), (50.0, False), (70.0, True)])
+    def test_the_way_home_has_all_heights_between(self, height_m: float, passes: bool) -> None:
+        ghost = aircraft("B", (0.0, 800.0), age_s=60.0)
+        crossing = route((-100.0, 400.0, height_m), (100.0, 400.0, height_m))
+        found = judged(crossing, aircraft("A", (-100.0, 400.0), height_m), ghost)
+        assert (found is None) is passes
+
+    def test_an_unheard_vehicle_may_fly_its_mission_on(self) -> None:
+        far = route((0.0, 800.0), (0.0, 1800.0))
+        ghost = aircraft("B", (0.0, 800.0), age_s=10.0, failsafe=Failsafe.HOVER)
+        own = aircraft("A", (-100.0, 1200.0))
+        crossing = route((-100.0, 1200.0), (5.0, 1200.0))
+        assert judged(crossing, own, Traffic(ghost)) is None
+        refused(judged(crossing, own, Traffic(ghost, flies(far, passed=1))))
+
+    def test_one_may_be_led_out_of_a_ghosts_circle(self) -> None:
+        ghost = aircraft("B", (0.0, 0.0), age_s=60.0, failsafe=Failsafe.HOVER)
+        own = aircraft("A", (0.0, 80.0))
+        assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, ghost) is None
+        refused(judged(GoTo(at(0.0, -200.0), 40.0, 10.0), own, ghost))
+
+    def test_a_vehicle_without_a_position_is_where_it_was_last_seen(self) -> None:
+        last = at(100.0, 0.0)
+        blind = replace(
+            aircraft("B", None),
+            track=(TrackPoint(NOW - 10**9, last.latitude_deg, last.longitude_deg, 40.0),),
+        )
+        refused(judged(NORTH, aircraft("A"), blind), "B")
+
+    def test_one_that_has_never_told_where_it_is_refuses_motion(self) -> None:
+        refused(judged(NORTH, aircraft("A"), aircraft("B", None)), "B may be in the air")
+
+    def test_an_app_without_an_aircraft_is_no_traffic(self) -> None:
+        assert judged(NORTH, aircraft("A"), VehicleState("B", link_id=2)) is None
+
+    def test_a_vehicle_that_does_not_know_where_it_is_does_not_move_among_others(self) -> None:
+        refused(judged(NORTH, aircraft("A", None), aircraft("B")), "A: it does not tell where")
+        nowhere = PreparedAirspace(Airspace())
+        found = judged(NORTH, aircraft("A", None), aircraft("B"), airspace=nowhere)
+        refused(found, "does not tell where")
+
+
+class TestUnknownHeights:
+    def test_a_height_nobody_knows_is_every_height(self) -> None:
+        for state in (
+            aircraft("B", (100.0, 0.0), None),
+            aircraft("B", (100.0, 0.0), 90.0, home=None),
+        ):
+            refused(judged(NORTH, aircraft("A"), state))
+            elsewhere = replace(state, position=Stamped(at(100.0, 30.0), NOW))
+            assert judged(NORTH, aircraft("A"), elsewhere) is None
+
+
+class TestOtherIntents:
+    """What others were told decides where they will be."""
+
+    def test_one_that_returns_climbs_flies_home_and_lands(self) -> None:
+        returning = Traffic(aircraft("B", (0.0, 300.0)), Intent(Commanded.RETURN))
+        for place, height_m, passes in (
+            ((-30.0, 150.0), 60.0, False),
+            ((-30.0, 150.0), 40.0, True),
+            ((-30.0, 300.0), 50.0, False),
+            ((-30.0, 0.0), 10.0, False),
+            ((-60.0, 350.0), 60.0, True),
+        ):
+            north_m, east_m = place
+            through = route((north_m, east_m, height_m), (0.0, east_m, height_m))
+            found = judged(through, aircraft("A", place, height_m), returning)
+            assert (found is None) is passes, place
+
+    def test_one_that_lands_is_everywhere_below(self) -> None:
+        landing = Traffic(aircraft("B", (100.0, 0.0), 80.0), Intent(Commanded.LAND))
+        refused(judged(NORTH, aircraft("A"), landing), "while it lands")
+        assert judged(NORTH, aircraft("A"), aircraft("B", (100.0, 0.0), 80.0)) is None
+
+    def test_one_that_goes_to_a_place_stands_there(self) -> None:
+        goes = Intent(
+            Commanded.STICK,
+            target=at(100.0, 0.0),
+            target_height_above_takeoff_m=40.0,
+            speed_mps=5.0,
+        )
+        refused(judged(NORTH, aircraft("A"), Traffic(aircraft("B", (100.0, 60.0)), goes)))
+        assert judged(NORTH, aircraft("A"), aircraft("B", (100.0, 60.0))) is None
+
+    def test_one_that_stops_needs_its_way_to_stop(self) -> None:
+        braking = aircraft("B", (20.0, 40.0), velocity=(0.0, -12.0, 0.0))
+        holds = Traffic(braking, Intent(Commanded.HOLD))
+        away = route((0.0, 0.0), (60.0, 0.0))
+        refused(judged(away, aircraft("A"), holds))
+        far = aircraft("B", (20.0, 60.0), velocity=(0.0, -12.0, 0.0))
+        assert judged(away, aircraft("A"), Traffic(far, Intent(Commanded.HOLD))) is None
+
+    def test_one_flown_by_hand_may_go_anywhere_near(self) -> None:
+        past = route((0.0, 0.0), (300.0, 0.0))
+        fast = aircraft("B", (150.0, 60.0), velocity=(0.0, 10.0, 0.0))
+        refused(judged(past, aircraft("A"), fast), "wherever it is flown by hand")
+        assert judged(past, aircraft("A"), aircraft("B", (150.0, 60.0))) is None
