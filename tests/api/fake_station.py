@@ -38,13 +38,30 @@ class FakeStation:
         return self.service.state()
 
     def order(
-        self, serials: list[str], body: Body, *, takeoff: bool, issued_by: str
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
     ) -> OrderResponse:
         self.asked.append((serials, body, takeoff))
-        return self.service.order(serials, body, takeoff=takeoff, issued_by=issued_by)
+        return self.service.order(
+            serials, body, takeoff=takeoff, issued_by=issued_by, holder=holder
+        )
+
+    def holder_came(self, holder: str) -> None:
+        self.service.holder_came(holder)
+
+    def holder_gone(self, holder: str) -> None:
+        self.service.holder_gone(holder)
 
     def all_stop(self, issued_by: str) -> OrderResponse:
         return self.service.all_stop(issued_by)
+
+    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
+        return self.service.fleet_return(serials, issued_by)
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         return self.service.acknowledge(alarm_id, by)
@@ -60,9 +77,6 @@ class FakeStation:
 
 
 def application(
-    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
-        return self.service.fleet_return(serials, issued_by)
-
     station: FakeStation, *, token: str | None = None, console: Path | None = None
 ) -> FastAPI:
     return create_app(station, Access.make("127.0.0.1", token), console, "1.2.3")

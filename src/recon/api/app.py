@@ -107,7 +107,11 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
     async def order(asked: schema.OrderRequest, request: Request) -> schema.OrderResponse:
         """Give one order to each named vehicle; refusals are among the results."""
         return port.order(
-            asked.serials, to_body(asked.order), takeoff=asked.takeoff, issued_by=_who(request)
+            asked.serials,
+            to_body(asked.order),
+            takeoff=asked.takeoff,
+            issued_by=_who(request),
+            holder=asked.holder,
         )
 
     @app.post("/api/all-stop")
@@ -115,8 +119,6 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
         """Hold everything that flies, identified or not. Never cuts motors."""
         return port.all_stop(_who(request))
 
-    @app.post("/api/alarms/{alarm_id}/acknowledge", responses=_PROBLEMS, status_code=204)
-    async def acknowledge(alarm_id: int, request: Request) -> None:
     @app.post("/api/fleet-return")
     async def fleet_return(
         asked: schema.FleetReturnRequest, request: Request
@@ -127,6 +129,8 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
         """
         return port.fleet_return(asked.serials, _who(request))
 
+    @app.post("/api/alarms/{alarm_id}/acknowledge", responses=_PROBLEMS, status_code=204)
+    async def acknowledge(alarm_id: int, request: Request) -> None:
         """Mark an alarm as seen by a person; it stays until its cause ends."""
         if not port.acknowledge(alarm_id, _who(request)):
             raise HTTPException(404, f"there is no alarm {alarm_id}")

@@ -4,14 +4,18 @@ from recon.api import schema
 from recon.model.command import (
     Body,
     FlyMission,
+    GoTo,
+    HoldPosition,
     Hover,
     LandNow,
+    Nudge,
     ReturnHome,
     StartCamera,
     StickFrame,
     StopCamera,
     VirtualStick,
 )
+from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 
 
@@ -32,6 +36,12 @@ def to_body(order: schema.AnyOrder) -> Body:
             return FlyMission(_mission(order))
         case schema.StickOrder():
             return _stick(order)
+        case schema.GoToOrder():
+            return _goto(order)
+        case schema.NudgeOrder():
+            return Nudge(**order.model_dump(exclude={"kind"}))
+        case schema.HoldPositionOrder():
+            return HoldPosition()
 
 
 def _mission(order: schema.MissionOrder) -> Mission:
@@ -39,6 +49,15 @@ def _mission(order: schema.MissionOrder) -> Mission:
         waypoints=tuple(Waypoint(**waypoint.model_dump()) for waypoint in order.waypoints),
         land_at_end=order.land_at_end,
         curved=order.curved,
+    )
+
+
+def _goto(order: schema.GoToOrder) -> GoTo:
+    return GoTo(
+        target=LatLon(order.latitude_deg, order.longitude_deg),
+        height_above_takeoff_m=order.height_above_takeoff_m,
+        speed_mps=order.speed_mps,
+        yaw_deg=order.yaw_deg,
     )
 
 

@@ -14,12 +14,33 @@ class StationPort(Protocol):
         """Return everything a console shows, as of now."""
 
     def order(
-        self, serials: list[str], body: Body, *, takeoff: bool, issued_by: str
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
     ) -> OrderResponse:
-        """Give one order to each named vehicle; refusals are results, not errors."""
+        """Give one order to each named vehicle; refusals are results, not errors.
+
+        `holder` names the stream whose end ends a steered order.
+        """
+
+    def holder_came(self, holder: str) -> None:
+        """Tell that a stream is open that may hold steered orders."""
+
+    def holder_gone(self, holder: str) -> None:
+        """Tell that it has ended, or says nothing any more."""
 
     def all_stop(self, issued_by: str) -> OrderResponse:
         """Hold every link whose telemetry says flying, identified or not."""
+
+    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
+        """Call vehicles home in layers; None calls every one that flies or may.
+
+        The results tell of the hold that each begins with; flights and waves are in the state.
+        """
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         """Mark an alarm as seen; False when there is none of that number."""
@@ -35,9 +56,3 @@ class StationPort(Protocol):
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""
-    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
-        """Call vehicles home in layers; None calls every one that flies or may.
-
-        The results tell of the hold that each begins with; flights and waves are in the state.
-        """
-

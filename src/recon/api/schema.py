@@ -5,9 +5,9 @@ since. `value: null` means unknown. Heights are above the vehicle's own takeoff 
 otherwise.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 
 class Message(BaseModel):
@@ -368,6 +368,34 @@ class StickOrder(Asked):
     timeout_s: float = 1.0
 
 
+class GoToOrder(Asked):
+    """Fly straight to a place and hold there; `yaw_deg` null keeps the heading."""
+
+    kind: Literal["goto"]
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float
+    speed_mps: float = 5.0
+    yaw_deg: float | None = None
+
+
+class NudgeOrder(Asked):
+    """Move by this much from here and hold there; `turn_deg` clockwise."""
+
+    kind: Literal["nudge"]
+    north_m: float = 0.0
+    east_m: float = 0.0
+    up_m: float = 0.0
+    turn_deg: float = 0.0
+    speed_mps: float = 2.0
+
+
+class HoldPositionOrder(Asked):
+    """Hold this place against wind and drift, steered by the station."""
+
+    kind: Literal["hold_position"]
+
+
 AnyOrder = Annotated[
     HoverOrder
     | LandOrder
@@ -375,17 +403,42 @@ AnyOrder = Annotated[
     | CameraStartOrder
     | CameraStopOrder
     | MissionOrder
-    | StickOrder,
+    | StickOrder
+    | GoToOrder
+    | NudgeOrder
+    | HoldPositionOrder,
     Field(discriminator="kind"),
 ]
 
 
 class OrderRequest(Asked):
-    """An order to named vehicles. `takeoff` is the explicit word that they may leave the ground."""
+    """An order to named vehicles. `takeoff` is the explicit word that they may leave the ground.
+
+    `goto`, `nudge` and `hold_position` need a `holder`: the name of an open stream of states
+    (`/api/stream?holder=NAME`). When that stream ends, the vehicle is stopped and holds.
+    """
 
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=256)
     order: AnyOrder
     takeoff: bool = False
+    holder: Annotated[str, Field(max_length=64)] | None = None
+
+    @model_validator(mode="after")
+    def _names_its_holder(self) -> Self:
+        if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.holder:
+            raise ValueError(
+                f"{self.order.kind} needs a holder, the name of an open stream "
+                "(/api/stream?holder=NAME) whose end stops the vehicle"
+            )
+        return self
+
+
+class FleetReturnRequest(Asked):
+    """Vehicles to call home in layers; null calls every one that flies or may."""
+
+    serials: list[Annotated[str, Field(max_length=2048)]] | None = Field(
+        default=None, min_length=1, max_length=256
+    )
 
 
 class OrderResult(Message):
@@ -411,21 +464,3 @@ class Problem(Message):
     """Why a request was not carried out."""
 
     error: str
-    holder: Annotated[str, Field(max_length=64)] | None = None
-
-    @model_validator(mode="after")
-    def _names_its_holder(self) -> Self:
-        if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.holder:
-            raise ValueError(
-                f"{self.order.kind} needs a holder, the name of an open stream "
-                "(/api/stream?holder=NAME) whose end stops the vehicle"
-            )
-        return self
-
-
-class FleetReturnRequest(Asked):
-    """Vehicles to call home in layers; null calls every one that flies or may."""
-
-    serials: list[Annotated[str, Field(max_length=2048)]] | None = Field(
-        default=None, min_length=1, max_length=256
-    )

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from recon.api.holders import Holders, until_silent
 from recon.api.port import StationPort
 from recon.api.security import PROTOCOL
 
@@ -27,30 +28,46 @@ class StateStream:
         self._text = ""
         self._made_at_s = float("-inf")
         self._readers = 0
+        self._holders = Holders(port)
 
     async def serve(self, socket: WebSocket) -> None:
         """Send states to one reader until it goes."""
         if self._readers >= MOST_READERS:
             await socket.close(1013, f"{MOST_READERS} readers are connected already")
             return
+        holder = socket.query_params.get("holder")
+        fault = self._holders.fault(holder)
+        if fault is not None:
+            await socket.close(1008, fault)
+            return
         self._readers += 1
         try:
             offered = socket.scope.get("subprotocols", [])
             await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
-            await self._send_until_gone(socket)
+            await self._send_until_gone(socket, holder)
+            if holder is not None:
+                await socket.close(1008, "holder: it has said nothing for too long")
         except (WebSocketDisconnect, RuntimeError):
             return
         finally:
             self._readers -= 1
 
-    async def _send_until_gone(self, socket: WebSocket) -> None:
-        gone = asyncio.ensure_future(until_gone(socket))
+    async def _send_until_gone(self, socket: WebSocket, holder: str | None) -> None:
+        # Listening is a task of its own: sending waits as long as the reader takes nothing.
+        gone = asyncio.ensure_future(self._listen(socket, holder))
         try:
             while not gone.done():
                 await socket.send_text(self._newest())
                 await asyncio.wait((gone,), timeout=INTERVAL_S)
         finally:
             gone.cancel()
+
+    async def _listen(self, socket: WebSocket, holder: str | None) -> None:
+        if holder is None:
+            await until_gone(socket)
+            return
+        async with self._holders.holding(holder):
+            await until_silent(socket)
 
     def _newest(self) -> str:
         if self._clock_s() - self._made_at_s >= INTERVAL_S / 2:

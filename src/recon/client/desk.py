@@ -8,7 +8,7 @@ from recon.client.messages import OrderMessage, ResultMessage
 from recon.client.order import Order, VehicleAnswer
 from recon.client.order_form import order_form
 from recon.client.stream import Stream
-from recon.model.command import Body, Refusal
+from recon.model.command import STEERED_BODIES, Body, Refusal
 
 
 class OrderDesk:
@@ -27,6 +27,8 @@ class OrderDesk:
             return _all_refused(serials, form)
         run_started_ns = self._run_started_ns()
         asked = {"serials": list(serials), "order": form, "takeoff": takeoff}
+        if isinstance(body, STEERED_BODIES):
+            asked["holder"] = self._holder()
         try:
             answer = await self.http.post("/api/orders", asked, OrderMessage, "results of an order")
         except OrderInvalidError as problem:
@@ -50,8 +52,6 @@ class OrderDesk:
         answer = await self.http.post("/api/all-stop", None, OrderMessage, "results of an all stop")
         return tuple(self._answer(result, run_started_ns) for result in answer.results)
 
-    def _run_started_ns(self) -> int:
-        """The run of the station before the order was sent: that one knows the command's number."""
     async def fleet_return(self, serials: Sequence[str] | None) -> tuple[VehicleAnswer, ...]:
         """Call vehicles home in layers; None calls every one that flies or may."""
         run_started_ns = self._run_started_ns()
@@ -61,12 +61,23 @@ class OrderDesk:
         )
         return tuple(self._answer(result, run_started_ns) for result in answer.results)
 
+    def _run_started_ns(self) -> int:
+        """The run of the station before the order was sent: that one knows the command's number."""
         if self.stream.newest is None:
             raise ConnectionLostError(
                 "expected an open station, got one that was never entered: use "
                 "`async with Station(...) as station`"
             )
         return self.stream.newest.message.run_started_ns
+
+    def _holder(self) -> str:
+        """The present connection of the stream: when it ends, the vehicle stops."""
+        if self.stream.holder is None:
+            raise ConnectionLostError(
+                "expected an open stream of states to hold the order by, got none at present "
+                f"({self.stream.trouble}); nothing was sent: give the order again when it is back"
+            )
+        return self.stream.holder
 
     def _answer(self, result: ResultMessage, run_started_ns: int) -> VehicleAnswer:
         answer: Order | Refusal

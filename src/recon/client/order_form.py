@@ -8,6 +8,8 @@ from recon.model.command import (
     BODY_NAMES,
     Body,
     FlyMission,
+    GoTo,
+    Nudge,
     Refusal,
     StartCamera,
     VirtualStick,
@@ -31,6 +33,15 @@ def _details(body: Body) -> dict[str, Any]:
             }
         case VirtualStick():
             return {**asdict(body), "frame": body.frame.value}
+        case GoTo(target, height_m, speed_mps, yaw_deg):
+            return {
+                **asdict(target),
+                "height_above_takeoff_m": height_m,
+                "speed_mps": speed_mps,
+                "yaw_deg": yaw_deg,
+            }
+        case Nudge():
+            return asdict(body)
         case StartCamera(fps_hz):
             return {"fps_hz": fps_hz}
         case _:

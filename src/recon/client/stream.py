@@ -6,9 +6,10 @@ the ages. What no second attempt can mend (a token, a foreign server) ends the r
 
 import asyncio
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
+from secrets import token_urlsafe
 
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketException
@@ -25,6 +26,9 @@ LONGEST_STATE_BYTES = 16 * 1024 * 1024
 
 SILENT_CONNECTION_S = 5.0
 """Ten states come each second; a connection without one for so long is dead, however open."""
+
+BEAT_S = 0.5
+"""The station gives a holder up after two seconds of silence."""
 
 FIRST_PAUSE_S = 0.2
 LONGEST_PAUSE_S = 2.0
@@ -50,6 +54,8 @@ class Stream:
     def __init__(self, address: Address, now_ns: Callable[[], int] = time.monotonic_ns) -> None:
         self.now_ns = now_ns
         self.newest: Heard | None = None
+        self.holder: str | None = None
+        """The name by which the present connection holds steered orders; each has its own."""
         self.trouble = "it has not answered yet"
         """Why nothing comes at present, for people."""
         self._address = address
@@ -106,8 +112,10 @@ class Stream:
             await asyncio.sleep(min(pause_s, LONGEST_PAUSE_S))
 
     async def _read_connection(self) -> None:
+        holder = token_urlsafe(24)
         try:
-            async with _open(self._address) as connection:
+            async with _open(self._address, holder) as connection, _beating(connection):
+                self.holder = holder
                 await self._read(connection)
         except InvalidStatus as problem:
             status = problem.response.status_code
@@ -125,6 +133,8 @@ class Stream:
                     "this a Recon station?"
                 ) from problem
             raise
+        finally:
+            self.holder = None
 
     async def _read(self, connection: ClientConnection) -> None:
         while True:
@@ -152,9 +162,30 @@ class _Straight(connect):
         return exc
 
 
-def _open(address: Address) -> connect:
+@asynccontextmanager
+async def _beating(connection: ClientConnection) -> AsyncIterator[None]:
+    """Say twice a second that this program lives.
+
+    The beats come from the program's own event loop: one that hangs stops them, and what it holds
+    is stopped by the station.
+    """
+
+    async def beat() -> None:
+        with suppress(ConnectionClosed):
+            while True:
+                await connection.send("")
+                await asyncio.sleep(BEAT_S)
+
+    beats = asyncio.create_task(beat())
+    try:
+        yield
+    finally:
+        beats.cancel()
+
+
+def _open(address: Address, holder: str) -> connect:
     return _Straight(
-        address.stream,
+        f"{address.stream}?holder={holder}",
         additional_headers=address.headers,
         compression=None,
         proxy=None,

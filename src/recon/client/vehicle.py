@@ -9,8 +9,11 @@ from recon.client.stream import Heard
 from recon.client.telemetry import Telemetry
 from recon.model.command import (
     FlyMission,
+    GoTo,
+    HoldPosition,
     Hover,
     LandNow,
+    Nudge,
     Refusal,
     ReturnHome,
     StartCamera,
@@ -18,6 +21,7 @@ from recon.model.command import (
     StopCamera,
     VirtualStick,
 )
+from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.units import ns_to_seconds
 
@@ -55,6 +59,45 @@ class Vehicle:
         `purpose` stays here: the station does not take it.
         """
         return await self._desk.give_one(self.serial, FlyMission(mission), takeoff)
+
+    async def goto(
+        self,
+        latitude_deg: float,
+        longitude_deg: float,
+        *,
+        height_above_takeoff_m: float,
+        speed_mps: float = 5.0,
+        yaw_deg: float | None = None,
+    ) -> Order | Refusal:
+        """Fly straight to a place and hold there, steered by the station; yaw None keeps it.
+
+        Held by this program: when its connection to the station ends, or it hangs for two
+        seconds, the vehicle stops and holds where it is. So it is with `nudge` and
+        `hold_position`. Raises `ConnectionLostError` while the stream is broken.
+        """
+        target = LatLon(latitude_deg, longitude_deg)
+        body = GoTo(target, height_above_takeoff_m, speed_mps, yaw_deg)
+        return await self._desk.give_one(self.serial, body)
+
+    async def nudge(
+        self,
+        *,
+        north_m: float = 0.0,
+        east_m: float = 0.0,
+        up_m: float = 0.0,
+        turn_deg: float = 0.0,
+        speed_mps: float = 2.0,
+    ) -> Order | Refusal:
+        """Move by this much from here (and turn, clockwise), and hold there; see `goto`."""
+        body = Nudge(north_m, east_m, up_m, speed_mps, turn_deg)
+        return await self._desk.give_one(self.serial, body)
+
+    async def hold_position(self) -> Order | Refusal:
+        """Hold this place, steered by the station until told otherwise; see `goto`.
+
+        To simply stop, `hold` is the surer way: it needs no stream of sticks.
+        """
+        return await self._desk.give_one(self.serial, HoldPosition())
 
     async def stick(
         self,

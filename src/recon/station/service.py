@@ -55,14 +55,30 @@ class Service:
         return state_view(self.driver.station, self._surroundings(now_ns), now_ns)
 
     def order(
-        self, serials: list[str], body: Body, *, takeoff: bool, issued_by: str
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
     ) -> schema.OrderResponse:
         """Give one order to each named vehicle, once each."""
         asked = [
-            OperatorOrder(self._ids(), body, issued_by, serial=serial, takeoff=takeoff)
+            OperatorOrder(
+                self._ids(), body, issued_by, serial=serial, takeoff=takeoff, holder=holder
+            )
             for serial in dict.fromkeys(serials)
         ]
         return self._give(asked)
+
+    def holder_came(self, holder: str) -> None:
+        """Let a stream hold steered orders from now on."""
+        self.driver.handle(HolderCame(holder))
+
+    def holder_gone(self, holder: str) -> None:
+        """End what a stream held."""
+        self.driver.handle(HolderGone(holder))
 
     def all_stop(self, issued_by: str) -> schema.OrderResponse:
         """Hold every link whose telemetry says flying, identified or not.
@@ -71,11 +87,7 @@ class Service:
         that may be in the air is left out in silence.
         """
         fleet = self.driver.station.fleet
-        serials = [
-            serial
-            for serial, vehicle in fleet.vehicles.items()
-            if fleet.link_ids_claiming(serial) or vehicle.is_flying.value is not False
-        ]
+        serials = self._within_reach()
         links = [
             link.id
             for link in fleet.unbound_links()
@@ -86,6 +98,11 @@ class Service:
         orders = [OperatorOrder(self._ids(), Hover(), issued_by, serial=s) for s in serials]
         orders += [OperatorOrder(self._ids(), Hover(), issued_by, link_id=i) for i in links]
         return self._give(orders)
+
+    def fleet_return(self, serials: list[str] | None, issued_by: str) -> schema.OrderResponse:
+        """Call vehicles home in layers; None calls every one that flies or may."""
+        called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
+        return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         """Mark an alarm as seen."""
@@ -99,11 +116,6 @@ class Service:
         return audit_page(self.audit_log, after, at_most)
 
     def frame(self, serial: str) -> Frame | None:
-    def fleet_return(self, serials: list[str] | None, issued_by: str) -> schema.OrderResponse:
-        """Call vehicles home in layers; None calls every one that flies or may."""
-        called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
-        return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
-
         """Return a vehicle's newest frame."""
         return self.driver.station.frames.get(serial)
 
@@ -123,18 +135,6 @@ class Service:
     def _give_one(self, order: OperatorOrder) -> schema.OrderResult:
         """Give an order and read its record at once: of many, the first are soon forgotten."""
         self.driver.handle(order)
-        station = self.driver.station
-        target = station.target(order.serial, order.link_id)
-        is_simulated = target is not None and target.is_simulated
-        return _result(station.orders.records[order.command_id], is_simulated)
-
-    def _surroundings(self, now_ns: int) -> Surroundings:
-        links = self.driver.links
-        sessions = {} if links is None else links.sessions()
-        return Surroundings(sessions, self._station_view(now_ns), site_view(self.site))
-
-    def _station_view(self, now_ns: int) -> schema.StationView:
-        links = self.driver.links
         return self._outcome(order.command_id)
 
     def _call_one(self, serial: str, issued_by: str) -> schema.OrderResult:
@@ -144,6 +144,28 @@ class Service:
         return self._outcome(command_id)
 
     def _outcome(self, command_id: int) -> schema.OrderResult:
+        station = self.driver.station
+        record = station.orders.records[command_id]
+        target = station.target(record.command.serial, record.command.link_id)
+        is_simulated = target is not None and target.is_simulated
+        return _result(record, is_simulated)
+
+    def _within_reach(self) -> list[str]:
+        """Every vehicle that has a connection, or flies or may."""
+        fleet = self.driver.station.fleet
+        return [
+            serial
+            for serial, vehicle in fleet.vehicles.items()
+            if fleet.link_ids_claiming(serial) or vehicle.is_flying.value is not False
+        ]
+
+    def _surroundings(self, now_ns: int) -> Surroundings:
+        links = self.driver.links
+        sessions = {} if links is None else links.sessions()
+        return Surroundings(sessions, self._station_view(now_ns), site_view(self.site))
+
+    def _station_view(self, now_ns: int) -> schema.StationView:
+        links = self.driver.links
         capture = None if links is None else links.capture
         return schema.StationView(
             version=__version__,

@@ -44,6 +44,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Audit
+         * @description Entries of this run's audit after a number, the oldest first.
+         */
+        get: operations["audit_api_audit_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/commands": {
         parameters: {
             query?: never;
@@ -78,6 +98,28 @@ export interface paths {
         get: operations["command_api_commands__command_id__get"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/fleet-return": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Fleet Return
+         * @description Call vehicles home as landing missions, each at a height of its own.
+         *
+         *     Each result is the hold it begins with; `fleet_return` of the state tells the rest.
+         */
+        post: operations["fleet_return_api_fleet_return_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -302,6 +344,51 @@ export interface components {
             yaw_deg: number | null;
         };
         /**
+         * AuditEntryView
+         * @description One entry of the audit: what happened, who asked, about which vehicle.
+         */
+        AuditEntryView: {
+            /** By */
+            by: string;
+            /** Details */
+            details: {
+                [key: string]: unknown;
+            };
+            /** Kind */
+            kind: string;
+            /** N */
+            n: number;
+            /** Serial */
+            serial: string | null;
+            /** Text */
+            text: string;
+            /** Utc */
+            utc: string;
+            /** Vehicle */
+            vehicle: string;
+        };
+        /**
+         * AuditPage
+         * @description Entries of this run after a number, the oldest first.
+         *
+         *     `first_n` is the oldest entry in memory: what came before it is only in the file.
+         */
+        AuditPage: {
+            /** Entries */
+            entries: components["schemas"]["AuditEntryView"][];
+            /** File */
+            file: string | null;
+            /** First N */
+            first_n: number;
+            /** Last N */
+            last_n: number;
+            /**
+             * Problem
+             * @description why the audit cannot be written, while it cannot
+             */
+            problem: string | null;
+        };
+        /**
          * CameraStartOrder
          * @description Send images.
          */
@@ -366,6 +453,28 @@ export interface components {
             vehicle_name: string;
         };
         /**
+         * FleetReturnRequest
+         * @description Vehicles to call home in layers; null calls every one that flies or may.
+         */
+        FleetReturnRequest: {
+            /** Serials */
+            serials?: string[] | null;
+        };
+        /**
+         * FleetReturnView
+         * @description The newest fleet return; vehicles by wave and height.
+         */
+        FleetReturnView: {
+            /** Age S */
+            age_s: number;
+            /** Called By */
+            called_by: string;
+            /** Is Over */
+            is_over: boolean;
+            /** Vehicles */
+            vehicles: components["schemas"]["ReturningView"][];
+        };
+        /**
          * FrameView
          * @description The newest camera frame of a vehicle, to be fetched by its id.
          */
@@ -378,6 +487,30 @@ export interface components {
             id: number;
             /** Received Age S */
             received_age_s: number;
+        };
+        /**
+         * GoToOrder
+         * @description Fly straight to a place and hold there; `yaw_deg` null keeps the heading.
+         */
+        GoToOrder: {
+            /** Height Above Takeoff M */
+            height_above_takeoff_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "goto";
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /**
+             * Speed Mps
+             * @default 5
+             */
+            speed_mps: number;
+            /** Yaw Deg */
+            yaw_deg?: number | null;
         };
         /**
          * GroundImageView
@@ -413,6 +546,17 @@ export interface components {
             rows: number;
             /** Serial */
             serial: string;
+        };
+        /**
+         * HoldPositionOrder
+         * @description Hold this place against wind and drift, steered by the station.
+         */
+        HoldPositionOrder: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "hold_position";
         };
         /**
          * HoverOrder
@@ -511,12 +655,53 @@ export interface components {
             waypoints: components["schemas"]["WaypointOrder"][];
         };
         /**
+         * NudgeOrder
+         * @description Move by this much from here and hold there; `turn_deg` clockwise.
+         */
+        NudgeOrder: {
+            /**
+             * East M
+             * @default 0
+             */
+            east_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "nudge";
+            /**
+             * North M
+             * @default 0
+             */
+            north_m: number;
+            /**
+             * Speed Mps
+             * @default 2
+             */
+            speed_mps: number;
+            /**
+             * Turn Deg
+             * @default 0
+             */
+            turn_deg: number;
+            /**
+             * Up M
+             * @default 0
+             */
+            up_m: number;
+        };
+        /**
          * OrderRequest
          * @description An order to named vehicles. `takeoff` is the explicit word that they may leave the ground.
+         *
+         *     `goto`, `nudge` and `hold_position` need a `holder`: the name of an open stream of states
+         *     (`/api/stream?holder=NAME`). When that stream ends, the vehicle is stopped and holds.
          */
         OrderRequest: {
+            /** Holder */
+            holder?: string | null;
             /** Order */
-            order: components["schemas"]["HoverOrder"] | components["schemas"]["LandOrder"] | components["schemas"]["ReturnHomeOrder"] | components["schemas"]["CameraStartOrder"] | components["schemas"]["CameraStopOrder"] | components["schemas"]["MissionOrder"] | components["schemas"]["StickOrder"];
+            order: components["schemas"]["HoverOrder"] | components["schemas"]["LandOrder"] | components["schemas"]["ReturnHomeOrder"] | components["schemas"]["CameraStartOrder"] | components["schemas"]["CameraStopOrder"] | components["schemas"]["MissionOrder"] | components["schemas"]["StickOrder"] | components["schemas"]["GoToOrder"] | components["schemas"]["NudgeOrder"] | components["schemas"]["HoldPositionOrder"];
             /** Serials */
             serials: string[];
             /**
@@ -602,6 +787,43 @@ export interface components {
             kind: "return_home";
         };
         /**
+         * ReturningView
+         * @description One vehicle of a fleet return; without a flight (yet) wave, heights and pad are null.
+         */
+        ReturningView: {
+            /** Hold Command Id */
+            hold_command_id: number;
+            /** Layer Height Above Takeoff M */
+            layer_height_above_takeoff_m: number | null;
+            /**
+             * Layer Height M
+             * @description above the site's ground altitude
+             */
+            layer_height_m: number | null;
+            /** Mission Command Id */
+            mission_command_id: number | null;
+            /** Pad */
+            pad: string | null;
+            /**
+             * Reason
+             * @description why it waits, was released or is left out
+             */
+            reason: string | null;
+            /** Serial */
+            serial: string;
+            /** Since Age S */
+            since_age_s: number;
+            /**
+             * Stage
+             * @enum {string}
+             */
+            stage: "stopping" | "waiting" | "ordered" | "flying" | "landed" | "released" | "left_out";
+            /** Vehicle Name */
+            vehicle_name: string;
+            /** Wave */
+            wave: number | null;
+        };
+        /**
          * SiteView
          * @description The site's place and the quality of the eye's marked pose.
          */
@@ -630,6 +852,7 @@ export interface components {
             alarms: components["schemas"]["AlarmView"][];
             /** Commands */
             commands: components["schemas"]["CommandView"][];
+            fleet_return: components["schemas"]["FleetReturnView"] | null;
             ground_image: components["schemas"]["GroundImageView"] | null;
             /** Links */
             links: components["schemas"]["LinkView"][];
@@ -864,6 +1087,38 @@ export interface operations {
             };
         };
     };
+    audit_api_audit_get: {
+        parameters: {
+            query?: {
+                after?: number;
+                at_most?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditPage"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     commands_api_commands_get: {
         parameters: {
             query?: never;
@@ -911,6 +1166,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    fleet_return_api_fleet_return_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FleetReturnRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderResponse"];
                 };
             };
             /** @description Validation Error */
