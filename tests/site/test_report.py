@@ -1,9 +1,20 @@
 """What the operator is told of a site."""
 
 from dataclasses import replace
+from typing import Any
 
+import numpy as np
+import pytest
+
+from recon.geo import point_from_enu
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.vehicle import Failsafe, VehicleProfile
+from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.site import Site, default_site, demo_site_folder, load_site, site_report
-from recon.site.demo_layers import BOUNDARY, FARMYARD, SURVEY, Outline
+from recon.site.advice import site_advice
+from recon.site.demo_layers import BOUNDARY, FARMYARD, SURVEY, TREES, Outline
+from recon.site.demo_site import ORIGIN
+from recon.site.site import Layers
 
 
 def test_the_report_tells_the_fit_and_every_residual() -> None:
@@ -25,24 +36,121 @@ def shoelace_ha(outline: Outline) -> float:
     return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(outline, ends, strict=True))) / 2e4
 
 
-def test_the_report_lists_the_layers_and_that_nothing_checks_them_yet() -> None:
+def test_the_report_lists_the_layers_the_terrain_and_the_limits() -> None:
     lines = site_report(load_site(demo_site_folder()))
-    field_ha, yard_ha = shoelace_ha(BOUNDARY), shoelace_ha(FARMYARD)
+    field_ha, yard_ha, trees_ha = (shoelace_ha(area) for area in (BOUNDARY, FARMYARD, TREES))
     survey_ha = sum(shoelace_ha(outline) for outline in SURVEY.values())
     assert lines[12:] == (
         f"layer boundary from boundary.geojson: polygons: 1, together {field_ha:.2f} ha",
         f"layer keep_out from keep_out.geojson: polygons: 1, together {yard_ha:.2f} ha",
+        f"layer height_zones from height_zones.geojson: polygons: 1, together {trees_ha:.2f} ha",
+        "layer landing_pads from landing_pads.geojson: 5 pads",
         "layer survey_regions from survey_regions.geojson: polygons: 2, together "
         f"{survey_ha:.2f} ha",
-        "the safety gate does not yet check orders against the layers",
+        "terrain: model from ground.tif, 52 x 52 cells of 30 m, ground from 275.0 to 275.0 m above "
+        "the WGS84 ellipsoid",
+        "limits: 5 to 130 m above ground, 500 m from home, 15 m/s; 15 m beside or 6 m above each "
+        "other; 5 m from fences; 25 % of the battery left at home",
     )
+
+
+def warnings_of(site: Site) -> list[str]:
+    told = [line for line in site_report(site) if line.startswith("warning: ")]
+    assert told == [f"warning: {advice}" for advice in site_advice(site)]
+    return [line.removeprefix("warning: ") for line in told]
+
+
+def pad(east_m: float, up_m: float = 0.0) -> GeoPoint:
+    return point_from_enu(LocalFrame(ORIGIN), (east_m, 0.0, up_m))
+
+
+def site_with(*profiles: VehicleProfile, **more: Any) -> Site:
+    told = {profile.serial: profile for profile in profiles}
+    return replace(load_site(demo_site_folder()), profiles=told, **more)
+
+
+def complete(serial: str, height_m: float, place: GeoPoint) -> VehicleProfile:
+    return VehicleProfile(
+        serial,
+        pad=place,
+        endurance_s=900.0,
+        go_home_height_m=height_m,
+        failsafe=Failsafe.HOVER,
+    )
+
+
+def test_a_site_that_tells_everything_gets_no_warning() -> None:
+    assert warnings_of(load_site(demo_site_folder())) == []
+    assert site_advice(default_site()) == ()
+
+
+def test_the_report_says_what_is_assumed_without_layers_and_elevation() -> None:
+    bare = site_with(layers=Layers(), elevation=None)
+    assert "terrain: flat assumed, as high as origin.ground_altitude_m" in site_report(bare)
+    assert warnings_of(bare) == [
+        "no boundary: nothing but the distance from home, 500 m, bounds flights"
+    ]
+
+
+def test_each_vehicle_that_is_half_known_is_named_with_what_is_missing() -> None:
+    half = VehicleProfile("B", "Bea", endurance_s=900.0, pad=pad(40.0))
+    site = site_with(VehicleProfile("A"), half, complete("C", 50.0, pad(90.0)))
+    where = "where they matter the worst is assumed, or the order refused"
+    keys = "endurance_min, go_home_height_m, failsafe, pad"
+    assert warnings_of(site) == [
+        f"vehicle A: site.toml does not tell {keys}; {where}",
+        f"vehicle Bea: site.toml does not tell go_home_height_m, failsafe; {where}",
+    ]
+
+
+def test_ways_home_too_close_or_too_low_are_named() -> None:
+    high = Zone("mast", ZoneKind.HEIGHT, Region(np.array(TREES)), 317.0, None, HeightDatum.WGS84)
+    layers = replace(load_site(demo_site_folder()).layers, zones=(high,), landing_pads=())
+    vehicles = [complete("A", 41.0, pad(0.0)), complete("B", 46.5, pad(40.0))]
+    assert warnings_of(site_with(*vehicles, layers=layers)) == [
+        "vehicles A and B go home at 41 m and 46.5 m, closer than "
+        "limits.min_separation_vertical_m, 6 m",
+        "vehicle A goes home at 41 m, lower than zone mast asks for",
+    ]
+    trees = site_with(complete("A", 34.0, pad(150.0)))
+    assert warnings_of(trees) == ["vehicle A goes home at 34 m, lower than zone tree line asks for"]
+
+
+def test_pads_too_close_or_off_the_ground_are_named() -> None:
+    layers = replace(load_site(demo_site_folder()).layers, landing_pads=())
+    vehicles = [complete("A", 40.0, pad(0.0, -6.0)), complete("B", 50.0, pad(12.0, 7.0))]
+    close = (
+        "pads A and B are 12.0 m apart, closer than limits.min_separation_horizontal_m, 15 m: one "
+        "lands after the other"
+    )
+    for elevation, ground in (
+        (load_site(demo_site_folder()).elevation, "the model's ground"),
+        (None, "the ground, assumed flat"),
+    ):
+        site = site_with(*vehicles, layers=layers, elevation=elevation)
+        assert warnings_of(site) == [
+            close,
+            f"pad A lies 6.0 m below {ground}, there; is its altitude above the WGS84 ellipsoid?",
+            f"pad B lies 7.0 m above {ground}, there; is its altitude above the WGS84 ellipsoid?",
+        ]
+
+
+def test_a_model_with_gaps_says_how_much_of_the_boundary_it_leaves_out() -> None:
+    model = load_site(demo_site_folder()).elevation
+    assert model is not None
+    heights_m = model.ellipsoid_height_m.copy()
+    heights_m[:26] = np.nan
+    (told,) = warnings_of(site_with(elevation=replace(model, ellipsoid_height_m=heights_m)))
+    share = float(told.partition("under ")[2].partition(" %")[0])
+    assert share == pytest.approx(50.0, abs=5.0)
+    assert told.endswith("of the boundary: flights over it are refused")
 
 
 def test_the_report_says_when_the_first_frame_stands_for_the_marked_one() -> None:
     site = load_site(demo_site_folder())
     assert site.eye is not None
     guessed = Site(site.name, site.frame, site.ground_grid, replace(site.eye, marked_frame=None))
-    assert "first frame received in flight stands for it" in site_report(guessed)[-1]
+    assert any("first frame received in flight stands for it" in x for x in site_report(guessed))
 
 
 def test_the_report_of_no_site_says_what_is_missing() -> None:

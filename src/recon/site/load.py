@@ -65,7 +65,8 @@ def load_site(folder: Path) -> Site:
     if table.elevation is None:
         return site
     elevation = convert(path, table.elevation, ElevationTable, "elevation")
-    site = replace(site, elevation=read_elevation(path, elevation, site.airspace))
+    model = read_elevation(path, elevation, site.airspace)
+    site = replace(site, elevation=model, elevation_file=elevation.file)
     refuse_sunken_pads(path, site)
     return site
 

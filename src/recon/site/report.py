@@ -1,8 +1,12 @@
 """What a site's folder came to, in sentences for the operator."""
 
+import numpy as np
+
 from recon.camera import PoseSolution
 from recon.geo import Polygon
+from recon.model.airspace import FlightLimits
 from recon.model.zone import ZoneKind
+from recon.site.advice import site_advice
 from recon.site.site import Eye, Layers, Site
 
 
@@ -21,7 +25,31 @@ def site_report(site: Site) -> tuple[str, ...]:
     else:
         lines += _eye_report(site.eye)
     lines += _layers_report(site.layers)
+    lines += [_terrain_report(site), _limits_report(site.limits)]
+    lines += [f"warning: {advice}" for advice in site_advice(site)]
     return tuple(lines)
+
+
+def _terrain_report(site: Site) -> str:
+    if site.elevation is None:
+        return "terrain: flat assumed, as high as origin.ground_altitude_m"
+    grid, heights_m = site.elevation.grid, site.elevation.ellipsoid_height_m
+    known = heights_m[np.isfinite(heights_m)]
+    return (
+        f"terrain: model from {site.elevation_file}, {grid.cols} x {grid.rows} cells of "
+        f"{grid.cell_m:.3g} m, ground from {known.min():.1f} to {known.max():.1f} m above the "
+        "WGS84 ellipsoid"
+    )
+
+
+def _limits_report(limits: FlightLimits) -> str:
+    return (
+        f"limits: {limits.min_height_above_ground_m:g} to {limits.max_height_above_ground_m:g} m "
+        f"above ground, {limits.max_distance_from_home_m:g} m from home, "
+        f"{limits.max_speed_mps:g} m/s; {limits.min_separation_horizontal_m:g} m beside or "
+        f"{limits.min_separation_vertical_m:g} m above each other; {limits.boundary_margin_m:g} m "
+        f"from fences; {100.0 * limits.battery_reserve_fraction:g} % of the battery left at home"
+    )
 
 
 def _layers_report(layers: Layers) -> list[str]:
@@ -39,8 +67,6 @@ def _layers_report(layers: Layers) -> list[str]:
             hectares = sum(Polygon(region).area_m2 for region in counts[key]) / 1e4
             holds = f"polygons: {len(counts[key])}, together {hectares:.2f} ha"
         lines.append(f"layer {key} from {name}: {holds}")
-    if lines:
-        lines.append("the safety gate does not yet check orders against the layers")
     return lines
 
 

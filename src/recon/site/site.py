@@ -69,6 +69,7 @@ class Site:
     layers: Layers = field(default_factory=Layers)
     limits: FlightLimits = field(default_factory=FlightLimits)
     elevation: ElevationModel | None = None
+    elevation_file: str | None = None
 
     @property
     def airspace(self) -> Airspace:

@@ -1,0 +1,151 @@
+"""What a site leaves open or makes hard: sentences for the operator, nothing that stops a start."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from recon.geo import Polygon, enu_from_points
+from recon.model.vehicle import VehicleProfile
+from recon.model.zone import HeightDatum, Zone, ZoneKind
+from recon.site.elevation import ground_heights_m
+from recon.site.site import Site
+
+SUNKEN_M = 5.0
+"""Between a pad's altitude and the ground taken for true there: more is worth a look."""
+SHARE_SHOWN = 0.001
+
+
+def site_advice(site: Site) -> tuple[str, ...]:
+    """Return what should be looked at before flying; empty for a site that tells everything."""
+    if site.frame is None:
+        return ()
+    return (
+        *_unbounded(site),
+        *_unknown_ground(site),
+        *_untold(site),
+        *_close_ways_home(site),
+        *_low_ways_home(site),
+        *_close_pads(site),
+        *_sunken_pads(site),
+    )
+
+
+def _unbounded(site: Site) -> Iterator[str]:
+    if site.layers.boundary is None:
+        yield (
+            "no boundary: nothing but the distance from home, "
+            f"{site.limits.max_distance_from_home_m:g} m, bounds flights"
+        )
+
+
+def _unknown_ground(site: Site) -> Iterator[str]:
+    """Say how much of the boundary has no ground in the elevation model."""
+    if site.elevation is None or site.layers.boundary is None:
+        return
+    grid = site.elevation.grid
+    norths = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
+    easts = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
+    middles_m = np.stack(np.meshgrid(easts, norths), axis=-1).reshape(-1, 2)
+    is_inside = Polygon(site.layers.boundary).contains(middles_m)
+    is_unknown = np.isnan(site.elevation.ellipsoid_height_m.ravel())
+    if not is_inside.any():
+        return
+    share = float(is_unknown[is_inside].mean())
+    if share > SHARE_SHOWN:
+        yield (
+            f"the elevation model tells no ground under {100.0 * share:.1f} % of the boundary: "
+            "flights over it are refused"
+        )
+
+
+def _untold(site: Site) -> Iterator[str]:
+    for profile in site.profiles.values():
+        missing = [key for key, value in _flight_keys(profile).items() if value is None]
+        if missing:
+            yield (
+                f"vehicle {profile.display_name}: site.toml does not tell {', '.join(missing)}; "
+                "where they matter the worst is assumed, or the order refused"
+            )
+
+
+def _flight_keys(profile: VehicleProfile) -> dict[str, object]:
+    return {
+        "endurance_min": profile.endurance_s,
+        "go_home_height_m": profile.go_home_height_m,
+        "failsafe": profile.failsafe,
+        "pad": profile.pad,
+    }
+
+
+def _close_ways_home(site: Site) -> Iterator[str]:
+    least_m = site.limits.min_separation_vertical_m
+    told = [
+        (profile.go_home_height_m, profile.display_name)
+        for profile in site.profiles.values()
+        if profile.go_home_height_m is not None
+    ]
+    for (height_m, one), (other_m, other) in pairwise(sorted(told)):
+        if other_m - height_m < least_m:
+            yield (
+                f"vehicles {one} and {other} go home at {height_m:g} m and {other_m:g} m, closer "
+                f"than limits.min_separation_vertical_m, {least_m:g} m"
+            )
+
+
+def _low_ways_home(site: Site) -> Iterator[str]:
+    for profile in site.profiles.values():
+        height_m = profile.go_home_height_m
+        for zone in site.layers.zones:
+            if height_m is not None and _is_above(zone, height_m, site):
+                yield (
+                    f"vehicle {profile.display_name} goes home at {height_m:g} m, lower than zone "
+                    f"{zone.name} asks for"
+                )
+
+
+def _is_above(zone: Zone, height_m: float, site: Site) -> bool:
+    """Whether a height zone's floor is higher than a height above flat ground."""
+    if zone.kind is not ZoneKind.HEIGHT or zone.floor_m is None or site.frame is None:
+        return False
+    is_above_ground = zone.datum is HeightDatum.GROUND
+    return zone.floor_m - height_m > (
+        0.0 if is_above_ground else site.frame.origin.ellipsoid_height_m
+    )
+
+
+def _close_pads(site: Site) -> Iterator[str]:
+    """Name each pad that is too close to another, with the one that is closest."""
+    assert site.frame is not None
+    pads = site.airspace.landing_pads
+    places_m = enu_from_points(site.frame, [pad.place for pad in pads])[:, :2]
+    least_m = site.limits.min_separation_horizontal_m
+    named: set[frozenset[int]] = set()
+    for one, place_m in enumerate(places_m):
+        apart_m = np.linalg.norm(places_m - place_m, axis=1)
+        apart_m[one] = np.inf
+        other = int(apart_m.argmin())
+        if apart_m[other] < least_m and frozenset((one, other)) not in named:
+            named.add(frozenset((one, other)))
+            yield (
+                f"pads {pads[one].name} and {pads[other].name} are {apart_m[other]:.1f} m apart, "
+                f"closer than limits.min_separation_horizontal_m, {least_m:g} m: one lands after "
+                "the other"
+            )
+
+
+def _sunken_pads(site: Site) -> Iterator[str]:
+    assert site.frame is not None
+    for pad in site.airspace.landing_pads:
+        place_m = enu_from_points(site.frame, [pad.place])[:, :2]
+        if site.elevation is None:
+            ground_m = site.frame.origin.ellipsoid_height_m
+        else:
+            ground_m = float(ground_heights_m(site.elevation, place_m)[0])
+        gap_m = pad.place.ellipsoid_height_m - ground_m
+        if abs(gap_m) > SUNKEN_M:
+            assumed = "the ground, assumed flat" if site.elevation is None else "the model's ground"
+            yield (
+                f"pad {pad.name} lies {abs(gap_m):.1f} m {'above' if gap_m > 0.0 else 'below'} "
+                f"{assumed}, there; is its altitude above the WGS84 ellipsoid?"
+            )
