@@ -82,6 +82,8 @@ class VirtualDriver:
         self.now_ns = 0
         self.log: list[Event] = []
         """Every event the station saw, in order; not kept in long studies, images fill memory."""
+        self.observe: Callable[[Station, Station, Event], None] | None = None
+        """Sees every step as the asyncio driver's observer does."""
         self._keeps_log = keeps_log
         self._tasks = dict(tasks or {})
         self._settings = link_settings or LinkSettings()
@@ -133,7 +135,10 @@ class VirtualDriver:
     def _step(self, event: Event) -> None:
         if self._keeps_log:
             self.log.append(event)
-        self.station, outputs = step(self.station, event, self.now_ns)
+        before = self.station
+        self.station, outputs = step(before, event, self.now_ns)
+        if self.observe is not None:
+            self.observe(before, self.station, event)
         for output in outputs:
             self._carry_out(output)
 
