@@ -476,10 +476,25 @@ class TestServer:
 
         run_on(loop, main)
 
+    def test_an_unsent_order_to_move_is_withdrawn(self, loop: str) -> None:
+        async def main() -> None:
+            async with listening() as station:
+                link_id, _, writer = await station.connect()
+                for number in (1, 2):  # the second waits for the answer to the first
+                    order(station, number, mission(), link_id)
+                station.server.withdraw_motion((link_id,), "the pilot flies")
+                await station.until(lambda: bool(station.of(CommandDropped)))
+                dropped = CommandDropped(link_id, 2, Phase.SUPERSEDED, "the pilot flies")
+                assert station.of(CommandDropped) == [dropped]
+                await close(writer)
+
+        run_on(loop, main)
+
     def test_closing_a_link_that_is_gone_is_nothing(self, loop: str) -> None:
         async def main() -> None:
             async with listening() as station:
                 station.server.close_link(99, "nobody")
+                station.server.withdraw_motion((99,), "nobody")
                 order(station, 1, Hover(), 99)
                 assert station.events == []
 

@@ -360,3 +360,15 @@ class TestDoor:
     def test_not_for_another_link(self) -> None:
         with pytest.raises(TypeError, match="not for 7"):
             session().submit(approved(1, Hover(), link_ids=(8,)))
+
+
+class TestWithdrawal:
+    def test_only_the_unsent_order_to_move_is_dropped(self) -> None:
+        s = session()
+        for number, body in enumerate((Hover(), mission(), StartCamera(1.0)), start=1):
+            s.submit(approved(number, body))
+        assert s.withdraw_motion("the pilot flies") == [
+            CommandDropped(LINK_ID, 2, Phase.SUPERSEDED, "the pilot flies")
+        ]
+        assert s.withdraw_motion("again") == []
+        assert sorted(sent_ids(s, 0) + sent_ids(s, SECOND)) == [1, 3]

@@ -77,6 +77,11 @@ class Outbox:
                 return self._places.pop(lane)
         return None
 
+    def withdraw(self, lane: Lane, reason: str) -> list[CommandDropped]:
+        """Remove and return what waits in one place: nothing takes its place."""
+        old = self._places.pop(lane, None)
+        return [] if old is None else [self._dropped(old, Phase.SUPERSEDED, reason)]
+
     def empty_out(self, reason: str) -> list[CommandDropped]:
         """Remove everything; nothing is ever sent again by itself after a reconnect."""
         dropped = [self._dropped(a, Phase.FAILED, reason) for a in self._places.values()]

@@ -93,6 +93,13 @@ class LinkServer:
             if connection is not None:
                 connection.submit(approved)
 
+    def withdraw_motion(self, link_ids: tuple[int, ...], reason: str) -> None:
+        """Drop the orders to move that wait unsent on these links."""
+        for link_id in link_ids:
+            connection = self.connections.get(link_id)
+            if connection is not None:
+                connection.withdraw_motion(reason)
+
     def close_link(self, link_id: int, reason: str) -> None:
         """Close one connection."""
         connection = self.connections.get(link_id)
@@ -174,6 +181,11 @@ class Connection(asyncio.BufferedProtocol):
         if self.session is not None:
             self._take(self.session.submit(approved))
             self.pump()
+
+    def withdraw_motion(self, reason: str) -> None:
+        """Drop the order to move that waits unsent."""
+        if self.session is not None:
+            self._take(self.session.withdraw_motion(reason))
 
     def tick(self) -> None:
         """Let time pass."""

@@ -95,6 +95,10 @@ class Session:
             raise TypeError(f"approved for links {approved.link_ids}, not for {self.link_id}")
         return self._outbox.put(approved)
 
+    def withdraw_motion(self, reason: str) -> list[CommandDropped]:
+        """Drop the mission or stick that waits unsent; what is on its way cannot be called back."""
+        return self._outbox.withdraw(Lane.MOTION, reason)
+
     def next_packet(self, now_ns: int) -> Outgoing | None:
         """Return the next packet that may be written now; call only while the socket is clear."""
         approved = self._outbox.take(lambda lane, waiting: self._may_go(lane, waiting, now_ns))

@@ -20,7 +20,7 @@ from recon.model.intent import Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve, judge
-from recon.station import orders, stick_zero, streams
+from recon.station import authority, orders, stick_zero, streams
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
 from recon.station.settings import StationSettings
@@ -37,6 +37,7 @@ Stepped = tuple[Station, tuple[Output, ...]]
 def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     """Judge an order; send it when the gate approves, record the refusal when not."""
     command = command_of(station, order, now_ns)
+    station = authority.after_stop(station, command, now_ns)
     if isinstance(command.body, STEERED_BODIES):
         return _steer(station, order, command, now_ns)
     judged = approve(command, situation(station, command, now_ns))

@@ -10,7 +10,7 @@ from recon.link.server import LinkServer
 from recon.model.event import Event, SticksDue, Tick
 from recon.model.units import NS_PER_S
 from recon.station.event_queue import EventQueue
-from recon.station.outputs import Output, SendCommand, StartWork
+from recon.station.outputs import Output, SendCommand, StartWork, WithdrawMotion
 from recon.station.state import Station
 from recon.station.step import step
 from recon.station.streams import next_due_ns
@@ -95,6 +95,9 @@ class AsyncioDriver:
             case SendCommand(approved):
                 if self.links is not None:
                     self.links.send(approved)
+            case WithdrawMotion(link_ids, reason):
+                if self.links is not None:
+                    self.links.withdraw_motion(link_ids, reason)
             case CloseLink(link_id, reason):
                 if self.links is not None:
                     self.links.close_link(link_id, reason)

@@ -22,4 +22,12 @@ class StartWork:
     payload: object
 
 
-Output = SendCommand | CloseLink | StartWork
+@dataclass(frozen=True, slots=True)
+class WithdrawMotion:
+    """Take orders to move that wait unsent out of these links' queues: somebody else flies now."""
+
+    link_ids: tuple[int, ...]
+    reason: str
+
+
+Output = SendCommand | CloseLink | StartWork | WithdrawMotion

@@ -16,7 +16,7 @@ from recon.link.settings import LinkSettings
 from recon.model.event import Event, LinkClosed, LinkOpened, SticksDue, Tick
 from recon.model.units import seconds_to_ns
 from recon.station.event_queue import EventQueue
-from recon.station.outputs import Output, SendCommand, StartWork
+from recon.station.outputs import Output, SendCommand, StartWork, WithdrawMotion
 from recon.station.state import Station
 from recon.station.step import step
 from recon.station.streams import next_due_ns
@@ -202,6 +202,11 @@ class VirtualDriver:
                     if wire is not None:
                         self._handle_all(wire.session.submit(approved))
                         self._pump(wire)
+            case WithdrawMotion(link_ids, reason):
+                for link_id in link_ids:
+                    wire = self._wires.get(link_id)
+                    if wire is not None:
+                        self._handle_all(wire.session.withdraw_motion(reason))
             case CloseLink(link_id, reason):
                 self.disconnect(link_id, reason)
             case StartWork():
