@@ -2,27 +2,11 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from enum import Enum
 
+from recon.model.severity import Severity
 from recon.model.units import seconds_to_ns
 
-
-class Severity(Enum):
-    """How bad it is, the worst first."""
-
-    CRITICAL = "critical"
-    ERROR = "error"
-    WARNING = "warning"
-    INFO = "info"
-
-    @property
-    def rank(self) -> int:
-        """0 for the worst."""
-        return tuple(Severity).index(self)
-
-    def is_worse_than(self, other: "Severity") -> bool:
-        """Return whether this is the worse of the two."""
-        return self.rank < other.rank
+__all__ = ["Alarm", "AlarmBook", "Condition", "Severity", "acknowledge", "note", "update"]
 
 
 @dataclass(frozen=True, slots=True)
