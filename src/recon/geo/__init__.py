@@ -13,6 +13,7 @@ from recon.geo.local_frame import (
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
 from recon.geo.polygon import Polygon, region_fault
 from recon.geo.surface import Surface
+from recon.geo.thinning import thinned_ring
 
 __all__ = [
     "DEFAULT_CHORD_ERROR_M",
@@ -31,4 +32,5 @@ __all__ = [
     "rounded_path",
     "shift_east_north_m",
     "straight_path",
+    "thinned_ring",
 ]

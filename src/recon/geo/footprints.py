@@ -6,6 +6,7 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
 ShapeArray = npt.NDArray[np.object_]
 
 FARTHEST_M = 1e8
@@ -27,6 +28,13 @@ class Footprints:
         self.shapes: ShapeArray = shapely.convex_hull(shapely.multipoints(corners))
         self.least_m: FloatArray = corners.min(axis=1)
         self.most_m: FloatArray = corners.max(axis=1)
+
+    def only(self, which: BoolArray | IntArray) -> "Footprints":
+        """Return the footprints of a mask (N,), or at these indices."""
+        chosen = Footprints.__new__(Footprints)
+        chosen.is_finite, chosen.shapes = self.is_finite[which], self.shapes[which]
+        chosen.least_m, chosen.most_m = self.least_m[which], self.most_m[which]
+        return chosen
 
     def __len__(self) -> int:
         return len(self.shapes)

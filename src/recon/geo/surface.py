@@ -17,6 +17,7 @@ from recon.model.geo import GroundGrid
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
 
 
 class Surface:
@@ -59,6 +60,14 @@ class Surface:
         """Return the lowest ground (N,) under (N, 3, 2) triangles."""
         return -self._bottom.within(self._triangle_nodes(triangles_m))
 
+    def is_below(self, triangles_m: npt.ArrayLike, heights_m: FloatArray) -> BoolArray:
+        """Return under which of (N, 3, 2) triangles all ground is at most as high as (N,)."""
+        return self._top.is_below(self._triangle_nodes(triangles_m), heights_m)
+
+    def is_above(self, triangles_m: npt.ArrayLike, heights_m: FloatArray) -> BoolArray:
+        """Return under which of (N, 3, 2) triangles all ground is at least as high as (N,)."""
+        return self._bottom.is_below(self._triangle_nodes(triangles_m), -heights_m)
+
     @cached_property
     def _top(self) -> "_Highest":
         return _Highest(self._heights_m)
@@ -78,7 +87,7 @@ class Surface:
     def _triangle_nodes(self, triangles_m: npt.ArrayLike) -> FloatArray:
         return self._nodes(triangles_m).reshape(-1, 3, 2)
 
-    def _covers(self, nodes: FloatArray) -> npt.NDArray[np.bool_]:
+    def _covers(self, nodes: FloatArray) -> BoolArray:
         return _are_on_lattice(nodes, self._heights_m.shape)
 
     def _cells(self, nodes: FloatArray) -> IntArray:
@@ -126,10 +135,38 @@ class _Highest:
         self._raise_to_nodes_within(triangles, highest)
         return highest
 
+    def is_below(self, triangles: FloatArray, heights: FloatArray) -> BoolArray:
+        """Whether the highest within each triangle is at most as high; the easy ones quickly."""
+        below = self._bounds(triangles) <= heights
+        if not below.all():
+            below[~below] = self.within(triangles[~below]) <= heights[~below]
+        return below
+
+    def _bounds(self, triangles: FloatArray) -> FloatArray:
+        """Heights (N,) that no ground within the triangles' boxes is above."""
+        low, high = triangles.min(axis=1), triangles.max(axis=1)
+        shape = self._heights.shape
+        known = _are_on_lattice(low, shape) & _are_on_lattice(high, shape)
+        first = np.floor(np.where(known[:, np.newaxis], low, 0.0)).astype(np.int64)
+        last = np.ceil(np.where(known[:, np.newaxis], high, 0.0)).astype(np.int64)
+        # At this level two tiles each way cover the box.
+        levels = np.ceil(np.log2((last - first).max(axis=1, initial=0) + 1)).astype(np.int64)
+        bounds = np.full(len(triangles), np.inf)
+        for level in np.unique(levels[known]):
+            here = known & (levels == level)
+            top, left = (first[here] >> level).T
+            bottom, right = (last[here] >> level).T
+            tops = self._pyramid[level]
+            bounds[here] = np.maximum.reduce(
+                [tops[top, left], tops[top, right], tops[bottom, left], tops[bottom, right]]
+            )
+        return bounds
+
     def _raise_to_nodes_within(self, triangles: FloatArray, highest: FloatArray) -> None:
         """Raise `highest` to the highest node in each triangle, from coarse tiles to fine ones."""
         normals, offsets = _half_planes(triangles)
-        which = np.flatnonzero(highest < np.inf)
+        # A leg's nodes are on its sides, where they have counted.
+        which = np.flatnonzero((highest < np.inf) & _have_area(triangles))
         tiles = np.zeros((len(which), 2), dtype=np.int64)
         for level in range(len(self._pyramid) - 1, -1, -1):
             tops = self._pyramid[level]
@@ -147,7 +184,7 @@ class _Highest:
 _CHILDREN = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
 
 
-def _are_on_lattice(nodes: FloatArray, shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+def _are_on_lattice(nodes: FloatArray, shape: tuple[int, ...]) -> BoolArray:
     is_between = (nodes >= 0.0) & (nodes <= np.array(shape) - 1.0)
     return np.asarray(is_between.all(axis=1))
 
@@ -194,12 +231,22 @@ def _parabola_top(first: FloatArray, middle: FloatArray, last: FloatArray) -> Fl
     return known
 
 
+def _have_area(triangles: FloatArray) -> BoolArray:
+    return np.asarray(_turns(triangles) != 0.0)
+
+
+def _turns(triangles: FloatArray) -> FloatArray:
+    """Twice the triangles' areas (N,), negative where they turn the other way."""
+    first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 1]
+    turns: FloatArray = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    return turns
+
+
 def _half_planes(triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Inward normals (N, 3, 2) and offsets (N, 3): inside where normal . place + offset >= 0."""
     edges = np.roll(triangles, -1, axis=1) - triangles
     normals = np.stack([-edges[..., 1], edges[..., 0]], axis=-1)
-    turn = edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]
-    normals = np.where(turn[:, np.newaxis, np.newaxis] < 0.0, -normals, normals)
+    normals = np.where(_turns(triangles)[:, np.newaxis, np.newaxis] < 0.0, -normals, normals)
     return normals, -(normals * triangles).sum(axis=-1)
 
 

@@ -7,9 +7,10 @@ import numpy.typing as npt
 
 from recon.geo import Polygon, Surface
 from recon.model.airspace import Airspace
-from recon.model.zone import Zone
+from recon.model.zone import Zone, ZoneKind
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,15 +27,33 @@ class PreparedAirspace:
     Heights of the ground are up_m: ellipsoidal, minus that of the frame's origin. Without an
     elevation model the ground is flat at 0; with one, ground that it does not tell is NaN, the
     highest of it +inf and the lowest -inf.
-    Raises `ValueError` for a polygon that is none, or an elevation model that is no surface.
+    Raises `ValueError` for a polygon that is none, an elevation model that is no surface, and for
+    any of them without the frame whose metres they are in.
     """
 
     def __init__(self, airspace: Airspace) -> None:
+        if airspace.frame is None and (
+            airspace.boundary is not None or airspace.zones or airspace.elevation is not None
+        ):
+            raise ValueError("expected a frame for boundary, zones and elevation, got none")
         self.airspace = airspace
         boundary = airspace.boundary
         self.boundary = None if boundary is None else Polygon(boundary)
         self.zones = tuple(PreparedZone(zone, Polygon(zone.region)) for zone in airspace.zones)
+        self._zones = {
+            kind: tuple(zone for zone in self.zones if zone.zone.kind is kind) for kind in ZoneKind
+        }
         self._ground = _ground(airspace)
+
+    @property
+    def origin_height_m(self) -> float:
+        """The ellipsoidal height that up_m counts from; 0 without a frame."""
+        frame = self.airspace.frame
+        return 0.0 if frame is None else frame.origin.ellipsoid_height_m
+
+    def zones_of(self, kind: ZoneKind) -> tuple[PreparedZone, ...]:
+        """Return the zones of one kind, in the site's order."""
+        return self._zones[kind]
 
     def ground_up_m(self, points_m: npt.ArrayLike) -> FloatArray:
         """Return the ground's heights (N,) at (N, 2) east-north points."""
@@ -53,17 +72,23 @@ class PreparedAirspace:
             return np.zeros(len(starts_m))
         return self._ground.lowest_along_m(starts_m, ends_m)
 
-    def highest_ground_within_up_m(self, triangles_m: FloatArray) -> FloatArray:
-        """Return the highest ground (N,) under (N, 3, 2) triangles, exactly."""
+    def ground_within_up_m(self, triangles_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the lowest and highest ground (N,) under (N, 3, 2) triangles, exactly."""
         if self._ground is None:
-            return np.zeros(len(triangles_m))
-        return self._ground.highest_within_m(triangles_m)
+            return np.zeros(len(triangles_m)), np.zeros(len(triangles_m))
+        return self._ground.lowest_within_m(triangles_m), self._ground.highest_within_m(triangles_m)
 
-    def lowest_ground_within_up_m(self, triangles_m: FloatArray) -> FloatArray:
-        """Return the lowest ground (N,) under (N, 3, 2) triangles, exactly."""
+    def is_ground_below(self, triangles_m: FloatArray, up_m: FloatArray) -> BoolArray:
+        """Return under which of (N, 3, 2) triangles no ground is higher than `up_m` (N,)."""
         if self._ground is None:
-            return np.zeros(len(triangles_m))
-        return self._ground.lowest_within_m(triangles_m)
+            return np.asarray(up_m >= 0.0)
+        return self._ground.is_below(triangles_m, up_m)
+
+    def is_ground_above(self, triangles_m: FloatArray, up_m: FloatArray) -> BoolArray:
+        """Return under which of (N, 3, 2) triangles no ground is lower than `up_m` (N,)."""
+        if self._ground is None:
+            return np.asarray(up_m <= 0.0)
+        return self._ground.is_above(triangles_m, up_m)
 
 
 def _ground(airspace: Airspace) -> Surface | None:

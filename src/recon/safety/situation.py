@@ -1,13 +1,18 @@
 """The one snapshot all rules look at."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 from recon.model.authority import Lead
+from recon.model.command import Command
 from recon.model.intent import Intent
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.settings import SafetySettings
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,3 +58,16 @@ class Situation:
     intent: Intent = Intent()
     traffic: tuple[Traffic, ...] = ()
     preflight_override: Override | None = None
+    _worked_out: dict[object, tuple[Command, Any]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+
+    def once(self, what: object, command: Command, work: Callable[[Command, "Situation"], T]) -> T:
+        """Return what `work` makes of the command here; several rules that ask share one answer."""
+        known = self._worked_out.get(what)
+        # By identity: to compare two missions takes longer than most rules.
+        if known is None or known[0] is not command:
+            known = (command, work(command, self))
+            self._worked_out[what] = known
+        answer: T = known[1]
+        return answer

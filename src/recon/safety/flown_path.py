@@ -1,0 +1,167 @@
+"""What a command makes a vehicle fly, in pieces: where each is, how high, and what it is called."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+from math import inf
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.geo import Footprints
+from recon.safety.departure import Departure
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+class Kind(IntEnum):
+    """What a piece of a path is."""
+
+    FLIGHT = 0
+    """Flown on the station's word: the way there, a leg, what a stick may cover."""
+    CORNER = 1
+    """Where a curved mission may fly at a waypoint: the hull of the corner."""
+    CLIMB = 2
+    """Straight up from a flight or a corner to the go-home height."""
+    WAY_HOME = 3
+    """Straight home at the go-home height, from every point of a flight."""
+    LANDING = 4
+    """Straight down to the ground: at the end, at home, or by the aircraft's failsafe."""
+
+
+_WORDS = {
+    Kind.FLIGHT: "{}",
+    Kind.CORNER: "{}",
+    Kind.CLIMB: "the climb before the way home from {}",
+    Kind.WAY_HOME: "the way home from {}",
+    Kind.LANDING: "the landing at {}",
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pieces:
+    """N pieces. Each is somewhere in the hull of its three points, between low and high.
+
+    `triangles_m` is (N, 3, 2), east and north; a leg is (start, end, end). `low_m` and `high_m`
+    (N,) are up_m of the frame; -inf is the ground, +inf a height that nobody knows. `is_entry`
+    (N,) tells which begin where the vehicle is. `names` has what each piece, or the flight that it
+    is about, is called.
+    """
+
+    kinds: IntArray
+    triangles_m: FloatArray
+    low_m: FloatArray
+    high_m: FloatArray
+    is_entry: BoolArray
+    names: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.kinds)
+
+    def only(self, mask: BoolArray) -> "Pieces":
+        """Return the pieces of a mask (N,)."""
+        return Pieces(
+            self.kinds[mask],
+            self.triangles_m[mask],
+            self.low_m[mask],
+            self.high_m[mask],
+            self.is_entry[mask],
+            tuple(self.names[index] for index in np.flatnonzero(mask)),
+        )
+
+    def label(self, index: int) -> str:
+        """Return what people call a piece."""
+        return _WORDS[Kind(self.kinds[index])].format(self.names[index])
+
+
+class FlownPath:
+    """Where a command may take a vehicle; flights are in the order in which they are flown."""
+
+    def __init__(self, pieces: Pieces, departure: Departure) -> None:
+        self.pieces = pieces
+        self.departure = departure
+
+    @property
+    def here_m(self) -> FloatArray:
+        """Where the vehicle is now, (3,)."""
+        return self.departure.here_m
+
+    @property
+    def home_m(self) -> FloatArray:
+        """Where it would go home to, (3,)."""
+        return self.departure.home_m
+
+    @cached_property
+    def footprints(self) -> Footprints:
+        """What each piece covers on the ground."""
+        return Footprints(self.pieces.triangles_m)
+
+    @cached_property
+    def here(self) -> Footprints:
+        """The place where the vehicle is."""
+        return Footprints(np.broadcast_to(self.here_m[:2], (1, 3, 2)))
+
+    def subject(self, index: int) -> str:
+        """Return the vehicle's name and a piece's label, as a refusal begins."""
+        return f"{self.departure.vehicle.display_name}: {self.pieces.label(index)}"
+
+    def heights(self, index: int) -> str:
+        """Return a piece's heights as a pilot reads them: above the takeoff point."""
+        low_m, high_m = float(self.pieces.low_m[index]), float(self.pieces.high_m[index])
+        takeoff_m = self.departure.takeoff_m
+        low = "the ground" if low_m == -inf else f"{low_m - takeoff_m:.1f} m"
+        high = "an unknown go-home height" if high_m == inf else f"{high_m - takeoff_m:.1f} m"
+        return f"{high} above takeoff" if low == high else f"{low} to {high} above takeoff"
+
+    def of_kinds(self, *kinds: Kind) -> BoolArray:
+        """Return which pieces are of these kinds, (N,)."""
+        return np.isin(self.pieces.kinds, kinds)
+
+
+def joined(*blocks: Pieces) -> Pieces:
+    """Return all pieces of all blocks, in order."""
+    return Pieces(
+        np.concatenate([block.kinds for block in blocks]),
+        np.concatenate([block.triangles_m for block in blocks]),
+        np.concatenate([block.low_m for block in blocks]),
+        np.concatenate([block.high_m for block in blocks]),
+        np.concatenate([block.is_entry for block in blocks]),
+        tuple(name for block in blocks for name in block.names),
+    )
+
+
+def block(
+    kind: Kind,
+    triangles_m: FloatArray,
+    low_m: FloatArray,
+    high_m: FloatArray,
+    names: tuple[str, ...],
+    *,
+    is_entry: BoolArray | None = None,
+) -> Pieces:
+    """Return pieces of one kind, none of them an entry unless told."""
+    count = len(triangles_m)
+    return Pieces(
+        np.full(count, int(kind)),
+        triangles_m,
+        low_m,
+        high_m,
+        np.zeros(count, dtype=np.bool_) if is_entry is None else is_entry,
+        names,
+    )
+
+
+def legs_between(
+    points_m: FloatArray,
+    names: tuple[str, ...],
+    *,
+    is_entry: BoolArray | None = None,
+) -> Pieces:
+    """Return the flights from each of (N + 1, 3) points to the next, every height between."""
+    starts, ends = points_m[:-1], points_m[1:]
+    triangles_m = np.stack([starts[:, :2], ends[:, :2], ends[:, :2]], axis=1)
+    low_m = np.minimum(starts[:, 2], ends[:, 2])
+    high_m = np.maximum(starts[:, 2], ends[:, 2])
+    return block(Kind.FLIGHT, triangles_m, low_m, high_m, names, is_entry=is_entry)

@@ -1,0 +1,74 @@
+"""The site's boundary is kept along the whole path, the way home included."""
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.geo import Polygon
+from recon.model.command import Command, Refusal
+from recon.safety.departure import Unknown
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath, Kind
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "boundary"
+
+
+def boundary(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a path that is not inside the site's boundary by its margin everywhere.
+
+    Every flight, corner, way home and landing must be in the boundary, more than
+    `boundary_margin_m` from its edge and its holes' edges, at every height. A vehicle that is
+    already closer to the edge, or outside, may be moved if every piece that begins where it is (its
+    way home from there too) goes no farther out than it is now; all else must keep the margin.
+    A stick without velocity goes nowhere and is not asked. Without a boundary nothing is refused.
+    """
+    fence = situation.airspace.boundary
+    if fence is None or is_zero_stick(command.body):
+        return None
+    path = flown(command, situation)
+    if path is None:
+        return None
+    if isinstance(path, Unknown):
+        return Refusal(RULE, path.reason)
+    margin_m = situation.airspace.airspace.limits.boundary_margin_m
+    # A climb covers what is below it.
+    judged = np.flatnonzero(~path.of_kinds(Kind.CLIMB))
+    outside = judged[~fence.holds(path.footprints.only(judged), margin_m)]
+    outside = _worse(outside, path, fence, margin_m, situation.settings.fences.not_worse_m)
+    if len(outside) == 0:
+        return None
+    return Refusal(RULE, _reason(path, int(outside[0]), fence, margin_m))
+
+
+def _worse(
+    outside: npt.NDArray[np.int64],
+    path: FlownPath,
+    fence: Polygon,
+    margin_m: float,
+    rounding_m: float,
+) -> npt.NDArray[np.int64]:
+    """Of the pieces that break the rule, those that do not begin with it broken as much."""
+    entries = path.pieces.is_entry[outside]
+    if not entries.any():
+        return outside
+    room_m = float(fence.room_m(path.here)[0])
+    if not room_m <= margin_m:
+        return outside
+    begins = outside[entries]
+    is_worse = ~fence.holds(path.footprints.only(begins), room_m - rounding_m)
+    return np.sort(np.concatenate([outside[~entries], begins[is_worse]]))
+
+
+def _reason(path: FlownPath, index: int, fence: Polygon, margin_m: float) -> str:
+    what = path.subject(index)
+    room_m = float(fence.room_m(path.footprints.only(np.array([index])))[0])
+    if room_m < 0.0:
+        fault = f"{what} goes {-room_m:.1f} m beyond the site's boundary"
+    else:
+        fault = f"{what} comes within {room_m:.2f} m of the site's boundary"
+    here_m = float(fence.room_m(path.here)[0])
+    if here_m > margin_m or not path.pieces.is_entry[index]:
+        return f"{fault}; it must stay inside, {margin_m:g} m from the edge"
+    place = f"{here_m:.2f} m inside" if here_m >= 0.0 else f"{-here_m:.2f} m outside"
+    return f"{fault}; it is {place} now and may not be sent farther out, only back in"

@@ -1,0 +1,73 @@
+"""In a height zone no path is lower than the floor or higher than the ceiling."""
+
+import numpy as np
+
+from recon.model.command import Command, Refusal
+from recon.model.zone import ZoneKind
+from recon.safety.airspace import PreparedZone
+from recon.safety.columns import columns
+from recon.safety.departure import Unknown
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath
+from recon.safety.heights import height_words, stays_above, stays_below, zone_datum
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "height_zones"
+
+
+def height_zones(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a path that is too low or too high in a height zone.
+
+    It holds for every piece whose footprint is not more than `boundary_margin_m` from the zone's
+    region, and for all of that piece: no lower than the floor (over the ground: above the highest
+    ground under the piece), no higher than the ceiling (above the lowest). A landing is as low as
+    the ground. Not held to the floor is what keeps to a column of takeoff or landing: `columns`
+    says which, and a place where a mission lands is none in a zone. A piece that begins where the
+    vehicle is may be as high as the vehicle is now. A stick without velocity is held to zones that
+    the vehicle is in, with `stop_slack_m`; where the vehicle is not known to be, it is not asked.
+    """
+    zones = situation.airspace.zones_of(ZoneKind.HEIGHT)
+    path = flown(command, situation) if zones else None
+    if path is None:
+        return None
+    is_stop = is_zero_stick(command.body)
+    if isinstance(path, Unknown):
+        return None if is_stop else Refusal(RULE, path.reason)
+    for zone in zones:
+        reason = _fault(zone, path, situation, is_stop)
+        if reason is not None:
+            return Refusal(RULE, reason)
+    return None
+
+
+def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, is_stop: bool) -> str | None:
+    airspace, settings, pieces = situation.airspace, situation.settings.fences, path.pieces
+    margin_m = 0.0 if is_stop else airspace.airspace.limits.boundary_margin_m
+    slack_m = settings.stop_slack_m if is_stop else 0.0
+    near = np.flatnonzero(~zone.polygon.is_clear_of(path.footprints, margin_m))
+    triangles_m, datum = pieces.triangles_m[near], zone_datum(zone.zone)
+    floor_m, ceiling_m = zone.zone.floor_m, zone.zone.ceiling_m
+    if floor_m is not None:
+        low_m = pieces.low_m[near] + slack_m
+        is_low = ~stays_above(airspace, triangles_m, low_m, floor_m, datum)
+        is_low &= ~columns(path, situation, is_stop)[near]
+        if is_low.any():
+            limit = f"fly no lower than {height_words(floor_m, datum)} there"
+            return _reason(zone, path, int(near[is_low][0]), limit)
+    if ceiling_m is not None:
+        high_m = pieces.high_m[near] - slack_m
+        is_high = ~stays_below(airspace, triangles_m, high_m, ceiling_m, datum)
+        is_no_higher = pieces.high_m[near] <= path.here_m[2] + settings.not_worse_m
+        is_high &= ~(pieces.is_entry[near] & is_no_higher)
+        if is_high.any():
+            limit = f"fly no higher than {height_words(ceiling_m, datum)} there"
+            return _reason(zone, path, int(near[is_high][0]), limit)
+    return None
+
+
+def _reason(zone: PreparedZone, path: FlownPath, index: int, limit: str) -> str:
+    return (
+        f"{path.subject(index)} is at {path.heights(index)} in the height zone "
+        f"{zone.zone.name!r}; {limit}"
+    )

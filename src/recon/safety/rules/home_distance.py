@@ -1,0 +1,45 @@
+"""No path leads farther from home than the site allows."""
+
+import numpy as np
+
+from recon.model.command import Command, Refusal
+from recon.safety.departure import Unknown
+from recon.safety.flown import flown
+from recon.safety.flown_path import Kind
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "home_distance"
+
+
+def home_distance(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a path of which any point is farther than `max_distance_from_home_m` from home.
+
+    The distance is horizontal. Flights and corners count (the way home is nowhere farther). A piece
+    that begins where the vehicle is may go as far as the vehicle is now. A stick without velocity
+    goes nowhere and is not asked.
+    """
+    if is_zero_stick(command.body):
+        return None
+    path = flown(command, situation)
+    if path is None:
+        return None
+    if isinstance(path, Unknown):
+        return Refusal(RULE, path.reason)
+    limit_m = situation.airspace.airspace.limits.max_distance_from_home_m
+    pieces, home_m = path.pieces, path.home_m[:2]
+    # The farthest point of a hull is one of its corners.
+    far_m = np.linalg.norm(pieces.triangles_m - home_m, axis=-1).max(axis=1)
+    here_m = float(np.linalg.norm(path.here_m[:2] - home_m))
+    no_farther_m = here_m + situation.settings.fences.not_worse_m
+    allowed_m = np.where(pieces.is_entry, max(limit_m, no_farther_m), limit_m)
+    judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER)
+    far = np.flatnonzero(judged & ~(far_m <= allowed_m))
+    if len(far) == 0:
+        return None
+    index = int(far[0])
+    return Refusal(
+        RULE,
+        f"{path.subject(index)} leads {far_m[index]:.1f} m away from home, at most {limit_m:g} m "
+        "is allowed",
+    )

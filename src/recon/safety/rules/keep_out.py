@@ -1,0 +1,143 @@
+"""Keep-out zones are kept out of along the whole path, the way home included."""
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.command import Command, Refusal
+from recon.model.zone import Zone, ZoneKind
+from recon.safety.airspace import PreparedZone
+from recon.safety.departure import Unknown
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath
+from recon.safety.heights import (
+    height_words,
+    stays_above,
+    stays_below,
+    up_of,
+    zone_datum,
+)
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "keep_out"
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
+
+
+def keep_out(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a path that enters a keep-out zone or comes too close to one.
+
+    A piece is clear of a zone when its footprint is more than `boundary_margin_m` from the zone's
+    region, or all of it is above the ceiling, or below the floor, by `zone_vertical_margin_m`. A
+    ceiling over the ground counts from the highest ground under the whole piece, a floor from the
+    lowest. All pieces are judged, climbs and landings too.
+    A vehicle that is itself too close to a zone may be moved if every piece that begins where it is
+    goes no deeper: no farther in, from above the ceiling no lower, from below the floor no higher.
+    A stick without velocity is held to the zones alone, without the margins; where the vehicle is
+    not known to be, it is not asked.
+    """
+    zones = situation.airspace.zones_of(ZoneKind.KEEP_OUT)
+    path = flown(command, situation) if zones else None
+    if path is None:
+        return None
+    is_stop = is_zero_stick(command.body)
+    if isinstance(path, Unknown):
+        return None if is_stop else Refusal(RULE, path.reason)
+    for zone in zones:
+        entered = _Judged(zone, path, situation, is_stop).worse()
+        if entered is not None:
+            return Refusal(RULE, _reason(zone, path, entered, situation))
+    return None
+
+
+class _Judged:
+    """One zone and one path."""
+
+    def __init__(
+        self, zone: PreparedZone, path: FlownPath, situation: Situation, is_stop: bool
+    ) -> None:
+        settings = situation.settings.fences
+        self.polygon, self.zone, self.path = zone.polygon, zone.zone, path
+        self.airspace = situation.airspace
+        margin_m = self.airspace.airspace.limits.boundary_margin_m
+        self.gap_m = 0.0 if is_stop else margin_m
+        self.vertical_m = 0.0 if is_stop else settings.zone_vertical_margin_m
+        self.rounding_m = settings.not_worse_m
+        self.slack_m = settings.stop_slack_m if is_stop else settings.not_worse_m
+
+    def worse(self) -> int | None:
+        """The first piece that enters the zone, and does so more than the vehicle by itself."""
+        pieces, footprints = self.path.pieces, self.path.footprints
+        entered = np.flatnonzero(~self.polygon.is_clear_of(footprints, self.gap_m))
+        is_met = self._meets(
+            pieces.triangles_m[entered], pieces.low_m[entered], pieces.high_m[entered]
+        )
+        entered = entered[is_met]
+        if len(entered) == 0:
+            return None
+        entries = entered[pieces.is_entry[entered]]
+        if len(entries) > 0 and self._is_in_it():
+            entered = np.setdiff1d(entered, entries[self._is_no_deeper(entries)])
+        return int(entered[0]) if len(entered) > 0 else None
+
+    def _meets(self, triangles_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> BoolArray:
+        """Which pieces have a height of the zone, or come too close to one."""
+        zone, datum = self.zone, zone_datum(self.zone)
+        meets = np.ones(len(triangles_m), dtype=np.bool_)
+        if zone.ceiling_m is not None:
+            over_m = low_m - self.vertical_m
+            meets &= ~stays_above(self.airspace, triangles_m, over_m, zone.ceiling_m, datum)
+        if zone.floor_m is not None:
+            under_m = high_m + self.vertical_m
+            meets &= ~stays_below(self.airspace, triangles_m, under_m, zone.floor_m, datum)
+        return meets
+
+    def _is_in_it(self) -> bool:
+        here_m, up_m = self.path.here_m, self.path.here_m[2:]
+        if self.polygon.is_clear_of(self.path.here, self.gap_m)[0]:
+            return False
+        place_m = np.broadcast_to(here_m[:2], (1, 3, 2))
+        return bool(self._meets(place_m, up_m, up_m)[0])
+
+    def _is_no_deeper(self, indices: IntArray) -> BoolArray:
+        """Which pieces go no farther in, and no nearer to the zone's heights, than it is now."""
+        zone, datum, here_m = self.zone, zone_datum(self.zone), self.path.here_m
+        pieces, up_m = self.path.pieces, float(here_m[2])
+        gap_m = -float(self.polygon.room_m(self.path.here)[0])
+        no_deeper = self.polygon.is_clear_of(
+            self.path.footprints.only(indices), gap_m - self.rounding_m
+        )
+        if zone.ceiling_m is not None and up_m > up_of(
+            self.airspace, here_m, zone.ceiling_m, datum
+        ):
+            no_deeper &= pieces.low_m[indices] >= up_m - self.slack_m
+        if zone.floor_m is not None and up_m < up_of(self.airspace, here_m, zone.floor_m, datum):
+            no_deeper &= pieces.high_m[indices] <= up_m + self.slack_m
+        return no_deeper
+
+
+def _reason(zone: PreparedZone, path: FlownPath, index: int, situation: Situation) -> str:
+    margin_m = situation.airspace.airspace.limits.boundary_margin_m
+    vertical_m = situation.settings.fences.zone_vertical_margin_m
+    gap_m = float(zone.polygon.gap_m(path.footprints.only(np.array([index])))[0])
+    way = "goes through" if gap_m == 0.0 else f"comes within {gap_m:.2f} m of"
+    return (
+        f"{path.subject(index)} {way} the keep-out zone {zone.zone.name!r}{_extent(zone.zone)} at "
+        f"{path.heights(index)}; {margin_m:g} m must be kept beside it"
+        f"{_vertically(zone.zone, vertical_m)}"
+    )
+
+
+def _extent(zone: Zone) -> str:
+    ends = []
+    if zone.floor_m is not None:
+        ends.append(f"from {height_words(zone.floor_m, zone_datum(zone))}")
+    if zone.ceiling_m is not None:
+        ends.append(f"up to {height_words(zone.ceiling_m, zone_datum(zone))}")
+    return f" ({' '.join(ends)})" if ends else ""
+
+
+def _vertically(zone: Zone, margin_m: float) -> str:
+    has_end = zone.floor_m is not None or zone.ceiling_m is not None
+    return f", or {margin_m:g} m above or below" if has_end else ""

@@ -1,0 +1,86 @@
+"""No path is higher above ground than the site allows, the way home included."""
+
+from math import inf
+
+import numpy as np
+
+from recon.model.command import Command, Refusal, VirtualStick
+from recon.safety.as_sent import as_sent
+from recon.safety.datum import is_ground_assumed_flat
+from recon.safety.departure import Unknown
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath, Kind
+from recon.safety.heights import stays_below
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "max_height"
+
+
+def max_height(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a path that goes too high above ground.
+
+    Every flight, corner and way home must be at most `max_height_above_ground_m` above the lowest
+    ground under the whole piece; without an elevation model the ground is taken for flat. A way
+    home is at the go-home height; when nobody has told it, the path is refused, unless somebody has
+    overridden the vehicle's checklist, which asks for it. A piece that begins where the vehicle is
+    may be as high as the vehicle is now. A stick without velocity may be `stop_slack_m` higher;
+    where the vehicle is not known to be, its height above takeoff counts.
+    """
+    path = flown(command, situation)
+    if path is None:
+        return None
+    if isinstance(path, Unknown):
+        return _blind(command, situation, path)
+    is_stop = is_zero_stick(command.body)
+    settings = situation.settings.fences
+    limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
+    most_m = limit_m + (settings.stop_slack_m if is_stop else 0.0)
+    pieces = path.pieces
+    judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME)
+    if situation.preflight_override is not None:
+        judged &= pieces.high_m < inf
+    judged &= ~(pieces.is_entry & (pieces.high_m <= path.here_m[2] + settings.not_worse_m))
+    asked = np.flatnonzero(judged)
+    is_low_enough = stays_below(
+        situation.airspace, pieces.triangles_m[asked], pieces.high_m[asked], most_m
+    )
+    high = asked[~is_low_enough]
+    return None if len(high) == 0 else Refusal(RULE, _reason(path, int(high[0]), situation))
+
+
+def _blind(command: Command, situation: Situation, unknown: Unknown) -> Refusal | None:
+    """A stop of a vehicle that is nowhere known still asks for a height."""
+    body = command.body
+    if not isinstance(body, VirtualStick) or not is_zero_stick(body):
+        return Refusal(RULE, unknown.reason)
+    limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
+    height_m = as_sent(body.height_above_takeoff_m)
+    if height_m <= limit_m + situation.settings.fences.stop_slack_m:
+        return None
+    return Refusal(RULE, f"{height_m:.1f} m above takeoff: at most {limit_m:g} m is allowed here")
+
+
+def _reason(path: FlownPath, index: int, situation: Situation) -> str:
+    limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
+    pieces = path.pieces
+    if pieces.high_m[index] == inf:
+        vehicle = path.departure.vehicle
+        return (
+            f"{vehicle.display_name}: the height at which it goes home is not known; write "
+            "go_home_height_m, as it is set in the aircraft, into site.toml under [[vehicles]] "
+            f'serial = "{vehicle.serial}"'
+        )
+    what = path.subject(index)
+    triangle_m = pieces.triangles_m[index : index + 1]
+    lowest_m = float(situation.airspace.ground_within_up_m(triangle_m)[0][0])
+    if lowest_m == -inf:
+        return f"{what} goes over ground whose height the site's elevation model does not tell"
+    above_m = float(pieces.high_m[index]) - lowest_m
+    flat = " (the ground is taken for flat)" if is_ground_assumed_flat(situation.airspace) else ""
+    is_home = pieces.kinds[index] == Kind.WAY_HOME
+    advice = "; set a lower go-home height in the aircraft and in site.toml" if is_home else ""
+    return (
+        f"{what} is up to {above_m:.1f} m above ground{flat}, at most {limit_m:g} m is "
+        f"allowed{advice}"
+    )

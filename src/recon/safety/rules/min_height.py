@@ -1,0 +1,61 @@
+"""No path is nearer to the ground than the site allows, but to take off and to land."""
+
+import numpy as np
+
+from recon.model.command import Command, Refusal
+from recon.safety.columns import columns
+from recon.safety.datum import is_ground_assumed_flat
+from recon.safety.departure import Unknown
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath, Kind
+from recon.safety.heights import stays_above
+from recon.safety.situation import Situation
+from recon.safety.standstill import is_zero_stick
+
+RULE = "min_height"
+
+
+def min_height(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a path that comes too near to the ground.
+
+    Every flight, corner and way home must be at least `min_height_above_ground_m` above the highest
+    ground under the whole piece; without an elevation model the ground is taken for flat. Exempt
+    are landings and what keeps to a column of takeoff or landing: `columns` says which. Where the
+    model tells no ground, the path is refused. A stick without velocity may be `stop_slack_m`
+    lower; where the vehicle is not known to be, it is not asked.
+    """
+    path = flown(command, situation)
+    if path is None:
+        return None
+    is_stop = is_zero_stick(command.body)
+    if isinstance(path, Unknown):
+        return None if is_stop else Refusal(RULE, path.reason)
+    slack_m = situation.settings.fences.stop_slack_m if is_stop else 0.0
+    least_m = situation.airspace.airspace.limits.min_height_above_ground_m - slack_m
+    pieces = path.pieces
+    judged = np.flatnonzero(path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME))
+    is_high_enough = stays_above(
+        situation.airspace, pieces.triangles_m[judged], pieces.low_m[judged], least_m
+    )
+    low = judged[~is_high_enough]
+    if len(low) > 0:
+        low = low[~columns(path, situation, is_stop)[low]]
+    return None if len(low) == 0 else Refusal(RULE, _reason(path, int(low[0]), situation))
+
+
+def _reason(path: FlownPath, index: int, situation: Situation) -> str:
+    least_m = situation.airspace.airspace.limits.min_height_above_ground_m
+    pieces = path.pieces
+    what = path.subject(index)
+    triangle_m = pieces.triangles_m[index : index + 1]
+    highest_m = float(situation.airspace.ground_within_up_m(triangle_m)[1][0])
+    if highest_m == np.inf:
+        return f"{what} goes over ground whose height the site's elevation model does not tell"
+    above_m = float(pieces.low_m[index]) - highest_m
+    flat = " (the ground is taken for flat)" if is_ground_assumed_flat(situation.airspace) else ""
+    low_now = path.here_m[2] <= pieces.low_m[index] and bool(pieces.is_entry[index])
+    advice = "; let it climb straight up first, where it is" if low_now else ""
+    return (
+        f"{what} comes down to {above_m:.1f} m above ground{flat}, at least {least_m:g} m is "
+        f"needed outside takeoff and landing{advice}"
+    )
