@@ -6,9 +6,10 @@ vehicle has its own speeds, hovers with a drift of its own and waits before it t
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
-from math import hypot, sqrt
+from math import hypot, inf, sqrt
 from random import Random
+
+import numpy as np
 
 from recon.guidance.fleet_return import (
     FleetReturnSettings,
@@ -83,12 +84,14 @@ class Flown:
     """What came of it."""
 
     fliers: dict[str, Flier]
-    nearest: tuple[float, float, str] | None
-    """Of the worst pair in the air: level and height distance, and who."""
-    most_at_once: int
-    lasted_s: float
-    heights: list[tuple[float, dict[str, float]]]
-    pad_users: list[tuple[float, dict[str, list[str]]]]
+    nearest_m: float = inf
+    """Level distance of the worst pair in the air whose heights were nearer than is allowed."""
+    nearest_pair: str = "nobody"
+    most_at_once: int = 0
+    most_at_a_pad: int = 0
+    lasted_s: float = 0.0
+    heights: list[tuple[float, dict[str, tuple[float, float]]]] = field(default_factory=list)
+    """Every second: height and way to the pad of each in the air."""
 
 
 def fly(
@@ -104,7 +107,7 @@ def fly(
     rng = Random(seed)
     fliers = {f.name: Flier(f.name, f.start_m, Random(rng.random())) for f in plan.flights}
     hoverers = {n: Flier(n, place, Random(rng.random())) for n, place in others.items()}
-    flown = Flown(fliers | hoverers, None, 0, 0.0, [], [])
+    flown = Flown(fliers | hoverers)
     waiting = list(plan.flights)
     under_way: list[Flight] = []
     for count in range(round(at_most_s / STEP_S)):
@@ -144,26 +147,29 @@ def _begin(
 
 
 def _note(flown: Flown, under_way: Sequence[Flight], now_s: float) -> None:
-    moving = [f for f in under_way if flown.fliers[f.name].began_s is not None]
-    flown.most_at_once = max(flown.most_at_once, len(moving))
-    flown.heights.append(
-        (now_s, {n: f.place_m[2] for n, f in flown.fliers.items() if not f.is_on_ground})
-    )
-    users: dict[str, list[str]] = {}
-    for flight in moving:
-        flier = flown.fliers[flight.name]
+    flown.most_at_once = max(flown.most_at_once, len(under_way))
+    heights: dict[str, tuple[float, float]] = {}
+    landing: dict[str, int] = {}
+    for flight in under_way:
+        flier, pad = flown.fliers[flight.name], flight.pad
+        east_m, north_m, up_m = flier.place_m
+        heights[flight.name] = up_m, hypot(east_m - pad.east_m, north_m - pad.north_m)
         if len(flier.targets_m) <= 1:
-            users.setdefault(flight.pad.name, []).append(flight.name)
-    flown.pad_users.append((now_s, users))
+            landing[pad.name] = landing.get(pad.name, 0) + 1
+    flown.heights.append((now_s, heights))
+    flown.most_at_a_pad = max(flown.most_at_a_pad, *landing.values(), 0)
 
 
 def _watch(flown: Flown, least: Separation) -> None:
     flying = [f for f in flown.fliers.values() if not f.is_on_ground]
-    for one, other in combinations(flying, 2):
-        a, b = one.true_place_m, other.true_place_m
-        up_m = abs(a[2] - b[2])
-        if up_m >= least.vertical_m:
-            continue
-        level_m = hypot(a[0] - b[0], a[1] - b[1])
-        if flown.nearest is None or level_m < flown.nearest[0]:
-            flown.nearest = (level_m, up_m, f"{one.name} and {other.name}")
+    if len(flying) < 2:
+        return
+    places = np.array([f.true_place_m for f in flying])
+    one, other = np.triu_indices(len(flying), 1)
+    offsets = np.abs(places[one] - places[other])
+    level_m = np.hypot(offsets[:, 0], offsets[:, 1])
+    level_m[offsets[:, 2] >= least.vertical_m] = np.inf
+    worst = int(np.argmin(level_m))
+    if level_m[worst] < flown.nearest_m:
+        flown.nearest_m = float(level_m[worst])
+        flown.nearest_pair = f"{flying[one[worst]].name} and {flying[other[worst]].name}"
