@@ -23,6 +23,7 @@ from recon.site import Site
 from recon.station.audit_view import audit_page
 from recon.station.driver import AsyncioDriver
 from recon.station.orders import OrderRecord
+from recon.station.site_view import site_view
 from recon.station.views import Surroundings, state_view
 
 
@@ -47,6 +48,8 @@ class Service:
         first_id: int = 1,
     ) -> "Service":
         """Return the service of a driver that is about to run; orders are numbered from a first."""
+        # Thinning outlines of very many corners takes a moment: now, not while somebody flies.
+        site_view(site)
         return cls(driver, site, [], capture_folder, audit_log, count(first_id).__next__)
 
     def state(self) -> schema.StationState:
@@ -176,21 +179,6 @@ class Service:
             capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
             connections_refused=0 if links is None else links.refused_connections,
         )
-
-
-def site_view(site: Site) -> schema.SiteView:
-    """Return what a console shows of a site."""
-    origin = None if site.frame is None else site.frame.origin
-    eye = site.eye
-    return schema.SiteView(
-        name=site.name,
-        latitude_deg=None if origin is None else origin.latitude_deg,
-        longitude_deg=None if origin is None else origin.longitude_deg,
-        ground_altitude_m=None if origin is None else origin.ellipsoid_height_m,
-        eye_serial=None if eye is None else eye.serial,
-        pose_rms_px=None if eye is None else eye.solution.rms_px,
-        pose_height_m=None if eye is None else eye.solution.height_above_ground_m,
-    )
 
 
 def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:

@@ -330,6 +330,30 @@ export interface components {
             vehicle_name: string;
         };
         /**
+         * AreaView
+         * @description An outline to draw: closed rings of (longitude, latitude), the outer one first.
+         */
+        AreaView: {
+            /** Ceiling M */
+            ceiling_m: number | null;
+            /** Datum */
+            datum: ("ground" | "wgs84") | null;
+            /** Floor M */
+            floor_m: number | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "boundary" | "keep_out" | "height" | "survey";
+            /** Name */
+            name: string;
+            /** Rings */
+            rings: [
+                number,
+                number
+            ][][];
+        };
+        /**
          * AttitudeView
          * @description Yaw clockwise from north, pitch nose up, roll right side down.
          */
@@ -586,6 +610,38 @@ export interface components {
             kind: "land";
         };
         /**
+         * LayerView
+         * @description A layer of the site, and the file in its folder that tells it.
+         */
+        LayerView: {
+            /** File */
+            file: string;
+            /** Name */
+            name: string;
+        };
+        /**
+         * LimitsView
+         * @description What the site allows every vehicle.
+         */
+        LimitsView: {
+            /** Battery Reserve Fraction */
+            battery_reserve_fraction: number;
+            /** Boundary Margin M */
+            boundary_margin_m: number;
+            /** Max Distance From Home M */
+            max_distance_from_home_m: number;
+            /** Max Height Above Ground M */
+            max_height_above_ground_m: number;
+            /** Max Speed Mps */
+            max_speed_mps: number;
+            /** Min Height Above Ground M */
+            min_height_above_ground_m: number;
+            /** Min Separation Horizontal M */
+            min_separation_horizontal_m: number;
+            /** Min Separation Vertical M */
+            min_separation_vertical_m: number;
+        };
+        /**
          * LinkView
          * @description One TCP connection of a companion app, with what its bytes have been like.
          */
@@ -741,6 +797,25 @@ export interface components {
             vehicle_name: string;
         };
         /**
+         * PadView
+         * @description A place to land; `serial` is null for one that any vehicle may use.
+         */
+        PadView: {
+            /**
+             * Altitude M
+             * @description above the WGS84 ellipsoid
+             */
+            altitude_m: number;
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /** Name */
+            name: string;
+            /** Serial */
+            serial: string | null;
+        };
+        /**
          * PhaseView
          * @description One change in a command's life.
          */
@@ -825,23 +900,45 @@ export interface components {
         };
         /**
          * SiteView
-         * @description The site's place and the quality of the eye's marked pose.
+         * @description The site: its place, what holds in its air, and the quality of the eye's marked pose.
          */
         SiteView: {
+            /** Areas */
+            areas: components["schemas"]["AreaView"][];
+            /**
+             * Areas Drawn Within M
+             * @description how far the outlines may be off; 0 when every corner is there
+             */
+            areas_drawn_within_m: number;
+            /**
+             * Areas Left Out
+             * @description how many areas are too many to be drawn
+             */
+            areas_left_out: number;
             /** Eye Serial */
             eye_serial: string | null;
             /** Ground Altitude M */
             ground_altitude_m: number | null;
             /** Latitude Deg */
             latitude_deg: number | null;
+            /** Layers */
+            layers: components["schemas"]["LayerView"][];
+            limits: components["schemas"]["LimitsView"];
             /** Longitude Deg */
             longitude_deg: number | null;
             /** Name */
             name: string;
+            /** Pads */
+            pads: components["schemas"]["PadView"][];
             /** Pose Height M */
             pose_height_m: number | null;
             /** Pose Rms Px */
             pose_rms_px: number | null;
+            /**
+             * Terrain
+             * @enum {string}
+             */
+            terrain: "model" | "flat assumed";
         };
         /**
          * StationState
