@@ -240,6 +240,17 @@ describe("the station", () => {
     expect(root.textContent).toContain("Connections refused3");
     expect(root.textContent).toContain("Missing from the capture2.5 kB");
   });
+
+  it("says whether the ground's heights are known, and how far and high one may fly", () => {
+    const state = station([]);
+    const root = show(StationPanel, state);
+    expect(root.textContent).toContain("Terrainflat assumed");
+    expect(root.textContent).toContain("Highest above ground120");
+    expect(root.textContent).toContain("Farthest from home1000");
+    const site = state.site && { ...state.site, terrain: "model" as const };
+    page.say(station([], { site }));
+    expect(root.textContent).toContain("Terrainelevation model");
+  });
 });
 
 describe("the top", () => {

@@ -70,6 +70,9 @@ function SiteFacts(props: { site: SiteView }) {
       facts={[
         ["Site", props.site.name],
         ["Ground altitude, WGS84", formatQuantity(props.site.ground_altitude_m, "m")],
+        ["Terrain", props.site.terrain === "model" ? "elevation model" : "flat assumed"],
+        ["Highest above ground", formatQuantity(props.site.limits.max_height_above_ground_m, "m")],
+        ["Farthest from home", formatQuantity(props.site.limits.max_distance_from_home_m, "m")],
         ["Imaging vehicle", props.site.eye_serial ?? UNKNOWN],
         ["Marked pose, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
         ["Marked pose, height", formatQuantity(props.site.pose_height_m, "m")],
