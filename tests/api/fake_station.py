@@ -7,7 +7,7 @@ import numpy as np
 from fastapi import FastAPI
 
 from recon.api.app import create_app
-from recon.api.schema import OrderResponse, StationState
+from recon.api.schema import AuditPage, OrderResponse, StationState
 from recon.api.security import Access
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
@@ -50,6 +50,22 @@ class FakeStation:
         return self.service.order(
             serials, body, takeoff=takeoff, issued_by=issued_by, holder=holder
         )
+
+    def check(
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
+    ) -> OrderResponse:
+        return self.service.check(
+            serials, body, takeoff=takeoff, issued_by=issued_by, holder=holder
+        )
+
+    def audit(self, after: int, at_most: int) -> AuditPage:
+        return self.service.audit(after, at_most)
 
     def holder_came(self, holder: str) -> None:
         self.service.holder_came(holder)

@@ -114,6 +114,17 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
             holder=asked.holder,
         )
 
+    @app.post("/api/orders/check")
+    async def check(asked: schema.OrderRequest, request: Request) -> schema.OrderResponse:
+        """Tell what the gate would say to an order now. Nothing is sent; each number is 0."""
+        return port.check(
+            asked.serials,
+            to_body(asked.order),
+            takeoff=asked.takeoff,
+            issued_by=_who(request),
+            holder=asked.holder,
+        )
+
     @app.post("/api/all-stop")
     async def all_stop(request: Request) -> schema.OrderResponse:
         """Hold everything that flies, identified or not. Never cuts motors."""

@@ -27,6 +27,17 @@ class StationPort(Protocol):
         `holder` names the stream whose end ends a steered order.
         """
 
+    def check(
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
+    ) -> OrderResponse:
+        """Return what `order` would answer now, without giving it."""
+
     def holder_came(self, holder: str) -> None:
         """Tell that a stream is open that may hold steered orders."""
 

@@ -21,9 +21,11 @@ from recon.record import geotiff_bytes
 from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.audit_view import audit_page
+from recon.station.checking import CHECKED_ID, check
 from recon.station.driver import AsyncioDriver
 from recon.station.orders import OrderRecord
 from recon.station.site_view import site_view
+from recon.station.state import Station
 from recon.station.views import Surroundings, state_view
 
 
@@ -74,6 +76,24 @@ class Service:
             for serial in dict.fromkeys(serials)
         ]
         return self._give(asked)
+
+    def check(
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
+    ) -> schema.OrderResponse:
+        """Return what `order` would answer now; nothing is given and nothing changes."""
+        orders = [
+            OperatorOrder(CHECKED_ID, body, issued_by, serial=serial, takeoff=takeoff, holder=holder)
+            for serial in dict.fromkeys(serials)
+        ]
+        station = self.driver.station
+        records = check(station, orders, self.driver.now_ns())
+        return schema.OrderResponse(results=[_result(r, _is_simulated(station, r)) for r in records])
 
     def holder_came(self, holder: str) -> None:
         """Let a stream hold steered orders from now on."""
@@ -149,9 +169,7 @@ class Service:
     def _outcome(self, command_id: int) -> schema.OrderResult:
         station = self.driver.station
         record = station.orders.records[command_id]
-        target = station.target(record.command.serial, record.command.link_id)
-        is_simulated = target is not None and target.is_simulated
-        return _result(record, is_simulated)
+        return _result(record, _is_simulated(station, record))
 
     def _within_reach(self) -> list[str]:
         """Every vehicle that has a connection, or flies or may."""
@@ -179,6 +197,11 @@ class Service:
             capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
             connections_refused=0 if links is None else links.refused_connections,
         )
+
+
+def _is_simulated(station: Station, record: OrderRecord) -> bool:
+    target = station.target(record.command.serial, record.command.link_id)
+    return target is not None and target.is_simulated
 
 
 def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
