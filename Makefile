@@ -80,6 +80,7 @@ fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nig
 	done
 
 study: setup ## Long runs: the session for 100,000 simulated seconds, and the mutants (about half an hour)
+	$(RUN) python -m studies.fences --scenes 10000
 	$(RUN) python -m studies.session --seconds 100000
 	@$(MAKE) mutants
 
