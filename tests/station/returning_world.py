@@ -9,16 +9,19 @@ from tests.station.station_world import HOME, World
 
 from recon.geo import point_from_enu
 from recon.model.airspace import Airspace, FlightLimits
+from recon.model.command import Phase
 from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.model.zone import LandingPad, Zone
 from recon.safety import PreparedAirspace
+from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
+from recon.sim.manoeuvres import Grounded
+from recon.site import Site
 from recon.station.build import first_state
 from recon.station.fleet_return.record import Member, Stage
 from recon.station.virtual import VirtualDriver
-from recon.site import Site
 
 FRAME = LocalFrame(HOME)
 LEAST_LEVEL_M, LEAST_HEIGHT_M = 15.0, 6.0
@@ -47,6 +50,16 @@ class ReturningWorld:
         first = 1000 + len(self.world.driver.station.orders.records)
         self.world.driver.handle(FleetReturnOrdered(first, serials, "test"))
 
+    def called(self, *serials: str) -> list[tuple[Phase, str]]:
+        """Call vehicles one by one; return what each order became at once."""
+        answers = []
+        for serial in serials:
+            self.call(serial)
+            newest = list(self.world.driver.station.orders.records.values())[-1]
+            assert newest.command.serial == serial
+            answers.append((newest.phase, newest.note))
+        return answers
+
     def member(self, serial: str) -> Member:
         running = self.world.driver.station.fleet_return
         assert running is not None
@@ -60,6 +73,16 @@ class ReturningWorld:
         """Where it truly is, east, north, up of the site."""
         motion, pad = self.world.app(serial).aircraft.motion, self.pads_m[serial]
         return pad[0] + motion.east_m, pad[1] + motion.north_m, motion.height_m
+
+    def put(self, serial: str, place_m: tuple[float, float, float]) -> None:
+        """Have it hover somewhere else, as if its pilot had flown it there meanwhile."""
+        aircraft, pad = self.world.app(serial).aircraft, self.pads_m[serial]
+        aircraft.motion = replace(
+            aircraft.motion,
+            east_m=place_m[0] - pad[0],
+            north_m=place_m[1] - pad[1],
+            height_m=place_m[2],
+        )
 
     def flies(self, serial: str) -> bool:
         return self.world.app(serial).aircraft.is_flying
@@ -102,6 +125,7 @@ def returning_world(
     *,
     max_height_m: float = 120.0,
     zones: tuple[Zone, ...] = (),
+    faults: tuple[str, ...] = (),
     seed: int = 0,
     go_home_height_m: float | None = None,
 ) -> ReturningWorld:
@@ -124,6 +148,7 @@ def returning_world(
         airborne=Airborne.ALL,
         seed=seed,
         pads=points,
+        faults=tuple(parse_fault(text) for text in faults),
     )
     apps = build_fleet(config, 0)
     profiles = {
@@ -143,6 +168,8 @@ def returning_world(
         app.aircraft.motion = replace(
             motion, east_m=place[0] - pad[0], north_m=place[1] - pad[1], height_m=place[2]
         )
+        if place[2] == 0.0:
+            app.aircraft.manoeuvre = Grounded()
         if go_home_height_m is not None:
             settings = app.aircraft.settings
             app.aircraft.settings = replace(settings, go_home_height_m=go_home_height_m)

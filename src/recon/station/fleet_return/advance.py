@@ -104,7 +104,21 @@ def _begin_one(
         running = running.put(member)
         if member.reason == "":
             return _judged(station, running, member, now, settings, now_ns)
-    return replace(station, fleet_return=running), ()
+    return replace(station, fleet_return=_anew_if_stuck(running, settings, now_ns)), ()
+
+
+def _anew_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) -> FleetReturn:
+    """Let those that wait be planned for anew when nothing they wait for will end by itself.
+
+    So it is when somebody hovers where nobody did when the plan was made.
+    """
+    waiting = running.at(Stage.WAITING)
+    is_patient = any(member.clears or now_ns < member.judge_at_ns for member in waiting)
+    if not waiting or is_patient or running.at(*UNDER_WAY):
+        return running
+    for member in waiting:
+        running = running.put(replace(member, flight=None))
+    return replace(running, look_at_ns=now_ns + seconds_to_ns(settings.planned_again_s))
 
 
 def _from_here(flight: Flight, place_m: Place) -> Flight:

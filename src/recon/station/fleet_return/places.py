@@ -59,11 +59,10 @@ def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | s
 def air(station: Station, vehicles: Sequence[Returning], settings: ReturnSettings) -> WayHome:
     """Return what the site's air leaves between these vehicles and their pads."""
     points = [v.place_m[:2] for v in vehicles] + [v.pad.east_north_m for v in vehicles]
-    corners = _box(points)
     prepared = station.airspace
-    lowest_m = float(np.min(prepared.lowest_ground_within_up_m(corners)))
-    highest_m = float(np.max(prepared.highest_ground_within_up_m(corners)))
-    return way_home(prepared.airspace, (lowest_m, highest_m), points, settings.plan)
+    lowest_m, highest_m = prepared.ground_within_up_m(_box(points))
+    ground_up_m = float(np.min(lowest_m)), float(np.max(highest_m))
+    return way_home(prepared.airspace, ground_up_m, points, settings.plan)
 
 
 def separation(station: Station, settings: ReturnSettings) -> Separation:

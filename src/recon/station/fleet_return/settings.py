@@ -23,6 +23,9 @@ class ReturnSettings:
     judged_again_s: float = 1.0
     """A flight that the gate does not let begin yet is judged again after this."""
 
+    planned_again_s: float = 2.0
+    """Between two plans for the same vehicles, when somebody moves in their way."""
+
     gate_waits_s: float = 30.0
     """With nobody of the return in the air before it, the gate may wait this long for telemetry or
     for other vehicles; then its refusal stands."""
