@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.geo import Polygon, rounded_path, straight_path
+from recon.geo import Polygon, corner_hulls, rounded_path, straight_path
 from recon.geo.path import corner_reaches_m
 from recon.model.zone import Region
 
@@ -147,3 +147,62 @@ def test_radii_given_are_not_changed(route: tuple[np.ndarray, np.ndarray]) -> No
 def test_misuse_is_told(points: list, radii: list, error_m: float, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         rounded_path(points, radii, error_m)
+
+
+class TestCornerHulls:
+    """The triangle that holds a corner, whichever of two things its radius means."""
+
+    def hull(self, *points: tuple[float, ...], radius_m: float) -> np.ndarray:
+        radii = np.full(len(points), radius_m)
+        return corner_hulls(np.array(points, dtype=float), radii)[0]
+
+    def test_a_square_corner_starts_and_ends_its_radius_away(self) -> None:
+        found = self.hull((0, 0, 9), (50, 0, 9), (50, 50, 9), radius_m=10.0)
+        assert found == pytest.approx(np.array([[40, 0, 9], [50, 0, 9], [50, 10, 9]]))
+
+    def test_a_sharp_one_may_be_an_arc_that_starts_farther_away(self) -> None:
+        """A turn of 120 degrees: an arc of 10 m touches its legs 10 tan 60 m before the waypoint."""
+        back = (100.0 - 50.0, 50.0 * np.sqrt(3.0))
+        found = self.hull((0, 0), (100, 0), back, radius_m=10.0)
+        assert np.linalg.norm(found - (100.0, 0.0), axis=1) == pytest.approx(
+            [17.32, 0, 17.32], abs=0.01
+        )
+
+    def test_a_flat_one_starts_its_radius_away(self) -> None:
+        found = self.hull((0, 0), (100, 0), (200, 10), radius_m=10.0)
+        assert np.linalg.norm(found - (100.0, 0.0), axis=1) == pytest.approx([10, 0, 10])
+
+    @pytest.mark.parametrize("radius_m", [0.2, 10.0, 1000.0])
+    def test_turning_back_takes_at_most_each_leg(self, radius_m: float) -> None:
+        found = self.hull((0, 0), (100, 0), (60, 0), radius_m=radius_m)
+        assert found == pytest.approx(np.array([[0, 0], [100, 0], [60, 0]]))
+
+    def test_heights_go_along_the_legs(self) -> None:
+        found = self.hull((0, 0, 0), (30, 0, 40), (30, 50, 40), radius_m=10.0)
+        assert found == pytest.approx(np.array([[24, 0, 32], [30, 0, 40], [30, 10, 40]]))
+
+    def test_a_waypoint_twice_is_no_corner(self) -> None:
+        found = self.hull((0, 0), (100, 0), (100, 0), radius_m=5.0)
+        assert found == pytest.approx(np.array([[95, 0], [100, 0], [100, 0]]))
+
+    @given(
+        turn_deg=st.floats(1.0, 175.0), radius_m=st.floats(0.2, 40.0), start_deg=st.floats(0, 360)
+    )
+    def test_both_curves_lie_in_the_hull(
+        self, turn_deg: float, radius_m: float, start_deg: float
+    ) -> None:
+        """The arc that touches both legs and the Bezier corner, wherever they fit their legs."""
+        turn, start = np.radians(turn_deg), np.radians(start_deg)
+        ahead = np.array([np.cos(start), np.sin(start)])
+        onward = np.array([np.cos(start + turn), np.sin(start + turn)])
+        points = np.array([-1_000.0 * ahead, [0.0, 0.0], 1_000.0 * onward])
+        found = corner_hulls(points, np.full(3, radius_m))[0]
+        outline = Polygon(Region(found))
+        arc_reach_m = radius_m * np.tan(turn / 2.0)
+        if arc_reach_m < 1_000.0:
+            centre = -arc_reach_m * ahead + radius_m * np.array([-ahead[1], ahead[0]])
+            angles = start - np.pi / 2.0 + np.linspace(0.0, turn, 50)
+            arc = centre + radius_m * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+            assert outline.distance_to_edge_m(arc).min() > -1e-6
+        bezier = rounded_path(points, [0.2, radius_m, 0.2]).points_m[1:-1]
+        assert outline.distance_to_edge_m(bezier).min() > -1e-6

@@ -15,6 +15,10 @@ from recon.model.zone import Region
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
+LEAST_RESIZE_M = 1e-3
+"""GEOS makes nothing at all of a polygon that it is to move by far less; what is less is taken for
+none, which is the stricter answer."""
+
 _FAULTS = {
     "Self-intersection": "its edges cross or overlap",
     "Ring Self-intersection": "its outline touches itself",
@@ -104,7 +108,7 @@ class Polygon:
         Every point of one is then inside and more than `inset_m` from the edge; with none, on the
         edge is inside. With a negative inset every point is inside, or outside by that at most.
         """
-        if inset_m < 0.0:
+        if inset_m < -LEAST_RESIZE_M:
             return self._resized(-inset_m).holds(footprints)
         inside: BoolArray = shapely.covers(self._area, footprints.shapes) & footprints.is_finite
         if inset_m > 0.0 and inside.any():
@@ -117,8 +121,9 @@ class Polygon:
         Every point of one is then outside and more than `gap_m` away; on the edge is not outside.
         With a negative gap every point is outside, or less than that from the edge.
         """
-        if gap_m < 0.0:
+        if gap_m < -LEAST_RESIZE_M:
             return self._resized(gap_m).is_clear_of(footprints)
+        gap_m = max(gap_m, 0.0)
         is_near = (footprints.least_m <= self._most_m + gap_m).all(axis=1)
         is_near &= (footprints.most_m >= self._least_m - gap_m).all(axis=1)
         clear = footprints.is_finite & ~is_near
