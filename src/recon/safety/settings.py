@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass, field
 
+from recon.safety.energy_settings import EnergySettings
 from recon.safety.fence_settings import FenceSettings
 from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.watch_settings import WatchSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +62,22 @@ class SafetySettings:
     max_stick_timeout_s: float = 5.0
     """An app holds a stick's velocity this long by itself: at 15 m/s already 75 m."""
 
+    min_steering_mps: float = 0.1
+    """Slower than GNSS velocity noise is no speed to steer at."""
+    max_nudge_m: float = 100.0
+    """A nudge is judged by eye; farther is a goto, which names its place."""
+
     max_camera_fps_hz: float = 30.0
     """No DJI video feed is faster."""
+
+    energy: EnergySettings = field(default_factory=EnergySettings)
+    """How much of its battery a flight takes."""
 
     fences: FenceSettings = field(default_factory=FenceSettings)
     """What the rules about places and heights need besides the site's limits."""
 
     prediction: PredictionSettings = field(default_factory=PredictionSettings)
     """How far and how surely vehicles' paths are foreseen."""
+
+    watch: WatchSettings = field(default_factory=WatchSettings)
+    """When the watchdogs bark and when they act."""

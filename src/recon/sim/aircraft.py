@@ -40,6 +40,8 @@ class Aircraft:
     manoeuvre: Manoeuvre = field(default_factory=Grounded)
     gimbal: Gimbal = field(default_factory=Gimbal)
     battery: Battery = field(default_factory=lambda: Battery(1.0, 1500.0))
+    is_pilots: bool = False
+    """Whether the pilot's mode switch keeps the app's missions and sticks out."""
     home_north_m: float = 0.0
     home_east_m: float = 0.0
     _mission_count: int = 0
@@ -104,7 +106,12 @@ class Aircraft:
     def fly_mission(
         self, points: tuple[MissionPoint, ...], is_curved: bool, lands_at_end: bool
     ) -> None:
-        """Fly a mission in place of whatever is flown now; from the ground take off first."""
+        """Fly a mission in place of whatever is flown now; from the ground take off first.
+
+        While the pilot has it, nothing.
+        """
+        if self.is_pilots:
+            return
         self._mission_count = self._mission_count % 0xFFFF + 1
         settings = self.settings
         flight = MissionFlight(
@@ -122,9 +129,15 @@ class Aircraft:
         self._mission_count = 0
 
     def stick(self, stick: Stick) -> None:
-        """Fly a stick command; on the ground nothing."""
-        if not self.is_on_ground:
+        """Fly a stick command; on the ground, or while the pilot has it, nothing."""
+        if not self.is_on_ground and not self.is_pilots:
             self.manoeuvre = stick
+
+    def pilot_takes(self, mode: FlightMode = FlightMode.GPS_SPORT) -> None:
+        """The pilot flips the mode switch, and for now holds."""
+        self.is_pilots = True
+        if not self.is_on_ground:
+            self.manoeuvre = Hold(mode)
 
     def _set_home(self) -> None:
         self.home_north_m, self.home_east_m = self.motion.north_m, self.motion.east_m

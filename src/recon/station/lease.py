@@ -29,6 +29,11 @@ class StreamSettings:
     """Telemetry that comes back within this goes on with the lease. Later the vehicle may be
     anywhere, and whoever gave the order looks elsewhere."""
 
+    zero_to_hold_s: float = 0.15
+    """Between the zero at a stream's end and the hold that follows: the zero may have to wait 75 ms
+    for the gap after the stick before it and for the next tick, and an app that reads two packets
+    at once loses the second."""
+
     obeyed_s: float = 3.0
     """An aircraft goes over to sticks within a second, and its mode is told twice a second."""
 

@@ -171,14 +171,13 @@ def hold(driven: Driven, serial: str) -> Driven:
 
 
 def _close(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask: Ask) -> Driven:
-    """Send zero now and hold a beat later; hold at once if the gate refuses even the zero."""
+    """Send zero now and hold a little later; hold at once if the gate refuses even the zero."""
     lease = replace(lease, steered=halted(lease.steered, now_ns))
     station, answer, lease = judged(driven.station, lease, now_ns, ask)
     driven = replace(driven, station=station)
     if isinstance(answer, Refusal):
         return hold(driven, serial)
-    # A packet that comes in the same read as the one before is lost in some apps: a beat between.
-    due_ns = now_ns + seconds_to_ns(station.settings.streams.period_s)
+    due_ns = now_ns + seconds_to_ns(station.settings.streams.zero_to_hold_s)
     closing = replace(lease, closing=why, next_due_ns=due_ns)
     station = put(station, serial, closing)
     return replace(driven, station=station, outputs=(*driven.outputs, SendCommand(answer)))

@@ -6,27 +6,24 @@ import pytest
 from tests.safety.cases import (
     STICK,
     TAKEOFF,
-    approved,
     command,
     mission,
-    refused_by,
     situation,
     vehicle,
     waypoint,
 )
 
-from recon.model.command import Body, StartCamera
+from recon.model.command import Body, GoTo, HoldPosition, Nudge, StartCamera
+from recon.model.geo import LatLon
 from recon.model.mission import Waypoint
-from recon.safety import approve
+from recon.safety.rules.dji_limits import dji_limits
 
 
 def is_taken(body: Body, max_waypoints: int = 99) -> bool:
     state = vehicle(replace(TAKEOFF, max_waypoints=max_waypoints))
-    answer = approve(command(body), situation(state))
-    if hasattr(answer, "rule"):
-        assert refused_by(answer) == "dji_limits"
-        return False
-    return bool(approved(answer).link_ids)
+    answer = dji_limits(command(body), situation(state))
+    assert answer is None or (answer.rule == "dji_limits" and answer.reason)
+    return answer is None
 
 
 def line(count: int, step_m: float = 10.0) -> tuple[Waypoint, ...]:
@@ -145,3 +142,36 @@ class TestStick:
 )
 def test_frame_rates(fps_hz: float, taken: bool) -> None:
     assert is_taken(StartCamera(fps_hz)) is taken
+
+
+class TestSteered:
+    @pytest.mark.parametrize(
+        ("name", "taken", "refused"),
+        [
+            ("target", (LatLon(90.0, -180.0),), (LatLon(90.1, 0.0), LatLon(0.0, 180.1))),
+            ("height_above_takeoff_m", (0.0, 500.0), (-0.01, 500.01)),
+            ("speed_mps", (0.1, 15.0), (0.09, 0.0, -5.0, 15.01)),
+        ],
+    )
+    def test_a_goto_asks_for_nothing_that_sticks_cannot_say(
+        self, name: str, taken: tuple[object, ...], refused: tuple[object, ...]
+    ) -> None:
+        body = GoTo(LatLon(42.0, -93.6), 40.0, 5.0)
+        for value in taken:
+            assert is_taken(replace(body, **{name: value})), value  # type: ignore[arg-type]
+        for value in refused:
+            assert not is_taken(replace(body, **{name: value})), value  # type: ignore[arg-type]
+
+    @pytest.mark.parametrize("name", ["north_m", "east_m", "up_m"])
+    def test_a_nudge_is_a_short_way(self, name: str) -> None:
+        body = Nudge(0.0, 0.0, 0.0)
+        for value in (-100.0, 100.0):
+            assert is_taken(replace(body, **{name: value}))
+            assert not is_taken(replace(body, **{name: 1.001 * value}))
+
+    @pytest.mark.parametrize(("speed_mps", "taken"), [(0.1, 1), (15.0, 1), (0.0, 0), (15.1, 0)])
+    def test_a_nudge_has_a_speed(self, speed_mps: float, taken: int) -> None:
+        assert is_taken(Nudge(1.0, 0.0, 0.0, speed_mps)) == bool(taken)
+
+    def test_holding_asks_for_nothing(self) -> None:
+        assert is_taken(HoldPosition())

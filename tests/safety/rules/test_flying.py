@@ -3,6 +3,7 @@
 import pytest
 from tests.safety.cases import (
     NOW,
+    PLACE,
     STICK,
     S,
     approved,
@@ -13,12 +14,23 @@ from tests.safety.cases import (
     vehicle,
 )
 
-from recon.model.command import Body, Hover, LandNow, ReturnHome, StartCamera, StopCamera
+from recon.model.command import (
+    Body,
+    GoTo,
+    HoldPosition,
+    Hover,
+    LandNow,
+    Nudge,
+    ReturnHome,
+    StartCamera,
+    StopCamera,
+)
 from recon.model.stamped import Stamped
 from recon.safety import approve
 from recon.safety.rules.flying import flying
 
 MOVES = [Hover(), ReturnHome(), mission(), STICK]
+STEERED = [GoTo(PLACE, 40.0, 5.0), Nudge(1.0, 0.0, 0.0), HoldPosition()]
 
 
 @pytest.mark.parametrize("body", MOVES)
@@ -54,6 +66,14 @@ class TestWithTakeoff:
     def test_a_return_is_never_a_takeoff(self) -> None:
         judged = approve(command(ReturnHome(), takeoff=True), situation(vehicle(flying=False)))
         assert refused_by(judged) == "flying"
+
+
+@pytest.mark.parametrize("body", STEERED)
+@pytest.mark.parametrize("takeoff", [False, True])
+def test_a_steered_order_never_leaves_the_ground(body: Body, takeoff: bool) -> None:
+    asked = command(body, takeoff=takeoff)
+    assert flying(asked, situation(vehicle())) is None
+    assert refused_by(flying(asked, situation(vehicle(flying=False)))) == "flying"
 
 
 @pytest.mark.parametrize("flying", [True, False, None])

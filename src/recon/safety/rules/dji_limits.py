@@ -7,7 +7,15 @@ from math import hypot, inf
 from typing import Any
 
 from recon.geo.distance import horizontal_distance_m
-from recon.model.command import Command, FlyMission, Refusal, StartCamera, VirtualStick
+from recon.model.command import (
+    Command,
+    FlyMission,
+    GoTo,
+    Nudge,
+    Refusal,
+    StartCamera,
+    VirtualStick,
+)
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.safety.settings import SafetySettings
@@ -45,6 +53,29 @@ def _stick(body: VirtualStick, situation: Situation) -> Iterator[str]:
             f"timeout {body.timeout_s:g} s: more than 0 and up to "
             f"{limits.max_stick_timeout_s:g} s are allowed, for the app flies on by itself so long"
         )
+
+
+def _goto(body: GoTo, situation: Situation) -> Iterator[str]:
+    """A goto becomes sticks: what they could not say is refused as a whole."""
+    limits, target = situation.settings, body.target
+    if not target.is_valid():
+        yield f"{target.latitude_deg:g}, {target.longitude_deg:g} is no place on the globe"
+    if not 0.0 <= body.height_above_takeoff_m <= limits.max_stick_height_m:
+        yield f"height {body.height_above_takeoff_m:g} m: 0 to 500 m above takeoff are accepted"
+    yield from _steering_speed(body.speed_mps, limits)
+
+
+def _nudge(body: Nudge, situation: Situation) -> Iterator[str]:
+    longest_m = situation.settings.max_nudge_m
+    for name, moved_m in (("north", body.north_m), ("east", body.east_m), ("up", body.up_m)):
+        if abs(moved_m) > longest_m:
+            yield f"{moved_m:g} m {name}: a nudge is {longest_m:g} m at most; farther is a goto"
+    yield from _steering_speed(body.speed_mps, situation.settings)
+
+
+def _steering_speed(speed_mps: float, limits: SafetySettings) -> Iterator[str]:
+    if not limits.min_steering_mps <= speed_mps <= limits.max_stick_speed_mps:
+        yield f"speed {speed_mps:g} m/s: {limits.min_steering_mps:g} to 15 m/s are accepted"
 
 
 def _mission(body: FlyMission, situation: Situation) -> Iterator[str]:
@@ -137,5 +168,7 @@ def _distance_m(a: Waypoint, b: Waypoint) -> float:
 _CHECKS: dict[type, Callable[[Any, Situation], Iterator[str]]] = {
     StartCamera: _camera,
     VirtualStick: _stick,
+    GoTo: _goto,
+    Nudge: _nudge,
     FlyMission: _mission,
 }

@@ -3,12 +3,20 @@
 Apps in the field answer hover, return and missions on the ground with a takeoff.
 """
 
-from recon.model.command import Command, FlyMission, Hover, Refusal, ReturnHome, VirtualStick
+from recon.model.command import (
+    STEERED_BODIES,
+    Command,
+    FlyMission,
+    Hover,
+    Refusal,
+    ReturnHome,
+    VirtualStick,
+)
 from recon.model.vehicle import VehicleState
 from recon.safety.situation import Claimant, Situation
 
 RULE = "flying"
-_NEEDS_FLIGHT = (Hover, ReturnHome, FlyMission, VirtualStick)
+_NEEDS_FLIGHT = (Hover, ReturnHome, FlyMission, VirtualStick, *STEERED_BODIES)
 _MAY_TAKE_OFF = (Hover, FlyMission, VirtualStick)
 
 
