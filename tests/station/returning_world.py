@@ -5,20 +5,20 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import hypot
 
+from tests.ready import ready_airspace, ready_profile, ready_site
 from tests.station.station_world import HOME, World
 
 from recon.geo import point_from_enu
-from recon.model.airspace import Airspace, FlightLimits
+from recon.model.airspace import FlightLimits
 from recon.model.command import Phase
 from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
+from recon.model.vehicle import Failsafe
 from recon.model.zone import LandingPad, Zone
 from recon.safety import PreparedAirspace
 from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.manoeuvres import Grounded
-from recon.site import Site
 from recon.station.build import first_state
 from recon.station.fleet_return.record import Member, Stage
 from recon.station.virtual import VirtualDriver
@@ -151,18 +151,15 @@ def returning_world(
         faults=tuple(parse_fault(text) for text in faults),
     )
     apps = build_fleet(config, 0)
-    profiles = {
-        serial: VehicleProfile(
+    profiles = [
+        ready_profile(
             serial,
-            waypoint_altitude=AltitudeReference.TAKEOFF,
-            pad=points[serial],
-            endurance_s=1500.0,
+            points[serial],
+            failsafe=Failsafe.HOVER,
             go_home_height_m=go_home_height_m or app.aircraft.settings.go_home_height_m,
-            failsafe=Failsafe.GO_HOME,
-            camera_interval_s=2.0,
         )
         for serial, app in zip(serials, apps, strict=True)
-    }
+    ]
     for app, place, pad in zip(apps, places_m, pads_m, strict=True):
         motion = app.aircraft.motion
         app.aircraft.motion = replace(
@@ -173,13 +170,13 @@ def returning_world(
         if go_home_height_m is not None:
             settings = app.aircraft.settings
             app.aircraft.settings = replace(settings, go_home_height_m=go_home_height_m)
-    airspace = Airspace(
+    airspace = ready_airspace(
+        HOME,
         limits=FlightLimits(max_height_above_ground_m=max_height_m),
-        frame=FRAME,
         zones=zones,
         landing_pads=tuple(LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items()),
     )
-    station = first_state(Site(name="test", profiles=profiles))
+    station = first_state(ready_site(HOME, profiles))
     station = replace(station, airspace=PreparedAirspace(airspace))
     world = World(VirtualDriver(station, keeps_log=False))
     for app in apps:

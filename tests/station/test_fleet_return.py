@@ -12,16 +12,15 @@ from tests.station.station_world import square_mission
 
 from recon.model.authority import Leader
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
-from recon.model.event import AuthorityTaken
+from recon.model.event import AuthorityTaken, SeparationHoldSwitched
 from recon.station.fleet_return.record import Stage
 from recon.station.fleet_return.told import view
 
-FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 25), (-80, 220, 34), (0, 240, 30), (80, 220, 26)]
+FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
 """Six that hover over a field, east, north, up."""
 
-PADS = [(-75 + 30 * number, -20) for number in range(6)]
-CROSSED = list(reversed(PADS))
-"""Each flies to the pad at the other end of the row: their ways cross."""
+CROSSED = [(45, -20), (-15, -20), (-45, -20), (75, -20), (15, -20), (-75, -20)]
+"""Their pads in a row, each on the other side of it: their ways cross."""
 
 SIX = [f"SIM-{number}" for number in range(1, 7)]
 LOW_CEILING_M = 40.0
@@ -106,8 +105,12 @@ class TestSixInTwoWaves:
 
 
 def test_the_control_all_going_home_at_one_height_come_too_near() -> None:
-    """Why there are layers: the same fleet and pads, the return of the ICD, equal heights."""
+    """Why there are layers: the same fleet and pads, the return of the ICD, equal heights.
+
+    With its holds on, the separation watchdog would stop them on the way: kept apart, but not home.
+    """
     world = six_in_the_air(go_home_height_m=35.0)
+    world.world.driver.handle(SeparationHoldSwitched(is_on=False, by="test"))
     for serial in SIX:
         world.world.order(serial, ReturnHome())
     world.runs(120.0)
