@@ -61,6 +61,9 @@ class TestWhatItBecomes:
             ("EPSG:26915", 4.0, 400.0),
             ("EPSG:26975", 3.0, 400.0),
             ("EPSG:3417", 20.0, 1500.0),
+            ("EPSG:26715", 5.0, 400.0),
+            ("EPSG:3857", 5.0, 400.0),
+            ("+proj=utm +zone=15 +ellps=clrk66 +towgs84=-8,160,176 +units=m", 5.0, 400.0),
             ("+proj=laea +lat_0=41 +lon_0=-93 +datum=WGS84", 7.0, 400.0),
         ],
     )
@@ -181,6 +184,7 @@ def test_the_files_with_faults_are_whole_otherwise(tmp_path: Path) -> None:
 
 
 FAR_AWAY = Affine(5.0, 0.0, 100_000.0, 0.0, -5.0, 4_000_000.0)
+X, Y = square(UTM_15N, 5.0, 0.0)[0] @ (0.0, 0.0)
 COARSE = Affine(500.0, 0.0, 400_000.0, 0.0, -500.0, 4_700_000.0)
 PICTURE = np.zeros((3, 160, 160), np.uint8)
 
@@ -201,9 +205,21 @@ PICTURE = np.zeros((3, 160, 160), np.uint8)
         (flat(crs=None), "expected a GeoTIFF with a coordinate reference system and its place"),
         (flat(transform=None), "and its place in it, got one without"),
         (flat(crs="EPSG:4978"), "expected geographic or projected coordinates, got 'WGS 84'"),
+        (
+            flat(crs="+proj=utm +zone=15 +ellps=clrk66 +units=m"),
+            "expected a coordinate reference system that PROJ relates to WGS84, got: ",
+        ),
+        (
+            flat(crs="+proj=utm +zone=15 +ellps=clrk66 +nadgrids=/etc/passwd +units=m"),
+            "expected a coordinate reference system",
+        ),
+        (flat(transform=Affine(1e-9, 0, X, 0, -1e-9, Y)), "of 0.01 to 100 m, got 1e-09 m; is its"),
         (flat(transform=FAR_AWAY), "expected heights around the site's origin, got none; does"),
-        (flat(transform=COARSE), "expected pixels of 100 m at most, got 500 m"),
-        (flat(crs="EPSG:4326"), "of 100 m at most, got 414913 m; is its coordinate reference sys"),
+        (flat(transform=COARSE), "expected pixels of 0.01 to 100 m, got 500 m"),
+        (
+            flat(crs="EPSG:4326"),
+            "of 0.01 to 100 m, got 4.15e+05 m; is its coordinate reference sys",
+        ),
         (flat(bands=np.full((160, 160), np.nan)), "around the site's origin, got none; does the"),
         (flat(nodata=275.0), "around the site's origin, got none; does the file cover the site"),
         (flat(bands=np.full((160, 160), np.inf)), "expected heights of -1000 to 10000 m, got inf"),
@@ -311,6 +327,8 @@ WHOLE = geotiff(plane, pixel=20.0, dtype="float32", compress="deflate")
 @settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, len(WHOLE)), st.binary(max_size=12), st.booleans())
 @example(0, b"", False)
+@example(216, b"\x00\x00\x00\x00\x00\x01", False)
+@example(473, b"\x02", False)
 def test_no_bytes_raise_anything_but_a_site_error(
     tmp_path: Path, at: int, noise: bytes, is_cut: bool
 ) -> None:

@@ -27,7 +27,7 @@ FINEST_CELL_M = 1.0
 """Finer models show plants, not ground."""
 COARSEST_CELL_M = 30.0
 """Unless the area asks for more cells than are allowed."""
-COARSEST_PIXEL_M = 100.0
+FINEST_PIXEL_M, COARSEST_PIXEL_M = 0.01, 100.0
 """The world's free models have 30 or 90 m; in coarser ones whole hills are missing."""
 LARGEST_GAP_M = 10.0
 """Between the model and an altitude in site.toml or of a pad. More is another datum, feet taken for
@@ -100,10 +100,10 @@ def _pixel_m(file: HeightFile, frame: LocalFrame) -> float:
     if finest <= 0.0:
         raise SiteError(_elsewhere(file))
     pixel_m = 1.0 / finest
-    if pixel_m > COARSEST_PIXEL_M:
+    if not FINEST_PIXEL_M <= pixel_m <= COARSEST_PIXEL_M:
         raise SiteError(
-            f"{file.place}: expected pixels of {COARSEST_PIXEL_M:g} m at most, got {pixel_m:.0f} "
-            "m; is its coordinate reference system right?"
+            f"{file.place}: expected pixels of {FINEST_PIXEL_M:g} to {COARSEST_PIXEL_M:g} m, got "
+            f"{pixel_m:.3g} m; is its coordinate reference system right?"
         )
     return pixel_m
 

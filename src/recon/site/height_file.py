@@ -5,6 +5,7 @@ no other file or address; nothing is asked of the network.
 """
 
 import logging
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -38,6 +39,9 @@ HEIGHT_TYPES = frozenset({"int16", "uint16", "int32", "uint32", "float32", "floa
 METRES = frozenset({None, "", "m", "metre", "meter", "metres", "meters"})
 LOWEST_M, HIGHEST_M = -1_000.0, 10_000.0
 """What an altitude in site.toml may be."""
+_OTHER_FILES = re.compile(r"nadgrids=(?!@null\b)|geoidgrids|PARAMETERFILE", re.IGNORECASE)
+"""What makes PROJ look for a file that the reference system names."""
+_MEMORY = re.compile(r"/vsimem/[^/ ]*/")
 GDAL_OPTIONS = {"GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR", "CPL_DEBUG": "OFF"}
 
 
@@ -60,7 +64,8 @@ class HeightFile:
         points = np.column_stack([east_north_m, np.zeros(len(east_north_m))])
         latitude, longitude, _ = geo_from_enu(frame, points)
         x, y = self._map_from_globe.transform(longitude, latitude)
-        col, row = self._pixel_from_map @ (np.asarray(x), np.asarray(y))
+        with np.errstate(all="ignore"):
+            col, row = self._pixel_from_map @ (np.asarray(x), np.asarray(y))
         pixels = np.column_stack([row - 0.5, col - 0.5])
         return np.where(np.isfinite(pixels), pixels, np.nan)
 
@@ -99,7 +104,7 @@ def opened(path: Path) -> Iterator[HeightFile]:
     with (
         _without_chatter(),
         rasterio.Env(**GDAL_OPTIONS),
-        MemoryFile(data) as memory,
+        MemoryFile(data, filename="heights.tif") as memory,
         _dataset(place, memory) as dataset,
     ):
         _refuse_other_rasters(place, dataset)
@@ -154,23 +159,31 @@ def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
             "got one without; export it from QGIS with its CRS"
         )
     try:
-        crs = pyproj.CRS.from_user_input(dataset.crs.to_wkt())
+        text = dataset.crs.to_wkt()
+        crs = pyproj.CRS.from_user_input(text)
         flat = horizontal(crs)
-        globe = pyproj.Transformer.from_crs("EPSG:4326", flat, always_xy=True)
+        globe = pyproj.Transformer.from_crs("EPSG:4326", flat, always_xy=True, allow_ballpark=False)
     except (ProjError, RasterioError) as problem:
         raise SiteError(
-            f"{place}: expected a coordinate reference system that PROJ knows, got: {said(problem)}"
+            f"{place}: expected a coordinate reference system that PROJ relates to WGS84, got: "
+            f"{said(problem)}"
         ) from problem
-    if not (flat.is_geographic or flat.is_projected):
-        raise SiteError(f"{place}: expected geographic or projected coordinates, got {flat.name!a}")
+    if _OTHER_FILES.search(text):
+        raise SiteError(
+            f"{place}: expected a coordinate reference system without grid files of its own; "
+            "export it in EPSG:4326"
+        )
+    base = flat.source_crs if flat.is_bound and flat.source_crs is not None else flat
+    if not (base.is_geographic or base.is_projected):
+        raise SiteError(f"{place}: expected geographic or projected coordinates, got {base.name!a}")
     return HeightFile(place, dataset, crs, ~transform, globe)
 
 
 def horizontal(crs: pyproj.CRS) -> pyproj.CRS:
-    """Return the horizontal part of a reference system."""
-    if crs.is_bound and crs.source_crs is not None:
-        return horizontal(crs.source_crs)
-    return crs.sub_crs_list[0] if crs.is_compound else crs.to_2d()
+    """Return the horizontal part of a reference system, with its shift to WGS84 if it has one."""
+    if crs.is_bound:
+        return crs
+    return horizontal(crs.sub_crs_list[0]) if crs.is_compound else crs.to_2d()
 
 
 def _refuse_no_heights(place: str, heights_m: FloatArray) -> None:
@@ -185,4 +198,5 @@ def _refuse_no_heights(place: str, heights_m: FloatArray) -> None:
 def said(problem: BaseException) -> str:
     """Return a library's complaint in printable characters, on one line, not too long."""
     text = ascii(" ".join(str(problem).split()))[1:-1]
+    text = _MEMORY.sub("", text)
     return text if len(text) <= 200 else text[:197] + "..."
