@@ -21,6 +21,7 @@ from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve, judge
 from recon.station import authority, orders, stick_zero, streams
+from recon.station.air import in_the_air
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
 from recon.station.settings import StationSettings
@@ -140,18 +141,12 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
 
 def _traffic(station: Station, command: Command, serial: str) -> tuple[Traffic, ...]:
     """Every other vehicle that flies or was last known to, heard or not."""
-    intents = station.intents
-    known = tuple(
-        Traffic(vehicle, intents.get(key, _TOLD_NOTHING))
-        for key, vehicle in station.fleet.vehicles.items()
-        if key != serial and vehicle.is_flying.value is not False
-    )
-    return known + tuple(
-        Traffic(link.own_state)
-        for link in station.fleet.unbound_links()
-        if link.own_state.is_flying.value is True
-        and link.id != command.link_id
-        and (link.claimed_serial is None or link.claimed_serial != command.serial)
+    return tuple(
+        Traffic(state, station.intents.get(state.serial or "", _TOLD_NOTHING))
+        for state, claimed in in_the_air(station)
+        if state.serial is None or state.serial != serial
+        if claimed is None or claimed != command.serial
+        if state.serial is not None or state.link_id != command.link_id
     )
 
 

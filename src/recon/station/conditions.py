@@ -31,6 +31,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _unconfirmed(record)
         yield from _stopped_landing(station, record)
     yield from fleet_return.conditions(station)
+    yield from _watch(station)
     yield from _imaging(station)
     yield from _audit(station)
 
@@ -143,6 +144,27 @@ def _stopped_landing(station: Station, record: OrderRecord) -> Iterator[Conditio
     if has_stopped_landing(record.sent, vehicle):
         text = "it began to land as ordered, has stopped landing and still flies"
         yield _about(vehicle, "landing_stopped", Severity.CRITICAL, text, after_s=2.0)
+
+
+def _watch(station: Station) -> Iterator[Condition]:
+    """What the watchdogs found, and whether their findings may hold vehicles."""
+    for kept in station.watch.findings.values():
+        found = kept.finding
+        yield Condition(
+            key=found.key,
+            severity=found.severity,
+            rule=found.rule,
+            vehicle_name=found.vehicle_name,
+            text=found.text,
+            serial=found.serial,
+            link_id=found.link_id,
+            after_s=found.after_s,
+        )
+    if not station.watch.is_hold_on:
+        text = "vehicles in conflict are not held, only alarmed about: holding is switched off"
+        by = f" by {station.watch.switched_by}"
+        key = rule = "separation_hold_off"
+        yield Condition(key, Severity.WARNING, rule, "", f"{text}{by}")
 
 
 def _imaging(station: Station) -> Iterator[Condition]:

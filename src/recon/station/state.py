@@ -17,6 +17,7 @@ from recon.station.lease import Lease
 from recon.station.orders import OrderBook
 from recon.station.settings import StationSettings
 from recon.station.sighting import Sighting
+from recon.station.watch_state import Watch
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +62,8 @@ class Station:
     """The newest fleet return, until the station is started anew or another one begins."""
     sticks: Mapping[str, PendingZero] = field(default_factory=dict)
     """Sticks being held, by serial: each ends with a zero from the station."""
+    watch: Watch = field(default_factory=Watch)
+    """What the watchdogs found, held and were told."""
 
     def target(self, serial: str | None, link_id: int | None) -> VehicleState | None:
         """Return the state an order's target has now: a vehicle, or a link without identity.

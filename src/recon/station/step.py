@@ -30,7 +30,7 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.station import alarms, authority, commanding, imaging, restart
+from recon.station import air, alarms, authority, commanding, imaging, restart, watch
 from recon.station.alarms import Condition, Severity
 from recon.station.commanding import Stepped
 from recon.station.conditions import conditions
@@ -71,7 +71,11 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return replace(station, holders=station.holders | {holder}), ()
         case HolderGone(holder):
             return commanding.holder_gone(station, holder, now_ns)
-        case PreflightOverridden() | GhostDismissed() | SeparationHoldSwitched():
+        case GhostDismissed():
+            return air.dismiss(station, event, now_ns), ()
+        case SeparationHoldSwitched():
+            return watch.switch_hold(station, event), ()
+        case PreflightOverridden():
             return station, ()
         case FleetReturnOrdered():
             return fleet_return_call(station, event, now_ns)
@@ -101,7 +105,7 @@ def _lost_unidentified(station: Station, link_id: int, reason: str, now_ns: int)
         link_id=link_id,
     )
     book = alarms.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return air.keep_lost(replace(station, alarms=book), link_id)
 
 
 def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
@@ -130,9 +134,10 @@ def _tick(station: Station, now_ns: int) -> Stepped:
     station, sticks = commanding.drive_streams(station, now_ns)
     station, orders = commanding.watch(station, now_ns)
     station, homewards = advance_fleet_return(station, now_ns)
+    station, holds = watch.look(station, now_ns)
     kept = station.settings.alarms_kept
     book = alarms.update(station.alarms, conditions(station, now_ns), now_ns, kept)
-    return replace(station, alarms=book), (*closing, *sticks, *orders, *homewards)
+    return replace(station, alarms=book), (*closing, *sticks, *orders, *homewards, *holds)
 
 
 def _is_eye(station: Station, vehicle: VehicleState) -> bool:

@@ -1,0 +1,37 @@
+"""Compares each vehicle's battery with what the way home takes from where it is now."""
+
+from collections.abc import Iterator
+
+from recon.model.severity import Severity
+from recon.safety.energy import fraction_to_get_home
+from recon.safety.watchdogs.finding import Finding
+from recon.safety.watchdogs.picture import Picture, Watched
+
+RULE = "battery_home"
+
+
+def battery_home(picture: Picture) -> Iterator[Finding]:
+    """Find vehicles in the air whose battery is about to be too low to come home."""
+    for watched in picture.flying:
+        has = watched.state.battery_fraction.value
+        if has is None:
+            continue
+        needs = fraction_to_get_home(watched.state, picture.airspace, picture.energy)
+        if needs is not None:
+            yield from _compared(watched, has, needs, picture)
+
+
+def _compared(watched: Watched, has: float, needs: float, picture: Picture) -> Iterator[Finding]:
+    """Below what a landing must leave it is critical; below the reserve it is time to turn back."""
+    least, reserve = picture.energy.landing_fraction, _reserve(picture)
+    told = f"its battery is at {has:.0%} and the way home takes {needs:.0%}"
+    if has < needs + least and not (watched.is_coming_down and has >= needs):
+        text = f"{told}: it may not come home; land it where it can, or call it home now"
+        yield watched.finding(RULE, Severity.CRITICAL, text, after_s=1.0)
+    elif has < needs + reserve and not watched.is_coming_down:
+        text = f"{told}: less than the reserve of {reserve:.0%} would be left; call it home"
+        yield watched.finding(RULE, Severity.WARNING, text, after_s=1.0)
+
+
+def _reserve(picture: Picture) -> float:
+    return picture.airspace.airspace.limits.battery_reserve_fraction

@@ -1,0 +1,108 @@
+"""How near pairs of vehicles come in the next seconds, in shares of what must be kept.
+
+A pair's closeness at a moment is the larger of its horizontal gap over the horizontal separation
+and its vertical gap over the vertical one. Below 1 both are violated.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.safety.prediction import Ghost, Separation
+from recon.safety.prediction.course import FloatArray
+from recon.safety.prediction.sampling import Samples
+
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """How a pair comes near: when it first is too near (None: never), and its least closeness."""
+
+    in_s: float | None
+    least: float
+    horizontal_m: float
+    vertical_m: float
+
+
+def near_pairs(ahead: Samples, need: Separation) -> tuple[IntArray, IntArray]:
+    """Return the pairs whose reach lets them come too near at all, as two arrays of indices."""
+    reach_m = np.hypot(
+        ahead.east_m - ahead.east_m[:, :1], ahead.north_m - ahead.north_m[:, :1]
+    ).max(axis=1, initial=0.0) + ahead.radius_m.max(axis=1, initial=0.0)
+    first, second = np.triu_indices(len(reach_m), k=1)
+    apart_m = np.hypot(
+        ahead.east_m[first, 0] - ahead.east_m[second, 0],
+        ahead.north_m[first, 0] - ahead.north_m[second, 0],
+    )
+    low_m, high_m = (
+        ahead.low_m.min(axis=1, initial=np.inf),
+        ahead.high_m.max(axis=1, initial=-np.inf),
+    )
+    is_near = apart_m < need.horizontal_m + reach_m[first] + reach_m[second]
+    is_near &= low_m[first] - high_m[second] < need.vertical_m
+    is_near &= low_m[second] - high_m[first] < need.vertical_m
+    return first[is_near], second[is_near]
+
+
+def closeness(
+    a: Samples, first: IntArray, b: Samples, second: IntArray, need: Separation
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return closeness, horizontal and vertical gaps of P pairs at K moments, each (P, K)."""
+    horizontal_m = np.hypot(
+        a.east_m[first] - b.east_m[second], a.north_m[first] - b.north_m[second]
+    )
+    horizontal_m -= a.radius_m[first] + b.radius_m[second]
+    vertical_m = np.maximum(a.low_m[first] - b.high_m[second], b.low_m[second] - a.high_m[first])
+    return _shares(horizontal_m, vertical_m, need), horizontal_m, vertical_m
+
+
+def ghost_closeness(
+    ahead: Samples, times_s: FloatArray, ghost: Ghost, need: Separation
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the same of V vehicles to where a ghost may be, each (V, K)."""
+    radius_m = np.minimum(ghost.largest_m, ghost.radius_m + ghost.growth_mps * times_s)
+    circle_m = np.hypot(ahead.east_m - ghost.east_m, ahead.north_m - ghost.north_m) - radius_m
+    over_m = ahead.low_m - ghost.high_m
+    vertical_m = np.maximum(over_m, ghost.low_m - ahead.high_m)
+    least, horizontal_m = _shares(circle_m, vertical_m, need), circle_m
+    if ghost.home_m is not None:
+        landing_m = np.hypot(ahead.east_m - ghost.home_m[0], ahead.north_m - ghost.home_m[1])
+        landing_m -= ghost.corridor_half_m
+        way_m = _to_way_m(ahead, ghost, ghost.home_m) - ghost.corridor_half_m
+        beside_m = np.maximum(over_m, ghost.corridor_low_m - ahead.high_m)
+        least = np.minimum(least, _shares(landing_m, vertical_m, need))
+        least = np.minimum(least, _shares(way_m, beside_m, need))
+        horizontal_m = np.minimum(horizontal_m, np.minimum(landing_m, way_m))
+    return least, horizontal_m, vertical_m
+
+
+def approach(
+    close: FloatArray, horizontal_m: FloatArray, vertical_m: FloatArray, times_s: FloatArray
+) -> Approach:
+    """Return how one pair, (K,) each, comes near."""
+    nearest = int(np.argmin(close))
+    is_too_near = close < 1.0
+    first_s = float(times_s[int(np.argmax(is_too_near))]) if is_too_near.any() else None
+    return Approach(
+        first_s,
+        float(close[nearest]),
+        max(0.0, float(horizontal_m[nearest])),
+        max(0.0, float(vertical_m[nearest])),
+    )
+
+
+def _shares(horizontal_m: FloatArray, vertical_m: FloatArray, need: Separation) -> FloatArray:
+    shares: FloatArray = np.maximum(horizontal_m / need.horizontal_m, vertical_m / need.vertical_m)
+    return shares
+
+
+def _to_way_m(ahead: Samples, ghost: Ghost, home_m: tuple[float, float]) -> FloatArray:
+    """How far each is from the straight line home."""
+    along = np.array(home_m) - (ghost.east_m, ghost.north_m)
+    squared = max(float(along @ along), 1e-9)
+    east_m, north_m = ahead.east_m - ghost.east_m, ahead.north_m - ghost.north_m
+    share = np.clip((east_m * along[0] + north_m * along[1]) / squared, 0.0, 1.0)
+    far: FloatArray = np.hypot(east_m - share * along[0], north_m - share * along[1])
+    return far

@@ -1,0 +1,145 @@
+"""Looks ahead for the boundary and for zones: alarms, and stops what is about to leave or enter.
+
+What is looked at is where each vehicle is, and the way it will go in 1.25 times the time in which
+it would cover its stopping distance: straight on, or along its way as it was told. A vehicle that
+is about to go out, or into a keep-out zone, is held. One that is there already is alarmed about,
+and held only while it goes deeper. What lands or returns is not stopped on its way, and what a
+pilot leads is alarmed about only.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from recon.geo import Polygon
+from recon.model.severity import Severity
+from recon.model.zone import ZoneKind
+from recon.safety.airspace import PreparedAirspace, PreparedZone
+from recon.safety.heights import height_words, stays_above, stays_below, zone_datum
+from recon.safety.prediction.course import ALL_HEIGHTS_M
+from recon.safety.watchdogs.finding import Finding
+from recon.safety.watchdogs.picture import Picture
+from recon.safety.watchdogs.way import BoolArray, IntArray, Way, way_ahead
+
+FENCE, ZONE, HEIGHT = "fence_ahead", "zone_ahead", "height_limit"
+
+DEEPER_M = 0.5
+"""A vehicle on the wrong side may drift this much before it counts as going deeper."""
+
+
+def fences(picture: Picture) -> Iterator[Finding]:
+    """Find vehicles that are, or will soon be, where the site says they must not."""
+    frame = picture.airspace.airspace.frame
+    if frame is None or not picture.flying:
+        return
+    way = way_ahead(picture, frame)
+    if picture.airspace.boundary is not None:
+        yield from _boundary(picture, way, picture.airspace.boundary)
+    for zone in picture.airspace.zones_of(ZoneKind.KEEP_OUT):
+        yield from _keep_out(picture, way, zone)
+    for zone in picture.airspace.zones_of(ZoneKind.HEIGHT):
+        yield from _heights(picture, way, zone)
+    yield from _ceiling(picture, way)
+
+
+def _boundary(picture: Picture, way: Way, fence: Polygon) -> Iterator[Finding]:
+    for index in np.flatnonzero(~fence.holds(way.ahead)):
+        inside_m, later_m = _depths_m(way, fence, int(index))
+        if inside_m < 0.0:
+            text = f"is {-inside_m:.0f} m outside the site's boundary"
+            stops = later_m < inside_m - DEEPER_M
+        else:
+            text, stops = "is about to leave the site's boundary", True
+        is_out = inside_m < 0.0
+        yield _found(picture, int(index), FENCE, text, is_bad=is_out, stops=stops)
+
+
+def _keep_out(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
+    indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead))
+    name = zone.zone.name
+    for index in indices[_has_its_heights(picture.airspace, way, zone, indices)]:
+        inside_m, later_m = _depths_m(way, zone.polygon, int(index))
+        if inside_m >= 0.0:
+            text = f"is in the keep-out zone {name!r}"
+            stops = later_m > inside_m + DEEPER_M
+        else:
+            text, stops = f"is about to enter the keep-out zone {name!r}", True
+        is_in = inside_m >= 0.0
+        yield _found(picture, int(index), ZONE, text, about=name, is_bad=is_in, stops=stops)
+
+
+def _heights(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
+    """Heights are alarmed about and not held: standing too low or too high is no better."""
+    airspace, name, datum = picture.airspace, zone.zone.name, zone_datum(zone.zone)
+    indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead))
+    triangles_m = way.triangles_m[indices]
+    floor_m, ceiling_m = zone.zone.floor_m, zone.zone.ceiling_m
+    if ceiling_m is not None:
+        is_over = ~stays_below(airspace, triangles_m, way.high_m[indices], ceiling_m, datum)
+        text = f"is too high, or soon will be: at most {height_words(ceiling_m, datum)} in {name!r}"
+        for index in indices[is_over]:
+            yield _found(picture, int(index), HEIGHT, text, about=name)
+    if floor_m is not None:
+        is_under = ~stays_above(airspace, triangles_m, way.low_m[indices], floor_m, datum)
+        text = f"is too low, or soon will be: at least {height_words(floor_m, datum)} in {name!r}"
+        for index in indices[is_under & ~_may_be_low(picture, way)[indices]]:
+            yield _found(picture, int(index), HEIGHT, text, about=name)
+
+
+def _ceiling(picture: Picture, way: Way) -> Iterator[Finding]:
+    most_m = picture.airspace.airspace.limits.max_height_above_ground_m
+    is_over = ~stays_below(picture.airspace, way.triangles_m, way.high_m, most_m)
+    is_known = way.high_m < ALL_HEIGHTS_M
+    for index in np.flatnonzero(is_over & is_known):
+        text = f"is higher above ground than {most_m:g} m, or soon will be"
+        yield _found(picture, int(index), HEIGHT, text)
+
+
+def _has_its_heights(
+    airspace: PreparedAirspace, way: Way, zone: PreparedZone, indices: IntArray
+) -> BoolArray:
+    """Which of these vehicles' ways have a height that is the zone's."""
+    datum, ceiling_m, floor_m = zone_datum(zone.zone), zone.zone.ceiling_m, zone.zone.floor_m
+    triangles_m = way.triangles_m[indices]
+    has = np.ones(len(indices), dtype=np.bool_)
+    if ceiling_m is not None:
+        has &= ~stays_above(airspace, triangles_m, way.low_m[indices], ceiling_m, datum)
+    if floor_m is not None:
+        has &= ~stays_below(airspace, triangles_m, way.high_m[indices], floor_m, datum)
+    return has
+
+
+def _may_be_low(picture: Picture, way: Way) -> BoolArray:
+    """Who takes off or lands."""
+    is_coming_down = [watched.is_coming_down for watched in picture.flying]
+    return way.is_near_home | np.array(is_coming_down, dtype=np.bool_)
+
+
+def _depths_m(way: Way, polygon: Polygon, index: int) -> tuple[float, float]:
+    """How far inside a vehicle is now and at the end of its way; negative outside."""
+    both_m = np.stack([way.here_m[index], way.there_m[index]])
+    now_m, later_m = polygon.distance_to_edge_m(both_m)
+    return float(now_m), float(later_m)
+
+
+def _found(
+    picture: Picture,
+    index: int,
+    rule: str,
+    text: str,
+    *,
+    about: str = "",
+    is_bad: bool = False,
+    stops: bool = False,
+) -> Finding:
+    watched = picture.flying[index]
+    severity = Severity.CRITICAL if is_bad else Severity.ERROR
+    finding = watched.finding(rule, severity, text, about=f":{about}" if about else "")
+    is_due = picture.lasted_s(finding.key) >= picture.settings.confirm_s
+    if not (stops and is_due and watched.may_be_held) or watched.is_coming_down:
+        return finding
+    if watched.was_held_within_s(picture.now_ns, picture.settings.hold_again_s):
+        return finding
+    held = replace(finding, holds=watched.state.serial)
+    return replace(held, text=f"{finding.text}; it is told to hold")

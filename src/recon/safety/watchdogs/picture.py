@@ -1,0 +1,136 @@
+"""The one picture all watchdogs look at."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from recon.model.authority import Leader
+from recon.model.geo import LatLon
+from recon.model.intent import Commanded, Intent
+from recon.model.severity import Severity
+from recon.model.units import NS_PER_S
+from recon.model.vehicle import FlightMode, VehicleState
+from recon.safety.airspace import PreparedAirspace
+from recon.safety.energy_settings import EnergySettings
+from recon.safety.prediction import Flyer, Ghost, PredictionSettings
+from recon.safety.watch_settings import WatchSettings
+from recon.safety.watchdogs.ahead import Ahead
+from recon.safety.watchdogs.finding import Finding
+
+_COMING_DOWN_MODES = frozenset(
+    {FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING, FlightMode.GO_HOME}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """The station has held a vehicle: since when, and how fast it was then."""
+
+    since_ns: int
+    speed_mps: float
+
+    def holds_against(self, intent: Intent) -> bool:
+        """Return whether nothing newer has been ordered."""
+        return intent.since_ns <= self.since_ns or intent.commanded is Commanded.HOLD
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """A vehicle's telemetry before the newest: where it was, how fast, and when."""
+
+    place: LatLon
+    speed_mps: float
+    at_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A vehicle that flies or may, and what the station knows beside its state.
+
+    `flyer` is None while it has never told where it is; `ghost` is set while it is not heard.
+    `stick_quiet_s` is set while sticks are streamed to it: how long none was sent.
+    """
+
+    state: VehicleState
+    intent: Intent = Intent()
+    leader: Leader = Leader.OPERATOR
+    flyer: Flyer | None = None
+    ghost: Ghost | None = None
+    held: Held | None = None
+    before: Before | None = None
+    is_eye: bool = False
+    stick_quiet_s: float | None = None
+
+    @property
+    def key(self) -> str:
+        """What its findings are told apart by."""
+        return self.state.serial or f"link {self.state.link_id}"
+
+    @property
+    def name(self) -> str:
+        """The name people see."""
+        return self.state.display_name
+
+    @property
+    def is_heard_flying(self) -> bool:
+        """Whether it tells of itself that it flies, and where."""
+        return self.flyer is not None and self.ghost is None and self.state.is_flying.value is True
+
+    @property
+    def is_coming_down(self) -> bool:
+        """Whether it lands or returns: it is on its way out of the air."""
+        return (
+            self.intent.commanded in (Commanded.LAND, Commanded.RETURN)
+            or self.state.flight_mode.value in _COMING_DOWN_MODES
+        )
+
+    @property
+    def may_be_held(self) -> bool:
+        """Whether a hold would be the station's to give: in the air, known, not the pilot's."""
+        return (
+            self.is_heard_flying
+            and self.state.serial is not None
+            and self.leader is not Leader.PILOT
+        )
+
+    def was_held_within_s(self, now_ns: int, seconds: float) -> bool:
+        """Return whether the station has held it so lately."""
+        return self.held is not None and now_ns - self.held.since_ns < seconds * NS_PER_S
+
+    def finding(
+        self, rule: str, severity: Severity, text: str, *, about: str = "", after_s: float = 0.0
+    ) -> Finding:
+        """Return a finding about this vehicle, which its text names first."""
+        return Finding(
+            key=f"{rule}:{self.key}{about}",
+            rule=rule,
+            severity=severity,
+            vehicle_name=self.name,
+            text=f"{self.name}: {text}",
+            serial=self.state.serial,
+            link_id=self.state.link_id,
+            after_s=after_s,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Everything that is watched, at one moment. `ahead` is of the `flying` ones, in their order.
+
+    `since_ns` says for how long each finding has been made, by its key.
+    """
+
+    now_ns: int
+    watched: tuple[Watched, ...]
+    flying: tuple[Watched, ...]
+    ahead: Ahead
+    airspace: PreparedAirspace
+    settings: WatchSettings = field(default_factory=WatchSettings)
+    prediction: PredictionSettings = field(default_factory=PredictionSettings)
+    energy: EnergySettings = field(default_factory=EnergySettings)
+    since_ns: Mapping[str, int] = field(default_factory=dict)
+    is_hold_on: bool = True
+
+    def lasted_s(self, key: str) -> float:
+        """Return how long a finding has been made, 0 for a new one."""
+        since_ns = self.since_ns.get(key)
+        return 0.0 if since_ns is None else (self.now_ns - since_ns) / NS_PER_S

@@ -1,0 +1,197 @@
+"""Keeps vehicles in the air apart: alarms ten seconds ahead, and holds in time.
+
+First an alarm. When what is left is little more than the time that both need to stop, the vehicle
+of lower priority is held; while the conflict stays predicted although that hold has had its time to
+show, or when the other's own time to stop runs out, the other one too.
+
+Who yields: first the one with the lower `priority` in its profile, then any other before the eye,
+then what guidance leads before what an operator leads, then the later serial. A vehicle that lands
+or returns yields last, for it is leaving the air and its battery may not last. And nobody is held
+whom that does not help: the one in front of a faster one behind, one that flies out of a ghost's
+circle, one that lands out of another's way. What a pilot leads is never held, only alarmed about;
+what is on the ground is neither held nor a reason to hold.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from recon.model.authority import Leader
+from recon.model.severity import Severity
+from recon.safety.prediction import Ghost, Separation
+from recon.safety.watchdogs.closeness import (
+    Approach,
+    IntArray,
+    approach,
+    closeness,
+    ghost_closeness,
+    near_pairs,
+)
+from recon.safety.watchdogs.finding import Finding
+from recon.safety.watchdogs.picture import Picture, Watched
+
+RULE = "separation"
+SWITCHED_OFF = "holding is switched off"
+
+
+def separation(picture: Picture) -> Iterator[Finding]:
+    """Find the pairs, and the vehicles and ghosts, that come too near within the next seconds."""
+    if not picture.flying:
+        return
+    need = watched_separation(picture)
+    flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
+    first, second = near_pairs(flies, need)
+    close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need)
+    for row in np.flatnonzero((close < 1.0).any(axis=1)):
+        found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
+        yield _pair(picture, int(first[row]), int(second[row]), found, need)
+    for watched in picture.watched:
+        if watched.ghost is not None:
+            yield from _ghost(picture, watched.ghost, need)
+
+
+def watched_separation(picture: Picture) -> Separation:
+    """Return what is watched for: what must be kept, and a margin."""
+    limits, settings = picture.airspace.airspace.limits, picture.settings
+    return Separation(
+        limits.min_separation_horizontal_m + settings.margin_horizontal_m,
+        limits.min_separation_vertical_m + settings.margin_vertical_m,
+    )
+
+
+def in_order_of_yielding(one: Watched, other: Watched) -> tuple[Watched, Watched]:
+    """Return who yields first and who second."""
+
+    def rank(watched: Watched) -> tuple[bool, int, bool, bool]:
+        profile = watched.state.profile
+        priority = 0 if profile is None else profile.priority
+        is_operators = watched.leader is not Leader.GUIDANCE
+        return watched.is_coming_down, priority, watched.is_eye, is_operators
+
+    later, earlier = sorted((one, other), key=lambda watched: watched.key, reverse=True)
+    return (later, earlier) if rank(later) <= rank(earlier) else (earlier, later)
+
+
+def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separation) -> Finding:
+    yielding, second = in_order_of_yielding(picture.flying[one], picture.flying[other])
+    indices = {id(picture.flying[one]): one, id(picture.flying[other]): other}
+    keys = sorted((yielding.key, second.key))
+    key = f"{RULE}:{keys[0]}:{keys[1]}"
+    held = None
+    if _is_due(picture, key, found, yielding, second):
+        for candidate, stays in ((yielding, second), (second, yielding)):
+            pair = np.array([indices[id(candidate)]]), np.array([indices[id(stays)]])
+            if _may_wait(picture, candidate, stays, found):
+                break
+            if _can_be_held(picture, candidate) and _helps(picture, pair, found, need):
+                held = candidate
+                break
+    text = f"{_how(found)} {second.name}{_outcome(picture, held)}"
+    return _finding(picture, key, yielding, text, found, held)
+
+
+def _ghost(picture: Picture, ghost: Ghost, need: Separation) -> Iterator[Finding]:
+    ahead = picture.ahead
+    flies = ghost_closeness(ahead.as_it_flies, ahead.times_s, ghost, need)
+    rows = np.flatnonzero((flies[0] < 1.0).any(axis=1))
+    if len(rows) == 0:
+        return
+    if_held = ghost_closeness(ahead.if_held, ahead.times_s, ghost, need)
+    for row in rows:
+        watched = picture.flying[row]
+        found = approach(flies[0][row], flies[1][row], flies[2][row], ahead.times_s)
+        instead = approach(if_held[0][row], if_held[1][row], if_held[2][row], ahead.times_s)
+        key = f"{RULE}:{watched.key}:ghost of {ghost.name}"
+        is_due = _is_due(picture, key, found, watched)
+        can = is_due and _can_be_held(picture, watched) and _is_better(picture, found, instead)
+        held = watched if can else None
+        text = (
+            f"{_how(found)} where {ghost.name} may be, which has not been heard for "
+            f"{ghost.age_s:.0f} s{_outcome(picture, held)}"
+        )
+        yield _finding(picture, key, watched, text, found, held)
+
+
+def _is_due(picture: Picture, key: str, found: Approach, *both: Watched) -> bool:
+    """Whether it is time to hold: the alarm has been there, and little more time is left than all
+    of them need to stop, one after the other."""
+    settings, prediction = picture.settings, picture.prediction
+    assert found.in_s is not None
+    stop_s = prediction.reaction_s + settings.hold_margin_s
+    stop_s += sum(_speed_mps(watched) for watched in both) / prediction.braking_mps2
+    return picture.lasted_s(key) >= settings.confirm_s and found.in_s <= stop_s
+
+
+def _may_wait(picture: Picture, candidate: Watched, stays: Watched, found: Approach) -> bool:
+    """Whether a hold just given may still show before the other one has to stop too."""
+    settings, prediction = picture.settings, picture.prediction
+    if not candidate.was_held_within_s(picture.now_ns, settings.effect_s):
+        return False
+    assert found.in_s is not None
+    needs_s = prediction.reaction_s + _speed_mps(stays) / prediction.braking_mps2
+    return found.in_s > needs_s + 0.5 * settings.hold_margin_s
+
+
+def _can_be_held(picture: Picture, candidate: Watched) -> bool:
+    if not picture.is_hold_on or not candidate.may_be_held:
+        return False
+    return not candidate.was_held_within_s(picture.now_ns, picture.settings.hold_again_s)
+
+
+def _helps(
+    picture: Picture, pair: tuple[IntArray, IntArray], found: Approach, need: Separation
+) -> bool:
+    """Whether the first of the pair, held, comes less near to the second, which flies on."""
+    ahead = picture.ahead
+    close, horizontal_m, vertical_m = closeness(
+        ahead.if_held, pair[0], ahead.as_it_flies, pair[1], need
+    )
+    instead = approach(close[0], horizontal_m[0], vertical_m[0], ahead.times_s)
+    return _is_better(picture, found, instead)
+
+
+def _is_better(picture: Picture, found: Approach, instead: Approach) -> bool:
+    settings = picture.settings
+    if instead.in_s is None:
+        return True
+    assert found.in_s is not None
+    if instead.in_s >= found.in_s + settings.helps_s:
+        return True
+    is_no_sooner = instead.in_s >= found.in_s
+    return is_no_sooner and instead.least >= found.least + settings.helps_share
+
+
+def _speed_mps(watched: Watched) -> float:
+    return 0.0 if watched.flyer is None else watched.flyer.speed_mps
+
+
+def _how(found: Approach) -> str:
+    assert found.in_s is not None
+    when = "is" if found.in_s == 0.0 else f"in {found.in_s:.0f} s comes"
+    return (
+        f"{when} too near, as near as {found.horizontal_m:.0f} m and {found.vertical_m:.0f} m in "
+        "height, to"
+    )
+
+
+def _outcome(picture: Picture, held: Watched | None) -> str:
+    if not picture.is_hold_on:
+        return f"; {SWITCHED_OFF}: act now"
+    return "" if held is None else f"; {held.name} is told to hold"
+
+
+def _finding(
+    picture: Picture, key: str, watched: Watched, text: str, found: Approach, held: Watched | None
+) -> Finding:
+    assert found.in_s is not None
+    is_near = found.in_s <= picture.settings.near_s
+    return Finding(
+        key=key,
+        rule=RULE,
+        severity=Severity.CRITICAL if is_near else Severity.ERROR,
+        vehicle_name=watched.name,
+        text=f"{watched.name}: {text}",
+        serial=watched.state.serial,
+        link_id=watched.state.link_id,
+        holds=None if held is None else held.state.serial,
+    )

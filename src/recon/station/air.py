@@ -1,0 +1,90 @@
+"""What may be in the air: heard or not, identified or not; and ghosts taken out of it."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from recon.model.event import GhostDismissed
+from recon.model.intent import Intent
+from recon.model.vehicle import VehicleState
+from recon.safety.prediction import Ghost, flyer, ghost_of
+from recon.safety.watchdogs import plane_of
+from recon.station.state import Station
+
+_TOLD_NOTHING = Intent()
+LOST_KEPT = 16
+"""Vehicles that flew without a serial and were lost: beyond this the oldest are forgotten, for an
+app that connects again and again must not fill the air."""
+
+
+def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
+    """Yield every vehicle, and every link without one, that flies or was last known to.
+
+    Beside it the serial that is claimed for it: a link in conflict claims another vehicle's. A
+    ghost that somebody has dismissed is not among them until it is heard again.
+    """
+    for serial, vehicle in station.fleet.vehicles.items():
+        if vehicle.is_flying.value is not False and not _is_dismissed(station, serial, vehicle):
+            yield vehicle, serial
+    for link in station.fleet.unbound_links():
+        if link.own_state.is_flying.value is True:
+            yield link.own_state, link.claimed_serial
+    for state in station.watch.lost.values():
+        yield state, None
+
+
+def ghost(station: Station, vehicle: VehicleState, now_ns: int) -> Ghost | None:
+    """Return where a vehicle may be that is not heard; None for one on the ground or dismissed."""
+    if vehicle.is_flying.value is False or vehicle.core_received_at_ns is None:
+        return None
+    if _is_dismissed(station, vehicle.serial or "", vehicle):
+        return None
+    prediction = station.settings.safety.prediction
+    plane = plane_of(station.airspace, (vehicle,))
+    seen = flyer(vehicle, station.airspace, plane, now_ns, prediction)
+    intent = station.intents.get(vehicle.serial or "", _TOLD_NOTHING)
+    return None if seen is None else ghost_of(seen, intent, prediction)
+
+
+def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
+    """Return whether there is something to dismiss: a ghost, or a vehicle that never told where."""
+    if name in station.watch.lost:
+        return True
+    vehicle = station.fleet.vehicles.get(name)
+    if vehicle is None or vehicle.core_received_at_ns is None:
+        return False
+    is_placeless = vehicle.position.value is None and not vehicle.track
+    may_fly = vehicle.is_flying.value is not False
+    is_out = _is_dismissed(station, name, vehicle)
+    return ghost(station, vehicle, now_ns) is not None or (is_placeless and may_fly and not is_out)
+
+
+def dismiss(station: Station, event: GhostDismissed, now_ns: int) -> Station:
+    """Return the station after somebody has taken a ghost out of the air; only what is one."""
+    if not is_hazard_unseen(station, event.serial, now_ns):
+        return station
+    watch = station.watch
+    if event.serial in watch.lost:
+        lost = {name: state for name, state in watch.lost.items() if name != event.serial}
+        return replace(station, watch=replace(watch, lost=lost))
+    heard_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
+    dismissed = {**watch.dismissed, event.serial: heard_at_ns}
+    return replace(station, watch=replace(watch, dismissed=dismissed))
+
+
+def keep_lost(station: Station, link_id: int) -> Station:
+    """Return the station that remembers what flew on a link that ends without a serial."""
+    link = station.fleet.links[link_id]
+    lost = {**station.watch.lost, lost_name(link_id): link.own_state}
+    newest = dict(list(lost.items())[-LOST_KEPT:])
+    return replace(station, watch=replace(station.watch, lost=newest))
+
+
+def lost_name(link_id: int) -> str:
+    """Return what the ghost of a vehicle without a serial is dismissed by."""
+    return f"link-{link_id}"
+
+
+def _is_dismissed(station: Station, serial: str, vehicle: VehicleState) -> bool:
+    """Until it is heard again; nothing but telemetry brings it back."""
+    dismissed = station.watch.dismissed
+    return serial in dismissed and dismissed[serial] == vehicle.core_received_at_ns

@@ -1,0 +1,160 @@
+"""The watch: ten times a second the watchdogs look at a picture of the air.
+
+What they find becomes alarms, and holds: orders like any other, judged by the gate, on record and
+repeated until telemetry shows them.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from recon.model.authority import Lead
+from recon.model.command import Hover
+from recon.model.event import OperatorOrder, SeparationHoldSwitched
+from recon.model.intent import Intent
+from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.model.vehicle import VehicleState
+from recon.safety.watchdogs import (
+    WATCHDOGS,
+    Before,
+    Finding,
+    Held,
+    Picture,
+    Watched,
+    take_picture,
+)
+from recon.station import commanding
+from recon.station.air import in_the_air
+from recon.station.commanding import Stepped
+from recon.station.outputs import Output
+from recon.station.own_ids import take_id
+from recon.station.state import Station
+from recon.station.watch_state import Kept, StickCount
+
+_NOBODY_YET = Lead()
+_TOLD_NOTHING = Intent()
+
+
+def look(station: Station, now_ns: int) -> Stepped:
+    """Return the station after the watchdogs looked, if it is time, and the holds they want."""
+    looked_at_ns, settings = station.watch.looked_at_ns, station.settings.safety.watch
+    if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
+        return station, ()
+    station = _with_stick_counts(station, now_ns)
+    kept = station.watch.findings
+    picture = take_picture(
+        _watched(station, now_ns),
+        station.airspace,
+        station.settings.safety,
+        now_ns,
+        {key: one.since_ns for key, one in kept.items()},
+        is_hold_on=station.watch.is_hold_on,
+    )
+    findings = [finding for watchdog in WATCHDOGS for finding in watchdog(picture)]
+    watch = replace(
+        station.watch,
+        looked_at_ns=now_ns,
+        findings=_kept(kept, findings, now_ns, seconds_to_ns(settings.lingers_s)),
+        before=_before(picture),
+        held=_still_held(station),
+    )
+    return _hold(replace(station, watch=watch), findings, picture, now_ns)
+
+
+def switch_hold(station: Station, event: SeparationHoldSwitched) -> Station:
+    """Return the station after somebody switched the holds on or off."""
+    watch = replace(station.watch, is_hold_on=event.is_on, switched_by=event.by)
+    return replace(station, watch=watch)
+
+
+def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
+    watch, eye = station.watch, station.imaging.eye_serial
+    for vehicle, claimed in in_the_air(station):
+        if vehicle.serial != claimed:
+            continue  # a link in conflict: most likely it tells of the same aircraft
+        serial = vehicle.serial or ""
+        count = watch.sticks.get(serial)
+        quiet_s = None if count is None else (now_ns - count.changed_at_ns) / NS_PER_S
+        yield Watched(
+            vehicle,
+            station.intents.get(serial, _TOLD_NOTHING),
+            station.leads.get(serial, _NOBODY_YET).leader,
+            held=watch.held.get(serial),
+            before=watch.before.get(serial),
+            is_eye=vehicle.serial is not None and vehicle.serial == eye,
+            stick_quiet_s=quiet_s,
+        )
+
+
+def _with_stick_counts(station: Station, now_ns: int) -> Station:
+    """Note for each stream of sticks when its last one left."""
+    if not station.streams and not station.watch.sticks:
+        return station
+    counts: dict[str, StickCount] = {}
+    for serial, lease in station.streams.items():
+        if lease.closing is not None:
+            continue
+        before = station.watch.sticks.get(serial)
+        known = (lease.started_at_ns, lease.packets_sent)
+        is_same = before is not None and (before.started_at_ns, before.sent) == known
+        counts[serial] = before if before and is_same else StickCount(*known, now_ns)
+    return replace(station, watch=replace(station.watch, sticks=counts))
+
+
+def _kept(
+    kept: Mapping[str, Kept], findings: Iterable[Finding], now_ns: int, lingers_ns: int
+) -> dict[str, Kept]:
+    """What is found now, and what was found a moment ago: alarms must not flicker."""
+    still = {key: one for key, one in kept.items() if now_ns - one.seen_ns <= lingers_ns}
+    for finding in findings:
+        before = still.get(finding.key)
+        since_ns = now_ns if before is None else before.since_ns
+        still[finding.key] = Kept(finding, since_ns, now_ns)
+    return still
+
+
+def _before(picture: Picture) -> dict[str, Before]:
+    """Each vehicle's newest position, to compare the next one with."""
+    newest: dict[str, Before] = {}
+    for one in picture.watched:
+        serial, position = one.state.serial, one.state.position
+        if serial is None:
+            continue
+        if position.value is not None and position.received_at_ns is not None:
+            speed_mps = 0.0 if one.flyer is None else one.flyer.speed_mps
+            newest[serial] = Before(position.value, speed_mps, position.received_at_ns)
+        elif one.before is not None:
+            newest[serial] = one.before
+    return newest
+
+
+def _still_held(station: Station) -> dict[str, Held]:
+    """The holds that nothing has ended: no newer order, and not the ground."""
+    return {
+        serial: held
+        for serial, held in station.watch.held.items()
+        if held.holds_against(station.intents.get(serial, _TOLD_NOTHING))
+        and _may_fly(station.fleet.vehicles.get(serial))
+    }
+
+
+def _may_fly(vehicle: VehicleState | None) -> bool:
+    return vehicle is not None and vehicle.is_flying.value is not False
+
+
+def _hold(station: Station, findings: Iterable[Finding], picture: Picture, now_ns: int) -> Stepped:
+    """Order a hold for each vehicle that a finding wants held, once."""
+    wanted = {finding.holds: finding for finding in findings if finding.holds is not None}
+    speeds_mps = {
+        one.state.serial: one.flyer.speed_mps for one in picture.flying if one.flyer is not None
+    }
+    outputs: tuple[Output, ...] = ()
+    for serial, finding in wanted.items():
+        if serial is None:
+            continue
+        station, number = take_id(station)
+        order = OperatorOrder(number, Hover(), f"station: {finding.rule}", serial)
+        station, sent = commanding.place(station, order, now_ns)
+        held = {**station.watch.held, serial: Held(now_ns, speeds_mps.get(serial, 0.0))}
+        station = replace(station, watch=replace(station.watch, held=held))
+        outputs += sent
+    return station, outputs

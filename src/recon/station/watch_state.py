@@ -1,0 +1,46 @@
+"""What the watch remembers from one look to the next."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from recon.model.vehicle import VehicleState
+from recon.safety.watchdogs import Before, Finding, Held
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """A finding, since when it has been made, and when last."""
+
+    finding: Finding
+    since_ns: int
+    seen_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class StickCount:
+    """How many sticks a lease has sent, and when that number last changed."""
+
+    started_at_ns: int
+    sent: int
+    changed_at_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """The watch's memory; everything by serial, or by finding's key.
+
+    `dismissed` has for each ghost that somebody took out of the air the time of its last telemetry:
+    anything newer brings the vehicle back. `lost` are vehicles that flew without ever saying a
+    serial when their links ended, by the name their ghosts are dismissed by.
+    """
+
+    looked_at_ns: int | None = None
+    findings: Mapping[str, Kept] = field(default_factory=dict)
+    held: Mapping[str, Held] = field(default_factory=dict)
+    before: Mapping[str, Before] = field(default_factory=dict)
+    sticks: Mapping[str, StickCount] = field(default_factory=dict)
+    dismissed: Mapping[str, int | None] = field(default_factory=dict)
+    lost: Mapping[str, VehicleState] = field(default_factory=dict)
+    is_hold_on: bool = True
+    """Whether the watchdogs' findings hold vehicles; switched by a person."""
+    switched_by: str = ""
