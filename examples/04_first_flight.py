@@ -9,14 +9,11 @@ import signal
 import sys
 
 from recon.client import Mission, Position, Refusal, Station, Waypoint
-from recon.model.geo import GeoPoint
-from recon.model.vehicle import AltitudeReference, VehicleProfile
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
-from recon.site import Site
+from recon.site import demo_site_folder, load_site
 from recon.station.run import RunConfig, Started, run
 
-HOME = GeoPoint(41.9012, -93.6034, 275.0)
 LEG_DEG = 0.0001
 """About 11 m north."""
 
@@ -50,12 +47,18 @@ def leg_north(start: Position) -> Mission:
 
 async def with_a_simulated_drone() -> None:
     """Start a station and a simulated drone on free ports, fly, and end both."""
-    profile = VehicleProfile("SIM-1", waypoint_altitude=AltitudeReference.TAKEOFF)
-    site = Site(name="first flight", profiles={"SIM-1": profile})
+    site = load_site(demo_site_folder())
+    assert site.frame is not None
+    pads = {serial: profile.pad for serial, profile in site.profiles.items() if profile.pad}
+    home = site.frame.origin
 
     async def fly(started: Started) -> None:
         config = SimulationConfig(
-            home=HOME, station_port=started.link_port, vehicle_count=1, airborne=Airborne.NONE
+            home=home,
+            station_port=started.link_port,
+            vehicle_count=1,
+            airborne=Airborne.NONE,
+            pads=pads,
         )
         drone = asyncio.create_task(run_fleet(config, say=lambda line: None))
         try:

@@ -8,23 +8,27 @@ from typing import Any
 
 import uvicorn
 from starlette.types import ASGIApp
+from tests.ready import ready_profile, ready_site
 
 from recon.api.app import create_app
 from recon.api.security import Access
+from recon.geo import point_from_enu
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
-from recon.model.geo import GeoPoint
-from recon.model.vehicle import AltitudeReference, VehicleProfile
+from recon.model.geo import GeoPoint, LocalFrame
 from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
-from recon.site import Site
 from recon.station.build import first_state
 from recon.station.driver import AsyncioDriver, station_clock
 from recon.station.service import Service
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 SERIALS = ("SIM-1", "SIM-2")
+PADS = {
+    serial: point_from_enu(LocalFrame(HOME), (20.0 * number, 0.0, 0.0))
+    for number, serial in enumerate(SERIALS)
+}
 
 
 @asynccontextmanager
@@ -69,11 +73,7 @@ async def running_station(
     faults: tuple[str, ...] = (),
 ) -> AsyncIterator[str]:
     """Run a station and its simulated apps; yields the station's address."""
-    profiles = {
-        serial: VehicleProfile(serial, waypoint_altitude=AltitudeReference.TAKEOFF)
-        for serial in SERIALS
-    }
-    site = Site(name="test", profiles=profiles)
+    site = ready_site(HOME, (ready_profile(s, PADS[s], n) for n, s in enumerate(SERIALS)))
     driver = AsyncioDriver(first_state(site), station_clock())
     driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
     async with AsyncExitStack() as stack:
@@ -84,6 +84,7 @@ async def running_station(
             home=HOME,
             station_port=links.port,
             vehicle_count=vehicles,
+            pads=PADS,
             airborne=Airborne.ALL if airborne else Airborne.NONE,
             faults=tuple(parse_fault(text) for text in faults),
         )

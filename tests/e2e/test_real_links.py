@@ -6,13 +6,14 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
 import uvloop
+from tests.ready import ready_site
 
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.command import Body, FlyMission, LandNow
 from recon.model.mission import Mission, Waypoint
-from recon.model.vehicle import AltitudeReference, VehicleProfile, VehicleState
-from recon.site import Site
+from recon.model.vehicle import VehicleState
+from recon.site import demo_site_folder, load_site
 from recon.station.build import first_state
 from recon.station.driver import AsyncioDriver, station_clock
 from recon.station.service import Service
@@ -49,11 +50,9 @@ class Field:
 @asynccontextmanager
 async def field(*sim_options: str) -> AsyncIterator[Field]:
     """Run a station and a fleet of two that flies; both end."""
-    profiles = {
-        serial: VehicleProfile(serial, waypoint_altitude=AltitudeReference.TAKEOFF)
-        for serial in SERIALS
-    }
-    site = Site(name="test", profiles=profiles)
+    demo = load_site(demo_site_folder())  # where the simulator starts by itself
+    assert demo.frame is not None
+    site = ready_site(demo.frame.origin, (demo.profiles[serial] for serial in SERIALS))
     driver = AsyncioDriver(first_state(site), station_clock())
     driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
     await links.start("127.0.0.1", 0)

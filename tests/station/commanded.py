@@ -2,7 +2,8 @@
 
 from collections.abc import Iterable
 
-from tests.fleet.said import S, core, extended
+from tests.fleet.said import PLACE, S, core, extended
+from tests.ready import ready_airspace, ready_profile
 
 from recon.fleet.state import Fleet
 from recon.model.command import Body, Phase
@@ -17,23 +18,26 @@ from recon.model.event import (
     PacketReceived,
     Tick,
 )
+from recon.model.geo import GeoPoint
 from recon.model.report import Report
-from recon.model.vehicle import AltitudeReference, FlightMode, VehicleProfile
-from recon.safety import ApprovedCommand
+from recon.model.vehicle import FlightMode
+from recon.safety import ApprovedCommand, PreparedAirspace
 from recon.station.alarms import Alarm
 from recon.station.orders import OrderRecord
 from recon.station.outputs import SendCommand
 from recon.station.state import Station
 from recon.station.step import step
 
-PROFILE = VehicleProfile("A", waypoint_altitude=AltitudeReference.TAKEOFF)
+HOME = GeoPoint(PLACE.latitude_deg, PLACE.longitude_deg, 260.0)
+PROFILES = {serial: ready_profile(serial, HOME, n) for n, serial in enumerate("AB")}
+AIRSPACE = PreparedAirspace(ready_airspace(HOME))
 
 
 class Told:
     """Links carry an order at once, unless `is_stuck`; time goes on in ticks of 0.1 s."""
 
     def __init__(self) -> None:
-        self.station = Station(fleet=Fleet(profiles={"A": PROFILE}))
+        self.station = Station(fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE)
         self.now_ns = 0
         self.is_stuck = False
         self.sent: list[tuple[float, int, int]] = []

@@ -3,15 +3,16 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from tests.ready import ready_profile, ready_site
+
 from recon.model.command import Body, Phase
 from recon.model.event import OperatorOrder
 from recon.model.geo import GeoPoint
 from recon.model.mission import Mission, Waypoint
-from recon.model.vehicle import AltitudeReference, VehicleProfile, VehicleState
+from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
 from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
-from recon.site import Site
 from recon.station.build import first_state
 from recon.station.orders import OrderRecord
 from recon.station.virtual import FakeLink, VirtualDriver
@@ -153,11 +154,16 @@ def world(
         faults=tuple(parse_fault(text) for text in faults),
     )
     apps = build_fleet(config, 0)
-    profiles = {
-        app.settings.serial: VehicleProfile(app.settings.serial, waypoint_altitude=believed)
+    profiles = (
+        ready_profile(
+            app.settings.serial,
+            app.settings.home,
+            waypoint_altitude=believed,
+            go_home_height_m=app.aircraft.settings.go_home_height_m,
+        )
         for app in apps
-    }
-    site = Site(name="test", profiles=profiles)
+    )
+    site = ready_site(HOME, profiles)
     made = World(VirtualDriver(first_state(site), keeps_log=keeps_log), make_link)
     for app in apps:
         made.connect(app)

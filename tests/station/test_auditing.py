@@ -3,9 +3,11 @@
 import pytest
 from tests.link.approved import core, extended
 from tests.station.audited import Audited
+from tests.station.commanded import AIRSPACE, PROFILES
 from tests.station.station_world import square_mission, world
 
 from recon import wire
+from recon.fleet.state import Fleet
 from recon.model.authority import Leader
 from recon.model.command import (
     FlyMission,
@@ -44,7 +46,7 @@ class Steps:
     """A station stepped by hand, audited."""
 
     def __init__(self) -> None:
-        self.station = Station()
+        self.station = Station(fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE)
         self.memory = Auditing()
         self.now_ns = NS_PER_S
         self.entries: list[AuditEntry] = []

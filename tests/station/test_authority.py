@@ -1,4 +1,4 @@
-"""Who leads a vehicle: taken over by word, lost by a stop, and always the pilot's for the taking."""
+"""Who leads a vehicle: taken by word, lost by a stop, and always the pilot's for the taking."""
 
 import pytest
 from tests.fleet.said import core, extended

@@ -1,16 +1,17 @@
 """Missions, sticks and camera orders; what is sent, and what becomes of it."""
 
+from dataclasses import replace
+
 import pytest
 from tests.fleet.said import core, extended
 from tests.safety.cases import STICK, mission
-from tests.station.commanded import Told, flying
+from tests.station.commanded import PROFILES, Told, flying
 
 from recon.fleet.state import Fleet
 from recon.model.command import Body, Hover, Phase, ReturnHome, StartCamera, StopCamera
 from recon.model.event import CommandSent
 from recon.model.report import ImageReport
-from recon.model.vehicle import AltitudeReference, FlightMode, VehicleProfile
-from recon.station.state import Station
+from recon.model.vehicle import AltitudeReference, FlightMode
 
 GROUND = (core(flying=False), extended(mode=FlightMode.GPS_ATTI))
 HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
@@ -96,18 +97,18 @@ class TestMission:
         assert told.record(told.order(mission())).altitudes == (
             "sent as 40.0 to 40.0 m above takeoff"
         )
-        profile = VehicleProfile("A", waypoint_altitude=AltitudeReference.WGS84)
+        profile = replace(PROFILES["A"], waypoint_altitude=AltitudeReference.WGS84)
         told = Told()
-        told.station = Station(fleet=Fleet(profiles={"A": profile}))
+        told.station = replace(told.station, fleet=Fleet(profiles={"A": profile}))
         told.opens(1, *HOVERING, core())
         order = told.order(mission())
         assert told.handed[0].altitude_offset_m == 260.0
         assert "sent as 300.0 to 300.0 m WGS84" in (told.record(order).altitudes or "")
 
     def test_a_vehicle_whose_altitude_reference_is_unset_gets_none(self) -> None:
-        reports = (core(), extended("B"))
+        reports = (core(), extended("C"))
         told = Told().opens(1, *reports)
-        order = told.order(mission(), "B")
+        order = told.order(mission(), "C")
         assert told.record(order).note.startswith("altitude_reference: ")
         assert told.sent == []
 

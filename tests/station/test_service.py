@@ -1,16 +1,18 @@
 """The station as the API sees it: orders to many, all stop, and a view of everything."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from tests.link.approved import core, extended
+from tests.ready import ready_profile, ready_site
 
 from recon import wire
 from recon.api.schema import StationState
 from recon.model.command import Hover, LandNow
 from recon.model.event import LinkClosed, LinkOpened, PacketReceived
+from recon.model.geo import GeoPoint
 from recon.model.units import NS_PER_S
-from recon.model.vehicle import AltitudeReference, VehicleProfile
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.build import first_state, worker_tasks
 from recon.station.driver import AsyncioDriver
@@ -22,8 +24,8 @@ class Bench:
     """A service whose clock and events are given by hand."""
 
     def __init__(self) -> None:
-        profile = VehicleProfile("A", "Anna", waypoint_altitude=AltitudeReference.TAKEOFF)
-        site = Site(name="here", profiles={"A": profile})
+        home = GeoPoint(42.0, -93.6, 270.0)
+        site = replace(ready_site(home, [ready_profile("A", home, name="Anna")]), name="here")
         self.now_ns = NS_PER_S
         self.driver = AsyncioDriver(first_state(site), lambda: self.now_ns)
         self.service = Service.around(self.driver, site, "/captures")

@@ -9,5 +9,6 @@ def is_zero_stick(body: Body) -> bool:
     It ends a stick before it: it stops the aircraft over the ground, and its height was judged
     when that stick was.
     """
-    is_stick = isinstance(body, VirtualStick)
-    return is_stick and body.velocity_x_mps == 0.0 and body.velocity_y_mps == 0.0
+    if not isinstance(body, VirtualStick):
+        return False
+    return body.velocity_x_mps == 0.0 and body.velocity_y_mps == 0.0

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from recon.model.command import Command, Refusal
 from recon.safety.rules.altitude_reference import altitude_reference
+from recon.safety.rules.battery import battery
 from recon.safety.rules.dji_limits import dji_limits
 from recon.safety.rules.finite_numbers import finite_numbers
 from recon.safety.rules.flying import flying
@@ -31,5 +32,6 @@ RULES: tuple[Rule, ...] = (
     flying,
     link_age,
     gnss,
+    battery,
     separation,
 )

@@ -1,0 +1,200 @@
+"""How much of its battery a vehicle needs: the station's energy model.
+
+It counts time under load. A full battery hovers for the profile's `endurance_s`; each second of
+level flight, climb or descent costs its load times that of a second of hovering, all of it times
+the load of the wind, which the aircraft warns of in three levels. So a fraction of a battery is
+loaded seconds over endurance.
+
+- A leg costs its level part at the leg's speed and, after that, its vertical part: climbing while
+  flying is no cheaper than one after the other. Unless the mission is curved, each leg begins and
+  ends standing still.
+- A waypoint costs its loiter and the turn of its gimbal.
+- The way home from a point costs the climb to the go-home height, the straight way at that height,
+  and the landing. While that height is not told, it is taken to be the highest the site allows.
+
+The way home is dearest at the end of a leg: along it, both the way flown and the straight way home
+are convex. So it is enough to ask at the legs' ends. Points are (north_m, east_m, height_m): from
+home, height above takeoff. `docs/energy-model.md` tells the same to pilots.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot
+
+from recon.geo.distance import offset_north_east_m
+from recon.model.geo import LatLon
+from recon.model.mission import Mission
+from recon.model.vehicle import VehicleState
+from recon.safety.airspace import PreparedAirspace
+from recon.safety.datum import home
+from recon.safety.energy_settings import EnergySettings
+
+Point = tuple[float, float, float]
+"""North and east of home, and above takeoff, in metres."""
+
+
+@dataclass(frozen=True, slots=True)
+class Consumption:
+    """What one vehicle uses, in the air as it is now."""
+
+    endurance_s: float
+    wind_load: float
+    go_home_height_m: float
+    settings: EnergySettings
+
+    def fraction(self, loaded_s: float) -> float:
+        """Return the share of a full battery for seconds under load, in the present wind."""
+        return loaded_s * self.wind_load / self.endurance_s
+
+    def leg(self, start: Point, end: Point, speed_mps: float, *, stops: bool = True) -> float:
+        """Return the fraction for one leg; with `stops` it begins and ends standing still."""
+        s = self.settings
+        level_m, up_m = _distance_m(start, end), end[2] - start[2]
+        level_s = level_m / max(speed_mps, s.slowest_mps)
+        if stops and level_m > 0.0:
+            level_s += speed_mps / s.brake_mps2
+        vertical = _vertical(up_m, s)
+        return self.fraction(level_s * s.level_load + vertical)
+
+    def home(self, point: Point) -> float:
+        """Return the fraction for the way home from a point, landing included."""
+        s = self.settings
+        height_m = max(point[2], self.go_home_height_m)
+        above: Point = (0.0, 0.0, height_m)
+        turned: Point = (point[0], point[1], height_m)
+        climb = self.fraction(_vertical(height_m - point[2], s))
+        return climb + self.leg(turned, above, s.home_mps) + self.landing(height_m)
+
+    def landing(self, height_m: float) -> float:
+        """Return the fraction for landing from a height."""
+        s = self.settings
+        seconds = max(0.0, height_m) / s.landing_mps + s.touchdown_s
+        return self.fraction(seconds * s.sink_load)
+
+
+@dataclass(frozen=True, slots=True)
+class Need:
+    """What a path asks of the battery: the most, at any of its points, to fly there and then home.
+
+    `flown` is the share used until there, `back` the way home from there, `at` the number of that
+    point in the path; 0 is where it starts.
+    """
+
+    flown: float
+    back: float
+    at: int
+
+    @property
+    def whole(self) -> float:
+        """Both together."""
+        return self.flown + self.back
+
+
+def consumption(
+    vehicle: VehicleState, airspace: PreparedAirspace, settings: EnergySettings
+) -> Consumption | None:
+    """Return what a vehicle uses, or None while its profile tells no endurance."""
+    profile = vehicle.profile
+    if profile is None or profile.endurance_s is None:
+        return None
+    height_m = profile.go_home_height_m
+    if height_m is None:
+        height_m = airspace.airspace.limits.max_height_above_ground_m
+    return Consumption(profile.endurance_s, _wind_load(vehicle, settings), height_m, settings)
+
+
+def place_of(vehicle: VehicleState) -> Point | None:
+    """Return where a vehicle was last heard to be, from its home; None when either is unknown."""
+    at, base = vehicle.position.value, home(vehicle)
+    height_m = vehicle.height_above_takeoff_m.value
+    if at is None or base is None or height_m is None:
+        return None
+    return (*offset_north_east_m(base, at), height_m)
+
+
+def fraction_to_get_home(
+    vehicle: VehicleState, airspace: PreparedAirspace, settings: EnergySettings
+) -> float | None:
+    """Return the share of a full battery that the way home takes from where a vehicle is now.
+
+    From straight above its takeoff point it is the landing's. None when its endurance, its place
+    or its home is not known: then nobody can say.
+    """
+    uses, here = consumption(vehicle, airspace, settings), place_of(vehicle)
+    return None if uses is None or here is None else uses.home(here)
+
+
+def path_need(uses: Consumption, points: Sequence[Point], speed_mps: float) -> Need:
+    """Return what straight legs at one speed need, from the first point, the way home included."""
+    legs = [uses.leg(start, end, speed_mps) for start, end in pairwise(points)]
+    return _dearest(uses, points, legs)
+
+
+def mission_points(vehicle: VehicleState, mission: Mission) -> list[Point] | None:
+    """Return where a mission leads, its waypoints after where the vehicle is; None if unknown."""
+    here, base = place_of(vehicle), home(vehicle)
+    if here is None or base is None:
+        return None
+    waypoints: list[Point] = [
+        (
+            *offset_north_east_m(base, LatLon(waypoint.latitude_deg, waypoint.longitude_deg)),
+            waypoint.height_above_takeoff_m,
+        )
+        for waypoint in mission.waypoints
+    ]
+    return [here, *waypoints]
+
+
+def mission_need(uses: Consumption, points: Sequence[Point], mission: Mission) -> Need:
+    """Return what a mission needs, from where the vehicle is on, the way home included.
+
+    The way to the first waypoint is flown at that waypoint's speed; each waypoint's actions cost
+    before its leg. One that lands at its end still must be able to come home from there.
+    """
+    stops = not mission.curved
+    speeds = [mission.waypoints[0].speed_mps, *(w.speed_mps for w in mission.waypoints[:-1])]
+    legs = [
+        uses.leg(start, end, speed_mps, stops=stops)
+        + uses.fraction(_pause_s(mission, number, uses))
+        for number, ((start, end), speed_mps) in enumerate(
+            zip(pairwise(points), speeds, strict=True)
+        )
+    ]
+    return _dearest(uses, points, legs)
+
+
+def _pause_s(mission: Mission, number: int, uses: Consumption) -> float:
+    """How long the mission stands at one waypoint for its actions."""
+    waypoint = mission.waypoints[number]
+    turns_s = 0.0 if waypoint.gimbal_pitch_deg is None else uses.settings.gimbal_s
+    return (waypoint.loiter_s or 0.0) + turns_s
+
+
+def _dearest(uses: Consumption, points: Sequence[Point], legs: Sequence[float]) -> Need:
+    """The point from which flown way and way home together take most; the first of equals."""
+    flown = 0.0
+    dearest = Need(0.0, uses.home(points[0]), 0)
+    for number, (point, leg) in enumerate(zip(points[1:], legs, strict=True), start=1):
+        flown += leg
+        need = Need(flown, uses.home(point), number)
+        dearest = max(dearest, need, key=lambda each: each.whole)
+    return dearest
+
+
+def _vertical(up_m: float, settings: EnergySettings) -> float:
+    """Loaded seconds of a climb, or of a descent."""
+    if up_m > 0.0:
+        return up_m / settings.climb_mps * settings.climb_load
+    return -up_m / settings.sink_mps * settings.sink_load
+
+
+def _wind_load(vehicle: VehicleState, settings: EnergySettings) -> float:
+    level = vehicle.wind_level.value
+    if level is None:
+        return settings.unknown_wind_load
+    return settings.wind_loads[min(level, len(settings.wind_loads) - 1)]
+
+
+def _distance_m(start: Point, end: Point) -> float:
+    return hypot(end[0] - start[0], end[1] - start[1])
