@@ -17,7 +17,6 @@ from recon.record.audit import AuditEntry
 from recon.record.audit_log import KEPT_ENTRIES, AuditLog
 from recon.vehicles.reports import to_report
 
-
 HOVER = {"serials": ["A", "Z"], "order": {"kind": "hover"}}
 
 

@@ -22,6 +22,7 @@ from recon.client.returning import Returning
 from recon.client.station import Station
 from recon.client.telemetry import Aged, Heading, Position, Telemetry, Velocity
 from recon.client.vehicle import Vehicle
+from recon.client.watched import Alarm, AuditEntry, AuditPage, StopAnswer
 from recon.model.command import Phase, Refusal, StickFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import Staleness
@@ -29,6 +30,9 @@ from recon.model.vehicle import Staleness
 __all__ = [
     "AddressError",
     "Aged",
+    "Alarm",
+    "AuditEntry",
+    "AuditPage",
     "BadAnswerError",
     "ClientError",
     "ConnectionLostError",
@@ -48,6 +52,7 @@ __all__ = [
     "Station",
     "StationUnreachableError",
     "StickFrame",
+    "StopAnswer",
     "Telemetry",
     "TookTooLongError",
     "Vehicle",

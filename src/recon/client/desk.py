@@ -46,6 +46,25 @@ class OrderDesk:
         (result,) = await self.give((serial,), body, takeoff)
         return result.answer
 
+    async def refusal_of(self, serial: str, body: Body, takeoff: bool = False) -> Refusal | None:
+        """Return why an order would be refused now, None when it would not; none is given."""
+        form = order_form(body)
+        if isinstance(form, Refusal):
+            return form
+        asked = {"serials": [serial], "order": form, "takeoff": takeoff}
+        if isinstance(body, STEERED_BODIES):
+            asked["holder"] = self._holder()
+        try:
+            answer = await self.http.post(
+                "/api/orders/check", asked, OrderMessage, "results of a check"
+            )
+        except OrderInvalidError as problem:
+            return Refusal("order_form", str(problem))
+        (result,) = answer.results
+        if result.accepted:
+            return None
+        return Refusal(result.rule or "unnamed", result.reason or "no reason was given")
+
     async def all_stop(self) -> tuple[VehicleAnswer, ...]:
         """Hold everything that flies."""
         run_started_ns = self._run_started_ns()

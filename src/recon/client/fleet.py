@@ -18,17 +18,17 @@ class Fleet:
     def __init__(self, desk: OrderDesk) -> None:
         self._desk = desk
 
-    async def hold(self) -> tuple[VehicleAnswer, ...]:
-        """Stop and hold every vehicle."""
-        return await self._give(Hover())
+    async def hold(self, serials: Sequence[str] | None = None) -> tuple[VehicleAnswer, ...]:
+        """Stop and hold every vehicle, or those named."""
+        return await self._give(Hover(), serials)
 
-    async def land(self) -> tuple[VehicleAnswer, ...]:
-        """Land every vehicle where it is."""
-        return await self._give(LandNow())
+    async def land(self, serials: Sequence[str] | None = None) -> tuple[VehicleAnswer, ...]:
+        """Land every vehicle where it is, or those named."""
+        return await self._give(LandNow(), serials)
 
-    async def return_home(self) -> tuple[VehicleAnswer, ...]:
-        """Fly every vehicle home at once, each at the height set in the aircraft."""
-        return await self._give(ReturnHome())
+    async def return_home(self, serials: Sequence[str] | None = None) -> tuple[VehicleAnswer, ...]:
+        """Fly every vehicle home at once, or those named, each at the aircraft's own height."""
+        return await self._give(ReturnHome(), serials)
 
     async def return_in_layers(
         self, serials: Sequence[str] | None = None
@@ -45,8 +45,12 @@ class Fleet:
         state = await self._desk.http.get("/api/state", StateMessage, "a state")
         return () if state.fleet_return is None else state.fleet_return.vehicles
 
-    async def _give(self, body: Body) -> tuple[VehicleAnswer, ...]:
+    async def _give(
+        self, body: Body, serials: Sequence[str] | None
+    ) -> tuple[VehicleAnswer, ...]:
+        if serials is not None:
+            return await self._desk.give(tuple(dict.fromkeys(serials)), body)
         # Asked anew: the stream's list may be old, and a vehicle left out is a vehicle that flies.
         state = await self._desk.http.get("/api/state", StateMessage, "a state")
-        serials = [v.serial for v in state.vehicles if v.serial is not None]
-        return await self._desk.give(serials, body) if serials else ()
+        known = [v.serial for v in state.vehicles if v.serial is not None]
+        return await self._desk.give(known, body) if known else ()

@@ -76,6 +76,16 @@ class Http:
         except BadAnswerError as problem:
             raise self._maybe_sent(str(problem)) from problem
 
+    async def tell(self, path: str) -> None:
+        """Send a request that has no answer but that it was taken; raises as `post` does."""
+        try:
+            status, data = await self._ask("POST", path, None)
+        except (httpx.ConnectError, httpx.ConnectTimeout) as problem:
+            raise self._unreachable(problem) from problem
+        except (httpx.HTTPError, TimeoutError, BadAnswerError) as problem:
+            raise self._maybe_sent(_reason(problem, self._answer_within_s)) from problem
+        self._refuse(status, data, path)
+
     async def _ask(self, method: str, path: str, content: bytes | None) -> tuple[int, bytes]:
         headers = {} if content is None else {"Content-Type": "application/json"}
         async with (

@@ -25,6 +25,11 @@ class Life(msgspec.Struct, frozen=True):
     times_sent: int
     history: tuple[PhaseChange, ...]
 
+    @property
+    def is_there(self) -> bool:
+        """Whether a steered order's vehicle has come to its goal."""
+        return any("it is there" in change.note for change in self.history)
+
     def has_reached(self, phase: Phase) -> bool:
         """Return whether the order is in this phase or has been."""
         return phase is self.phase or any(change.phase is phase for change in self.history)

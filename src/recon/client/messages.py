@@ -8,6 +8,7 @@ from recon.client.errors import BadAnswerError
 from recon.client.life import Life
 from recon.client.returning import FleetReturnMessage
 from recon.client.telemetry import Telemetry
+from recon.client.watched import Alarm
 from recon.model.units import seconds_to_ns
 
 M = TypeVar("M")
@@ -28,6 +29,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     station: StationMessage
     vehicles: tuple[Telemetry, ...]
     commands: tuple[Life, ...]
+    alarms: tuple[Alarm, ...]
     fleet_return: FleetReturnMessage | None = None
 
     @property

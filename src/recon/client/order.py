@@ -1,5 +1,6 @@
 """An order the station accepted, and what becomes of it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from recon.client.errors import ConnectionLostError, TookTooLongError
@@ -29,6 +30,22 @@ class Order:
         Raises `TookTooLongError`, and `ConnectionLostError` when the station was started anew and
         knows nothing of this order.
         """
+        return await self._wait(
+            lambda life: life.has_reached(until) or life.phase.is_final, until.value, timeout_s
+        )
+
+    async def arrival(self, timeout_s: float = 600.0) -> Life:
+        """Return the life of a steered order once the vehicle is there, or it ended otherwise.
+
+        So look at `life.is_there`. Raises as `wait` does.
+        """
+
+        def is_over(life: Life) -> bool:
+            return life.is_there or (life.phase.is_final and life.phase is not Phase.CONFIRMED)
+
+        return await self._wait(is_over, "to be there", timeout_s)
+
+    async def _wait(self, is_over: Callable[[Life], bool], what: str, timeout_s: float) -> Life:
         deadline_ns = self._stream.now_ns() + round(timeout_s * 1e9)
         seen, life = 0, None
         while (left_ns := deadline_ns - self._stream.now_ns()) > 0:
@@ -37,11 +54,11 @@ class Order:
                 break
             seen = heard.number
             life = self._life(heard) or life
-            if life is not None and (life.has_reached(until) or life.phase.is_final):
+            if life is not None and is_over(life):
                 return life
         state = "unknown" if life is None else f"{life.phase.value} ({life.note})"
         raise TookTooLongError(
-            f"order {self.command_id} to {self.vehicle_name}: expected {until.value} within "
+            f"order {self.command_id} to {self.vehicle_name}: expected {what} within "
             f"{timeout_s:g} s, its state is {state}; it goes on all the same: hold the vehicle if "
             "it must not"
         )

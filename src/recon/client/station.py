@@ -7,10 +7,13 @@ from recon.client.desk import OrderDesk
 from recon.client.errors import StationUnreachableError, TookTooLongError
 from recon.client.fleet import Fleet
 from recon.client.http import Http
+from recon.client.life import Life
+from recon.client.messages import StateMessage
 from recon.client.order import VehicleAnswer
 from recon.client.stream import Stream
 from recon.client.telemetry import Telemetry
 from recon.client.vehicle import Vehicle
+from recon.client.watched import Alarm, AuditPage, StopAnswer, StopMessage
 
 OPEN_WITHIN_S = 5.0
 
@@ -83,6 +86,41 @@ class Station:
     async def all_stop(self) -> tuple[VehicleAnswer, ...]:
         """Hold everything that flies, with a serial or without. Never cuts motors."""
         return await self._desk.all_stop()
+
+    async def all_stop_at_once(self) -> tuple[StopAnswer, ...]:
+        """Hold everything that flies, by one request and nothing before it.
+
+        Needs no stream, so no `async with`, and works while the station has no place for another
+        reader; what becomes of each stop is told by `commands`. `close` afterwards.
+        """
+        message = await self._http.post(
+            "/api/all-stop", None, StopMessage, "results of an all stop"
+        )
+        return message.results
+
+    async def close(self) -> None:
+        """Close the connection; `async with` does it by itself."""
+        await self._close()
+
+    async def commands(self) -> tuple[Life, ...]:
+        """Return the latest orders and their lives, the newest first."""
+        return (await self._state()).commands
+
+    async def alarms(self) -> tuple[Alarm, ...]:
+        """Return every alarm that is active or that nobody has seen yet."""
+        return (await self._state()).alarms
+
+    async def acknowledge(self, alarm_id: int) -> None:
+        """Say that a person has seen an alarm; raises `RequestRefusedError` for none of these."""
+        await self._http.tell(f"/api/alarms/{alarm_id}/acknowledge")
+
+    async def audit(self, after: int = 0, at_most: int = 100) -> AuditPage:
+        """Return entries of this run's audit after a number, the oldest first."""
+        path = f"/api/audit?after={after}&at_most={at_most}"
+        return await self._http.get(path, AuditPage, "a page of the audit")
+
+    async def _state(self) -> StateMessage:
+        return await self._http.get("/api/state", StateMessage, "a state")
 
     async def _close(self) -> None:
         await self._stream.stop()

@@ -60,6 +60,10 @@ class Vehicle:
         """
         return await self._desk.give_one(self.serial, FlyMission(mission), takeoff)
 
+    async def would_fly(self, mission: Mission, takeoff: bool = False) -> Refusal | None:
+        """Return why `fly` would be refused now, None when it would not. Nothing is sent."""
+        return await self._desk.refusal_of(self.serial, FlyMission(mission), takeoff)
+
     async def goto(
         self,
         latitude_deg: float,

@@ -11,7 +11,6 @@ from recon.model.event import (
     Event,
     FleetReturnOrdered,
     GhostDismissed,
-    HolderGone,
     SeparationHoldSwitched,
     Tick,
 )
@@ -78,9 +77,6 @@ def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry
             text = f"{len(serials)} vehicles are called home in layers"
             details = {"first_id": first_id, "serials": list(serials)}
             yield AuditEntry("fleet_return.ordered", text, by, details=details)
-        case HolderGone(holder):
-            text = "a connection that could hold sticks has ended"
-            yield AuditEntry("holder.gone", text, holder)
         case AuditTroubled(problem):
             text = problem or "the audit can be written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
