@@ -161,7 +161,7 @@ class TestCornerHulls:
         assert found == pytest.approx(np.array([[40, 0, 9], [50, 0, 9], [50, 10, 9]]))
 
     def test_a_sharp_one_may_be_an_arc_that_starts_farther_away(self) -> None:
-        """A turn of 120 degrees: an arc of 10 m touches its legs 10 tan 60 m before the waypoint."""
+        """A turn of 120 degrees: an arc of 10 m touches its legs 10 tan 60 m from the waypoint."""
         back = (100.0 - 50.0, 50.0 * np.sqrt(3.0))
         found = self.hull((0, 0), (100, 0), back, radius_m=10.0)
         assert np.linalg.norm(found - (100.0, 0.0), axis=1) == pytest.approx(

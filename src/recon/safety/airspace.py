@@ -60,18 +60,6 @@ class PreparedAirspace:
         points = np.asarray(points_m, dtype=np.float64).reshape(-1, 2)
         return np.zeros(len(points)) if self._ground is None else self._ground.heights_m(points)
 
-    def highest_ground_up_m(self, starts_m: FloatArray, ends_m: FloatArray) -> FloatArray:
-        """Return the highest ground (N,) under straight legs from (N, 2) to (N, 2), exactly."""
-        if self._ground is None:
-            return np.zeros(len(starts_m))
-        return self._ground.highest_along_m(starts_m, ends_m)
-
-    def lowest_ground_up_m(self, starts_m: FloatArray, ends_m: FloatArray) -> FloatArray:
-        """Return the lowest ground (N,) under straight legs from (N, 2) to (N, 2), exactly."""
-        if self._ground is None:
-            return np.zeros(len(starts_m))
-        return self._ground.lowest_along_m(starts_m, ends_m)
-
     def ground_within_up_m(self, triangles_m: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the lowest and highest ground (N,) under (N, 3, 2) triangles, exactly."""
         if self._ground is None:

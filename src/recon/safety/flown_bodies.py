@@ -28,6 +28,8 @@ EITHER_WAY_DEG: Final = 170.0
 
 def mission_pieces(mission: Mission, departure: Departure, settings: FenceSettings) -> Pieces:
     """The way to the first waypoint, the legs, a curved mission's corners, ways home, the end."""
+    if not mission.waypoints:
+        return hold_pieces(departure, settings)
     points_m = np.empty((len(mission.waypoints), 3))
     points_m[:, :2] = places_m(departure.frame, mission.waypoints)
     points_m[:, 2] = [waypoint.height_above_takeoff_m for waypoint in mission.waypoints]

@@ -1,0 +1,245 @@
+"""What orders make a vehicle fly: places and heights by construction."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.safety.cases import NOW, command, vehicle
+from tests.safety.fenced import airspace, flier, goto, here, hills, mission, place, stick
+
+from recon.model.command import (
+    Body,
+    HoldPosition,
+    Hover,
+    LandNow,
+    Nudge,
+    ReturnHome,
+    StartCamera,
+    StickFrame,
+    StopCamera,
+)
+from recon.model.stamped import Stamped
+from recon.model.vehicle import Attitude, Failsafe, VehicleState
+from recon.safety import OPEN_AIRSPACE, PreparedAirspace
+from recon.safety.departure import Unknown
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath, Kind
+
+FLAT = airspace()
+INF = np.inf
+
+
+def path(body: Body, state: VehicleState | None = None, air: PreparedAirspace = FLAT) -> FlownPath:
+    found = flown(command(body), here(air, state))
+    assert isinstance(found, FlownPath), found
+    return found
+
+
+def unknown(body: Body, state: VehicleState, air: PreparedAirspace = FLAT) -> str:
+    found = flown(command(body), here(air, state))
+    assert isinstance(found, Unknown), found
+    return found.reason
+
+
+def pieces(found: FlownPath, kind: Kind) -> list[tuple[str, list[list[float]], float, float, bool]]:
+    """Label, corners, low, high and whether it begins here, of each piece of a kind."""
+    every = found.pieces
+    return [
+        (
+            every.label(index),
+            every.triangles_m[index].round(1).tolist(),
+            round(float(every.low_m[index]), 3),
+            round(float(every.high_m[index]), 3),
+            bool(every.is_entry[index]),
+        )
+        for index in np.flatnonzero(found.of_kinds(kind))
+    ]
+
+
+@pytest.mark.parametrize("body", [Hover(), LandNow(), ReturnHome(), StartCamera(1.0), StopCamera()])
+def test_what_sets_nothing_in_motion_flies_nowhere(body: Body) -> None:
+    assert flown(command(body), here(FLAT)) is None
+
+
+def test_no_vehicle_flies_nowhere() -> None:
+    assert flown(command(goto(10.0, 0.0)), replace(here(FLAT), vehicle=None)) is None
+
+
+class TestMission:
+    square = mission((100.0, 0.0, 50.0), (100.0, 100.0, 30.0), (0.0, 100.0, 30.0))
+
+    def test_the_way_there_and_the_legs(self) -> None:
+        assert pieces(path(self.square, flier(20.0, -10.0, 40.0)), Kind.FLIGHT) == [
+            ("the way to waypoint 1", [[20, -10], [100, 0], [100, 0]], 41.0, 50.0, True),
+            ("leg 1 to 2", [[100, 0], [100, 100], [100, 100]], 30.0, 50.0, False),
+            ("leg 2 to 3", [[100, 100], [0, 100], [0, 100]], 30.0, 30.0, False),
+        ]
+
+    def test_without_curves_there_are_no_corners_and_no_end_but_hovering(self) -> None:
+        found = path(self.square)
+        assert pieces(found, Kind.CORNER) == []
+        assert [piece[0] for piece in pieces(found, Kind.LANDING)] == ["the landing at home"]
+
+    def test_a_corner_is_a_hull_on_both_legs(self) -> None:
+        curved = replace(self.square.mission, curved=True)
+        middle = replace(curved.waypoints[1], corner_radius_m=20.0)
+        body = replace(
+            self.square,
+            mission=replace(curved, waypoints=(curved.waypoints[0], middle, curved.waypoints[2])),
+        )
+        found = pieces(path(body), Kind.CORNER)
+        (name, corners, low_m, high_m, is_entry) = found[0]
+        assert (name, low_m, is_entry) == ("the corner at waypoint 2", 30.0, False)
+        # The leg before it sinks by 20 m over 100 m: 20 m along it is 3.9 m higher.
+        assert high_m == pytest.approx(30.0 + 20.0 * 20.0 / np.hypot(100.0, 20.0), abs=0.01)
+        assert corners == [[100.0, 80.4], [100.0, 100.0], [80.0, 100.0]]
+
+    def test_the_ways_home(self) -> None:
+        found = path(self.square, flier(20.0, -10.0, 40.0, go_home_m=35.0))
+        assert pieces(found, Kind.CLIMB)[1:] == [
+            (
+                "the climb before the way home from leg 1 to 2",
+                [[100, 0], [100, 100], [100, 100]],
+                30.0,
+                50.0,
+                False,
+            ),
+            (
+                "the climb before the way home from leg 2 to 3",
+                [[100, 100], [0, 100], [0, 100]],
+                30.0,
+                35.0,
+                False,
+            ),
+        ]
+        assert pieces(found, Kind.WAY_HOME) == [
+            (
+                "the way home from the way to waypoint 1",
+                [[20, -10], [100, 0], [0, 0]],
+                41.0,
+                50.0,
+                True,
+            ),
+            ("the way home from leg 1 to 2", [[100, 0], [100, 100], [0, 0]], 35.0, 50.0, False),
+            ("the way home from leg 2 to 3", [[100, 100], [0, 100], [0, 0]], 35.0, 35.0, False),
+        ]
+        assert pieces(found, Kind.LANDING) == [
+            ("the landing at home", [[0, 0], [0, 0], [0, 0]], -INF, 50.0, False)
+        ]
+
+    def test_an_unknown_go_home_height_may_be_any(self) -> None:
+        found = path(self.square, flier(go_home_m=None))
+        assert pieces(found, Kind.WAY_HOME)[2][2:4] == (30.0, INF)
+        assert pieces(found, Kind.CLIMB)[2][2:4] == (30.0, INF)
+        assert pieces(path(self.square, vehicle(None)), Kind.WAY_HOME)[2][2:4] == (30.0, INF)
+        index = int(np.flatnonzero(found.of_kinds(Kind.WAY_HOME))[2])
+        assert found.heights(index) == "30.0 m to an unknown go-home height above takeoff"
+
+    def test_an_aircraft_that_hovers_by_itself_has_no_way_home(self) -> None:
+        found = path(self.square, flier(failsafe=Failsafe.HOVER))
+        assert len(found.pieces) == 3
+
+    def test_one_that_lands_by_itself_may_land_anywhere_on_the_way(self) -> None:
+        found = path(self.square, flier(failsafe=Failsafe.LAND))
+        assert pieces(found, Kind.WAY_HOME) == pieces(found, Kind.CLIMB) == []
+        assert pieces(found, Kind.LANDING)[1] == (
+            "the landing at leg 1 to 2",
+            [[100, 0], [100, 100], [100, 100]],
+            -INF,
+            50.0,
+            False,
+        )
+
+    def test_one_whose_failsafe_nobody_told_goes_home(self) -> None:
+        assert pieces(path(self.square, flier(failsafe=None)), Kind.WAY_HOME)
+
+    def test_it_lands_at_its_end(self) -> None:
+        body = replace(self.square, mission=replace(self.square.mission, land_at_end=True))
+        assert pieces(path(body), Kind.LANDING)[-1] == (
+            "the landing at the end",
+            [[0, 100], [0, 100], [0, 100]],
+            -INF,
+            30.0,
+            False,
+        )
+        heights = path(body).heights(len(path(body).pieces) - 1)
+        assert heights == "the ground to 30.0 m above takeoff"
+
+    def test_heights_count_from_the_takeoff_point(self) -> None:
+        air = airspace(elevation=hills([[20.0] * 8] * 8))
+        found = path(self.square, air=air)
+        assert pieces(found, Kind.FLIGHT)[2][2:4] == (50.0, 50.0)
+        assert found.heights(2) == "30.0 m above takeoff"
+        assert found.subject(2) == "A: leg 2 to 3"
+
+    def test_without_a_site_it_is_the_same_seen_from_the_vehicle(self) -> None:
+        found = path(self.square, flier(20.0, 0.0), OPEN_AIRSPACE)
+        assert pieces(found, Kind.FLIGHT)[0][1] == [[0, 0], [80, 0], [80, 0]]
+        assert found.home_m == pytest.approx([-20.0, 0.0, 0.0], abs=0.01)
+
+    def test_a_mission_without_waypoints_goes_nowhere(self) -> None:
+        """Other rules refuse these; nothing falls over."""
+        assert [piece[0] for piece in pieces(path(mission()), Kind.FLIGHT)] == ["the place to hold"]
+        one = path(mission((9.0, 0.0, 40.0), curved=True))
+        assert [piece[0] for piece in pieces(one, Kind.FLIGHT)] == ["the way to waypoint 1"]
+
+    @given(
+        yaw_deg=st.floats(-180.0, 180.0),
+        turn_deg=st.floats(-180.0, 180.0),
+        share=st.floats(0.0, 1.0),
+        north_mps=st.floats(-8.0, 8.0),
+        east_mps=st.floats(0.1, 8.0),
+    )
+    def test_it_may_go_where_the_vehicle_points_while_it_turns(
+        self, yaw_deg: float, turn_deg: float, share: float, north_mps: float, east_mps: float
+    ) -> None:
+        wanted_deg = yaw_deg + turn_deg
+        body = stick(north_mps, east_mps, frame=StickFrame.BODY, yaw_deg=wanted_deg)
+        found = path(body, self.heading(yaw_deg))
+        yaw = np.radians(yaw_deg + share * turn_deg)
+        speed_mps = float(np.hypot(north_mps, east_mps))
+        reach_m = speed_mps + speed_mps**2 / 5.0
+        bearing = yaw + np.arctan2(east_mps, north_mps)
+        end = 0.9999 * reach_m * np.array([np.sin(bearing), np.cos(bearing)])
+        assert any(is_within(triangle, end) for triangle in found.pieces.triangles_m)
+        farthest_m = np.linalg.norm(found.pieces.triangles_m, axis=-1).max()
+        assert farthest_m < 1.01 * reach_m + 0.01
+
+    @pytest.mark.parametrize("attitude", [Stamped(), Stamped(Attitude(0.0, 0.0, 0.0), NOW)])
+    def test_it_may_go_anywhere_when_it_turns_round_or_nobody_knows_its_yaw(
+        self, attitude: Stamped[Attitude]
+    ) -> None:
+        body = stick(5.0, 0.0, frame=StickFrame.BODY, yaw_deg=175.0)
+        found = path(body, flier(attitude=attitude))
+        for bearing in np.radians(np.arange(0.0, 360.0, 7.0)):
+            end = 9.99 * np.array([np.sin(bearing), np.cos(bearing)])
+            assert any(is_within(triangle, end) for triangle in found.pieces.triangles_m)
+
+
+class TestUnknown:
+    def test_without_a_position(self) -> None:
+        told = unknown(goto(9.0, 9.0), flier(position=Stamped()))
+        assert told == "A does not say where it is: wait until its GNSS has a position"
+
+    def test_without_a_height(self) -> None:
+        told = unknown(stick(1.0, 0.0), flier(height_above_takeoff_m=Stamped()))
+        assert told == "A does not say how high it is: look at its app"
+
+    def test_without_a_home(self) -> None:
+        told = unknown(TestMission.square, flier(takeoff_point=None))
+        assert told.startswith("A: its home is not known")
+
+    def test_without_ground_at_home(self) -> None:
+        air = airspace(elevation=hills([[0.0, 0.0], [0.0, 0.0]]))
+        told = unknown(HoldPosition(), flier(takeoff_point=place(500.0, 0.0)), air)
+        assert "tells no ground where it took off" in told
+
+
+def test_several_rules_share_one_path() -> None:
+    order, now = command(TestMission.square), here(FLAT)
+    assert flown(order, now) is flown(order, now)
+    assert flown(replace(order), now) is not flown(order, now)
+    assert replace(now) == now
+    assert flown(order, replace(now)) is not flown(order, now)
