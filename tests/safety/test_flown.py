@@ -185,6 +185,98 @@ class TestMission:
         one = path(mission((9.0, 0.0, 40.0), curved=True))
         assert [piece[0] for piece in pieces(one, Kind.FLIGHT)] == ["the way to waypoint 1"]
 
+    @given(seed=st.integers(0, 10_000), radius_m=st.floats(0.2, 60.0), share=st.floats(0.0, 1.0))
+    def test_the_way_home_from_a_corner_lies_in_its_legs_triangles_and_itself(
+        self, seed: int, radius_m: float, share: float
+    ) -> None:
+        random = np.random.default_rng(seed)
+        points = random.uniform(-200.0, 200.0, (3, 2))
+        body = mission(*((*point, 40.0) for point in points), curved=True, radius_m=radius_m)
+        found = path(body)
+        corner = found.pieces.triangles_m[found.of_kinds(Kind.CORNER)][0]
+        begin = random.dirichlet([1.0, 1.0, 1.0]) @ corner
+        on_way_home = begin + share * (found.home_m[:2] - begin)
+        covers = found.of_kinds(Kind.CORNER, Kind.WAY_HOME)
+        assert any(
+            is_within(triangle, on_way_home) for triangle in found.pieces.triangles_m[covers]
+        )
+
+
+def is_within(triangle: np.ndarray, point: np.ndarray) -> bool:
+    sides = np.roll(triangle, -1, axis=0) - triangle
+    to = point - triangle
+    turns = sides[:, 0] * to[:, 1] - sides[:, 1] * to[:, 0]
+    scale = 1e-6 * max(1.0, float(np.abs(triangle).max())) ** 2
+    return bool((turns >= -scale).all() or (turns <= scale).all())
+
+
+class TestSteered:
+    def test_a_goto_flies_straight_and_may_pass_its_target(self) -> None:
+        found = path(goto(100.0, 0.0, 60.0), flier(0.0, 0.0, 40.0))
+        assert pieces(found, Kind.FLIGHT) == [
+            ("the way to the target", [[0, 0], [103, 0], [103, 0]], 41.0, 60.0, True)
+        ]
+        assert pieces(found, Kind.WAY_HOME)[0][4] is True
+
+    def test_a_nudge_counts_from_the_vehicle(self) -> None:
+        found = path(Nudge(north_m=4.0, east_m=-3.0, up_m=-0.5), flier(50.0, 50.0, 40.0))
+        assert pieces(found, Kind.FLIGHT) == [
+            ("the nudge", [[50, 50], [45.2, 56.4], [45.2, 56.4]], 39.5, 39.5, True)
+        ]
+
+    def test_straight_up_goes_nowhere_else(self) -> None:
+        found = path(Nudge(0.0, 0.0, up_m=20.0), flier(50.0, 50.0, 10.0))
+        assert pieces(found, Kind.FLIGHT) == [
+            ("the nudge", [[50, 50], [50, 50], [50, 50]], 11.0, 30.0, True)
+        ]
+
+    def test_holding_the_place_is_a_place(self) -> None:
+        found = path(HoldPosition(), flier(50.0, 50.0, 10.0))
+        assert len(found.pieces) == 1
+        assert pieces(found, Kind.FLIGHT) == [
+            ("the place to hold", [[50, 50], [50, 50], [50, 50]], 10.0, 10.0, True)
+        ]
+
+
+class TestStick:
+    def test_it_reaches_as_far_as_its_time_and_its_braking_carry(self) -> None:
+        """5 m/s for 2 s are 10 m, and 5 m more to brake with 2.5 m/s2."""
+        found = path(stick(3.0, 4.0, 45.0, 2.0), flier(10.0, 0.0, 40.0))
+        assert pieces(found, Kind.FLIGHT) == [
+            ("the stick's way", [[10, 0], [22, 9], [22, 9]], 41.0, 45.0, True)
+        ]
+        assert len(found.pieces) == 1
+
+    @pytest.mark.parametrize("frame", StickFrame)
+    def test_a_zero_stays(self, frame: StickFrame) -> None:
+        found = path(stick(0.0, 0.0, 20.0, frame=frame), flier(10.0, 0.0, 40.0))
+        assert pieces(found, Kind.FLIGHT) == [
+            ("the stick's way", [[10, 0], [10, 0], [10, 0]], 20.0, 39.0, True)
+        ]
+
+    def test_the_wires_numbers_count(self) -> None:
+        found = path(stick(1e-60, 0.0, 40.0), flier(10.0, 0.0, 40.0))
+        assert pieces(found, Kind.FLIGHT)[0][1] == [[10, 0], [10, 0], [10, 0]]
+
+    def heading(self, yaw_deg: float) -> VehicleState:
+        return flier(attitude=Stamped(Attitude(yaw_deg, 0.0, 0.0), NOW))
+
+    @pytest.mark.parametrize(
+        ("yaw_deg", "end"),
+        [(0.0, [1.4, 0.0]), (90.0, [0.0, -1.4]), (180.0, [-1.4, 0.0]), (-90.0, [0.0, 1.4])],
+    )
+    def test_in_the_bodys_frame_it_goes_where_the_vehicle_points(
+        self, yaw_deg: float, end: list[float]
+    ) -> None:
+        """1 m/s to the right, for 1.2 s and 0.2 m of braking."""
+        body = stick(0.0, 1.0, 40.0, 1.2, frame=StickFrame.BODY, yaw_deg=yaw_deg)
+        found = path(body, self.heading(yaw_deg))
+        (piece,) = pieces(found, Kind.FLIGHT)
+        assert piece[1][0] == [0, 0]
+        assert piece[1][1] == pytest.approx(end, abs=0.01)
+        assert piece[1][2] == pytest.approx(end, abs=0.01)
+        assert piece[2:] == (40.0, 40.0, True)
+
     @given(
         yaw_deg=st.floats(-180.0, 180.0),
         turn_deg=st.floats(-180.0, 180.0),
