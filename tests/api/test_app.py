@@ -381,3 +381,28 @@ def ground_image() -> GroundImage:
     valid[10:] = False
     pose = CameraPose(np.eye(3), np.array([0.0, 0.0, 100.0]))
     return GroundImage(grid, 5, 1_700_000_000_000_000_000, rgb, valid, pose)
+
+
+class TestFleetReturn:
+    def test_unknown_serials_are_refused_as_results_once_each(self, client: Client) -> None:
+        response = client.post("/api/fleet-return", json={"serials": ["A", "B", "A"]})
+        results = response.json()["results"]
+        assert [(r["serial"], r["accepted"], r["rule"]) for r in results] == [
+            ("A", False, "reachable"),
+            ("B", False, "reachable"),
+        ]
+
+    def test_more_than_the_station_remembers_are_all_answered(self, client: Client) -> None:
+        serials = [f"S{number}" for number in range(256)]
+        results = client.post("/api/fleet-return", json={"serials": serials}).json()["results"]
+        assert [result["serial"] for result in results] == serials
+
+    def test_without_names_everybody_is_called_and_here_nobody_is(self, client: Client) -> None:
+        assert client.post("/api/fleet-return", json={}).json() == {"results": []}
+        assert client.get("/api/state").json()["fleet_return"] is None
+
+    @pytest.mark.parametrize("asked", [{"serials": []}, {"serials": "A"}, {"all": True}, [1]])
+    def test_what_is_not_understood_calls_nobody(self, client: Client, asked: object) -> None:
+        response = client.post("/api/fleet-return", json=asked)
+        assert response.status_code == 422
+        assert client.get("/api/commands").json() == []

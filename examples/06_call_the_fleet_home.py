@@ -1,0 +1,148 @@
+"""A fleet called home in virtual time: a layer for each vehicle, two waves under a low ceiling.
+
+Run: uv run python examples/06_call_the_fleet_home.py             (prints who lands when)
+     uv run python examples/06_call_the_fleet_home.py PICTURE.svg (and draws heights over time)
+"""
+
+import sys
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from recon.geo import point_from_enu
+from recon.model.airspace import FlightLimits
+from recon.model.event import FleetReturnOrdered
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
+from recon.model.zone import Region
+from recon.sim.app import SimulatedApp
+from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
+from recon.site import Site
+from recon.site.site import Layers
+from recon.station.build import first_state
+from recon.station.virtual import VirtualDriver
+
+HOME = GeoPoint(41.9012, -93.6034, 275.0)
+FRAME = LocalFrame(HOME)
+CEILING_M = 40.0
+"""Room for three layers: 20, 28 and 36 m."""
+
+FIELD_M = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
+"""Where six vehicles hover: east, north, up."""
+PADS_M = [(45, -20), (-15, -20), (-45, -20), (75, -20), (15, -20), (-75, -20)]
+SERIALS = [f"SIM-{number}" for number in range(1, 7)]
+
+Flown = Mapping[str, Sequence[tuple[float, float]]]
+COLOURS = ("#0b6e99", "#c2410c", "#4d7c0f", "#7e22ce", "#b91c1c", "#0f766e")
+
+
+def site_with(pads: Mapping[str, GeoPoint]) -> Site:
+    """A fenced field with a low ceiling, and six vehicles ready to fly."""
+    profiles = {
+        serial: VehicleProfile(
+            serial,
+            waypoint_altitude=AltitudeReference.TAKEOFF,
+            pad=pad,
+            endurance_s=1500.0,
+            go_home_height_m=35.0,
+            failsafe=Failsafe.HOVER,
+            camera_interval_s=2.0,
+        )
+        for serial, pad in pads.items()
+    }
+    fence = Region(np.array([(-900.0, -900.0), (900.0, -900.0), (900.0, 900.0), (-900.0, 900.0)]))
+    limits = FlightLimits(max_height_above_ground_m=CEILING_M)
+    return Site(
+        "fleet return", FRAME, profiles=profiles, layers=Layers(boundary=fence), limits=limits
+    )
+
+
+def fly_home(driver: VirtualDriver, apps: Sequence[SimulatedApp]) -> Flown:
+    """Call all of them, wait until the return is over; return each one's heights over time."""
+    heights: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    driver.handle(FleetReturnOrdered(1, tuple(SERIALS), "example"))
+    called_ns = driver.now_ns
+    while driver.station.fleet_return is None or not driver.station.fleet_return.is_over:
+        driver.run_for(0.5)
+        for app in apps:
+            now_s = (driver.now_ns - called_ns) / 1e9
+            if app.aircraft.is_flying:
+                heights[app.settings.serial].append((now_s, app.aircraft.motion.height_m))
+    return heights
+
+
+def main(picture: Path | None) -> None:
+    """Fly, print each vehicle's wave, layer and landing, and draw them if asked to."""
+    places = [point_from_enu(FRAME, (*pad, 0.0)) for pad in PADS_M]
+    pads = dict(zip(SERIALS, places, strict=True))
+    driver = VirtualDriver(first_state(site_with(pads)))
+    config = SimulationConfig(home=HOME, vehicle_count=6, airborne=Airborne.ALL, pads=pads)
+    apps = build_fleet(config, start_ns=driver.now_ns)
+    for app, place, pad in zip(apps, FIELD_M, PADS_M, strict=True):
+        app.aircraft.motion = replace(
+            app.aircraft.motion,
+            east_m=place[0] - pad[0],
+            north_m=place[1] - pad[1],
+            height_m=place[2],
+        )
+        app.connected(driver.now_ns)
+        driver.connect(app)
+    driver.run_for(3.0)
+    flown = fly_home(driver, apps)
+    called = driver.station.fleet_return
+    for member in () if called is None else called.members.values():
+        if member.flight is not None:
+            print(
+                f"{member.name}: wave {member.flight.wave}, {member.flight.layer_up_m:.0f} m, "
+                f"{member.stage.value} after {flown[member.serial][-1][0]:.0f} s"
+            )
+    if picture is not None:
+        picture.write_text(drawing(flown), encoding="utf-8")
+
+
+def drawing(flown: Flown) -> str:
+    """An SVG of heights over time."""
+    last_s = max(points[-1][0] for points in flown.values())
+
+    def x(seconds: float) -> float:
+        return 60.0 + 700.0 * seconds / last_s
+
+    def y(height_m: float) -> float:
+        return 330.0 - 7.0 * height_m
+
+    parts = [
+        f'<text x="{x(0):.0f}" y="22">height above the pads over time, m; '
+        f"ceiling {CEILING_M:g} m, layers 8 m apart</text>"
+    ]
+    for height_m in (0, 20, 28, 36, 40):
+        dash = "" if height_m in (0, 40) else ' stroke-dasharray="3 5"'
+        parts.append(
+            f'<path d="M60 {y(height_m):.0f}H760" stroke="#888"{dash}/>'
+            f'<text x="52" y="{y(height_m) + 5:.0f}" text-anchor="end">{height_m}</text>'
+        )
+    for second in range(0, int(last_s) + 1, 30):
+        parts.append(f'<text x="{x(second):.0f}" y="352" text-anchor="middle">{second} s</text>')
+    for points, colour in zip(flown.values(), COLOURS, strict=True):
+        line = " ".join(f"{x(s):.1f},{y(h):.1f}" for s, h in points)
+        parts.append(
+            f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2.5"/>'
+        )
+    for (serial, points), colour in zip(flown.items(), COLOURS, strict=True):
+        label_s, label_m = [point for point in points if point[1] > 18.0][-20]
+        parts.append(
+            f'<text x="{x(label_s):.0f}" y="{y(label_m) - 7:.0f}" fill="{colour}" '
+            f'stroke="#fff" stroke-width="5" paint-order="stroke">{serial}</text>'
+        )
+    body = "\n".join(parts)
+    return (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 800 365" '
+        'font-family="sans-serif" font-size="14">\n'
+        f'<rect width="800" height="365" fill="#fff"/>\n{body}\n</svg>\n'
+    )
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else None)
