@@ -17,6 +17,12 @@ settings.register_profile(
 """For `make mutants`: every mutant meets the same few examples, and one process runs them all."""
 
 
+@pytest.fixture(scope="session", autouse=True)
+def state_folder(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """No test writes into the user's own state folder, where audits go."""
+    os.environ["XDG_STATE_HOME"] = str(tmp_path_factory.mktemp("state"))
+
+
 @pytest.fixture(scope="session")
 def fisheye_data() -> Path:
     """The folder of the real fisheye frames."""

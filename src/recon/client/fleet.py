@@ -45,9 +45,7 @@ class Fleet:
         state = await self._desk.http.get("/api/state", StateMessage, "a state")
         return () if state.fleet_return is None else state.fleet_return.vehicles
 
-    async def _give(
-        self, body: Body, serials: Sequence[str] | None
-    ) -> tuple[VehicleAnswer, ...]:
+    async def _give(self, body: Body, serials: Sequence[str] | None) -> tuple[VehicleAnswer, ...]:
         if serials is not None:
             return await self._desk.give(tuple(dict.fromkeys(serials)), body)
         # Asked anew: the stream's list may be old, and a vehicle left out is a vehicle that flies.

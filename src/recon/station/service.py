@@ -88,12 +88,16 @@ class Service:
     ) -> schema.OrderResponse:
         """Return what `order` would answer now; nothing is given and nothing changes."""
         orders = [
-            OperatorOrder(CHECKED_ID, body, issued_by, serial=serial, takeoff=takeoff, holder=holder)
+            OperatorOrder(
+                CHECKED_ID, body, issued_by, serial=serial, takeoff=takeoff, holder=holder
+            )
             for serial in dict.fromkeys(serials)
         ]
         station = self.driver.station
         records = check(station, orders, self.driver.now_ns())
-        return schema.OrderResponse(results=[_result(r, _is_simulated(station, r)) for r in records])
+        return schema.OrderResponse(
+            results=[_result(r, _is_simulated(station, r)) for r in records]
+        )
 
     def holder_came(self, holder: str) -> None:
         """Let a stream hold steered orders from now on."""
