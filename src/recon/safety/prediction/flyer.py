@@ -1,7 +1,6 @@
 """What foreseeing needs to know of a vehicle, in the plane."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
@@ -12,6 +11,10 @@ from recon.safety.datum import home, takeoff_up_m
 from recon.safety.prediction.course import ALL_HEIGHTS_M
 from recon.safety.prediction.plane import Plane
 from recon.safety.prediction.settings import PredictionSettings
+
+REMEMBERED = 256
+_Key = tuple[PreparedAirspace, VehicleProfile | None, LatLon | None, float | None]
+_remembered: dict[str | None, _Key] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,22 +94,24 @@ def flyer(
 
 
 def takeoff_height_m(airspace: PreparedAirspace, state: VehicleState) -> float | None:
-    """Return the datum's height of the vehicle's takeoff point, remembered while it holds."""
+    """Return the datum's height of the vehicle's takeoff point, remembered while it stays.
+
+    It depends on the airspace, the profile and the takeoff point alone, and is asked for each
+    vehicle ten times a second. On the ground it may change with each packet.
+    """
     if state.is_flying.value is False:
-        return takeoff_up_m(airspace, state)  # where it stands, which may change with each packet
-    return _takeoff_height_m(airspace, state.serial, state.profile, state.takeoff_point)
-
-
-@lru_cache(maxsize=256)
-def _takeoff_height_m(
-    airspace: PreparedAirspace,
-    serial: str | None,
-    profile: VehicleProfile | None,
-    takeoff_point: LatLon | None,
-) -> float | None:
-    """Depends on nothing else; asked for each vehicle ten times a second."""
-    in_flight = VehicleState(serial, profile=profile, takeoff_point=takeoff_point)
-    return takeoff_up_m(airspace, in_flight)
+        return takeoff_up_m(airspace, state)
+    key = state.serial
+    known = _remembered.get(key)
+    if known is not None and (
+        known[0] is airspace and known[1] is state.profile and known[2] is state.takeoff_point
+    ):
+        return known[3]
+    if len(_remembered) >= REMEMBERED:
+        _remembered.clear()
+    up_m = takeoff_up_m(airspace, state)
+    _remembered[key] = airspace, state.profile, state.takeoff_point, up_m
+    return up_m
 
 
 def _last_place(state: VehicleState) -> tuple[LatLon | None, int]:

@@ -15,7 +15,12 @@ STANDING_MPS = 0.5
 """Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
 
 VERTICAL_BRAKING_MPS2 = 2.0
+LONGEST_RISE_S = 600.0
+"""To a height that nobody knows no leg takes for ever."""
+
 Point = tuple[float, float]
+Phase = tuple[float, float, float, float]
+"""How long, from and to which speed, and in which time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,20 +40,20 @@ class Leg:
 def fly(writer: CourseWriter, leg: Leg, settings: PredictionSettings, *, exactly: bool) -> None:
     """Write a leg: as its phases of gaining, keeping and losing speed, or as one even row."""
     long_m = hypot(leg.east_m - writer.east_m, leg.north_m - writer.north_m)
-    if not exactly:
-        seconds = _even_seconds(long_m, leg, settings.braking_mps2)
-        phases = []
+    low_m, high_m = leg.band_m
+    rise_s = 0.0
+    if high_m > writer.high_m or low_m < writer.low_m:
+        climb_s = (high_m - writer.high_m) / settings.climb_mps
+        rise_s = min(max(climb_s, (writer.low_m - low_m) / settings.sink_mps), LONGEST_RISE_S)
+    if exactly and long_m > LEAST_M:
+        phases = _phases(long_m, leg, settings.braking_mps2)
+        seconds = phases[0][3] + phases[1][3] + phases[2][3]
+        if seconds >= rise_s:
+            _write_phases(writer, leg, long_m, phases)
+            return
     else:
-        phases = _phases(long_m, leg, settings.braking_mps2) if long_m > LEAST_M else []
-        seconds = sum(_seconds(*phase) for phase in phases)
-    rise_s = max(
-        (leg.band_m[1] - writer.high_m) / settings.climb_mps,
-        (writer.low_m - leg.band_m[0]) / settings.sink_mps,
-    )
-    if exactly and seconds > rise_s:
-        _write_phases(writer, leg, long_m, phases)
-        return
-    longest_s = max(seconds, min(rise_s, 600.0), LEAST_S)
+        seconds = _even_seconds(long_m, leg, settings.braking_mps2)
+    longest_s = max(seconds, rise_s, LEAST_S)
     writer.moves(leg.east_m, leg.north_m, longest_s, leg.part, band_m=leg.band_m)
 
 
@@ -122,42 +127,41 @@ def _even_seconds(long_m: float, leg: Leg, braking_mps2: float) -> float:
     return long_m / speed_mps + lost_s if long_m > LEAST_M else 0.0
 
 
-def _phases(long_m: float, leg: Leg, braking_mps2: float) -> list[tuple[float, float, float]]:
-    """Return (distance, speed at its start, speed at its end) for each phase of a leg."""
+def _phases(long_m: float, leg: Leg, braking_mps2: float) -> tuple[Phase, Phase, Phase]:
+    """Return a leg's gaining, keeping and losing of speed; what it has none of has no length."""
     speed_mps = max(leg.speed_mps, LEAST_SPEED_MPS)
-    start_mps = min(max(leg.start_mps, 0.0), sqrt(leg.end_mps**2 + 2.0 * braking_mps2 * long_m))
-    end_mps = min(leg.end_mps, sqrt(start_mps**2 + 2.0 * braking_mps2 * long_m))
+    change = 2.0 * braking_mps2 * long_m  # how much the square of a speed may change on the leg
+    start_mps = min(leg.start_mps, sqrt(leg.end_mps**2 + change))
+    end_mps = min(leg.end_mps, sqrt(start_mps**2 + change))
     gaining_m = abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2)
     losing_m = max(0.0, speed_mps**2 - end_mps**2) / (2.0 * braking_mps2)
     if gaining_m + losing_m > long_m:
-        peak = 0.5 * (start_mps**2 + end_mps**2) + braking_mps2 * long_m
-        speed_mps = min(sqrt(peak), max(speed_mps, start_mps))
-        gaining_m = abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2)
-        gaining_m = min(gaining_m, long_m)
+        peak_mps = sqrt(0.5 * (start_mps**2 + end_mps**2 + change))
+        speed_mps = min(peak_mps, max(speed_mps, start_mps))
+        gaining_m = min(abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2), long_m)
         losing_m = long_m - gaining_m
-    steady_m = long_m - gaining_m - losing_m
-    phases = (
-        (gaining_m, start_mps, speed_mps),
-        (steady_m, speed_mps, speed_mps),
-        (losing_m, speed_mps, end_mps),
+    steady_m = max(0.0, long_m - gaining_m - losing_m)
+    return (
+        _phase(gaining_m, start_mps, speed_mps),
+        _phase(steady_m, speed_mps, speed_mps),
+        _phase(losing_m, speed_mps, end_mps),
     )
-    return [phase for phase in phases if phase[0] > LEAST_M]
 
 
-def _seconds(long_m: float, from_mps: float, to_mps: float) -> float:
-    return 2.0 * long_m / max(from_mps + to_mps, LEAST_SPEED_MPS)
+def _phase(long_m: float, from_mps: float, to_mps: float) -> Phase:
+    return long_m, from_mps, to_mps, 2.0 * long_m / max(from_mps + to_mps, LEAST_SPEED_MPS)
 
 
 def _write_phases(
-    writer: CourseWriter, leg: Leg, long_m: float, phases: list[tuple[float, float, float]]
+    writer: CourseWriter, leg: Leg, long_m: float, phases: tuple[Phase, Phase, Phase]
 ) -> None:
-    east_m, north_m = writer.east_m, writer.north_m
-    low_m, high_m = writer.low_m, writer.high_m
+    east_m, north_m, low_m, high_m = writer.east_m, writer.north_m, writer.low_m, writer.high_m
     gone_m = 0.0
-    for distance_m, from_mps, to_mps in phases:
+    for distance_m, from_mps, to_mps, seconds in phases:
+        if distance_m < LEAST_M:
+            continue
         gone_m += distance_m
         share = gone_m / long_m
-        seconds = _seconds(distance_m, from_mps, to_mps)
         writer.moves(
             east_m + share * (leg.east_m - east_m),
             north_m + share * (leg.north_m - north_m),

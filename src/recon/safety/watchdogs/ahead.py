@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 
@@ -110,6 +111,8 @@ def _brakes(flyer: Flyer, braking: Braking, prediction: PredictionSettings) -> b
 
 
 def _flies_against(flyer: Flyer, intent: Intent) -> bool:
+    if flyer.speed_mps < AGAINST_MPS:
+        return False
     place = intent.target
     if intent.mission is not None and intent.passed < len(intent.mission.waypoints):
         place_m = flyer.plane.east_north_m(intent.mission.waypoints[intent.passed])
@@ -119,12 +122,12 @@ def _flies_against(flyer: Flyer, intent: Intent) -> bool:
         place_m = flyer.home_m
     else:
         return False
-    ahead_m = np.array([place_m[0] - flyer.east_m, place_m[1] - flyer.north_m])
-    far_m = float(np.hypot(*ahead_m))
-    if flyer.speed_mps < AGAINST_MPS or far_m < 1.0:
+    ahead_m = place_m[0] - flyer.east_m, place_m[1] - flyer.north_m
+    far_m = hypot(*ahead_m)
+    if far_m < 1.0:
         return False
     along_mps = (ahead_m[0] * flyer.velocity_mps[0] + ahead_m[1] * flyer.velocity_mps[1]) / far_m
-    return bool(along_mps < AGAINST_COSINE * flyer.speed_mps)
+    return along_mps < AGAINST_COSINE * flyer.speed_mps
 
 
 def _held(flies: Samples, times_s: FloatArray, prediction: PredictionSettings) -> Samples:
