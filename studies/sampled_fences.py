@@ -233,8 +233,9 @@ def _height_zones_margin(
             if zone.ceiling_m is not None:
                 under_m = zone.ceiling_m + _lowest(place, zone, piece) - piece.high_m
                 best = min(best, max(beside_m, under_m))
-                if piece.is_entry and max(beside_m, under_m) <= 0.0:
-                    _doubt_if_no_higher(aircraft, piece, found, "height_zones")
+                here_m = aircraft.here_m[np.newaxis, :2]
+                if float(_room_m(zone.ring, here_m)[0]) >= -place.margin_m - 0.5:
+                    found.unsure.add("height_zones")  # who is in it already may be brought down
     return best
 
 
@@ -262,11 +263,6 @@ def _is_column(aircraft: Aircraft, piece: Piece, found: Margins, rule: str) -> b
         elif reach_m <= COLUMN_M + STEP_M:
             found.unsure.add(rule)
     return False
-
-
-def _doubt_if_no_higher(aircraft: Aircraft, piece: Piece, found: Margins, rule: str) -> None:
-    if piece.high_m <= aircraft.here_m[2] + 0.1:
-        found.unsure.add(rule)
 
 
 def _doubt_where_it_is(place: Place, aircraft: Aircraft, found: Margins) -> None:

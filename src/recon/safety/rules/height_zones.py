@@ -9,7 +9,7 @@ from recon.safety.columns import columns
 from recon.safety.departure import Unknown
 from recon.safety.flown import flown
 from recon.safety.flown_path import FlownPath
-from recon.safety.heights import height_words, stays_above, stays_below, zone_datum
+from recon.safety.heights import height_words, stays_above, stays_below, up_of, zone_datum
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_zero_stick
 
@@ -23,9 +23,10 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
     region, and for all of that piece: no lower than the floor (over the ground: above the highest
     ground under the piece), no higher than the ceiling (above the lowest). A landing is as low as
     the ground. Not held to the floor is what keeps to a column of takeoff or landing: `columns`
-    says which, and a place where a mission lands is none in a zone. A piece that begins where the
-    vehicle is may be as high as the vehicle is now. A stick without velocity is held to zones that
-    the vehicle is in, with `stop_slack_m`; where the vehicle is not known to be, it is not asked.
+    says which, and a place where a mission lands is none in a zone. When the vehicle is in the zone
+    now, a piece that begins where it is may be as high above the ceiling's datum as it is. A stick
+    without velocity is held to zones that the vehicle is in, with `stop_slack_m`; where the vehicle
+    is not known to be, it is not asked.
     """
     zones = situation.airspace.zones_of(ZoneKind.HEIGHT)
     path = flown(command, situation) if zones else None
@@ -58,8 +59,11 @@ def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, is_stop: b
     if ceiling_m is not None:
         high_m = pieces.high_m[near] - slack_m
         is_high = ~stays_below(airspace, triangles_m, high_m, ceiling_m, datum)
-        is_no_higher = pieces.high_m[near] <= path.here_m[2] + settings.not_worse_m
-        is_high &= ~(pieces.is_entry[near] & is_no_higher)
+        if is_high.any() and not zone.polygon.is_clear_of(path.here, margin_m)[0]:
+            most_m = float(path.here_m[2]) - up_of(airspace, path.here_m, 0.0, datum)
+            most_m += settings.not_worse_m
+            is_no_higher = stays_below(airspace, triangles_m, pieces.high_m[near], most_m, datum)
+            is_high &= ~(pieces.is_entry[near] & is_no_higher)
         if is_high.any():
             limit = f"fly no higher than {height_words(ceiling_m, datum)} there"
             return _reason(zone, path, int(near[is_high][0]), limit)

@@ -3,6 +3,7 @@
 from math import inf
 
 import numpy as np
+import numpy.typing as npt
 
 from recon.model.command import Command, Refusal, VirtualStick
 from recon.safety.as_sent import as_sent
@@ -15,6 +16,7 @@ from recon.safety.situation import Situation
 from recon.safety.standstill import is_zero_stick
 
 RULE = "max_height"
+IntArray = npt.NDArray[np.int64]
 
 
 def max_height(command: Command, situation: Situation) -> Refusal | None:
@@ -24,8 +26,9 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     ground under the whole piece; without an elevation model the ground is taken for flat. A way
     home is at the go-home height; when nobody has told it, the path is refused, unless somebody has
     overridden the vehicle's checklist, which asks for it. A piece that begins where the vehicle is
-    may be as high as the vehicle is now. A stick without velocity may be `stop_slack_m` higher;
-    where the vehicle is not known to be, its height above takeoff counts.
+    may be as high above the lowest ground under it as the vehicle is above ground now. A stick
+    without velocity may be `stop_slack_m` higher; where the vehicle is not known to be, its height
+    above takeoff counts.
     """
     path = flown(command, situation)
     if path is None:
@@ -40,13 +43,29 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME)
     if situation.preflight_override is not None:
         judged &= pieces.high_m < inf
-    judged &= ~(pieces.is_entry & (pieces.high_m <= path.here_m[2] + settings.not_worse_m))
-    asked = np.flatnonzero(judged)
-    is_low_enough = stays_below(
-        situation.airspace, pieces.triangles_m[asked], pieces.high_m[asked], most_m
-    )
-    high = asked[~is_low_enough]
+    high = _higher(path, np.flatnonzero(judged), situation, most_m)
+    high = _worse(path, high, situation, settings.not_worse_m)
     return None if len(high) == 0 else Refusal(RULE, _reason(path, int(high[0]), situation))
+
+
+def _higher(path: FlownPath, indices: IntArray, situation: Situation, most_m: float) -> IntArray:
+    """Which of these pieces are more than this above the lowest ground under them."""
+    pieces = path.pieces
+    is_low_enough = stays_below(
+        situation.airspace, pieces.triangles_m[indices], pieces.high_m[indices], most_m
+    )
+    return indices[~is_low_enough]
+
+
+def _worse(path: FlownPath, high: IntArray, situation: Situation, rounding_m: float) -> IntArray:
+    """Of the pieces that break the rule, those that the vehicle does not break as much now."""
+    begins = high[path.pieces.is_entry[high]]
+    ground_m = float(situation.airspace.ground_up_m(path.here_m[np.newaxis, :2])[0])
+    if len(begins) == 0 or np.isnan(ground_m):
+        return high
+    here_m = float(path.here_m[2]) - ground_m
+    worse = _higher(path, begins, situation, here_m + rounding_m)
+    return np.setdiff1d(high, np.setdiff1d(begins, worse))
 
 
 def _blind(command: Command, situation: Situation, unknown: Unknown) -> Refusal | None:
