@@ -118,7 +118,7 @@ def test_two_can_land_at_once_and_all_ways_home_are_apart_and_legal() -> None:
     site = load_site(demo_site_folder())
     limits = site.limits
     pads = enu_from_points(site.frame, [pad.place for pad in site.airspace.landing_pads])
-    assert len(pads) == 5
+    assert len(pads) == 9
     apart_m = [float(np.hypot(*(a - b)[:2])) for a, b in combinations(pads, 2)]
     assert min(apart_m) > limits.min_separation_horizontal_m + 5.0
     heights = sorted(profile.go_home_height_m or 0.0 for profile in site.profiles.values())

@@ -22,7 +22,7 @@ def test_the_report_tells_the_fit_and_every_residual() -> None:
     assert site.eye is not None
     lines = site_report(site)
     solution = site.eye.solution
-    assert lines[0] == "site demo field: 4 vehicle profiles"
+    assert lines[0] == "site demo field: 8 vehicle profiles"
     assert "512 x 512 cells of 1 m" in lines[1]
     assert lines[2] == "eye SIM-EYE: 1280 x 720 lens model"
     assert f"8 control points fit to {solution.rms_px:.2f} px RMS" in lines[3]
@@ -44,7 +44,7 @@ def test_the_report_lists_the_layers_the_terrain_and_the_limits() -> None:
         f"layer boundary from boundary.geojson: polygons: 1, together {field_ha:.2f} ha",
         f"layer keep_out from keep_out.geojson: polygons: 1, together {yard_ha:.2f} ha",
         f"layer height_zones from height_zones.geojson: polygons: 1, together {trees_ha:.2f} ha",
-        "layer landing_pads from landing_pads.geojson: 5 pads",
+        "layer landing_pads from landing_pads.geojson: 9 pads",
         "layer survey_regions from survey_regions.geojson: polygons: 2, together "
         f"{survey_ha:.2f} ha",
         "terrain: model from ground.tif, 52 x 52 cells of 30 m, ground from 275.0 to 275.0 m above "

@@ -27,6 +27,10 @@ PADS: Mapping[str, tuple[str | None, tuple[float, float]]] = {
     "Drone 1": ("SIM-1", (-24.0, -8.0)),
     "Drone 2": ("SIM-2", (-4.0, -26.0)),
     "Drone 3": ("SIM-3", (20.0, -16.0)),
+    "Drone 4": ("SIM-4", (-48.0, -26.0)),
+    "Drone 5": ("SIM-5", (-26.0, -50.0)),
+    "Drone 6": ("SIM-6", (22.0, -44.0)),
+    "Drone 7": ("SIM-7", (46.0, -24.0)),
     "spare": (None, (30.0, 14.0)),
 }
 """Each pad's vehicle and place: further apart than two landing vehicles must be."""

@@ -24,7 +24,8 @@ from recon.site.demo_layers import demo_layer_files
 
 ORIGIN = GeoPoint(41.9012, -93.6034, 275.0)
 EYE_SERIAL = "SIM-EYE"
-SERIALS = ("SIM-1", "SIM-2", "SIM-3")
+SERIALS = ("SIM-1", "SIM-2", "SIM-3", EYE_SERIAL, "SIM-4", "SIM-5", "SIM-6", "SIM-7")
+"""A demonstration of four vehicles, the eye among them, has the first four numbers."""
 EYE_HEIGHT_M = 120.0
 EYE_YAW_DEG = 20.0
 
@@ -46,8 +47,8 @@ POINTS_EAST_NORTH_M = {
     "G": (-190.0, -70.0),
     "H": (40.0, 30.0),
 }
-GO_HOME_HEIGHTS_M = {EYE_SERIAL: 40, "SIM-1": 48, "SIM-2": 56, "SIM-3": 64}
-"""8 m apart, above the trees' zone; the eye, which hovers at 120 m, comes home from there."""
+LOWEST_WAY_HOME_M, WAYS_HOME_APART_M = 40, 8
+"""Above the trees' zone; the eye, which hovers at 120 m, comes home from there."""
 ENDURANCE_MIN = 25
 """What a simulated battery lasts, unless the simulator is told another time."""
 
@@ -169,12 +170,14 @@ survey_regions = "survey_regions.geojson"
 file = "{ELEVATION_FILE}"
 datum = "wgs84"
 """
-    return header + "".join(_vehicle_toml(serial) for serial in (*SERIALS, EYE_SERIAL))
+    return header + "".join(_vehicle_toml(serial) for serial in SERIALS)
 
 
 def _vehicle_toml(serial: str) -> str:
     is_eye = serial == EYE_SERIAL
     name = "Eye" if is_eye else f"Drone {serial[-1]}"
+    number = 0 if is_eye else int(serial[-1])
+    go_home_height_m = LOWEST_WAY_HOME_M + number * WAYS_HOME_APART_M
     # The eye sees the whole field: of two in conflict it is held last.
     more = "priority = 10" if is_eye else "camera_interval_s = 2.0"
     return f"""
@@ -185,7 +188,7 @@ model = "simulated"
 waypoint_altitude = "takeoff"
 mount = "gimbal"
 endurance_min = {ENDURANCE_MIN}
-go_home_height_m = {GO_HOME_HEIGHTS_M[serial]}
+go_home_height_m = {go_home_height_m}
 failsafe = "go_home"
 {more}
 """
