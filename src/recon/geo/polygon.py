@@ -19,6 +19,9 @@ LEAST_RESIZE_M = 1e-3
 """GEOS makes nothing at all of a polygon that it is to move by far less; what is less is taken for
 none, which is the stricter answer."""
 
+SAMPLES_OUTSIDE = 200
+"""Of what is outside: to half a percent of its length one knows how far it goes."""
+
 _FAULTS = {
     "Self-intersection": "its edges cross or overlap",
     "Ring Self-intersection": "its outline touches itself",
@@ -135,15 +138,17 @@ class Polygon:
     def room_m(self, footprints: Footprints) -> FloatArray:
         """Return how far inside each of N footprints stays, (N,): its least distance to the edge.
 
-        For one that does not lie inside: minus how far outside the farthest corner is of its part
-        outside. NaN for one that is not finite.
+        For one that does not lie inside: minus how far outside the farthest place is on the edges
+        of its part outside, found by samples. NaN for one that is not finite.
         """
         shapes = footprints.shapes
         room_m: FloatArray = shapely.distance(self._edge, shapes)
         for index in np.flatnonzero(~shapely.covers(self._area, shapes)):
             outside = shapely.difference(shapes[index], self._area)
-            corners = shapely.points(shapely.get_coordinates(outside))
-            room_m[index] = -shapely.distance(self._area, corners).max()
+            # Across a notch its ends are on the edge, and the farthest place is between.
+            step_m = max(shapely.length(outside) / SAMPLES_OUTSIDE, LEAST_RESIZE_M)
+            places = shapely.points(shapely.get_coordinates(shapely.segmentize(outside, step_m)))
+            room_m[index] = -shapely.distance(self._area, places).max()
         return np.where(footprints.is_finite, room_m, np.nan)
 
     def gap_m(self, footprints: Footprints) -> FloatArray:

@@ -34,8 +34,8 @@ def keep_out(command: Command, situation: Situation) -> Refusal | None:
     lowest. All pieces are judged, climbs and landings too.
     A vehicle that is itself too close to a zone may be moved if every piece that begins where it is
     goes no deeper: no farther in, from above the ceiling no lower, from below the floor no higher.
-    A stick without velocity is held to the zones alone, without the margins; where the vehicle is
-    not known to be, it is not asked.
+    A stick without velocity is held to the zones without the margins, and may be `stop_slack_m`
+    beyond their floors and ceilings; where the vehicle is not known to be, it is not asked.
     """
     zones = situation.airspace.zones_of(ZoneKind.KEEP_OUT)
     path = flown(command, situation) if zones else None
@@ -62,9 +62,8 @@ class _Judged:
         self.airspace = situation.airspace
         margin_m = self.airspace.airspace.limits.boundary_margin_m
         self.gap_m = 0.0 if is_stop else margin_m
-        self.vertical_m = 0.0 if is_stop else settings.zone_vertical_margin_m
+        self.vertical_m = -settings.stop_slack_m if is_stop else settings.zone_vertical_margin_m
         self.rounding_m = settings.not_worse_m
-        self.slack_m = settings.stop_slack_m if is_stop else settings.not_worse_m
 
     def worse(self) -> int | None:
         """The first piece that enters the zone, and does so more than the vehicle by itself."""
@@ -111,9 +110,9 @@ class _Judged:
         if zone.ceiling_m is not None and up_m > up_of(
             self.airspace, here_m, zone.ceiling_m, datum
         ):
-            no_deeper &= pieces.low_m[indices] >= up_m - self.slack_m
+            no_deeper &= pieces.low_m[indices] >= up_m - self.rounding_m
         if zone.floor_m is not None and up_m < up_of(self.airspace, here_m, zone.floor_m, datum):
-            no_deeper &= pieces.high_m[indices] <= up_m + self.slack_m
+            no_deeper &= pieces.high_m[indices] <= up_m + self.rounding_m
         return no_deeper
 
 
