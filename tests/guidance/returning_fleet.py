@@ -14,11 +14,14 @@ import numpy as np
 from recon.guidance.fleet_return import (
     FleetReturnSettings,
     Flight,
+    Hovering,
     Place,
     ReturnPlan,
     Separation,
-    UnderWay,
+    claim_left,
     hindrance,
+    layer_is_taken_by,
+    whole_claim,
 )
 
 STEP_S = 0.1
@@ -136,10 +139,15 @@ def _begin(
     flying = {n: f.place_m for n, f in fliers.items() if not f.is_on_ground}
     moving = {f.name for f in under_way}
     for flight in tuple(waiting):
-        hovering = {n: p for n, p in flying.items() if n != flight.name and n not in moving}
-        now = [UnderWay(f, flying[f.name]) for f in under_way if f.name in flying]
+        hovering = [
+            Hovering(n, n, p) for n, p in flying.items() if n != flight.name and n not in moving
+        ]
+        now = [claim_left(f, flying[f.name], settings) for f in under_way if f.name in flying]
         before = waiting[: waiting.index(flight)]
-        if hindrance(flight, before, now, hovering, separation, settings) is None:
+        if layer_is_taken_by(flight, before, under_way) is not None:
+            continue
+        claims = [whole_claim(earlier) for earlier in before]
+        if hindrance(flight, claims, now, hovering, separation) is None:
             fliers[flight.name].begin(flight, now_s)
             waiting.remove(flight)
             under_way.append(flight)

@@ -7,7 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.guidance.returning_scenes import KEPT, SETTINGS
 
-from recon.guidance.fleet_return import Flight, Pad, Place, Separation, UnderWay, hindrance
+from recon.guidance.fleet_return import (
+    Flight,
+    Hovering,
+    Pad,
+    Place,
+    Separation,
+    claim_left,
+    hindrance,
+    layer_is_taken_by,
+    whole_claim,
+)
 from recon.guidance.fleet_return.turn import places_left
 from recon.guidance.fleet_return.volume import are_apart, column, distance_m, level_legs, point
 
@@ -55,7 +65,7 @@ class TestDistance:
 class TestPlacesLeft:
     def reaches(self, place_m: Place, probe_m: Place) -> bool:
         """Whether a flight at a place may still come to another one."""
-        left = places_left(UnderWay(flight(), place_m), SETTINGS)
+        left = places_left(flight(), place_m, SETTINGS)
         return not are_apart(left, [point(probe_m)], Separation(1.0, 1.0))
 
     def test_before_it_has_sunk_all_of_it(self) -> None:
@@ -81,33 +91,37 @@ class TestPlacesLeft:
     def test_of_one_that_began_over_its_pad_everything_until_it_is_down(self) -> None:
         """It may be climbing or landing: both look alike."""
         over = flight(start=(0.0, 1.0, 5.0))
-        left = places_left(UnderWay(over, (0.0, 0.5, 12.0)), SETTINGS)
+        left = places_left(over, (0.0, 0.5, 12.0), SETTINGS)
         assert not are_apart(left, [point((0.0, 0.0, 20.0))], Separation(1.0, 1.0))
 
 
-class TestHindrance:
-    def test_the_same_layer_is_taken_until_its_vehicle_has_landed(self) -> None:
+class TestLayer:
+    def test_it_is_taken_until_its_vehicle_has_landed(self) -> None:
         far = flight("B", (500.0, 200.0, 60.0), (500.0, 0.0))
-        other = UnderWay(flight(), (0.0, 0.0, 3.0))
-        assert hindrance(far, [], [other], {}, KEPT, SETTINGS) == "A is still in its layer"
-        assert hindrance(far, [], [], {}, KEPT, SETTINGS) is None
+        assert layer_is_taken_by(far, [], [flight()]) == "A is still in its layer"
+        assert layer_is_taken_by(far, [], [flight(layer_m=28.0)]) is None
 
+    def test_an_earlier_turn_has_it_first(self) -> None:
+        far = flight("B", (500.0, 200.0, 60.0), (500.0, 0.0))
+        assert layer_is_taken_by(far, [flight()], []) == "A has its layer first"
+
+
+class TestHindrance:
     def test_a_crossing_below_waits_until_the_other_has_passed(self) -> None:
         """B would sink through the way of A, which is below and not yet past."""
         under = flight("A", (-100.0, 100.0, 20.0), (100.0, 100.0), 20.0)
         upper = flight("B", (0.0, 200.0, 60.0), (0.0, 100.0), 28.0)
-        before = UnderWay(under, (-50.0, 100.0, 20.0))
-        past = UnderWay(under, (60.0, 100.0, 20.0))
-        assert hindrance(upper, [], [before], {}, KEPT, SETTINGS) == "A has not yet passed"
-        assert hindrance(upper, [], [past], {}, KEPT, SETTINGS) is None
+        before = claim_left(under, (-50.0, 100.0, 20.0), SETTINGS)
+        past = claim_left(under, (60.0, 100.0, 20.0), SETTINGS)
+        assert hindrance(upper, [], [before], [], KEPT) == "A has not yet passed"
+        assert hindrance(upper, [], [past], [], KEPT) is None
 
     def test_who_hovers_in_the_way_is_named(self) -> None:
-        hovering = {"C": (10.0, 100.0, 22.0)}
-        words = hindrance(flight(), [], [], hovering, KEPT, SETTINGS)
-        assert words == "C hovers too near to its way"
+        hovering = [Hovering("c", "C", (10.0, 100.0, 22.0))]
+        assert hindrance(flight(), [], [], hovering, KEPT) == "C hovers too near to its way"
 
     def test_an_earlier_turn_that_would_be_hindered_goes_first(self) -> None:
-        crossing = flight("B", (-100.0, 100.0, 20.0), (100.0, 100.0), 20.0)
-        beside = flight("C", (400.0, 200.0, 60.0), (400.0, 0.0), 28.0)
-        assert hindrance(flight(), [crossing], [], {}, KEPT, SETTINGS) == "B goes first"
-        assert hindrance(flight(), [beside], [], {}, KEPT, SETTINGS) is None
+        crossing = whole_claim(flight("B", (-100.0, 100.0, 20.0), (100.0, 100.0), 20.0))
+        beside = whole_claim(flight("C", (400.0, 200.0, 60.0), (400.0, 0.0), 28.0))
+        assert hindrance(flight(), [crossing], [], [], KEPT) == "B goes first"
+        assert hindrance(flight(), [beside], [], [], KEPT) is None

@@ -5,26 +5,44 @@ says whether a planned flight may begin now. `mission_of` makes the landing miss
 """
 
 from recon.guidance.fleet_return.airspace import WayHome, way_home
-from recon.guidance.fleet_return.flight import Flight, LeftOut, Pad, Place, Returning, ReturnPlan
+from recon.guidance.fleet_return.flight import (
+    Flight,
+    Hovering,
+    LeftOut,
+    Pad,
+    Place,
+    Returning,
+    ReturnPlan,
+)
 from recon.guidance.fleet_return.mission import mission_of
 from recon.guidance.fleet_return.plan import plan_return
 from recon.guidance.fleet_return.settings import FleetReturnSettings
-from recon.guidance.fleet_return.turn import UnderWay, hindrance
+from recon.guidance.fleet_return.turn import (
+    Claim,
+    claim_left,
+    hindrance,
+    layer_is_taken_by,
+    whole_claim,
+)
 from recon.guidance.fleet_return.volume import Separation
 
 __all__ = [
+    "Claim",
     "FleetReturnSettings",
     "Flight",
+    "Hovering",
     "LeftOut",
     "Pad",
     "Place",
     "ReturnPlan",
     "Returning",
     "Separation",
-    "UnderWay",
     "WayHome",
+    "claim_left",
     "hindrance",
+    "layer_is_taken_by",
     "mission_of",
     "plan_return",
     "way_home",
+    "whole_claim",
 ]

@@ -28,6 +28,15 @@ class Pad:
 
 
 @dataclass(frozen=True, slots=True)
+class Hovering:
+    """Something in the air that stays where it is. `key` is its own alone, its name may not be."""
+
+    key: str
+    name: str
+    place_m: Place
+
+
+@dataclass(frozen=True, slots=True)
 class Returning:
     """A vehicle that hovers and is called home. `battery_fraction` None: not known, taken for
     the lowest."""
@@ -38,6 +47,11 @@ class Returning:
     takeoff_up_m: float
     pad: Pad
     battery_fraction: float | None = None
+
+    @property
+    def hovering(self) -> Hovering:
+        """The vehicle as the others see it while it waits."""
+        return Hovering(self.serial, self.name, self.place_m)
 
 
 @dataclass(frozen=True, slots=True)

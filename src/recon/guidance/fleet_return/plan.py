@@ -6,21 +6,33 @@ to those that are under way, the next in the plan can always begin when they hav
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from math import floor, hypot, isfinite
 
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.guidance.fleet_return.airspace import WayHome
 from recon.guidance.fleet_return.flight import (
+    EastNorth,
     Flight,
+    Hovering,
     LeftOut,
     Place,
     Returning,
     ReturnPlan,
 )
 from recon.guidance.fleet_return.settings import FleetReturnSettings
-from recon.guidance.fleet_return.volume import Separation, are_apart, column, point
+from recon.guidance.fleet_return.volume import (
+    Separation,
+    are_apart,
+    column,
+    distance_to_leg_m,
+    point,
+)
 from recon.guidance.fleet_return.ways import Ways
+
+NO_WAY = "there is no way to its pad in any layer around keep-out zones and those that hover"
 
 
 def layers_up_m(home: WayHome, settings: FleetReturnSettings) -> tuple[float, ...]:
@@ -37,15 +49,15 @@ def plan_return(
     home: WayHome,
     separation: Separation,
     settings: FleetReturnSettings,
-    others: Mapping[str, Place] | None = None,
+    others: Sequence[Hovering] = (),
     first_wave: int = 1,
 ) -> ReturnPlan:
-    """Return the plan for vehicles that hover. `others` hover by name and are not called.
+    """Return the plan for vehicles that hover. `others` hover too and are not called.
 
     `separation` is the least one with its slack. Everyone named is in a flight or left out.
     """
     layers_m = layers_up_m(home, settings)
-    search = _Search(vehicles, home, separation, layers_m, dict(others or {}))
+    search = _Search(vehicles, home, separation, layers_m, others)
     waiting = sorted(vehicles, key=_turn)
     flights: list[Flight] = []
     wave, free_m = first_wave, list(layers_m)
@@ -71,8 +83,16 @@ def _turn(vehicle: Returning) -> tuple[int, float, str]:
     return tenths, far_m, vehicle.serial
 
 
+@dataclass(frozen=True, slots=True)
+class _Fault:
+    """Why a vehicle has no flight in a layer: so it stays while all these hover where they do."""
+
+    reason: str
+    while_hovering: frozenset[str] = frozenset()
+
+
 class _Search:
-    """Tries vehicles in layers."""
+    """Tries vehicles in layers; what has failed is tried anew only when something has changed."""
 
     def __init__(
         self,
@@ -80,7 +100,7 @@ class _Search:
         home: WayHome,
         separation: Separation,
         layers_m: Sequence[float],
-        others: Mapping[str, Place],
+        others: Sequence[Hovering],
     ) -> None:
         self._home = home
         self._ways = Ways(home)
@@ -88,49 +108,48 @@ class _Search:
         self._layers_m = layers_m
         self._others = others
         self._column_faults = {v.serial: self._shut_column(v) for v in vehicles}
+        self._faults: dict[tuple[str, float], _Fault] = {}
 
     def next_flight(
         self, waiting: Sequence[Returning], free_m: Sequence[float], wave: int
     ) -> Flight | None:
         """Return the flight of the first vehicle, in their order, that can have one."""
+        hovering = self._hovering(waiting)
         for vehicle in waiting:
             for layer_m in free_m:
-                flight = self._flight(vehicle, waiting, layer_m, wave)
+                flight = self._flight(vehicle, hovering, layer_m, wave)
                 if isinstance(flight, Flight):
                     return flight
         return None
 
     def reason(self, vehicle: Returning, waiting: Sequence[Returning]) -> str:
         """Return why a vehicle has no flight."""
+        room_m = self._home.highest_up_m - self._home.lowest_up_m
+        if not isfinite(room_m):
+            return "the height of the ground is not known everywhere on the ways home"
         if not self._layers_m:
-            room_m = self._home.highest_up_m - self._home.lowest_up_m
             return (
                 "there is no height to return in: the lowest one above ground and zones is "
                 f"{-room_m:.0f} m above the ceiling"
             )
-        tried = (self._flight(vehicle, waiting, layer_m, 1) for layer_m in self._layers_m)
-        return next(fault for fault in tried if isinstance(fault, str))
+        hovering = self._hovering(waiting)
+        tried = (self._flight(vehicle, hovering, layer_m, 1) for layer_m in self._layers_m)
+        return next(fault.reason for fault in tried if isinstance(fault, _Fault))
+
+    def _hovering(self, waiting: Sequence[Returning]) -> dict[str, Hovering]:
+        return {other.key: other for other in (*self._others, *(v.hovering for v in waiting))}
 
     def _flight(
-        self, vehicle: Returning, waiting: Sequence[Returning], layer_m: float, wave: int
-    ) -> Flight | str:
-        fault = self._column_faults[vehicle.serial]
-        if fault is not None:
-            return fault
-        hovering = {v.name: v.place_m for v in waiting if v.serial != vehicle.serial}
-        hovering |= self._others
-        fault = self._too_near(vehicle, layer_m, hovering)
-        if fault is not None:
-            return fault
-        way_m = self._ways.find(
-            vehicle.place_m[:2],
-            vehicle.pad.east_north_m,
-            layer_m,
-            [p[:2] for p in hovering.values() if self._is_near_height(p, layer_m)],
-            self._separation.horizontal_m,
-        )
-        if way_m is None:
-            return self._no_way(vehicle, layer_m)
+        self, vehicle: Returning, hovering: Mapping[str, Hovering], layer_m: float, wave: int
+    ) -> Flight | _Fault:
+        known = self._faults.get((vehicle.serial, layer_m))
+        if known is not None and known.while_hovering <= hovering.keys():
+            return known
+        others = [other for key, other in hovering.items() if key != vehicle.serial]
+        found = self._column_fault(vehicle, layer_m, others) or self._way(vehicle, layer_m, others)
+        if isinstance(found, _Fault):
+            self._faults[vehicle.serial, layer_m] = found
+            return found
         return Flight(
             vehicle.serial,
             vehicle.name,
@@ -138,9 +157,26 @@ class _Search:
             vehicle.takeoff_up_m,
             vehicle.pad,
             layer_m,
-            way_m,
+            found,
             wave,
         )
+
+    def _way(
+        self, vehicle: Returning, layer_m: float, others: Sequence[Hovering]
+    ) -> tuple[EastNorth, ...] | _Fault:
+        start_m, end_m = vehicle.place_m[:2], vehicle.pad.east_north_m
+        alone = self._ways.find(start_m, end_m, layer_m)
+        if alone is None:
+            return _Fault(self._no_way(vehicle, layer_m))
+        near = [other for other in others if self._is_near_height(other.place_m, layer_m)]
+        spots = [other.place_m[:2] for other in near]
+        circle_m = self._separation.horizontal_m
+        if all(
+            distance_to_leg_m(spot, *leg) >= circle_m for spot in spots for leg in pairwise(alone)
+        ):
+            return alone
+        around = self._ways.find_around(start_m, end_m, layer_m, spots, circle_m)
+        return around or _Fault(NO_WAY, frozenset(other.key for other in near))
 
     def _is_near_height(self, place_m: Place, layer_m: float) -> bool:
         return abs(place_m[2] - layer_m) < self._separation.vertical_m
@@ -151,31 +187,32 @@ class _Search:
         elif not self._ways.is_in_reach(vehicle.place_m[:2], layer_m):
             where = "it"
         else:
-            return (
-                "there is no way to its pad in any layer around keep-out zones and the "
-                "vehicles that hover"
-            )
+            return NO_WAY
         return (
             f"{where} is outside the site, in a keep-out zone, or nearer than "
             f"{self._home.margin_m:.0f} m to its edge"
         )
 
-    def _too_near(
-        self, vehicle: Returning, layer_m: float, hovering: Mapping[str, Place]
-    ) -> str | None:
-        """Why it cannot climb, sink or land for somebody who hovers there."""
+    def _column_fault(
+        self, vehicle: Returning, layer_m: float, others: Sequence[Hovering]
+    ) -> _Fault | None:
+        """Why it cannot climb, sink or land: for a zone, or for somebody who hovers there."""
+        shut = self._column_faults[vehicle.serial]
+        if shut is not None:
+            return _Fault(shut)
         pad = vehicle.pad
         columns = (
             column(vehicle.place_m[:2], vehicle.place_m[2], layer_m),
             column(pad.east_north_m, layer_m, pad.up_m),
         )
-        for name, place_m in hovering.items():
-            if not are_apart(columns, [point(place_m)], self._separation):
-                return (
-                    f"{name} hovers where it would climb, sink or land: nearer than "
+        for other in others:
+            if not are_apart(columns, [point(other.place_m)], self._separation):
+                reason = (
+                    f"{other.name} hovers where it would climb, sink or land: nearer than "
                     f"{self._separation.horizontal_m:.0f} m beside and "
                     f"{self._separation.vertical_m:.0f} m in height"
                 )
+                return _Fault(reason, frozenset({other.key}))
         return None
 
     def _shut_column(self, vehicle: Returning) -> str | None:

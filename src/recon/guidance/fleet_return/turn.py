@@ -4,11 +4,11 @@ Nothing here foresees times. A flight begins when all its places are apart from 
 others still have before them, so that neither wind nor a slow landing brings two together.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import hypot
 
-from recon.guidance.fleet_return.flight import Flight, Place
+from recon.guidance.fleet_return.flight import Flight, Hovering, Place
 from recon.guidance.fleet_return.settings import FleetReturnSettings
 from recon.guidance.fleet_return.volume import (
     Separation,
@@ -22,48 +22,69 @@ from recon.guidance.fleet_return.volume import (
 
 
 @dataclass(frozen=True, slots=True)
-class UnderWay:
-    """A flight that has begun, and where its vehicle was last heard to be."""
+class Claim:
+    """What a vehicle's flight takes of the air: its layer, and places it may still come to."""
 
-    flight: Flight
-    place_m: Place
+    name: str
+    layer_up_m: float
+    volumes: tuple[Volume, ...]
+
+
+def whole_claim(flight: Flight) -> Claim:
+    """Return what a flight takes that has not begun."""
+    return Claim(flight.name, flight.layer_up_m, flight.volumes)
+
+
+def claim_left(flight: Flight, place_m: Place, settings: FleetReturnSettings) -> Claim:
+    """Return what a flight under way still takes, its vehicle last heard at a place."""
+    return Claim(flight.name, flight.layer_up_m, places_left(flight, place_m, settings))
+
+
+def layer_is_taken_by(
+    flight: Flight, before: Iterable[Flight], under_way: Iterable[Flight]
+) -> str | None:
+    """Return who keeps a flight from its layer, in words, or None: the layer is free."""
+    for other in under_way:
+        if other.layer_up_m == flight.layer_up_m:
+            return f"{other.name} is still in its layer"
+    for earlier in before:
+        if earlier.layer_up_m == flight.layer_up_m:
+            return f"{earlier.name} has its layer first"
+    return None
 
 
 def hindrance(
     flight: Flight,
-    before: Sequence[Flight],
-    under_way: Sequence[UnderWay],
-    hovering: Mapping[str, Place],
+    before: Iterable[Claim],
+    under_way: Iterable[Claim],
+    hovering: Iterable[Hovering],
     separation: Separation,
-    settings: FleetReturnSettings,
 ) -> str | None:
-    """Return why a flight must wait, or None: it may begin now.
+    """Return why a flight whose layer is free must wait, or None: it may begin now.
 
-    `before` are the flights whose turn is earlier and that wait too; `hovering` are the places, by
-    name, of all that hover and of everything else in the air.
+    `before` are those whose turn is earlier and that wait too; `hovering` are all that hover, and
+    everything else in the air.
     """
     volumes = flight.volumes
     for other in under_way:
-        name = other.flight.name
-        if other.flight.layer_up_m == flight.layer_up_m:
-            return f"{name} is still in its layer"
-        if not are_apart(volumes, places_left(other, settings), separation):
-            return f"{name} has not yet passed"
-    for name, place_m in hovering.items():
-        if not are_apart(volumes, [point(place_m)], separation):
-            return f"{name} hovers too near to its way"
+        if not are_apart(volumes, other.volumes, separation):
+            return f"{other.name} has not yet passed"
+    for other_one in hovering:
+        if not are_apart(volumes, [point(other_one.place_m)], separation):
+            return f"{other_one.name} hovers too near to its way"
     for earlier in before:
         if not are_apart(volumes, earlier.volumes, separation):
             return f"{earlier.name} goes first"
     return None
 
 
-def places_left(under_way: UnderWay, settings: FleetReturnSettings) -> tuple[Volume, ...]:
+def places_left(
+    flight: Flight, place_m: Place, settings: FleetReturnSettings
+) -> tuple[Volume, ...]:
     """Return every place a vehicle under way may still come to, where it is included.
 
     A vehicle that is not where its flight leads may come to all of them.
     """
-    flight, place_m = under_way.flight, under_way.place_m
     here, everything = point(place_m), flight.volumes
     landing = column(flight.pad.east_north_m, flight.layer_up_m, flight.pad.up_m)
     if _is_over_pad(flight, flight.start_m, settings):

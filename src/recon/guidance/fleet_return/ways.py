@@ -17,29 +17,44 @@ CLEARANCE_M = 0.25
 
 CORNERS_OF_A_CIRCLE = 12
 
+Way = tuple[EastNorth, ...]
+
 
 class Ways:
-    """Finds ways in one site's air at any height; keeps what it has worked out of each height."""
+    """Finds ways in one site's air at any height; keeps what it has worked out."""
 
     def __init__(self, home: WayHome) -> None:
         self._home = home
-        self._shut_at: dict[float, shapely.Geometry] = {}
+        self._shut_by: dict[frozenset[int], shapely.Geometry] = {}
+        self._found: dict[tuple[EastNorth, EastNorth, frozenset[int]], Way | None] = {}
         self._inside = _shrunk(home.boundary, home.margin_m)
         self._inside_corners = _corners(_shrunk(home.boundary, home.margin_m + CLEARANCE_M))
         shapely.prepare(self._inside)
 
-    def find(
+    def find(self, start_m: EastNorth, end_m: EastNorth, up_m: float) -> Way | None:
+        """Return the shortest way at a height, or None."""
+        key = start_m, end_m, self._shut_pieces(up_m)
+        if key not in self._found:
+            self._found[key] = self._search(start_m, end_m, self._shut(up_m))
+        return self._found[key]
+
+    def find_around(
         self,
         start_m: EastNorth,
         end_m: EastNorth,
         up_m: float,
         hovering_m: Sequence[EastNorth],
         circle_m: float,
-    ) -> tuple[EastNorth, ...] | None:
-        """Return a way at a height that keeps `circle_m` from hovering vehicles, or None."""
-        shut = self._shut(up_m)
-        if hovering_m:
-            shut = shapely.union_all([shut, *(_circle(p, circle_m) for p in hovering_m)])
+    ) -> Way | None:
+        """Return a way that keeps `circle_m` from hovering vehicles as well, or None."""
+        circles = [_circle(place_m, circle_m) for place_m in hovering_m]
+        return self._search(start_m, end_m, shapely.union_all([self._shut(up_m), *circles]))
+
+    def is_in_reach(self, place_m: EastNorth, up_m: float) -> bool:
+        """Return whether a place at a height is inside the site and not shut."""
+        return bool(self._is_open(np.array([[place_m, place_m]]), self._shut(up_m))[0])
+
+    def _search(self, start_m: EastNorth, end_m: EastNorth, shut: Any) -> Way | None:
         shapely.prepare(shut)
         if self._is_open(np.array([[start_m, end_m]]), shut)[0]:
             return start_m, end_m
@@ -47,20 +62,19 @@ class Ways:
         nodes = np.array([start_m, end_m, *_corners(around), *self._inside_corners])
         return _shortest(nodes, self._open_legs(nodes, shut))
 
-    def is_in_reach(self, place_m: EastNorth, up_m: float) -> bool:
-        """Return whether a place at a height is inside the site and not shut."""
-        return bool(self._is_open(np.array([[place_m, place_m]]), self._shut(up_m))[0])
+    def _shut_pieces(self, up_m: float) -> frozenset[int]:
+        shut = enumerate(self._home.shut)
+        return frozenset(n for n, piece in shut if piece.low_up_m < up_m < piece.high_up_m)
 
     def _shut(self, up_m: float) -> shapely.Geometry:
-        if up_m not in self._shut_at:
-            areas = [
-                piece.area for piece in self._home.shut if piece.low_up_m < up_m < piece.high_up_m
-            ]
+        pieces = self._shut_pieces(up_m)
+        if pieces not in self._shut_by:
+            areas = [self._home.shut[number].area for number in sorted(pieces)]
             margin_m = self._home.margin_m
-            self._shut_at[up_m] = shapely.union_all(
+            self._shut_by[pieces] = shapely.union_all(
                 [shapely.buffer(area, margin_m, quad_segs=4) for area in areas]
             )
-        return self._shut_at[up_m]
+        return self._shut_by[pieces]
 
     def _open_legs(self, nodes: npt.NDArray[np.float64], shut: Any) -> npt.NDArray[np.bool_]:
         """Which of all legs between nodes are open, (N, N)."""
@@ -99,9 +113,7 @@ def _corners(area: shapely.Geometry | None) -> list[EastNorth]:
     return [(float(east), float(north)) for east, north in shapely.get_coordinates(area)]
 
 
-def _shortest(
-    nodes: npt.NDArray[np.float64], is_open: npt.NDArray[np.bool_]
-) -> tuple[EastNorth, ...] | None:
+def _shortest(nodes: npt.NDArray[np.float64], is_open: npt.NDArray[np.bool_]) -> Way | None:
     """The shortest way from node 0 to node 1 along open legs (Dijkstra)."""
     best_m = {0: 0.0}
     came_from: dict[int, int] = {}
@@ -124,7 +136,7 @@ def _shortest(
     return None
 
 
-def _traced(nodes: npt.NDArray[np.float64], came_from: dict[int, int]) -> tuple[EastNorth, ...]:
+def _traced(nodes: npt.NDArray[np.float64], came_from: dict[int, int]) -> Way:
     way = [1]
     while way[-1] != 0:
         way.append(came_from[way[-1]])

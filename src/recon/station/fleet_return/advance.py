@@ -1,15 +1,19 @@
 """Carrying a fleet return on: who stands is planned, whose turn has come is sent its mission."""
 
 from dataclasses import replace
+from math import dist
 
 from recon.guidance.fleet_return import (
+    Claim,
     Flight,
     Place,
     Returning,
-    UnderWay,
+    claim_left,
     hindrance,
+    layer_is_taken_by,
     mission_of,
     plan_return,
+    whole_claim,
 )
 from recon.model.command import FlyMission, Refusal
 from recon.model.event import OperatorOrder
@@ -28,6 +32,8 @@ SETTINGS = ReturnSettings()
 
 WAITING_RULES = ("separation", "link_age")
 """Refusals of the gate that time may end; any other stands."""
+
+MOVED = "it was moved from where it waited: its pilot has it, or it drifts"
 
 
 def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) -> Stepped:
@@ -58,19 +64,18 @@ def _planned(
             vehicles.append(found)
     if not vehicles:
         return running
-    called = {vehicle.serial for vehicle in vehicles}
-    moving = {member.serial for member in running.at(*UNDER_WAY)}
+    theirs = {member.serial for member in running.at(Stage.WAITING, *UNDER_WAY)}
+    flying = places.in_the_air(station, running.frame)
     plan = plan_return(
         vehicles,
         places.air(station, vehicles, settings),
         places.separation(station, settings),
         settings.plan,
-        places.hovering(station, running.frame, called | moving),
+        [other for key, other in flying.items() if key not in theirs],
         1 + max((_wave(member) for member in running.members.values()), default=0),
     )
     for flight in plan.flights:
-        member = running.members[flight.serial]
-        running = running.put(replace(member, flight=flight))
+        running = running.put(replace(running.members[flight.serial], flight=flight))
     for left in plan.left_out:
         member = running.members[left.serial]
         running = running.put(member.at(Stage.LEFT_OUT, now_ns, left.reason))
@@ -88,23 +93,92 @@ def _begin_one(
     station: Station, running: FleetReturn, settings: ReturnSettings, now_ns: int
 ) -> Stepped:
     """Begin the first flight in turn that may; one at a time, for each changes what others may."""
-    waiting = [m for serial in running.turns if (m := running.members[serial]).flight is not None]
-    waiting = [member for member in waiting if member.stage is Stage.WAITING]
-    for index, member in enumerate(waiting):
-        place_m = places.place_of(station, member.serial, running.frame)
-        if place_m is None or member.flight is None:
-            continue
-        if _far_m(place_m, member.flight.start_m) > settings.moved_m:
-            words = "it was moved from where it waited: its pilot has it, or it drifts"
-            running = running.put(member.at(Stage.LEFT_OUT, now_ns, words))
-            continue
-        before = [other.flight for other in waiting[:index] if other.flight is not None]
-        now = _from_here(member.flight, place_m)
-        member = _hindered(station, running, member, now, before, settings, now_ns)
-        running = running.put(member)
-        if member.reason == "":
-            return _judged(station, running, member, now, settings, now_ns)
+    running, ready = _with_a_free_layer(running, settings, now_ns)
+    if ready:
+        seen = _Air(station, running, settings)
+        for member in ready:
+            flight = seen.from_here(member)
+            if flight is None:
+                running = running.put(member.at(Stage.LEFT_OUT, now_ns, MOVED))
+                continue
+            hindered = seen.hindrance(flight, running)
+            running = running.put(member.waits_for(hindered or ""))
+            if hindered is None:
+                return _judged(station, running, member, flight, settings, now_ns)
     return replace(station, fleet_return=_anew_if_stuck(running, settings, now_ns)), ()
+
+
+def _with_a_free_layer(
+    running: FleetReturn, settings: ReturnSettings, now_ns: int
+) -> tuple[FleetReturn, list[Member]]:
+    """Who waits for nothing but other vehicles' ways, in turn; the others get their reason."""
+    before: list[Flight] = []
+    ready: list[Member] = []
+    flying = [m.flight for m in running.at(*UNDER_WAY) if m.flight is not None]
+    for member in _waiting_in_turn(running):
+        flight = member.flight
+        assert flight is not None
+        clears = _to_be_cleared(running, flight, settings, now_ns)
+        reason = layer_is_taken_by(flight, before, flying)
+        if clears is not None:
+            reason = f"its pad is being cleared of {clears}"
+        before.append(flight)
+        member = replace(member, clears=clears)
+        if reason is not None:
+            running = running.put(member.waits_for(reason))
+        elif now_ns >= member.judge_at_ns:
+            running = running.put(member)
+            ready.append(member)
+    return running, ready
+
+
+def _waiting_in_turn(running: FleetReturn) -> list[Member]:
+    members = (running.members[serial] for serial in running.turns)
+    return [m for m in members if m.stage is Stage.WAITING and m.flight is not None]
+
+
+class _Air:
+    """What is in the air now, looked up once for all that might begin."""
+
+    def __init__(self, station: Station, running: FleetReturn, settings: ReturnSettings) -> None:
+        self._settings = settings
+        self._separation = places.separation(station, settings)
+        self._flying = places.in_the_air(station, running.frame)
+        self._moving = {member.serial for member in running.at(*UNDER_WAY)}
+        self._under_way = [
+            claim_left(member.flight, self._place_m(member), settings.plan)
+            for member in running.at(*UNDER_WAY)
+            if member.flight is not None
+        ]
+
+    def from_here(self, member: Member) -> Flight | None:
+        """The flight from where the vehicle has drifted to since it was planned; None: too far."""
+        assert member.flight is not None
+        start_m, place_m = member.flight.start_m, self._place_m(member)
+        if dist(start_m, place_m) > self._settings.moved_m:
+            return None
+        return replace(
+            member.flight, start_m=place_m, way_m=(place_m[:2], *member.flight.way_m[1:])
+        )
+
+    def hindrance(self, flight: Flight, running: FleetReturn) -> str | None:
+        """Why a flight whose layer is free must wait."""
+        before: list[Claim] = []
+        for member in _waiting_in_turn(running):
+            if member.serial == flight.serial:
+                break
+            if member.flight is not None:
+                before.append(whole_claim(member.flight))
+        not_hovering = self._moving | {flight.serial}
+        hovering = [other for key, other in self._flying.items() if key not in not_hovering]
+        return hindrance(flight, before, self._under_way, hovering, self._separation)
+
+    def _place_m(self, member: Member) -> Place:
+        """Where it was last heard; one that tells no place any more may be anywhere on its way,
+        and so counts as at its start."""
+        assert member.flight is not None
+        heard = self._flying.get(member.serial)
+        return member.flight.start_m if heard is None else heard.place_m
 
 
 def _anew_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) -> FleetReturn:
@@ -121,45 +195,6 @@ def _anew_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) 
     return replace(running, look_at_ns=now_ns + seconds_to_ns(settings.planned_again_s))
 
 
-def _from_here(flight: Flight, place_m: Place) -> Flight:
-    """The flight from where the vehicle has drifted to since it was planned."""
-    return replace(flight, start_m=place_m, way_m=(place_m[:2], *flight.way_m[1:]))
-
-
-def _far_m(one: Place, other: Place) -> float:
-    return float(sum((a - b) ** 2 for a, b in zip(one, other, strict=True)) ** 0.5)
-
-
-def _hindered(
-    station: Station,
-    running: FleetReturn,
-    member: Member,
-    flight: Flight,
-    before: list[Flight],
-    settings: ReturnSettings,
-    now_ns: int,
-) -> Member:
-    """Return the member with the reason why it must wait, "" when its turn has come."""
-    if now_ns < member.judge_at_ns:
-        return member
-    clears = _to_be_cleared(running, flight, settings, now_ns)
-    member = replace(member, clears=clears)
-    if clears is not None:
-        return member.waits_for(f"its pad is being cleared of {clears}")
-    moving = running.at(*UNDER_WAY)
-    under_way = [
-        UnderWay(other.flight, place_m)
-        for other in moving
-        if other.flight is not None
-        and (place_m := places.place_of(station, other.serial, running.frame)) is not None
-    ]
-    without = {flight.serial, *(other.serial for other in moving)}
-    hovering = places.hovering(station, running.frame, without)
-    separation = places.separation(station, settings)
-    fault = hindrance(flight, before, under_way, hovering, separation, settings.plan)
-    return member.waits_for(fault or "")
-
-
 def _to_be_cleared(
     running: FleetReturn, flight: Flight, settings: ReturnSettings, now_ns: int
 ) -> str | None:
@@ -170,10 +205,7 @@ def _to_be_cleared(
         ):
             continue
         pad = other.flight.pad
-        apart_m = _far_m(
-            (pad.east_m, pad.north_m, 0.0), (flight.pad.east_m, flight.pad.north_m, 0.0)
-        )
-        if apart_m < settings.same_pad_m:
+        if dist(pad.east_north_m, flight.pad.east_north_m) < settings.same_pad_m:
             return other.name
     return None
 

@@ -1,12 +1,12 @@
 """Where vehicles and pads are: the station's state in the words of the fleet return's plan."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from recon.guidance.fleet_return import (
+    Hovering,
     Pad,
-    Place,
     Returning,
     Separation,
     WayHome,
@@ -22,36 +22,43 @@ AROUND_M = 50.0
 """Ground this far around all places and pads counts: detours leave the straight ways."""
 
 
-def place_of(station: Station, serial: str, frame: LocalFrame) -> Place | None:
-    """Return where a vehicle was last heard to be."""
-    vehicle = station.fleet.vehicles.get(serial)
-    return None if vehicle is None else _place(station, vehicle, frame)
+def in_the_air(station: Station, frame: LocalFrame) -> dict[str, Hovering]:
+    """Return where everything that flies, or may, was last heard to be; by serial, or by link.
 
-
-def hovering(station: Station, frame: LocalFrame, without: Collection[str]) -> dict[str, Place]:
-    """Return by name where everything else is that flies or may."""
-    links = station.fleet.unbound_links()
-    flying = [
-        vehicle
+    What has never told where it is is not among them: the gate lets nothing begin meanwhile.
+    """
+    flying = {
+        serial: vehicle
         for serial, vehicle in station.fleet.vehicles.items()
-        if serial not in without and vehicle.is_flying.value is not False
-    ]
-    flying += [link.own_state for link in links if link.own_state.is_flying.value is True]
-    places = ((vehicle.display_name, _place(station, vehicle, frame)) for vehicle in flying)
-    return {name: place for name, place in places if place is not None}
+        if vehicle.is_flying.value is not False
+    }
+    for link in station.fleet.unbound_links():
+        if link.own_state.is_flying.value is True:
+            flying[f"link {link.id}"] = link.own_state
+    told = [(k, v, v.position.value) for k, v in flying.items() if v.position.value is not None]
+    spots = places_m(frame, [position for _, _, position in told if position is not None])
+    found: dict[str, Hovering] = {}
+    for (key, vehicle, _), (east_m, north_m) in zip(told, spots, strict=True):
+        base_m = takeoff_up_m(station.airspace, vehicle)
+        height_m = vehicle.height_above_takeoff_m.value
+        if base_m is not None and height_m is not None:
+            place_m = float(east_m), float(north_m), base_m + height_m
+            found[key] = Hovering(key, vehicle.display_name, place_m)
+    return found
 
 
 def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | str:
     """Return a vehicle as the plan needs it, or what is not known of it."""
     vehicle = station.fleet.vehicles[serial]
-    place_m = _place(station, vehicle, frame)
+    found = vehicle_enu_m(station.airspace, vehicle, frame)
     takeoff_m = takeoff_up_m(station.airspace, vehicle)
     pad = _pad(station, vehicle, frame)
-    if place_m is None or takeoff_m is None or pad is None:
+    if found is None or takeoff_m is None or pad is None:
         return (
             "expected its position and its takeoff point to be known, for its heights count from "
             "there; give it a pad in the site's file"
         )
+    place_m = float(found[0]), float(found[1]), float(found[2])
     battery = vehicle.battery_fraction.value
     return Returning(serial, vehicle.display_name, place_m, takeoff_m, pad, battery)
 
@@ -72,11 +79,6 @@ def separation(station: Station, settings: ReturnSettings) -> Separation:
         limits.min_separation_horizontal_m + settings.plan.horizontal_slack_m,
         limits.min_separation_vertical_m + settings.plan.vertical_slack_m,
     )
-
-
-def _place(station: Station, vehicle: VehicleState, frame: LocalFrame) -> Place | None:
-    found = vehicle_enu_m(station.airspace, vehicle, frame)
-    return None if found is None else (float(found[0]), float(found[1]), float(found[2]))
 
 
 def _pad(station: Station, vehicle: VehicleState, frame: LocalFrame) -> Pad | None:
