@@ -22,7 +22,7 @@ from recon.sim.app import SimulatedApp
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.site import Site
 from recon.site.site import Layers
-from recon.station.build import first_state
+from recon.station.build import first_state, worker_tasks
 from recon.station.virtual import VirtualDriver
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
@@ -78,7 +78,8 @@ def main(picture: Path | None) -> None:
     """Fly, print each vehicle's wave, layer and landing, and draw them if asked to."""
     places = [point_from_enu(FRAME, (*pad, 0.0)) for pad in PADS_M]
     pads = dict(zip(SERIALS, places, strict=True))
-    driver = VirtualDriver(first_state(site_with(pads)))
+    site = site_with(pads)
+    driver = VirtualDriver(first_state(site), tasks=worker_tasks(site))
     config = SimulationConfig(home=HOME, vehicle_count=6, airborne=Airborne.ALL, pads=pads)
     apps = build_fleet(config, start_ns=driver.now_ns)
     for app, place, pad in zip(apps, FIELD_M, PADS_M, strict=True):

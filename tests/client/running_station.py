@@ -19,9 +19,10 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
-from recon.station.build import first_state
+from recon.station.build import first_state, worker_tasks
 from recon.station.driver import AsyncioDriver, station_clock
 from recon.station.service import Service
+from recon.station.worker import ThreadWorker
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 SERIALS = ("SIM-1", "SIM-2")
@@ -79,6 +80,9 @@ async def running_station(
     async with AsyncExitStack() as stack:
         await links.start("127.0.0.1", 0)
         stack.push_async_callback(links.stop)
+        driver.worker = worker = ThreadWorker(worker_tasks(site), driver.handle_from_thread)
+        worker.start()
+        stack.callback(worker.stop)
         await stack.enter_async_context(beside(driver.run()))
         config = SimulationConfig(
             home=HOME,

@@ -19,7 +19,7 @@ from recon.safety import PreparedAirspace
 from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.manoeuvres import Grounded
-from recon.station.build import first_state
+from recon.station.build import first_state, worker_tasks
 from recon.station.fleet_return.record import Member, Stage
 from recon.station.virtual import VirtualDriver
 
@@ -176,9 +176,10 @@ def returning_world(
         zones=zones,
         landing_pads=tuple(LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items()),
     )
-    station = first_state(ready_site(HOME, profiles))
+    site = ready_site(HOME, profiles)
+    station = first_state(site)
     station = replace(station, airspace=PreparedAirspace(airspace))
-    world = World(VirtualDriver(station, keeps_log=False))
+    world = World(VirtualDriver(station, tasks=worker_tasks(site), keeps_log=False))
     for app in apps:
         world.connect(app)
     made = ReturningWorld(world, dict(zip(serials, map(tuple, pads_m), strict=True)))

@@ -184,11 +184,11 @@ class TestBuild:
         site = load_site(demo_site_folder())
         station = first_state(site)
         assert station.imaging.eye_serial == "SIM-EYE"
-        assert list(worker_tasks(site)) == ["lay_frame"]
+        assert list(worker_tasks(site)) == ["lay_frame", "plan_fleet_return"]
         driver = AsyncioDriver(station, lambda: 0)
         site_view = Service.around(driver, site, None).state().site
         assert site_view is not None
         assert site_view.pose_rms_px is not None
 
     def test_without_an_eye_nobody_lays_frames(self) -> None:
-        assert worker_tasks(Site(name="bare")) == {}
+        assert list(worker_tasks(Site(name="bare"))) == ["plan_fleet_return"]

@@ -10,6 +10,7 @@ from recon.model.imagery import GroundImage
 from recon.model.vehicle import VehicleProfile
 from recon.safety import PreparedAirspace
 from recon.site import Site
+from recon.station.fleet_return.planning import PLAN_RETURN, plan_task
 from recon.station.imaging import LAY_FRAME, Imaging, LayFrame
 from recon.station.settings import StationSettings
 from recon.station.state import Station
@@ -33,10 +34,11 @@ def first_state(site: Site, settings: StationSettings | None = None) -> Station:
 
 
 def worker_tasks(site: Site) -> dict[str, Task]:
-    """Return what the worker can do for a site: with an eye, laying its frames on the ground."""
+    """Return what the worker can do for a site: plan the fleet's return; with an eye, lay its
+    frames on the ground."""
     cv2.setNumThreads(1)
     if site.eye is None or site.frame is None or site.ground_grid is None:
-        return {}
+        return {PLAN_RETURN: plan_task}
     eye, frame = site.eye, site.frame
     projector = GroundProjector(site.ground_grid, eye.camera, eye.image_circle)
     mount = site.profiles.get(eye.serial, VehicleProfile(eye.serial)).mount
@@ -48,4 +50,4 @@ def worker_tasks(site: Site) -> dict[str, Task]:
         pose = displaced_pose(eye.solution.pose, marked, now, shift_m, mount)
         return projector.lay(payload.frame, pose)
 
-    return {LAY_FRAME: lay}
+    return {LAY_FRAME: lay, PLAN_RETURN: plan_task}

@@ -35,6 +35,7 @@ from recon.station.alarms import Condition, Severity
 from recon.station.commanding import Stepped
 from recon.station.conditions import conditions
 from recon.station.fleet_return.advance import advance as advance_fleet_return
+from recon.station.fleet_return import planning
 from recon.station.fleet_return.call import call as fleet_return_call
 from recon.station.outputs import Output, StartWork
 from recon.station.state import Station
@@ -59,8 +60,12 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
         case Tick():
             return _tick(station, now_ns)
         case WorkerResult():
+        case WorkerResult(kind=planning.PLAN_RETURN):
+            return planning.take(station, event, now_ns), ()
             return _work_done(station, event), ()
         case DeadlineMissed():
+        case DeadlineMissed(job_id, planning.PLAN_RETURN):
+            return planning.lost(station, job_id), ()
             dropped = station.imaging.frames_dropped + 1
             return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
         case AuthorityTaken():

@@ -7,12 +7,10 @@ from recon.guidance.fleet_return import (
     Claim,
     Flight,
     Place,
-    Returning,
     claim_left,
     hindrance,
     layer_is_taken_by,
     mission_of,
-    plan_return,
     whole_claim,
 )
 from recon.model.command import FlyMission, Refusal
@@ -21,7 +19,7 @@ from recon.model.units import seconds_to_ns
 from recon.safety import judge
 from recon.station import commanding
 from recon.station.commanding import Stepped
-from recon.station.fleet_return import places
+from recon.station.fleet_return import places, planning
 from recon.station.fleet_return.record import UNDER_WAY, FleetReturn, Member, Stage
 from recon.station.fleet_return.settings import ReturnSettings
 from recon.station.fleet_return.watch import seen
@@ -47,46 +45,9 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) 
     if running.at(Stage.STOPPING):
         return replace(station, fleet_return=running), ()
     if any(member.flight is None for member in running.at(Stage.WAITING)):
-        running = _planned(station, running, settings, now_ns)
+        running, work = planning.ask(station, running, settings, now_ns)
+        return replace(station, fleet_return=running), work
     return _begin_one(station, running, settings, now_ns)
-
-
-def _planned(
-    station: Station, running: FleetReturn, settings: ReturnSettings, now_ns: int
-) -> FleetReturn:
-    """Plan for all that wait; those that cannot be planned for are left out."""
-    vehicles: list[Returning] = []
-    for member in running.at(Stage.WAITING):
-        found = places.returning(station, member.serial, running.frame)
-        if isinstance(found, str):
-            running = running.put(member.at(Stage.LEFT_OUT, now_ns, found))
-        else:
-            vehicles.append(found)
-    if not vehicles:
-        return running
-    theirs = {member.serial for member in running.at(Stage.WAITING, *UNDER_WAY)}
-    flying = places.in_the_air(station, running.frame)
-    plan = plan_return(
-        vehicles,
-        places.air(station, vehicles, settings),
-        places.separation(station, settings),
-        settings.plan,
-        [other for key, other in flying.items() if key not in theirs],
-        1 + max((_wave(member) for member in running.members.values()), default=0),
-    )
-    for flight in plan.flights:
-        running = running.put(replace(running.members[flight.serial], flight=flight))
-    for left in plan.left_out:
-        member = running.members[left.serial]
-        running = running.put(member.at(Stage.LEFT_OUT, now_ns, left.reason))
-    turns = tuple(flight.serial for flight in plan.flights)
-    return replace(running, turns=turns, layers_up_m=plan.layers_up_m)
-
-
-def _wave(member: Member) -> int:
-    """Whose wave has begun keeps it; those that wait are planned anew."""
-    has_begun = member.flight is not None and member.stage is not Stage.WAITING
-    return member.flight.wave if has_begun and member.flight is not None else 0
 
 
 def _begin_one(

@@ -9,8 +9,6 @@ from recon.guidance.fleet_return import (
     Pad,
     Returning,
     Separation,
-    WayHome,
-    way_home,
 )
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import VehicleState
@@ -63,13 +61,11 @@ def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | s
     return Returning(serial, vehicle.display_name, place_m, takeoff_m, pad, battery)
 
 
-def air(station: Station, vehicles: Sequence[Returning], settings: ReturnSettings) -> WayHome:
-    """Return what the site's air leaves between these vehicles and their pads."""
-    points = [v.place_m[:2] for v in vehicles] + [v.pad.east_north_m for v in vehicles]
-    prepared = station.airspace
-    lowest_m, highest_m = prepared.ground_within_up_m(_box(points))
-    ground_up_m = float(np.min(lowest_m)), float(np.max(highest_m))
-    return way_home(prepared.airspace, ground_up_m, points, settings.plan)
+def ground_up_m(station: Station, vehicles: Sequence[Returning]) -> tuple[float, float]:
+    """Return the lowest and the highest ground on and around the ways of these vehicles."""
+    spots = [v.place_m[:2] for v in vehicles] + [v.pad.east_north_m for v in vehicles]
+    lowest_m, highest_m = station.airspace.ground_within_up_m(_box(spots))
+    return float(np.min(lowest_m)), float(np.max(highest_m))
 
 
 def separation(station: Station, settings: ReturnSettings) -> Separation:

@@ -74,6 +74,8 @@ class FleetReturn:
     """The serials of those with a flight, in the order of their turn."""
     layers_up_m: tuple[float, ...] = ()
     look_at_ns: int = 0
+    planning_since_ns: int | None = None
+    """When the plan that the worker makes now was asked for; it is that work's number too."""
 
     def put(self, member: Member) -> "FleetReturn":
         """Return it with a member as it is now."""

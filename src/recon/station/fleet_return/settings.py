@@ -23,6 +23,10 @@ class ReturnSettings:
     judged_again_s: float = 1.0
     """A flight that the gate does not let begin yet is judged again after this."""
 
+    planned_within_s: float = 20.0
+    """A plan takes a tenth of a second, behind one frame's work or two. Longer than this the worker
+    does not work, and those that hover must not wait for it."""
+
     planned_again_s: float = 2.0
     """Between two plans for the same vehicles, when somebody moves in their way."""
 
