@@ -186,6 +186,16 @@ class TestWhatComesBetween:
         assert stages.pop("SIM-5") is Stage.LEFT_OUT
         assert ("fleet_return", "SIM-5") in world.alarms()
         assert set(stages.values()) == {Stage.LANDED}
+        newest = list(world.world.driver.station.orders.records.values())
+        holds = [r for r in newest if "was ignored" in r.command.issued_by]
+        assert [(r.command.serial, r.command.body) for r in holds] == [("SIM-5", Hover())]
+
+    def test_one_that_guidance_leads_is_taken_from_it_by_its_hold(self) -> None:
+        world = returning_world([(0, 100, 30)], [(0, 0)])
+        world.world.driver.handle(AuthorityTaken("SIM-1", Leader.GUIDANCE, "guidance"))
+        world.call("SIM-1")
+        assert world.runs_until_over(300.0)
+        assert landed_on_its_pad(world, "SIM-1")
 
     def test_one_whose_app_refuses_is_reported_with_that(self) -> None:
         world = six_in_the_air(faults=("negative-ack:SIM-5:8:900",))
@@ -261,7 +271,7 @@ class TestCalling:
             True,
             True,
         ]
-        assert "led by pilot" in answers[1][1]
+        assert "led by the pilot" in answers[1][1]
         assert answers[2][1].startswith("flying")
         assert answers[3][1].startswith("reachable")
         again = world.called("SIM-1")

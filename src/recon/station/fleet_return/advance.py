@@ -13,7 +13,7 @@ from recon.guidance.fleet_return import (
     mission_of,
     whole_claim,
 )
-from recon.model.command import FlyMission, Refusal
+from recon.model.command import FlyMission, Hover, Phase, Refusal
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.safety import judge
@@ -23,6 +23,7 @@ from recon.station.fleet_return import places, planning
 from recon.station.fleet_return.record import UNDER_WAY, FleetReturn, Member, Stage
 from recon.station.fleet_return.settings import ReturnSettings
 from recon.station.fleet_return.watch import seen
+from recon.station.outputs import Output
 from recon.station.own_ids import take_id
 from recon.station.state import Station
 
@@ -42,12 +43,29 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) 
     running = replace(running, look_at_ns=now_ns + seconds_to_ns(settings.look_every_s))
     for member in running.members.values():
         running = running.put(seen(station, member, settings, now_ns))
+    station, stops = _stop_what_may_begin_late(station, running, now_ns)
     if running.at(Stage.STOPPING):
-        return replace(station, fleet_return=running), ()
+        return replace(station, fleet_return=running), stops
     if any(member.flight is None for member in running.at(Stage.WAITING)):
         running, work = planning.ask(station, running, settings, now_ns)
-        return replace(station, fleet_return=running), work
-    return _begin_one(station, running, settings, now_ns)
+        return replace(station, fleet_return=running), (*stops, *work)
+    station, begun = _begin_one(station, running, settings, now_ns)
+    return station, (*stops, *begun)
+
+
+def _stop_what_may_begin_late(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
+    """Hold those whose mission was ignored so far: begun now, it would come into others' ways."""
+    outputs: list[Output] = []
+    for member in running.at(Stage.LEFT_OUT):
+        record = station.orders.records.get(member.mission_id or 0)
+        if member.since_ns != now_ns or record is None or record.phase is not Phase.TIMED_OUT:
+            continue
+        station, number = take_id(station)
+        by = f"station: fleet return, for the mission of order {record.command.id} was ignored"
+        hold = OperatorOrder(number, Hover(), by, serial=member.serial)
+        station, sent = commanding.place(station, hold, now_ns)
+        outputs += sent
+    return station, tuple(outputs)
 
 
 def _begin_one(

@@ -36,15 +36,18 @@ def call(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
 
 
 def _refusal(station: Station, serial: str) -> Refusal | None:
-    """Why a vehicle is not called at all; whether it flies is the gate's question."""
+    """Why a vehicle is not called at all; whether it flies is the gate's question.
+
+    One that guidance leads is taken from it by its hold, as by any other.
+    """
     name, vehicle = _name(station, serial), station.fleet.vehicles.get(serial)
     if vehicle is not None and frame_for(station.airspace, vehicle) is None:
         return Refusal(RULE, f"{name}: expected a position, it has told none: hold it, or land it")
     lead = station.leads.get(serial)
-    if lead is not None and lead.leader is not Leader.OPERATOR:
+    if lead is not None and lead.leader is Leader.PILOT:
         return Refusal(
             RULE,
-            f"{name} is led by {lead.leader.value} ({lead.reason}): take it over first, then call "
+            f"{name} is led by the pilot ({lead.reason}): ask the pilot, take it over, then call "
             "it home",
         )
     running = station.fleet_return

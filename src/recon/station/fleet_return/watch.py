@@ -18,7 +18,15 @@ STANDING_MPS = 0.5
 FRESH_S = 1.0
 
 _RETURN_MODES = (FlightMode.GPS_WAYPOINT, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)
-_NOT_FLOWN = (Phase.REFUSED_BY_STATION, Phase.REFUSED_BY_APP, Phase.TIMED_OUT, Phase.EXPIRED)
+_FLOWN = (Phase.CONFIRMED, Phase.STARTED, Phase.DONE)
+_NOT_FLOWN = (
+    Phase.REFUSED_BY_STATION,
+    Phase.REFUSED_BY_APP,
+    Phase.TIMED_OUT,
+    Phase.SUPERSEDED,
+    Phase.EXPIRED,
+    Phase.FAILED,
+)
 
 
 def seen(station: Station, member: Member, settings: ReturnSettings, now_ns: int) -> Member:
@@ -111,17 +119,17 @@ def _under_way(
     station: Station, member: Member, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
 ) -> Member:
     record = station.orders.records.get(member.mission_id or 0)
-    if member.stage is Stage.ORDERED and record is not None:
-        if record.phase in (*_NOT_FLOWN, Phase.FAILED, Phase.SUPERSEDED):
-            words = record.phase.value.replace("_", " ")
-            return member.at(Stage.LEFT_OUT, now_ns, f"its mission was {words}: {record.note}")
-        if record.phase is Phase.CONFIRMED or _is_in_return_mode(vehicle, member):
-            return member.at(Stage.FLYING, now_ns)
     if vehicle.is_flying.value is False and (vehicle.core_received_at_ns or 0) > member.since_ns:
         return member.at(Stage.LANDED, now_ns)
-    if member.stage is Stage.ORDERED:
-        return member
-    return _still_flying(member, vehicle, settings, now_ns)
+    if record is not None and record.phase in _NOT_FLOWN:
+        words = record.phase.value.replace("_", " ")
+        return member.at(Stage.LEFT_OUT, now_ns, f"its mission {words}: {record.note}")
+    if member.stage is not Stage.ORDERED:
+        return _still_flying(member, vehicle, settings, now_ns)
+    is_flown = record is not None and record.phase in _FLOWN
+    if is_flown or _is_in_return_mode(vehicle, member):
+        return member.at(Stage.FLYING, now_ns)
+    return member
 
 
 def _still_flying(
