@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 from fastapi import FastAPI, HTTPException, Query, Request, Response, WebSocket
 from fastapi import Path as InPath
@@ -139,6 +139,20 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
         Each result is the hold it begins with; `fleet_return` of the state tells the rest.
         """
         return port.fleet_return(asked.serials, _who(request))
+
+    @app.post("/api/vehicles/{serial}/ghost/dismiss", responses=_PROBLEMS, status_code=204)
+    async def dismiss_ghost(serial: str, request: Request) -> None:
+        """Say that somebody knows where a vehicle is that is not heard: it is a hazard no more.
+
+        A vehicle without a serial is named as its ghost's `dismissed_as` says.
+        """
+        if not port.dismiss_ghost(serial, _who(request)):
+            raise HTTPException(404, f"{serial!r} is heard, on the ground, or not known: no ghost")
+
+    @app.post("/api/separation-hold/{switch}", status_code=204)
+    async def separation_hold(switch: Literal["on", "off"], request: Request) -> None:
+        """Switch on or off that the watchdogs hold vehicles; off, an alarm says so all the time."""
+        port.switch_separation_hold(switch == "on", _who(request))
 
     @app.post("/api/alarms/{alarm_id}/acknowledge", responses=_PROBLEMS, status_code=204)
     async def acknowledge(alarm_id: int, request: Request) -> None:

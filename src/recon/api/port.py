@@ -53,6 +53,12 @@ class StationPort(Protocol):
         The results tell of the hold that each begins with; flights and waves are in the state.
         """
 
+    def dismiss_ghost(self, name: str, by: str) -> bool:
+        """Take a vehicle that is not heard out of the air; False when it is no ghost."""
+
+    def switch_separation_hold(self, is_on: bool, by: str) -> None:
+        """Switch on or off that the watchdogs hold vehicles."""
+
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         """Mark an alarm as seen; False when there is none of that number."""
 

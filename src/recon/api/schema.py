@@ -75,6 +75,25 @@ class FrameView(Message):
     captured_sigma_s: float
 
 
+class GhostView(Message):
+    """Where a vehicle may be that is not heard any more: a circle that grows, and its way home.
+
+    It stays until telemetry comes, or until somebody who knows where the vehicle is dismisses it.
+    """
+
+    dismissed_as: str = Field(description="what to name when dismissing it: the serial, or a link")
+    age_s: float
+    latitude_deg: float
+    longitude_deg: float
+    radius_m: float
+    growth_mps: float
+    largest_radius_m: float
+    corridor: list[tuple[float, float]] = Field(
+        description="longitude, latitude: from the last place to home; empty when it goes nowhere"
+    )
+    corridor_half_width_m: float
+
+
 StalenessWord = Literal["live", "late", "lost", "silent"]
 
 
@@ -108,6 +127,7 @@ class VehicleView(Message):
     conflict_link_ids: list[int]
     track: list[tuple[float, float]] = Field(description="longitude, latitude; oldest first")
     frame: FrameView | None
+    ghost: GhostView | None
 
 
 class LinkView(Message):
@@ -137,6 +157,8 @@ PhaseWord = Literal[
     "sent",
     "acknowledged",
     "confirmed",
+    "started",
+    "done",
     "refused_by_station",
     "refused_by_app",
     "timed_out",
@@ -278,6 +300,9 @@ class StationView(Message):
     capture_folder: str | None
     capture_dropped_bytes: int
     connections_refused: int
+    separation_hold_on: bool = Field(
+        description="whether the watchdogs hold vehicles; else they only raise alarms"
+    )
 
 
 class ReturningView(Message):

@@ -114,6 +114,10 @@ class Station:
         """Say that a person has seen an alarm; raises `RequestRefusedError` for none of these."""
         await self._http.tell(f"/api/alarms/{alarm_id}/acknowledge")
 
+    async def switch_separation_hold(self, is_on: bool) -> None:
+        """Switch on or off that vehicles in conflict are held; off, they only raise alarms."""
+        await self._http.tell(f"/api/separation-hold/{'on' if is_on else 'off'}")
+
     async def audit(self, after: int = 0, at_most: int = 100) -> AuditPage:
         """Return entries of this run's audit after a number, the oldest first."""
         path = f"/api/audit?after={after}&at_most={at_most}"

@@ -1,6 +1,7 @@
 """One vehicle in the verbs of a pilot. Every verb is one order: an `Order`, or a `Refusal`."""
 
 from collections.abc import AsyncIterator
+from urllib.parse import quote
 
 from recon.client.desk import OrderDesk
 from recon.client.errors import ConnectionLostError
@@ -126,6 +127,14 @@ class Vehicle:
     async def stop_camera(self) -> Order | Refusal:
         """Have no more images sent."""
         return await self._desk.give_one(self.serial, StopCamera())
+
+    async def dismiss_ghost(self) -> None:
+        """Say that somebody knows where the vehicle is, though it is not heard.
+
+        Until then others keep clear of where it may be. Raises `RequestRefusedError` when it is
+        no ghost.
+        """
+        await self._desk.http.tell(f"/api/vehicles/{quote(self.serial, safe='')}/ghost/dismiss")
 
     def now(self) -> Telemetry:
         """Return what is known now, with ages as of now; raises `ConnectionLostError`."""

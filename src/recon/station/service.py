@@ -11,15 +11,18 @@ from recon.model.command import Body, Hover, Phase
 from recon.model.event import (
     AlarmAcknowledged,
     FleetReturnOrdered,
+    GhostDismissed,
     HolderCame,
     HolderGone,
     OperatorOrder,
+    SeparationHoldSwitched,
 )
 from recon.model.imagery import Frame, GroundImage
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
 from recon.record.audit_log import AuditLog
 from recon.site import Site
+from recon.station.air import is_hazard_unseen
 from recon.station.audit_view import audit_page
 from recon.station.checking import CHECKED_ID, check
 from recon.station.driver import AsyncioDriver
@@ -131,6 +134,17 @@ class Service:
         called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
         return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
 
+    def dismiss_ghost(self, name: str, by: str) -> bool:
+        """Take a vehicle that is not heard out of the air."""
+        if not is_hazard_unseen(self.driver.station, name, self.driver.now_ns()):
+            return False
+        self.driver.handle(GhostDismissed(name, by))
+        return True
+
+    def switch_separation_hold(self, is_on: bool, by: str) -> None:
+        """Switch on or off that the watchdogs hold vehicles."""
+        self.driver.handle(SeparationHoldSwitched(is_on, by))
+
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         """Mark an alarm as seen."""
         if alarm_id not in self.driver.station.alarms.alarms:
@@ -199,6 +213,7 @@ class Service:
             frames_dropped=self.driver.station.imaging.frames_dropped,
             capture_folder=self.capture_folder,
             capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
+            separation_hold_on=self.driver.station.watch.is_hold_on,
             connections_refused=0 if links is None else links.refused_connections,
         )
 

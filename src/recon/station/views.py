@@ -15,6 +15,7 @@ from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.alarms import Alarm
 from recon.station.corners import corners_lon_lat
 from recon.station.fleet_return import told as fleet_return
+from recon.station.ghost_view import ghost_view
 from recon.station.orders import OrderRecord
 from recon.station.state import Station
 
@@ -59,7 +60,8 @@ def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
         for link in station.fleet.unbound_links()
         if link.claimed_serial is None and link.own_state.core_received_at_ns is not None
     ]
-    return known + unidentified
+    lost = [_vehicle(station, state, 0, now_ns) for state in station.watch.lost.values()]
+    return known + unidentified + lost
 
 
 def _numbers(fleet: Fleet) -> dict[str, int]:
@@ -108,6 +110,7 @@ def _vehicle(
         conflict_link_ids=list(vehicle.rival_link_ids),
         track=[(p.longitude_deg, p.latitude_deg) for p in vehicle.track[-TRACK_POINTS_SHOWN:]],
         frame=_frame(station.frames.get(vehicle.serial or ""), now_ns),
+        ghost=ghost_view(station, vehicle, now_ns),
     )
 
 

@@ -206,6 +206,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/separation-hold/{switch}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Separation Hold
+         * @description Switch on or off that the watchdogs hold vehicles; off, an alarm says so all the time.
+         */
+        post: operations["separation_hold_api_separation_hold__switch__post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/state": {
         parameters: {
             query?: never;
@@ -280,6 +300,28 @@ export interface paths {
         get: operations["frame_api_vehicles__serial__frame_jpg_get"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vehicles/{serial}/ghost/dismiss": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Dismiss Ghost
+         * @description Say that somebody knows where a vehicle is that is not heard: it is a hazard no more.
+         *
+         *     A vehicle without a serial is named as its ghost's `dismissed_as` says.
+         */
+        post: operations["dismiss_ghost_api_vehicles__serial__ghost_dismiss_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -481,7 +523,7 @@ export interface components {
              * Phase
              * @enum {string}
              */
-            phase: "queued" | "sent" | "acknowledged" | "confirmed" | "refused_by_station" | "refused_by_app" | "timed_out" | "superseded" | "expired" | "failed";
+            phase: "queued" | "sent" | "acknowledged" | "confirmed" | "started" | "done" | "refused_by_station" | "refused_by_app" | "timed_out" | "superseded" | "expired" | "failed";
             /**
              * Sent Altitudes
              * @description which altitudes a mission was sent with
@@ -531,6 +573,41 @@ export interface components {
             id: number;
             /** Received Age S */
             received_age_s: number;
+        };
+        /**
+         * GhostView
+         * @description Where a vehicle may be that is not heard any more: a circle that grows, and its way home.
+         *
+         *     It stays until telemetry comes, or until somebody who knows where the vehicle is dismisses it.
+         */
+        GhostView: {
+            /** Age S */
+            age_s: number;
+            /**
+             * Corridor
+             * @description longitude, latitude: from the last place to home; empty when it goes nowhere
+             */
+            corridor: [
+                number,
+                number
+            ][];
+            /** Corridor Half Width M */
+            corridor_half_width_m: number;
+            /**
+             * Dismissed As
+             * @description what to name when dismissing it: the serial, or a link
+             */
+            dismissed_as: string;
+            /** Growth Mps */
+            growth_mps: number;
+            /** Largest Radius M */
+            largest_radius_m: number;
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /** Radius M */
+            radius_m: number;
         };
         /**
          * GoToOrder
@@ -848,7 +925,7 @@ export interface components {
              * Phase
              * @enum {string}
              */
-            phase: "queued" | "sent" | "acknowledged" | "confirmed" | "refused_by_station" | "refused_by_app" | "timed_out" | "superseded" | "expired" | "failed";
+            phase: "queued" | "sent" | "acknowledged" | "confirmed" | "started" | "done" | "refused_by_station" | "refused_by_app" | "timed_out" | "superseded" | "expired" | "failed";
         };
         /**
          * PositionView
@@ -995,6 +1072,11 @@ export interface components {
             frames_dropped: number;
             /** Link Addresses */
             link_addresses: string[];
+            /**
+             * Separation Hold On
+             * @description whether the watchdogs hold vehicles; else they only raise alarms
+             */
+            separation_hold_on: boolean;
             /** Uptime S */
             uptime_s: number;
             /** Version */
@@ -1056,6 +1138,7 @@ export interface components {
             conflict_link_ids: number[];
             flight_mode: components["schemas"]["AgedText"];
             frame: components["schemas"]["FrameView"] | null;
+            ghost: components["schemas"]["GhostView"] | null;
             gnss_satellite_count: components["schemas"]["AgedNumber"];
             gnss_signal_level: components["schemas"]["AgedNumber"];
             height_above_takeoff_m: components["schemas"]["AgedNumber"];
@@ -1453,6 +1536,35 @@ export interface operations {
             };
         };
     };
+    separation_hold_api_separation_hold__switch__post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                switch: "on" | "off";
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     state_api_state_get: {
         parameters: {
             query?: never;
@@ -1552,6 +1664,44 @@ export interface operations {
                 content: {
                     "image/jpeg": unknown;
                 };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    dismiss_ghost_api_vehicles__serial__ghost_dismiss_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                serial: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Not Found */
             404: {

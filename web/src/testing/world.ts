@@ -55,6 +55,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
       at(60 * number - 150 - 8 * (12 - i), 30 * number - 60 - 40 * Math.sin((12 - i) / 4)),
     ),
     frame: null,
+    ghost: null,
     ...changes,
   };
 }
@@ -156,6 +157,7 @@ export function station(
       capture_folder: null,
       capture_dropped_bytes: 0,
       connections_refused: 0,
+      separation_hold_on: true,
     },
     site: {
       name: "Field by the creek",

@@ -65,7 +65,7 @@ def flyer(
 
     One that tells no position now is where it was last seen, as long ago as that was.
     """
-    place, at_ns = _last_place(state)
+    place, at_ns = last_place(state)
     if place is None:
         return None
     base_m = takeoff_height_m(airspace, state)
@@ -114,7 +114,8 @@ def takeoff_height_m(airspace: PreparedAirspace, state: VehicleState) -> float |
     return up_m
 
 
-def _last_place(state: VehicleState) -> tuple[LatLon | None, int]:
+def last_place(state: VehicleState) -> tuple[LatLon | None, int]:
+    """Return where a vehicle was last known to be, and when; None when it has never told."""
     position: Stamped[LatLon] = state.position
     if position.value is not None:
         return position.value, position.received_at_ns or 0

@@ -18,6 +18,9 @@ from recon.safety.prediction.legs import (
 )
 from recon.safety.prediction.settings import PredictionSettings
 
+UNDER_WAY_MPS = 2.0
+"""A returning vehicle this fast towards its home is under way, be it higher or lower than told."""
+
 UNHOMED_RADIUS_M = 150.0
 """A vehicle told to return whose home nobody knows: the station's ghosts grow as far."""
 
@@ -126,9 +129,9 @@ class Follower:
             band_m=(writer.low_m + rise_m, writer.high_m + rise_m),
         )
 
-    def hold(self) -> None:
-        """Brake and stand for ever."""
-        stop(self.writer, self.flyer.velocity_mps, self.settings, reaction_s=0.0)
+    def hold(self, reaction_s: float = 0.0) -> None:
+        """Brake, when the order has come through, and stand for ever."""
+        stop(self.writer, self.flyer.velocity_mps, self.settings, reaction_s=reaction_s)
         self.writer.stays(Part.HOVERING)
 
     def land(self) -> None:
@@ -160,9 +163,11 @@ class Follower:
             writer.stays(Part.FREE)
             return
         towards_mps = self._towards_mps(*flyer.home_m)
-        if towards_mps < STANDING_MPS:
-            stop(writer, flyer.velocity_mps, settings, reaction_s=0.0)
         top_m = go_home_top_m(flyer, settings)
+        if towards_mps >= UNDER_WAY_MPS:
+            writer.widens(writer.low_m, top_m)
+        else:
+            stop(writer, flyer.velocity_mps, settings, reaction_s=0.0)
         if top_m > writer.high_m:
             low_m, climb_s = writer.low_m, (top_m - writer.high_m) / settings.climb_mps
             writer.moves(

@@ -77,10 +77,13 @@ def next_rows(
     flies on as it does now: the longer one looks, the less it will, but nobody knows better.
     """
     follower = Follower(flyer, prediction, until_s=horizon_s, exactly=True)
-    if _flies_as_told(flyer, intent, braking, now_ns, prediction):
-        follower.follow(intent)
-    else:
+    if not _flies_as_told(flyer, intent, braking, now_ns, prediction):
         follower.go_straight_on(horizon_s + flyer.age_s, Part.FREE)
+    elif intent.commanded is Commanded.HOLD:
+        since_s = (now_ns - intent.since_ns) / NS_PER_S
+        follower.hold(max(0.0, prediction.reaction_s - since_s))
+    else:
+        follower.follow(intent)
     return follower.writer.rows
 
 

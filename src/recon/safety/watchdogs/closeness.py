@@ -16,6 +16,10 @@ from recon.safety.prediction.sampling import Samples
 IntArray = npt.NDArray[np.int64]
 
 
+DEPTH_WEIGHT = 0.1
+"""How much depth counts beside the gaps: enough to tell which of two ways leads deeper in."""
+
+
 @dataclass(frozen=True, slots=True)
 class Approach:
     """How a pair comes near: when it first is too near (None: never), and its least closeness."""
@@ -94,8 +98,10 @@ def approach(
 
 
 def _shares(horizontal_m: FloatArray, vertical_m: FloatArray, need: Separation) -> FloatArray:
-    shares: FloatArray = np.maximum(horizontal_m / need.horizontal_m, vertical_m / need.vertical_m)
-    return shares
+    """Closeness; of what is too near, deeper in a circle is nearer at whatever height."""
+    level, upright = horizontal_m / need.horizontal_m, vertical_m / need.vertical_m
+    shares: FloatArray = np.maximum(level, upright)
+    return np.where(shares < 1.0, shares + DEPTH_WEIGHT * np.minimum(level, 0.0), shares)
 
 
 def _to_way_m(ahead: Samples, ghost: Ghost, home_m: tuple[float, float]) -> FloatArray:

@@ -70,9 +70,12 @@ def _keep_out(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Findin
 
 
 def _heights(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
-    """Heights are alarmed about and not held: standing too low or too high is no better."""
+    """Heights are alarmed about and not held: standing too low or too high is no better.
+
+    A height that nobody knows is neither.
+    """
     airspace, name, datum = picture.airspace, zone.zone.name, zone_datum(zone.zone)
-    indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead))
+    indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead) & _is_height_known(way))
     triangles_m = way.triangles_m[indices]
     floor_m, ceiling_m = zone.zone.floor_m, zone.zone.ceiling_m
     if ceiling_m is not None:
@@ -90,10 +93,13 @@ def _heights(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding
 def _ceiling(picture: Picture, way: Way) -> Iterator[Finding]:
     most_m = picture.airspace.airspace.limits.max_height_above_ground_m
     is_over = ~stays_below(picture.airspace, way.triangles_m, way.high_m, most_m)
-    is_known = way.high_m < ALL_HEIGHTS_M
-    for index in np.flatnonzero(is_over & is_known):
+    for index in np.flatnonzero(is_over & _is_height_known(way)):
         text = f"is higher above ground than {most_m:g} m, or soon will be"
         yield _found(picture, int(index), HEIGHT, text)
+
+
+def _is_height_known(way: Way) -> BoolArray:
+    return np.asarray(way.high_m < 0.5 * ALL_HEIGHTS_M)
 
 
 def _has_its_heights(

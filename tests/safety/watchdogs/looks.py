@@ -1,0 +1,73 @@
+"""One look of a watchdog at vehicles told in metres; `traffic` has the vehicles."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from tests.safety.traffic import AIR, NOW, S, aircraft
+
+from recon.model.authority import Leader
+from recon.model.intent import Commanded, Intent
+from recon.model.vehicle import FlightMode, VehicleState
+from recon.safety import PreparedAirspace
+from recon.safety.settings import SafetySettings
+from recon.safety.watchdogs import (
+    WATCHDOGS,
+    Finding,
+    Held,
+    Picture,
+    Watchdog,
+    Watched,
+    take_picture,
+)
+
+SETTINGS = SafetySettings()
+LONG_AGO: Mapping[str, int] = {}
+
+
+def picture(
+    *vehicles: Watched | VehicleState,
+    airspace: PreparedAirspace = AIR,
+    since_ns: Mapping[str, int] = LONG_AGO,
+    is_hold_on: bool = True,
+) -> Picture:
+    watched = [v if isinstance(v, Watched) else Watched(v) for v in vehicles]
+    return take_picture(watched, airspace, SETTINGS, NOW, since_ns, is_hold_on=is_hold_on)
+
+
+def looks(
+    watchdog: Watchdog,
+    *vehicles: Watched | VehicleState,
+    airspace: PreparedAirspace = AIR,
+    lasted_s: float = 5.0,
+    is_hold_on: bool = True,
+) -> list[Finding]:
+    """What a watchdog says to vehicles it has said the same about for a while."""
+    once = list(watchdog(picture(*vehicles, airspace=airspace, is_hold_on=is_hold_on)))
+    since = {finding.key: NOW - round(lasted_s * S) for finding in once}
+    again = picture(*vehicles, airspace=airspace, since_ns=since, is_hold_on=is_hold_on)
+    return list(watchdog(again))
+
+
+def told(state: VehicleState, **changes: object) -> Watched:
+    """A vehicle and what the station knows beside its state."""
+    return replace(Watched(state), **changes)  # type: ignore[arg-type]
+
+
+def held(seconds_ago: float, speed_mps: float = 0.0) -> Held:
+    return Held(NOW - round(seconds_ago * S), speed_mps)
+
+
+__all__ = [
+    "NOW",
+    "WATCHDOGS",
+    "Commanded",
+    "FlightMode",
+    "Intent",
+    "Leader",
+    "S",
+    "aircraft",
+    "held",
+    "looks",
+    "picture",
+    "told",
+]

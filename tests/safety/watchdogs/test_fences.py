@@ -1,0 +1,198 @@
+"""The boundary, zones and heights right ahead of each vehicle."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.safety.traffic import FRAME, aircraft, flies, route
+from tests.safety.watchdogs.looks import (
+    NOW,
+    Commanded,
+    FlightMode,
+    Intent,
+    Leader,
+    held,
+    looks,
+    picture,
+    told,
+)
+
+from recon.model.airspace import Airspace, ElevationModel, FlightLimits
+from recon.model.geo import GroundGrid
+from recon.model.severity import Severity
+from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
+from recon.safety import PreparedAirspace
+from recon.safety.watchdogs import Finding
+from recon.safety.watchdogs.fences import fences
+
+
+def square(east_m: float, north_m: float, half_m: float) -> Region:
+    corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    return Region(np.array([(east_m + e * half_m, north_m + n * half_m) for e, n in corners]))
+
+
+def site(*zones: Zone, **changes: object) -> PreparedAirspace:
+    """A square kilometre around the origin."""
+    boundary = square(0.0, 0.0, 500.0)
+    return PreparedAirspace(
+        Airspace(frame=FRAME, boundary=boundary, zones=zones, **changes)  # type: ignore[arg-type]
+    )
+
+
+SITE = site()
+TREES = Zone("trees", ZoneKind.KEEP_OUT, square(0.0, 300.0, 20.0), None, 30.0, HeightDatum.GROUND)
+CLOUD = Zone("cloud", ZoneKind.KEEP_OUT, square(0.0, 300.0, 20.0), 50.0, None, HeightDatum.GROUND)
+WALL = Zone("wall", ZoneKind.KEEP_OUT, square(0.0, 300.0, 20.0))
+LAYER = Zone("layer", ZoneKind.HEIGHT, square(0.0, 300.0, 50.0), 30.0, 60.0, HeightDatum.GROUND)
+
+
+def only(findings: list[Finding]) -> Finding:
+    (found,) = findings
+    return found
+
+
+class TestBoundary:
+    @pytest.mark.parametrize(("north_m", "count"), [(450.0, 0), (462.0, 0), (463.0, 1)])
+    def test_it_looks_ahead_by_a_quarter_more_than_the_way_to_stop(
+        self, north_m: float, count: int
+    ) -> None:
+        """From 10 m/s: a second's reaction and 20 m of braking, 1.25 times in time: 37.5 m."""
+        state = aircraft("A", (north_m, 0.0), velocity=(10.0, 0.0, 0.0))
+        assert len(looks(fences, state, airspace=SITE)) == count
+
+    def test_one_about_to_leave_is_held_and_said_so(self) -> None:
+        leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
+        found = only(looks(fences, leaving, airspace=SITE))
+        assert (found.rule, found.severity, found.holds) == ("fence_ahead", Severity.ERROR, "A")
+        assert found.text == "A: is about to leave the site's boundary; it is told to hold"
+
+    def test_the_alarm_is_first(self) -> None:
+        leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
+        assert only(looks(fences, leaving, airspace=SITE, lasted_s=0.1)).holds is None
+
+    @pytest.mark.parametrize(("north_mps", "holds"), [(0.0, None), (5.0, "A"), (-5.0, None)])
+    def test_one_outside_is_held_only_on_its_way_farther_out(
+        self, north_mps: float, holds: str | None
+    ) -> None:
+        state = aircraft("A", (520.0, 0.0), velocity=(north_mps, 0.0, 0.0))
+        found = only(looks(fences, state, airspace=SITE))
+        assert "is 20 m outside the site's boundary" in found.text
+        assert (found.severity, found.holds) == (Severity.CRITICAL, holds)
+
+    def test_a_pilot_and_one_coming_down_are_alarmed_about_only(self) -> None:
+        leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
+        for one in (
+            told(leaving, leader=Leader.PILOT),
+            told(leaving, intent=Intent(Commanded.RETURN, NOW)),
+            told(leaving, held=held(1.0, 10.0), intent=Intent()),
+        ):
+            finding = only(looks(fences, one, airspace=SITE))
+            assert finding.holds is None
+
+    def test_a_hold_that_does_nothing_is_given_again(self) -> None:
+        leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
+        again = told(leaving, held=held(5.1, 10.0))
+        assert only(looks(fences, again, airspace=SITE)).holds == "A"
+
+    def test_a_mission_that_ends_at_the_fence_is_followed_to_its_stop(self) -> None:
+        flying = aircraft(
+            "A", (470.0, 0.0), velocity=(10.0, 0.0, 0.0), mode=FlightMode.GPS_WAYPOINT
+        )
+        to_the_edge = route((0.0, 0.0), (494.0, 0.0), (494.0, 50.0))
+        assert looks(fences, told(flying, intent=flies(to_the_edge, 1)), airspace=SITE) == []
+        assert len(looks(fences, flying, airspace=SITE)) == 1
+
+    def test_without_a_site_or_a_boundary_nothing_is_asked(self) -> None:
+        leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
+        for airspace in (
+            PreparedAirspace(Airspace()),
+            PreparedAirspace(Airspace(frame=FRAME)),
+        ):
+            assert looks(fences, leaving, airspace=airspace) == []
+        assert looks(fences, airspace=SITE) == []
+
+
+class TestKeepOut:
+    def test_one_about_to_enter_is_held(self) -> None:
+        coming = aircraft("A", (260.0, 0.0), velocity=(8.0, 0.0, 0.0))
+        found = only(looks(fences, coming, airspace=site(WALL)))
+        assert found.text == "A: is about to enter the keep-out zone 'wall'; it is told to hold"
+        assert (found.rule, found.severity, found.holds) == ("zone_ahead", Severity.ERROR, "A")
+        assert looks(fences, aircraft("A", (260.0, 0.0)), airspace=site(WALL)) == []
+
+    @pytest.mark.parametrize(("north_mps", "holds"), [(0.0, None), (3.0, "A"), (-3.0, None)])
+    def test_one_inside_is_held_only_on_its_way_deeper(
+        self, north_mps: float, holds: str | None
+    ) -> None:
+        state = aircraft("A", (285.0, 0.0), velocity=(north_mps, 0.0, 0.0))
+        found = only(looks(fences, state, airspace=site(WALL)))
+        assert "is in the keep-out zone 'wall'" in found.text
+        assert (found.severity, found.holds) == (Severity.CRITICAL, holds)
+
+    @pytest.mark.parametrize(
+        ("zone", "height_m", "count"),
+        [(TREES, 29.0, 1), (TREES, 31.0, 0), (CLOUD, 49.0, 0), (CLOUD, 51.0, 1)],
+    )
+    def test_above_the_ceiling_and_below_the_floor_it_may_be(
+        self, zone: Zone, height_m: float, count: int
+    ) -> None:
+        over = aircraft("A", (300.0, 0.0), height_m, home=(300.0, 0.0))
+        assert len(looks(fences, over, airspace=site(zone))) == count
+
+    def test_one_that_sinks_into_it_is_found_before(self) -> None:
+        sinking = aircraft("A", (300.0, 0.0), 33.0, (0.0, 0.0, -3.0))
+        assert only(looks(fences, sinking, airspace=site(TREES))).rule == "zone_ahead"
+
+    def test_a_height_nobody_knows_is_in_it(self) -> None:
+        blind = aircraft("A", (300.0, 0.0), None)
+        assert only(looks(fences, blind, airspace=site(TREES))).rule == "zone_ahead"
+
+
+class TestHeights:
+    @pytest.mark.parametrize(("height_m", "word"), [(29.0, "low"), (31.0, ""), (61.0, "high")])
+    def test_a_height_zone_is_alarmed_about_and_nobody_is_held(
+        self, height_m: float, word: str
+    ) -> None:
+        inside = aircraft("A", (300.0, 0.0), height_m)
+        found = looks(fences, inside, airspace=site(LAYER))
+        assert [word in f.text and f.holds is None for f in found] == ([True] if word else [])
+
+    def test_who_takes_off_or_lands_may_be_low(self) -> None:
+        low = aircraft("A", (300.0, 0.0), 10.0)
+        airspace = site(LAYER)
+        assert len(looks(fences, low, airspace=airspace)) == 1
+        takes_off = aircraft("A", (300.0, 0.0), 10.0, home=(300.0, 5.0))
+        assert looks(fences, takes_off, airspace=airspace) == []
+        landing = told(low, intent=Intent(Commanded.LAND, NOW))
+        assert looks(fences, landing, airspace=airspace) == []
+        homeless = replace(low, takeoff_point=None)
+        assert looks(fences, homeless, airspace=airspace) == []
+
+    def test_zones_with_one_end_have_only_that(self) -> None:
+        floor = replace(LAYER, ceiling_m=None)
+        ceiling = replace(LAYER, floor_m=None)
+        low, high = (aircraft("A", (300.0, 0.0), h) for h in (29.0, 61.0))
+        assert [len(looks(fences, v, airspace=site(floor))) for v in (low, high)] == [1, 0]
+        assert [len(looks(fences, v, airspace=site(ceiling))) for v in (low, high)] == [0, 1]
+
+    @pytest.mark.parametrize(("height_m", "count"), [(119.0, 0), (121.0, 1)])
+    def test_the_sites_ceiling_counts_above_ground(self, height_m: float, count: int) -> None:
+        assert len(looks(fences, aircraft("A", (0.0, 0.0), height_m), airspace=SITE)) == count
+
+    def test_over_lower_ground_it_is_lower(self) -> None:
+        """Ground 10 m below the origin, and home on it."""
+        grid = GroundGrid(FRAME, -600.0, 600.0, 100.0, 12, 12)
+        ground = ElevationModel(grid, np.full((12, 12), 265.0))
+        airspace = site(elevation=ground, limits=FlightLimits(max_height_above_ground_m=100.0))
+        for height_m, count in ((99.0, 0), (101.0, 1)):
+            found = looks(fences, aircraft("A", (0.0, 0.0), height_m), airspace=airspace)
+            assert len(found) == count
+
+    def test_a_height_nobody_knows_is_not_called_too_high(self) -> None:
+        assert looks(fences, aircraft("A", (0.0, 0.0), None), airspace=SITE) == []
+
+
+def test_no_vehicle_is_asked_that_is_not_heard_flying() -> None:
+    stale = aircraft("A", (520.0, 0.0), age_s=5.0)
+    assert picture(stale, airspace=SITE).flying == ()
+    assert looks(fences, stale, airspace=SITE) == []
