@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+from tests.ready import ready_airspace
+
 from recon.model.command import Body, Command, FlyMission, Refusal, StickFrame, VirtualStick
-from recon.model.geo import LatLon
+from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.stamped import Stamped
 from recon.model.vehicle import (
@@ -16,7 +18,8 @@ from recon.model.vehicle import (
     VehicleState,
     VelocityNed,
 )
-from recon.safety import ApprovedCommand, Claimant, Situation
+from recon.safety import ApprovedCommand, Claimant, PreparedAirspace, Situation
+from recon.safety.facts import ClockReading, StationFacts
 
 S = 1_000_000_000
 NOW = 100 * S
@@ -33,6 +36,10 @@ TAKEOFF = VehicleProfile(
     camera_interval_s=2.0,
 )
 WGS84 = replace(TAKEOFF, waypoint_altitude=AltitudeReference.WGS84)
+
+AIRSPACE = PreparedAirspace(ready_airspace(GeoPoint(42.0, -93.6, 270.0)))
+FACTS = StationFacts(clock=ClockReading(1_780_000_000 * S))
+"""A fence far away, and a clock that was set: nothing on the checklist fails."""
 
 STICK = VirtualStick(StickFrame.GROUND, 90.0, 1.0, 2.0, 30.0, 1.0)
 
@@ -103,7 +110,8 @@ def situation(state: VehicleState | None = None, *rivals: Stamped[bool]) -> Situ
     state = state or vehicle()
     others = tuple(Claimant(number, flying) for number, flying in enumerate(rivals, start=2))
     state = replace(state, rival_link_ids=tuple(claimant.link_id for claimant in others))
-    return Situation(NOW, state, (Claimant(1, state.is_flying), *others))
+    claimants = (Claimant(1, state.is_flying), *others)
+    return Situation(NOW, state, claimants, airspace=AIRSPACE, facts=FACTS)
 
 
 def approved(judged: ApprovedCommand | Refusal) -> ApprovedCommand:

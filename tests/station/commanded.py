@@ -25,11 +25,13 @@ from recon.safety import ApprovedCommand, PreparedAirspace
 from recon.station.alarms import Alarm
 from recon.station.orders import OrderRecord
 from recon.station.outputs import SendCommand
-from recon.station.state import Station
+from recon.station.state import Clock, Station
 from recon.station.step import step
+from recon.station.virtual import EPOCH_NS
 
 HOME = GeoPoint(PLACE.latitude_deg, PLACE.longitude_deg, 260.0)
 PROFILES = {serial: ready_profile(serial, HOME, n) for n, serial in enumerate("AB")}
+CLOCK = Clock(EPOCH_NS, EPOCH_NS, EPOCH_NS)
 AIRSPACE = PreparedAirspace(ready_airspace(HOME))
 
 
@@ -37,7 +39,7 @@ class Told:
     """Links carry an order at once, unless `is_stuck`; time goes on in ticks of 0.1 s."""
 
     def __init__(self) -> None:
-        self.station = Station(fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE)
+        self.station = Station(fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE, clock=CLOCK)
         self.now_ns = 0
         self.is_stuck = False
         self.sent: list[tuple[float, int, int]] = []

@@ -3,7 +3,7 @@
 import pytest
 from tests.link.approved import core, extended
 from tests.station.audited import Audited
-from tests.station.commanded import AIRSPACE, PROFILES
+from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
 from tests.station.station_world import square_mission, world
 
 from recon import wire
@@ -46,7 +46,7 @@ class Steps:
     """A station stepped by hand, audited."""
 
     def __init__(self) -> None:
-        self.station = Station(fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE)
+        self.station = Station(fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE, clock=CLOCK)
         self.memory = Auditing()
         self.now_ns = NS_PER_S
         self.entries: list[AuditEntry] = []

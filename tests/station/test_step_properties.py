@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.fleet.said import S, core, extended
 from tests.safety.cases import STICK, mission
-from tests.station.commanded import AIRSPACE, PROFILES
+from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
 
 from recon.fleet.state import Fleet
 from recon.model.command import Hover, LandNow, Phase, ReturnHome, StartCamera, StopCamera
@@ -63,7 +63,10 @@ EVENTS = st.one_of(
 @given(st.lists(st.tuples(st.sampled_from([0, 50, 700, 4000]), EVENTS), max_size=60))
 def test_any_sequence_of_events(events: list[tuple[int, object]]) -> None:
     limits = StationSettings(orders_kept=20, alarms_kept=20)
-    station, now_ns = Station(settings=limits, fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE), 0
+    station, now_ns = (
+        Station(settings=limits, fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE, clock=CLOCK),
+        0,
+    )
     for wait_ms, event in events:
         now_ns += wait_ms * S // 1000
         before = station

@@ -110,6 +110,13 @@ class HolderGone:
 
 
 @dataclass(frozen=True, slots=True)
+class ClockRead:
+    """The computer's clock was looked at: the station's own time does not follow it."""
+
+    wall_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class PreflightOverridden:
     """Somebody lets a vehicle fly missions although its checklist is not passed, and says why."""
 
@@ -194,6 +201,7 @@ Event = (
     | AuthorityTaken
     | HolderCame
     | HolderGone
+    | ClockRead
     | PreflightOverridden
     | GhostDismissed
     | SeparationHoldSwitched

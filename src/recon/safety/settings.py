@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from recon.safety.energy_settings import EnergySettings
 from recon.safety.fence_settings import FenceSettings
 from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.preflight_settings import PreflightSettings
 from recon.safety.watch_settings import WatchSettings
 
 
@@ -69,6 +70,9 @@ class SafetySettings:
 
     max_camera_fps_hz: float = 30.0
     """No DJI video feed is faster."""
+
+    preflight: PreflightSettings = field(default_factory=PreflightSettings)
+    """When a point of the checklist is not passed."""
 
     energy: EnergySettings = field(default_factory=EnergySettings)
     """How much of its battery a flight takes."""

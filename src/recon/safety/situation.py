@@ -10,6 +10,7 @@ from recon.model.intent import Intent
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
+from recon.safety.facts import NO_FACTS, StationFacts
 from recon.safety.settings import SafetySettings
 
 T = TypeVar("T")
@@ -58,6 +59,7 @@ class Situation:
     intent: Intent = Intent()
     traffic: tuple[Traffic, ...] = ()
     preflight_override: Override | None = None
+    facts: StationFacts = NO_FACTS
     _worked_out: dict[object, tuple[Command, Any]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )

@@ -20,7 +20,8 @@ from recon.model.intent import Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve, judge
-from recon.station import authority, orders, stick_zero, streams
+from recon.safety.facts import NO_FACTS
+from recon.station import authority, orders, preflight, stick_zero, streams
 from recon.station.air import in_the_air
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
@@ -126,6 +127,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
     """Return the snapshot the gate judges a command by."""
     target = station.target(command.serial, command.link_id)
     serial = "" if target is None or target.serial is None else target.serial
+    is_mission = isinstance(command.body, FlyMission)
     return Situation(
         now_ns=now_ns,
         vehicle=target,
@@ -136,6 +138,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         intent=station.intents.get(serial, _TOLD_NOTHING),
         traffic=_traffic(station, command, serial),
         preflight_override=station.preflight_overrides.get(serial),
+        facts=preflight.facts(station, target) if is_mission else NO_FACTS,
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
-from recon.model.event import Event, SticksDue, Tick
+from recon.model.event import ClockRead, Event, SticksDue, Tick
 from recon.model.units import NS_PER_S
 from recon.station.event_queue import EventQueue
 from recon.station.outputs import Output, SendCommand, StartWork, WithdrawMotion
@@ -21,6 +21,10 @@ TICK_NS = 50_000_000
 
 
 def station_clock() -> Callable[[], int]:
+CLOCK_NS = 1_000_000_000
+"""Once a second it is looked whether somebody has set the computer's clock."""
+
+
     """Return a clock of nanoseconds that begins at UTC and never jumps within a run."""
     offset_ns = time.time_ns() - time.monotonic_ns()
     return lambda: offset_ns + time.monotonic_ns()
@@ -66,7 +70,7 @@ class AsyncioDriver:
     async def run(self) -> None:
         """Let time pass until cancelled."""
         self._loop = asyncio.get_running_loop()
-        tick_ns = self.now_ns() + TICK_NS
+        tick_ns = clock_ns = self.now_ns() + TICK_NS
         while True:
             due_ns = next_due_ns(self.station)
             wake_ns = tick_ns if due_ns is None else min(tick_ns, due_ns)
@@ -91,6 +95,9 @@ class AsyncioDriver:
             self._carry_out(output)
 
     def _carry_out(self, output: Output) -> None:
+            if now_ns >= clock_ns:
+                clock_ns = now_ns + CLOCK_NS
+                self.handle(ClockRead(time.time_ns()))
         match output:
             case SendCommand(approved):
                 if self.links is not None:

@@ -30,6 +30,21 @@ class PendingZero:
 
 
 @dataclass(frozen=True, slots=True)
+class Clock:
+    """The computer's clock as it was last read: what it said, and how far ahead of the station's
+    own time it was then, and when the station began."""
+
+    wall_ns: int
+    ahead_ns: int
+    ahead_at_start_ns: int
+
+    @property
+    def set_by_ns(self) -> int:
+        """By how much it was set since the start."""
+        return self.ahead_ns - self.ahead_at_start_ns
+
+
+@dataclass(frozen=True, slots=True)
 class Station:
     """The state that `step` turns into the next one."""
 
@@ -48,6 +63,8 @@ class Station:
     """What each vehicle does on the station's word, by serial."""
     preflight_overrides: Mapping[str, Override] = field(default_factory=dict)
     """By serial, until the vehicle has landed."""
+    clock: Clock | None = None
+    """The computer's clock; None until it was first read."""
     restored_flights: Mapping[str, Sighting] = field(default_factory=dict)
     """Vehicles that flew when the last run saw them last, by serial, until each is heard."""
     audit_problem: str | None = None

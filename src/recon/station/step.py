@@ -7,6 +7,7 @@ from recon.model.event import (
     AlarmAcknowledged,
     AuditTroubled,
     AuthorityTaken,
+    ClockRead,
     CommandAnswered,
     CommandDropped,
     CommandSent,
@@ -30,7 +31,7 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.station import air, alarms, authority, commanding, imaging, restart, watch
+from recon.station import air, alarms, authority, commanding, imaging, preflight, restart, watch
 from recon.station.alarms import Condition, Severity
 from recon.station.commanding import Stepped
 from recon.station.conditions import conditions
@@ -80,8 +81,10 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return air.dismiss(station, event, now_ns), ()
         case SeparationHoldSwitched():
             return watch.switch_hold(station, event), ()
+        case ClockRead():
+            return preflight.read_clock(station, event, now_ns), ()
         case PreflightOverridden():
-            return station, ()
+            return preflight.override(station, event, now_ns), ()
         case FleetReturnOrdered():
             return fleet_return_call(station, event, now_ns)
         case AuditTroubled(problem):
@@ -114,7 +117,9 @@ def _lost_unidentified(station: Station, link_id: int, reason: str, now_ns: int)
 
 
 def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
+    before = station
     station, outputs = _fleet(station, event, now_ns)
+    station = preflight.after_packet(before, station, event.link_id)
     vehicle = station.fleet.vehicle_of_link(event.link_id)
     if vehicle is None:
         return station, outputs

@@ -13,7 +13,7 @@ from typing import Protocol
 from recon.fleet.step import CloseLink
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
-from recon.model.event import Event, LinkClosed, LinkOpened, SticksDue, Tick
+from recon.model.event import ClockRead, Event, LinkClosed, LinkOpened, SticksDue, Tick
 from recon.model.units import seconds_to_ns
 from recon.station.event_queue import EventQueue
 from recon.station.outputs import Output, SendCommand, StartWork, WithdrawMotion
@@ -24,6 +24,8 @@ from recon.station.worker import Task, do_work
 
 STEP_NS = 10_000_000
 TICK_EVERY_STEPS = 5
+EPOCH_NS = 1_780_000_000_000_000_000
+"""What the computer's clock says when virtual time begins: a day in 2026."""
 
 
 class Peer(Protocol):
@@ -94,6 +96,7 @@ class VirtualDriver:
         self._sequence = 0
         self._steps = 0
         self._queue = EventQueue(self._step)
+        self.handle(ClockRead(EPOCH_NS))
 
     def connect(self, peer: Peer, link: FakeLink | None = None) -> int:
         """Open a connection for a peer; return its link id."""

@@ -14,6 +14,7 @@ from recon.safety.rules.known_order import known_order
 from recon.safety.rules.leader import leader
 from recon.safety.rules.link_age import link_age
 from recon.safety.rules.not_expired import not_expired
+from recon.safety.rules.preflight import preflight
 from recon.safety.rules.reachable import reachable
 from recon.safety.rules.separation import separation
 from recon.safety.situation import Situation
@@ -33,5 +34,6 @@ RULES: tuple[Rule, ...] = (
     link_age,
     gnss,
     battery,
+    preflight,
     separation,
 )

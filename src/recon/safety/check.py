@@ -1,0 +1,55 @@
+"""One point of the preflight checklist, and how it stands."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class CheckState(Enum):
+    """How a point stands, the best first."""
+
+    OK = "ok"
+    ATTENTION = "attention"
+    """Somebody should look; it holds nothing back."""
+    UNKNOWN = "unknown"
+    FAILS = "fails"
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A point: `key` never changes, `name` is for people; what is the case, and what to do about it
+    (empty when it is ok)."""
+
+    key: str
+    name: str
+    state: CheckState
+    text: str
+    to_do: str = ""
+
+    @property
+    def holds_back(self) -> bool:
+        """Whether no mission is flown while it stands like this."""
+        return self.state in (CheckState.FAILS, CheckState.UNKNOWN)
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A point's key and name, which makes its checks."""
+
+    key: str
+    name: str
+
+    def ok(self, text: str) -> Check:
+        """It is as it should be."""
+        return Check(self.key, self.name, CheckState.OK, text)
+
+    def attention(self, text: str, to_do: str) -> Check:
+        """It is worth a look."""
+        return Check(self.key, self.name, CheckState.ATTENTION, text, to_do)
+
+    def unknown(self, text: str, to_do: str) -> Check:
+        """Nobody can say."""
+        return Check(self.key, self.name, CheckState.UNKNOWN, text, to_do)
+
+    def fails(self, text: str, to_do: str) -> Check:
+        """It is not as it must be."""
+        return Check(self.key, self.name, CheckState.FAILS, text, to_do)

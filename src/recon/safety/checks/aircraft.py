@@ -1,0 +1,71 @@
+"""What the aircraft itself says: its link, battery, GNSS, wind and its app's warnings."""
+
+from recon.model.stamped import Stamped
+from recon.model.vehicle import BatteryWarning, VehicleState
+from recon.safety.check import Check, Point
+from recon.safety.gnss_quality import gnss_fault
+from recon.safety.situation import Situation
+
+LINK = Point("link", "Link")
+BATTERY = Point("battery", "Battery")
+GNSS = Point("gnss", "GNSS")
+WIND = Point("wind", "Wind")
+APP = Point("app", "App's warnings")
+
+
+def link(vehicle: VehicleState, situation: Situation) -> Check:
+    """One app speaks for the vehicle, and is heard now."""
+    if vehicle.rival_link_ids:
+        return LINK.fails(
+            "two connections claim this serial", "close the one that is not this aircraft's"
+        )
+    age_s = Stamped(True, vehicle.core_received_at_ns).age_s(situation.now_ns)
+    if age_s is None:
+        return LINK.unknown("no telemetry has come yet", "look at the app")
+    if age_s > situation.settings.motion_telemetry_s:
+        return LINK.fails(f"telemetry is {age_s:.1f} s old", "bring the app's connection back")
+    return LINK.ok(f"telemetry is {age_s:.1f} s old")
+
+
+def battery(vehicle: VehicleState, situation: Situation) -> Check:
+    """It is charged for more than the reserve, and the aircraft does not warn."""
+    warning, has = vehicle.battery_warning.value, vehicle.battery_fraction.value
+    if warning in (BatteryWarning.LOW, BatteryWarning.SERIOUS):
+        return BATTERY.fails("the aircraft warns of a low battery", "change the battery")
+    if has is None or warning is None:
+        return BATTERY.unknown("the app does not tell its charge", "look at the app")
+    reserve = situation.airspace.airspace.limits.battery_reserve_fraction
+    if has <= reserve:
+        return BATTERY.fails(f"{has:.0%}, all of it reserve ({reserve:.0%})", "change the battery")
+    if has < situation.settings.preflight.early_battery_fraction:
+        return BATTERY.attention(f"{has:.0%}", "expect a short flight, or change the battery")
+    return BATTERY.ok(f"{has:.0%}")
+
+
+def gnss(vehicle: VehicleState, situation: Situation) -> Check:
+    """It knows where it is, by the gate's own measure."""
+    fault = gnss_fault(vehicle, situation.settings)
+    if fault is not None:
+        return GNSS.fails(fault, "wait for a better fix, or go where the sky is open")
+    count, level = vehicle.gnss_satellite_count.value, vehicle.gnss_signal_level.value
+    return GNSS.ok(f"{count} satellites, signal level {level}")
+
+
+def wind(vehicle: VehicleState, situation: Situation) -> Check:
+    """The aircraft does not warn of strong wind. Not every app tells of any."""
+    level = vehicle.wind_level.value
+    if level is None:
+        return WIND.ok("the app tells nothing of the wind")
+    if level >= situation.settings.preflight.strong_wind_level:
+        return WIND.attention(
+            "the aircraft warns of strong wind", "land, or fly low and near; battery goes faster"
+        )
+    return WIND.ok(f"warning level {level}")
+
+
+def app(_vehicle: VehicleState, situation: Situation) -> Check:
+    """The app has said nothing that nobody has seen."""
+    said = situation.facts.app_warnings
+    if said:
+        return APP.attention("; ".join(said), "read it, and acknowledge the alarm")
+    return APP.ok("none that nobody has seen")

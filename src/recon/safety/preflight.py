@@ -1,0 +1,37 @@
+"""The preflight checklist, worked out from a vehicle's state and profile, and its airspace.
+
+Nobody ticks anything: a point is ok when what the station knows says so. A point that fails or is
+unknown holds missions back (rule preflight) until somebody overrides the list, with a reason, which
+is logged and ends with the landing. Attention holds nothing back. What the ICD does not tell
+(propellers, memory cards, the controller's mode switch) is the pilot's list, not this one.
+"""
+
+from collections.abc import Callable
+
+from recon.model.vehicle import VehicleState
+from recon.safety.check import Check
+from recon.safety.checks import aircraft, go_home, place, told
+from recon.safety.situation import Situation
+
+_CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
+    aircraft.link,
+    aircraft.battery,
+    told.endurance,
+    aircraft.gnss,
+    aircraft.wind,
+    told.altitude_reference,
+    go_home.go_home_height,
+    told.failsafe,
+    place.home_place,
+    place.pad_altitude,
+    place.fence,
+    place.ground,
+    place.clock,
+    told.camera_interval,
+    aircraft.app,
+)
+
+
+def checklist(vehicle: VehicleState, situation: Situation) -> tuple[Check, ...]:
+    """Return every point of a vehicle's checklist, in the order people go through it. Pure."""
+    return tuple(check(vehicle, situation) for check in _CHECKS)

@@ -1,0 +1,111 @@
+"""The height at which the aircraft goes home."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.ready import ready_airspace
+from tests.safety.cases import AIRSPACE, FACTS, TAKEOFF, vehicle, waypoint
+from tests.safety.checks.checked import ATTENTION, FAILS, OK, UNKNOWN, checked
+
+from recon.model.airspace import FlightLimits
+from recon.model.geo import GeoPoint
+from recon.model.vehicle import VehicleState
+from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
+from recon.safety import OPEN_AIRSPACE, PreparedAirspace
+from recon.safety.check import Check, CheckState
+from recon.safety.checks.go_home import go_home_height
+
+ORIGIN = GeoPoint(42.0, -93.6, 270.0)
+WIDE = PreparedAirspace(replace(AIRSPACE.airspace, limits=FlightLimits(500.0)))
+
+
+def at(height_m: float | None, **now: object) -> Check:
+    return checked(go_home_height, vehicle(replace(TAKEOFF, go_home_height_m=height_m)), **now)
+
+
+def other(height_m: float | None, altitude_m: float = 270.0, serial: str = "B") -> VehicleState:
+    """Another vehicle, in the air above a pad of this altitude."""
+    place = waypoint(100.0)
+    pad = GeoPoint(place.latitude_deg, -93.6, altitude_m)
+    profile = replace(TAKEOFF, serial=serial, go_home_height_m=height_m, pad=pad)
+    return replace(vehicle(profile, takeoff_point=None), serial=serial)
+
+
+def zone(ceiling_m: float | None, datum: HeightDatum = HeightDatum.GROUND, **changes: object):  # type: ignore[no-untyped-def]
+    outline = np.array([(10.0, 10.0), (20.0, 10.0), (20.0, 20.0)])
+    wood = Zone("wood", ZoneKind.KEEP_OUT, Region(outline), None, ceiling_m, datum)
+    return PreparedAirspace(ready_airspace(ORIGIN, zones=(replace(wood, **changes),)))  # type: ignore[arg-type]
+
+
+def test_it_is_told_or_not() -> None:
+    assert at(60.0).text == "60 m above takeoff"
+    assert at(None).state is UNKNOWN
+    assert "go_home_height_m = METRES" in at(None).to_do
+    assert checked(go_home_height, replace(vehicle(), profile=None)).state is UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("height_m", "state"), [(19.9, FAILS), (20.0, OK), (500.0, OK), (500.1, FAILS)]
+)
+def test_it_is_one_that_an_aircraft_takes(height_m: float, state: CheckState) -> None:
+    assert at(height_m, airspace=WIDE).state is state
+
+
+@pytest.mark.parametrize(("height_m", "state"), [(120.0, OK), (120.1, FAILS)])
+def test_it_is_under_the_sites_ceiling(height_m: float, state: CheckState) -> None:
+    assert at(height_m).state is state
+
+
+class TestNeighbours:
+    @pytest.mark.parametrize(
+        ("height_m", "state"), [(60.0, FAILS), (65.9, FAILS), (66.0, OK), (54.0, OK), (54.1, FAILS)]
+    )
+    def test_nobody_else_goes_home_in_its_layer(self, height_m: float, state: CheckState) -> None:
+        facts = replace(FACTS, others=(other(height_m),))
+        assert at(60.0, facts=facts).state is state
+
+    def test_who_does_is_told(self) -> None:
+        facts = replace(FACTS, others=(other(90.0), other(62.0, serial="C")))
+        assert at(60.0, facts=facts).text == (
+            "60 m: C goes home 2.0 m from that, 6 m apart is needed"
+        )
+
+    def test_heights_are_compared_in_one_frame(self) -> None:
+        """Its pad lies 40 m lower: 100 m above it are 60 m above here."""
+        low = replace(FACTS, others=(other(100.0, altitude_m=230.0),))
+        assert at(60.0, facts=low).state is FAILS
+        assert at(100.0, facts=low).state is OK
+
+    @pytest.mark.parametrize("airspace", [AIRSPACE, OPEN_AIRSPACE])
+    def test_a_home_nobody_knows_counts_from_the_origins_height(
+        self, airspace: PreparedAirspace
+    ) -> None:
+        lost = replace(other(60.0), profile=replace(TAKEOFF, serial="B", go_home_height_m=62.0))
+        facts = replace(FACTS, others=(lost,))
+        assert at(60.0, facts=facts, airspace=airspace).state is FAILS
+
+    def test_of_others_whose_height_is_not_told_nothing_can_be_said(self) -> None:
+        unsaid = (other(None), replace(other(60.0), profile=None))
+        assert at(60.0, facts=replace(FACTS, others=unsaid)).state is OK
+
+
+class TestZones:
+    @pytest.mark.parametrize(("ceiling_m", "state"), [(55.0, OK), (55.1, ATTENTION)])
+    def test_one_that_it_does_not_clear_is_named(self, ceiling_m: float, state: CheckState) -> None:
+        assert at(60.0, airspace=zone(ceiling_m)).state is state
+        assert at(60.0, airspace=zone(80.0)).text == "60 m does not clear 'wood'"
+
+    @pytest.mark.parametrize(("ceiling_m", "state"), [(325.0, OK), (325.1, ATTENTION)])
+    def test_a_ceiling_above_the_ellipsoid(self, ceiling_m: float, state: CheckState) -> None:
+        assert at(60.0, airspace=zone(ceiling_m, HeightDatum.WGS84)).state is state
+
+    def test_one_without_a_ceiling_is_cleared_by_nobody_and_not_named(self) -> None:
+        assert at(60.0, airspace=zone(None)).state is OK
+
+    def test_a_height_zone_is_no_obstacle(self) -> None:
+        assert at(60.0, airspace=zone(80.0, kind=ZoneKind.HEIGHT)).state is OK
+
+    def test_without_a_known_home_nothing_is_compared(self) -> None:
+        state = vehicle(takeoff_point=None)
+        assert checked(go_home_height, state, airspace=zone(80.0)).state is OK

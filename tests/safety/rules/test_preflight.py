@@ -1,0 +1,78 @@
+"""Missions are flown by vehicles whose checklist is passed, or overridden with a reason."""
+
+from dataclasses import replace
+
+import pytest
+from tests.safety.cases import STICK, command, mission, situation, vehicle, waypoint
+
+from recon.model.command import Body, FlyMission, GoTo, HoldPosition, Hover, Nudge
+from recon.model.geo import LatLon
+from recon.model.vehicle import VehicleState
+from recon.safety import OPEN_AIRSPACE, Override, Situation
+from recon.safety.facts import NO_FACTS
+from recon.safety.rules.preflight import preflight
+
+HOMEWARDS = FlyMission(replace(mission(waypoint(50.0), waypoint(0.0)).mission, land_at_end=True))
+OVERRIDE = Override("Ann", "the fence comes tomorrow", 5)
+
+
+def reason(
+    body: Body, state: VehicleState | None = None, now: Situation | None = None
+) -> str | None:
+    answer = preflight(command(body), replace(now or situation(), vehicle=state or vehicle()))
+    assert answer is None or answer.rule == "preflight"
+    return None if answer is None else answer.reason
+
+
+UNFENCED = replace(situation(), airspace=OPEN_AIRSPACE)
+"""One point of the list fails."""
+
+
+def test_a_vehicle_whose_list_is_passed_flies() -> None:
+    assert reason(mission()) is None
+
+
+def test_one_whose_list_is_not_says_which_point_and_what_to_do() -> None:
+    assert reason(mission(), now=UNFENCED) == (
+        "A: its preflight checklist is not passed: Fence: no boundary is loaded (name one in "
+        "site.toml under [layers]). Mend that, or override the checklist with a reason"
+    )
+
+
+def test_all_points_are_told_at_once() -> None:
+    both = replace(UNFENCED, facts=NO_FACTS)
+    told = reason(mission(), now=both)
+    assert told is not None
+    assert "Fence: no boundary is loaded (name one in site.toml under [layers]); Clock: " in told
+
+
+def test_a_point_that_only_wants_attention_holds_nothing_back() -> None:
+    assert reason(mission(), vehicle(battery_fraction=0.4, wind_level=2)) is None
+
+
+def test_somebodys_word_lets_it_fly() -> None:
+    assert reason(mission(), now=replace(UNFENCED, preflight_override=OVERRIDE)) is None
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        Hover(),
+        STICK,
+        GoTo(LatLon(42.0, -93.6), 40.0, 5.0),
+        Nudge(1.0, 0.0, 0.0),
+        HoldPosition(),
+    ],
+)
+def test_the_list_is_for_missions(body: Body) -> None:
+    assert reason(body, now=UNFENCED) is None
+
+
+def test_coming_home_needs_no_list() -> None:
+    out = vehicle(position=LatLon(waypoint(60.0).latitude_deg, -93.6))
+    assert reason(HOMEWARDS, out, UNFENCED) is None
+    assert reason(mission(waypoint(50.0), waypoint(0.0)), out, UNFENCED) is not None
+
+
+def test_nobody_at_all_is_another_rules_matter() -> None:
+    assert preflight(command(mission()), replace(UNFENCED, vehicle=None)) is None
