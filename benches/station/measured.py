@@ -107,7 +107,7 @@ async def measure_station(load: Load) -> Outcome:
     state_ms: list[float] = []
     tasks = [asyncio.create_task(driver.run()), asyncio.create_task(_console(service, state_ms))]
     spare_what_is_loaded()
-    scheduled = _ran_and_waited_ns()
+    scheduled = ran_and_waited_ns()
     cpu_s, wall_s = time.process_time(), time.monotonic()
     sending = asyncio.create_task(_send(links.port, load))
     async with asyncio.timeout(load.seconds + ENDING_S):
@@ -117,7 +117,7 @@ async def measure_station(load: Load) -> Outcome:
     results = service.all_stop("bench").results
     sent = await sending
     cpu_share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
-    ran_ns, waited_ns = (b - a for a, b in zip(scheduled, _ran_and_waited_ns(), strict=True))
+    ran_ns, waited_ns = (b - a for a, b in zip(scheduled, ran_and_waited_ns(), strict=True))
     async with asyncio.timeout(ENDING_S):
         while received.links_closed < load.apps:
             await asyncio.sleep(0.01)
@@ -129,7 +129,7 @@ async def measure_station(load: Load) -> Outcome:
     return Outcome(sent, received, cpu_share, waited_share, state_ms, ordered, ordered_at_s)
 
 
-def _ran_and_waited_ns() -> tuple[int, int]:
+def ran_and_waited_ns() -> tuple[int, int]:
     """What Linux says of this thread: time on a core, time in the queue for one."""
     ran, waited, _ = Path("/proc/thread-self/schedstat").read_text().split()
     return int(ran), int(waited)

@@ -76,6 +76,7 @@ def test_examples_run(
         "02": "confirmed",
         "03": "of the grid seen",
         "04": "landing: confirmed",
+        "05": "it is there",
         "06": "SIM-6: wave 2, 36 m, landed",
     }
     assert expected[example.name[:2]] in printed

@@ -372,3 +372,74 @@ class TestWithdrawal:
         ]
         assert s.withdraw_motion("again") == []
         assert sorted(sent_ids(s, 0) + sent_ids(s, SECOND)) == [1, 3]
+
+
+class TestSticks:
+    """A stream at 10 Hz: its beat wavers, and other orders want their turn."""
+
+    def test_a_stick_that_comes_some_milliseconds_early_does_not_wait(self) -> None:
+        s = session()
+        for number in range(1, 30):
+            now_ns = number * 100 * MS + (12 * MS if number % 2 else -12 * MS)
+            s.submit(approved(number, stick(), now_ns))
+            assert sent_ids(s, now_ns) == [number]
+
+    def test_two_at_once_are_kept_apart_and_the_newer_goes(self) -> None:
+        s = session()
+        s.submit(approved(1, stick()))
+        assert sent_ids(s, 0) == [1]
+        s.submit(approved(2, stick()))
+        s.submit(approved(3, stick()))
+        assert sent_ids(s, 75 * MS - 1) == []
+        assert sent_ids(s, 75 * MS) == [3]
+
+    @pytest.mark.parametrize(("gap_s", "kept_ms"), [(0.02, 20), (0.15, 75), (0.2, 200), (0.5, 500)])
+    def test_an_app_that_is_slow_keeps_its_gap(self, gap_s: float, kept_ms: int) -> None:
+        s = session()
+        s.submit(approved(1, stick(), packet_gap_s=gap_s))
+        assert sent_ids(s, 0) == [1]
+        s.submit(approved(2, stick(), packet_gap_s=gap_s))
+        assert sent_ids(s, kept_ms * MS - 1) == []
+        assert sent_ids(s, kept_ms * MS) == [2]
+
+    def test_other_orders_keep_the_whole_gap_after_a_stick(self) -> None:
+        s = session()
+        s.submit(approved(1, stick()))
+        assert sent_ids(s, 0) == [1]
+        s.submit(approved(2, mission()))
+        assert sent_ids(s, 100 * MS - 1) == []
+        assert sent_ids(s, 100 * MS) == [2]
+
+    def test_a_camera_order_has_its_turn_in_a_stream(self) -> None:
+        s = session()
+        sent: list[int] = []
+        for number in range(1, 11):
+            now_ns = number * 95 * MS
+            s.submit(approved(number, stick(), now_ns))
+            if number == 3:
+                s.submit(approved(100, StartCamera(1.0), now_ns))
+            for late_ms in (0, 50):
+                sent += sent_ids(s, now_ns + late_ms * MS)
+        assert 100 in sent
+        assert sent.index(100) <= 4
+        assert sent[-1] == 10
+        assert len(sent) >= 9
+
+    def test_a_camera_order_that_waits_for_an_answer_holds_no_stick_up(self) -> None:
+        s = session()
+        s.submit(approved(100, StartCamera(1.0)))
+        assert sent_ids(s, 0) == [100]
+        s.submit(approved(101, StopCamera(), 100 * MS))
+        for number in range(1, 8):
+            now_ns = number * 100 * MS
+            s.submit(approved(number, stick(), now_ns))
+            assert sent_ids(s, now_ns) == [number]
+
+    def test_an_emergency_order_waits_for_no_stick(self) -> None:
+        s = session()
+        s.submit(approved(1, stick()))
+        assert sent_ids(s, 0) == [1]
+        s.submit(approved(2, stick()))
+        dropped = s.submit(approved(3, Hover()))
+        assert [d.command_id for d in dropped] == [2]
+        assert sent_ids(s, MS) == [3]

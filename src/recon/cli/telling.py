@@ -13,7 +13,7 @@ from rich.text import Text
 from recon.cli.at_station import DONE, REFUSED
 from recon.client import Order, Phase, Refusal, Station, TookTooLongError, VehicleAnswer
 
-_DONE_PHASES = (Phase.CONFIRMED,)
+_DONE_PHASES = (Phase.CONFIRMED, Phase.DONE)
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ class Life(msgspec.Struct, frozen=True):
     @property
     def is_there(self) -> bool:
         """Whether a steered order's vehicle has come to its goal."""
-        return any("it is there" in change.note for change in self.history)
+        return self.has_reached(Phase.DONE)
 
     def has_reached(self, phase: Phase) -> bool:
         """Return whether the order is in this phase or has been."""

@@ -156,6 +156,10 @@ class Phase(Enum):
     SENT = "sent"
     ACKNOWLEDGED = "acknowledged"
     CONFIRMED = "confirmed"
+    STARTED = "started"
+    """Telemetry shows it being carried out; its end is still to be seen."""
+    DONE = "done"
+    """Telemetry shows its end."""
     REFUSED_BY_STATION = "refused_by_station"
     REFUSED_BY_APP = "refused_by_app"
     TIMED_OUT = "timed_out"
@@ -166,7 +170,7 @@ class Phase(Enum):
     @property
     def is_final(self) -> bool:
         """Whether the life has ended."""
-        return self not in (Phase.QUEUED, Phase.SENT, Phase.ACKNOWLEDGED)
+        return self not in (Phase.QUEUED, Phase.SENT, Phase.ACKNOWLEDGED, Phase.STARTED)
 
 
 @dataclass(frozen=True, slots=True)

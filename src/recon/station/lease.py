@@ -19,6 +19,10 @@ class StreamSettings:
     """The streams' sticks are spread over the period: ten vehicles' sticks do not wait for each
     other, and the station's other work gets its turn between."""
 
+    most_at_once: int = 16
+    """With 64 vehicles in the air the gate takes some 4 ms for each stick: 16 streams are two
+    thirds of a core, and a stop given meanwhile waits for a few sticks at most."""
+
     stick_timeout_s: float = 1.0
     """An app that hears no more sticks stops after this; the station sends the zero itself."""
 

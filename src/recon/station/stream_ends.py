@@ -137,7 +137,8 @@ def let_go(
     phase, why = taken
     station = release(driven.station, serial)
     if lease.closing is None:
-        station = change_phase(station, lease, phase, now_ns, why, ends=True)
+        ended = phase if lease.arrived_at_ns is None else Phase.DONE
+        station = change_phase(station, lease, ended, now_ns, why, ends=True)
         if phase is Phase.FAILED:
             station = _alarm(station, lease, f"{why}; nothing more is sent", now_ns)
     return replace(driven, station=station)
@@ -145,7 +146,7 @@ def let_go(
 
 def give_up(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask: Ask) -> Driven:
     """End a lease that the station cannot carry on: the order fails, with an alarm."""
-    phase = Phase.FAILED if lease.arrived_at_ns is None else Phase.CONFIRMED
+    phase = Phase.FAILED if lease.arrived_at_ns is None else Phase.DONE
     station = change_phase(driven.station, lease, phase, now_ns, why, ends=True)
     station = _alarm(station, lease, f"{why}; it is stopped and holds", now_ns)
     return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
@@ -155,7 +156,7 @@ def leave_alone(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask
     """Leave a vehicle that was held for long to its own position hold; nothing has failed."""
     held_s = driven.station.settings.streams.hold_at_most_s
     why = f"held for {held_s:g} s; from now on by the aircraft itself"
-    station = change_phase(driven.station, lease, Phase.CONFIRMED, now_ns, why, ends=True)
+    station = change_phase(driven.station, lease, Phase.DONE, now_ns, why, ends=True)
     return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
 
 
@@ -194,7 +195,7 @@ def _alarm(station: Station, lease: Lease, why: str, now_ns: int) -> Station:
     name = serial or "" if record is None else record.vehicle_name
     condition = Condition(
         key=f"{RULE}:{lease.command.id}",
-        severity=Severity.ERROR,
+        severity=Severity.ERROR if lease.arrived_at_ns is None else Severity.WARNING,
         rule=RULE,
         vehicle_name=name,
         text=f"{name}: {lease.command.name.replace('_', ' ')}: {why}",

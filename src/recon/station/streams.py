@@ -30,6 +30,14 @@ def unsteerable(station: Station, order: OperatorOrder, now_ns: int) -> Refusal 
             "the connection that was to hold the order is not open (any more): open the stream of "
             "states, and name its holder in the order",
         )
+    steered = [serial for serial in station.streams if serial != order.serial]
+    most = station.settings.streams.most_at_once
+    if len(steered) >= most:
+        return Refusal(
+            "steered_at_once",
+            f"{len(steered)} vehicles are steered already, {most} at once are possible: hold one "
+            "of them first, or send a mission",
+        )
     vehicle = station.fleet.vehicles[order.serial or ""]
     return unseen(vehicle, now_ns, station.settings.streams)
 
@@ -174,12 +182,12 @@ def _followed(
     if not lease.is_obeyed and _shows_sticks(lease, vehicle):
         lease = replace(lease, is_obeyed=True)
         note = "by telemetry: it flies by sticks"
-        station = change_phase(station, lease, Phase.CONFIRMED, now_ns, note)
+        station = change_phase(station, lease, Phase.STARTED, now_ns, note)
     has_come = seen is not None and has_arrived(lease.goal, seen, station.settings.steering)
     if lease.is_obeyed and lease.arrived_at_ns is None and has_come:
         lease = replace(lease, arrived_at_ns=now_ns)
         note = "by telemetry: it is there, and is held there"
-        station = change_phase(station, lease, Phase.CONFIRMED, now_ns, note)
+        station = change_phase(station, lease, Phase.DONE, now_ns, note, ends=True)
     return station, lease
 
 

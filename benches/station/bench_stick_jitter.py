@@ -1,0 +1,189 @@
+"""How even the streams of sticks are, on real sockets, with a busy worker beside them.
+
+    python -m benches.station.bench_stick_jitter [--apps 8] [--seconds 20]
+
+Every vehicle is steered by a goto: each stick is worked out from telemetry, approved by the gate
+and sent, ten a second. Beside it the worker lays frames of 1280 x 720 on the ground without a
+pause. Jitter is how far the time between two sticks of one vehicle, as its app reads them, is from
+100 ms. The baseline is the same run with the worker idle; ends with 1 when p99 is 20 ms or more.
+"""
+
+import argparse
+import asyncio
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import uvloop
+from benches.station.measured import ran_and_waited_ns
+from benches.station.stick_apps import APART_DEG, LATITUDE_DEG, LONGITUDE_DEG, serial
+
+from recon.camera.motion import TelemetryReference
+from recon.link.server import LinkServer
+from recon.link.settings import LinkSettings
+from recon.model.command import GoTo
+from recon.model.event import DeadlineMissed, Event, OperatorOrder
+from recon.model.geo import GeoPoint, LatLon, LocalFrame
+from recon.model.imagery import Frame
+from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
+from recon.site import Site, demo_site_folder, load_site
+from recon.station.build import first_state, worker_tasks
+from recon.station.driver import (
+    AsyncioDriver,
+    spare_what_is_loaded,
+    station_clock,
+    take_turns_quickly,
+)
+from recon.station.imaging import LAY_FRAME, LayFrame
+from recon.station.outputs import StartWork
+from recon.station.worker import ThreadWorker
+
+LIMIT_MS = 20.0
+SETTLING_S = 2.0
+"""Until every app has connected and told where it is; the orders go then."""
+
+FIRST_STICKS = 5
+"""Left out: the first gap brings a stream into its slot of the period."""
+
+
+@dataclass(frozen=True, slots=True)
+class Jitter:
+    """One run: how far each gap between sticks is from 100 ms, and the frames laid beside it."""
+
+    off_ms: list[float]
+    sticks: int
+    frames_laid: int
+    waited_share: float
+    """Time the station's thread was ready to run but had no core, per time that it ran."""
+
+    def at(self, percentile: float) -> float:
+        """Return a percentile in milliseconds."""
+        return float(np.percentile(self.off_ms, percentile))
+
+    def told(self, name: str) -> str:
+        """Return one line of figures."""
+        return (
+            f"{name}: p50 {self.at(50):.2f} ms, p99 {self.at(99):.2f} ms, "
+            f"most {self.at(100):.2f} ms off 100 ms; "
+            f"{self.sticks} sticks, {self.frames_laid} frames laid; "
+            f"the station waited {100 * self.waited_share:.0f} % as long for a core as it ran"
+        )
+
+
+async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
+    """Run a station with steered vehicles for a time."""
+    driver = AsyncioDriver(first_state(_site(apps)), station_clock())
+    driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
+    await links.start("127.0.0.1", 0)
+    ticking = asyncio.create_task(driver.run())
+    laid = [0]
+    worker = _busy_worker(laid) if is_worker_busy else None
+    spare_what_is_loaded()
+    scheduled_ns = ran_and_waited_ns()
+    take_turns_quickly()
+    flying = asyncio.create_task(_apps(links.port, apps, seconds))
+    await asyncio.sleep(SETTLING_S)
+    for number in range(apps):
+        _order_goto(driver, number)
+    arrived_s = await flying
+    ran_ns, waited_ns = (b - a for a, b in zip(scheduled_ns, ran_and_waited_ns(), strict=True))
+    if worker is not None:
+        worker.stop()
+    ticking.cancel()
+    await links.stop()
+    gaps_s = [b - a for times in arrived_s for a, b in pairwise(times[FIRST_STICKS:])]
+    expected = 10 * (seconds - SETTLING_S) * apps
+    sticks = sum(map(len, arrived_s))
+    if sticks < 0.95 * expected:
+        raise RuntimeError(f"expected some {expected:.0f} sticks, got {sticks}")
+    return Jitter([1e3 * abs(gap_s - 0.1) for gap_s in gaps_s], sticks, laid[0], waited_ns / ran_ns)
+
+
+def _site(apps: int) -> Site:
+    """Return a site with nothing in the way, its vehicles in a row with pads under them."""
+    home = GeoPoint(LATITUDE_DEG, LONGITUDE_DEG, 275.0)
+    profiles = {
+        serial(number): VehicleProfile(
+            serial(number),
+            waypoint_altitude=AltitudeReference.TAKEOFF,
+            pad=replace(home, longitude_deg=LONGITUDE_DEG + APART_DEG * number),
+            endurance_s=1_800.0,
+            go_home_height_m=60.0,
+            failsafe=Failsafe.HOVER,
+        )
+        for number in range(apps)
+    }
+    return Site(name="bench", frame=LocalFrame(home), profiles=profiles)
+
+
+def _order_goto(driver: AsyncioDriver, number: int) -> None:
+    target = LatLon(LATITUDE_DEG + 0.003, LONGITUDE_DEG + APART_DEG * number)
+    order = OperatorOrder(number + 1, GoTo(target, 40.0, 5.0), "bench", serial(number))
+    driver.handle(order)
+    record = driver.station.orders.records[order.command_id]
+    if not record.is_watched:
+        raise RuntimeError(f"expected an order that is flown, got {record.note}")
+
+
+def _busy_worker(laid: list[int]) -> ThreadWorker:
+    """Return a worker that lays one frame after another, and counts them."""
+    site = load_site(demo_site_folder())
+    assert site.eye is not None
+    camera = site.eye.camera
+    rng = np.random.default_rng(1)
+    pixels = rng.integers(0, 256, (camera.rows, camera.cols, 3), dtype=np.uint8)
+    frame = Frame(1, site.eye.serial, 0, 0, 0.0, rgb=pixels)
+    at = TelemetryReference(LATITUDE_DEG, LONGITUDE_DEG, 120.0, 10.0)
+    work = StartWork(1, LAY_FRAME, LayFrame(frame, at, at))
+
+    def again(event: Event) -> None:
+        if not isinstance(event, DeadlineMissed):
+            laid[0] += 1
+            worker.submit(work)
+
+    deliver: Callable[[Event], None] = again
+    worker = ThreadWorker(worker_tasks(site), deliver)
+    worker.start()
+    worker.submit(work)
+    return worker
+
+
+async def _apps(port: int, apps: int, seconds: float) -> list[list[float]]:
+    process = await asyncio.create_subprocess_exec(
+        sys.executable,
+        "-m",
+        "benches.station.stick_apps",
+        str(port),
+        "--apps",
+        str(apps),
+        "--seconds",
+        str(seconds),
+        stdout=asyncio.subprocess.PIPE,
+    )
+    said, _ = await process.communicate()
+    if process.returncode != 0:
+        raise RuntimeError(f"expected the apps to end well, got exit code {process.returncode}")
+    arrived_s: list[list[float]] = json.loads(said)
+    return arrived_s
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--apps", type=int, default=8)
+    parser.add_argument("--seconds", type=float, default=20.0)
+    asked = parser.parse_args()
+    print(f"{asked.apps} vehicles steered at 10 Hz for {asked.seconds - SETTLING_S:g} s")
+    idle = uvloop.run(measure(asked.apps, asked.seconds, is_worker_busy=False))
+    print(idle.told("worker idle"))
+    busy = uvloop.run(measure(asked.apps, asked.seconds, is_worker_busy=True))
+    print(busy.told("worker busy"))
+    is_good = busy.at(99) < LIMIT_MS and busy.frames_laid > 0
+    print("good" if is_good else f"FAILED: p99 under {LIMIT_MS:g} ms expected")
+    return 0 if is_good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

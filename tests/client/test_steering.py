@@ -1,0 +1,138 @@
+"""Goto, nudge and hold position from a program; and what becomes of them when the program ends."""
+
+import asyncio
+from math import hypot
+
+import pytest
+from tests.client.running_station import running_station
+
+from recon.client import (
+    ConnectionLostError,
+    Order,
+    Phase,
+    Position,
+    Refusal,
+    Station,
+    Vehicle,
+)
+from recon.geo.distance import moved_m, offset_north_east_m
+from recon.model.geo import LatLon
+
+
+def place(position: Position) -> LatLon:
+    assert position.latitude_deg is not None
+    assert position.longitude_deg is not None
+    return LatLon(position.latitude_deg, position.longitude_deg)
+
+
+def accepted(answer: Order | Refusal) -> Order:
+    assert isinstance(answer, Order), answer
+    return answer
+
+
+async def until_mode(vehicle: Vehicle, mode: str) -> None:
+    async for state in vehicle.telemetry():
+        if state.flight_mode.value == mode:
+            return
+
+
+def test_a_goto_flies_there_and_a_nudge_goes_on_from_there() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            start = place(vehicle.now().position)
+            there = moved_m(start, 12.0, 5.0)
+            order = await vehicle.goto(
+                there.latitude_deg, there.longitude_deg, height_above_takeoff_m=42.0, speed_mps=4.0
+            )
+            life = await accepted(order).wait(Phase.DONE)
+            assert (life.kind, life.phase) == ("goto", Phase.DONE)
+            assert Phase.STARTED in [change.phase for change in life.history]
+            assert hypot(*offset_north_east_m(place(vehicle.now().position), there)) < 1.5
+            nudge = accepted(await vehicle.nudge(east_m=-3.0, up_m=-2.0, turn_deg=30.0))
+            assert (await nudge.wait(Phase.DONE)).kind == "nudge"
+            beside = moved_m(there, 0.0, -3.0)
+            assert hypot(*offset_north_east_m(place(vehicle.now().position), beside)) < 2.0
+            held = accepted(await vehicle.hold_position())
+            assert (await held.wait(Phase.DONE)).kind == "hold_position"
+
+    asyncio.run(main())
+
+
+def test_a_program_that_leaves_lets_the_vehicle_hold() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as watching:
+            vehicle = await watching.vehicle("SIM-1")
+            start = place(vehicle.now().position)
+            far = moved_m(start, 300.0, 0.0)
+            async with Station(url) as leaving:
+                flown = await leaving.vehicle("SIM-1")
+                order = await flown.goto(
+                    far.latitude_deg, far.longitude_deg, height_above_takeoff_m=40.0
+                )
+                await accepted(order).wait(Phase.STARTED)
+            await until_mode(vehicle, "gps_atti")
+            newest = watching._stream.newest
+            assert newest is not None
+            lives = {command.kind: command.phase for command in newest.message.commands}
+            assert lives["goto"] is Phase.FAILED
+            assert "hover" in lives
+            assert hypot(*offset_north_east_m(start, place(vehicle.now().position))) < 60.0
+
+    asyncio.run(main())
+
+
+def test_a_program_that_hangs_lets_the_vehicle_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its connection is open, but it says nothing more: as good as gone after two seconds."""
+
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as watching:
+            vehicle = await watching.vehicle("SIM-1")
+            far = moved_m(place(vehicle.now().position), 300.0, 0.0)
+            monkeypatch.setattr("recon.client.stream.BEAT_S", 3600.0)
+            async with Station(url) as hanging:
+                flown = await hanging.vehicle("SIM-1")
+                order = accepted(
+                    await flown.goto(
+                        far.latitude_deg, far.longitude_deg, height_above_takeoff_m=40.0
+                    )
+                )
+                assert (await order.wait(Phase.DONE)).phase is Phase.FAILED
+            await until_mode(vehicle, "gps_atti")
+
+    asyncio.run(main())
+
+
+def test_what_cannot_be_steered_is_a_value() -> None:
+    async def main() -> None:
+        async with running_station(airborne=False, vehicles=1) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            here = place(vehicle.now().position)
+            for answer in (
+                await vehicle.goto(
+                    here.latitude_deg, here.longitude_deg, height_above_takeoff_m=20
+                ),
+                await vehicle.nudge(north_m=1.0),
+                await vehicle.hold_position(),
+            ):
+                assert isinstance(answer, Refusal)
+                assert answer.rule == "flying"
+            nowhere = await vehicle.goto(91.0, 0.0, height_above_takeoff_m=20.0)
+            assert isinstance(nowhere, Refusal)
+            assert nowhere.rule == "dji_limits"
+            broken = await vehicle.nudge(north_m=float("nan"))
+            assert isinstance(broken, Refusal)
+            assert broken.rule == "finite_numbers"
+
+    asyncio.run(main())
+
+
+def test_without_an_open_stream_nothing_is_sent() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            station._stream.holder = None
+            with pytest.raises(ConnectionLostError, match="nothing was sent"):
+                await vehicle.nudge(north_m=1.0)
+
+    asyncio.run(main())
