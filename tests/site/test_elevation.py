@@ -211,7 +211,7 @@ PICTURE = np.zeros((3, 160, 160), np.uint8)
         ),
         (
             flat(crs="+proj=utm +zone=15 +ellps=clrk66 +nadgrids=/etc/passwd +units=m"),
-            "expected a coordinate reference system",
+            "expected a coordinate reference system without grid files of its own; export it in ",
         ),
         (flat(transform=Affine(1e-9, 0, X, 0, -1e-9, Y)), "of 0.01 to 100 m, got 1e-09 m; is its"),
         (flat(transform=FAR_AWAY), "expected heights around the site's origin, got none; does"),

@@ -49,9 +49,7 @@ def _unknown_ground(site: Site) -> Iterator[str]:
     middles_m = np.stack(np.meshgrid(easts, norths), axis=-1).reshape(-1, 2)
     is_inside = Polygon(site.layers.boundary).contains(middles_m)
     is_unknown = np.isnan(site.elevation.ellipsoid_height_m.ravel())
-    if not is_inside.any():
-        return
-    share = float(is_unknown[is_inside].mean())
+    share = float((is_unknown & is_inside).sum()) / max(1, int(is_inside.sum()))
     if share > SHARE_SHOWN:
         yield (
             f"the elevation model tells no ground under {100.0 * share:.1f} % of the boundary: "

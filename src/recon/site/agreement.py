@@ -37,8 +37,7 @@ def refuse_misplaced_pads(site_file: Path, site: Site) -> None:
     So it is when the pad is far away, outside the boundary, in a keep-out zone that begins at the
     ground, or closer to the edge of either than the margin.
     """
-    if site.frame is None:
-        return
+    assert site.frame is not None
     margin_m = site.limits.boundary_margin_m
     boundary = None if site.layers.boundary is None else Polygon(site.layers.boundary)
     ground_m = site.frame.origin.ellipsoid_height_m
@@ -69,8 +68,8 @@ def refuse_sunken_pads(site_file: Path, site: Site) -> None:
 
     Where the model tells no height nothing is said.
     """
-    if site.frame is None or site.elevation is None:
-        return
+    assert site.frame is not None
+    assert site.elevation is not None
     for place, pad in _placed_pads(site_file, site):
         point_m = _east_north_m(place, pad, site.frame)
         gap_m = pad.ellipsoid_height_m - float(ground_heights_m(site.elevation, point_m)[0])

@@ -160,6 +160,11 @@ def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
         )
     try:
         text = dataset.crs.to_wkt()
+        if _OTHER_FILES.search(text):
+            raise SiteError(
+                f"{place}: expected a coordinate reference system without grid files of its own; "
+                "export it in EPSG:4326"
+            )
         crs = pyproj.CRS.from_user_input(text)
         flat = horizontal(crs)
         globe = pyproj.Transformer.from_crs("EPSG:4326", flat, always_xy=True, allow_ballpark=False)
@@ -168,11 +173,6 @@ def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
             f"{place}: expected a coordinate reference system that PROJ relates to WGS84, got: "
             f"{said(problem)}"
         ) from problem
-    if _OTHER_FILES.search(text):
-        raise SiteError(
-            f"{place}: expected a coordinate reference system without grid files of its own; "
-            "export it in EPSG:4326"
-        )
     base = flat.source_crs if flat.is_bound and flat.source_crs is not None else flat
     if not (base.is_geographic or base.is_projected):
         raise SiteError(f"{place}: expected geographic or projected coordinates, got {base.name!a}")
