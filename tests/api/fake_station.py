@@ -7,8 +7,9 @@ import numpy as np
 from fastapi import FastAPI
 
 from recon.api.app import create_app
-from recon.api.schema import AuditPage, OrderResponse, StationState
+from recon.api.schema import AuditPage, OrderResponse, PreflightView, StationState, WordResponse
 from recon.api.security import Access
+from recon.model.authority import Leader
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
 from recon.site import default_site
@@ -78,6 +79,21 @@ class FakeStation:
 
     def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
         return self.service.fleet_return(serials, issued_by)
+
+    def dismiss_ghost(self, name: str, by: str) -> bool:
+        return self.service.dismiss_ghost(name, by)
+
+    def switch_separation_hold(self, is_on: bool, by: str) -> None:
+        self.service.switch_separation_hold(is_on, by)
+
+    def take_authority(self, serial: str, leader: Leader, by: str) -> WordResponse:
+        return self.service.take_authority(serial, leader, by)
+
+    def preflight(self, serial: str) -> PreflightView | None:
+        return self.service.preflight(serial)
+
+    def override_preflight(self, serial: str, reason: str, by: str) -> WordResponse:
+        return self.service.override_preflight(serial, reason, by)
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         return self.service.acknowledge(alarm_id, by)

@@ -9,6 +9,7 @@ from recon.geo import Footprints
 from recon.model.geo import LatLon, LocalFrame
 from recon.safety.datum import places_m
 from recon.safety.prediction.course import FloatArray
+from recon.safety.prediction.flyer import last_place
 from recon.safety.watchdogs.picture import Picture
 
 BoolArray = npt.NDArray[np.bool_]
@@ -63,7 +64,7 @@ def way_ahead(picture: Picture, frame: LocalFrame) -> Way:
 
 
 def _place(picture: Picture, number: int) -> LatLon:
-    place = picture.flying[number].state.position.value
+    place, _at_ns = last_place(picture.flying[number].state)
     assert place is not None, "a vehicle that is heard flying has told where it is"
     return place
 

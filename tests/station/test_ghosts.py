@@ -1,0 +1,115 @@
+"""What is not heard stays in the air, until telemetry or a person takes it out."""
+
+from tests.fleet.said import PLACE, core, extended
+from tests.station.commanded import Told
+
+from recon.geo.distance import moved_m
+from recon.model.event import GhostDismissed
+from recon.station.air import ghost, in_the_air, is_hazard_unseen
+from recon.station.ghost_view import ghost_view
+
+NORTH_100 = moved_m(PLACE, 100.0, 0.0)
+
+
+def stale(seconds: float = 60.0, **said: object) -> Told:
+    """A took off 100 m south of where it flies, and has not been heard since."""
+    told = Told().opens(1, core(flying=False), extended()).says(1, core())
+    moving = core(position=NORTH_100, velocity=(3.0, 0.0, 0.0), **said)  # type: ignore[arg-type]
+    return told.says(1, moving).passes(seconds)
+
+
+def in_air(told: Told) -> list[str]:
+    return [state.display_name for state, _ in in_the_air(told.station)]
+
+
+class TestGhost:
+    def test_it_grows_at_its_last_speed_up_to_150_m_and_has_a_way_home(self) -> None:
+        told = stale(4.0)
+        view = ghost_view(told.station, told.station.fleet.vehicles["A"], told.now_ns)
+        assert view is not None
+        assert abs(view.radius_m - 12.0) < 0.5
+        assert (view.growth_mps, view.largest_radius_m, view.dismissed_as) == (3.0, 150.0, "A")
+        assert (view.longitude_deg, view.latitude_deg) == view.corridor[0]
+        assert view.corridor[1] == (PLACE.longitude_deg, PLACE.latitude_deg)
+        later = stale(600.0)
+        grown = ghost_view(later.station, later.station.fleet.vehicles["A"], later.now_ns)
+        assert grown is not None
+        assert grown.radius_m == 150.0
+
+    def test_one_that_is_heard_or_on_the_ground_has_none(self) -> None:
+        for told in (stale(2.9), stale(60.0, flying=False), Told().opens(1, extended()).passes(5)):
+            vehicle = told.station.fleet.vehicles["A"]
+            assert ghost(told.station, vehicle, told.now_ns) is None
+            assert ghost_view(told.station, vehicle, told.now_ns) is None
+            assert not is_hazard_unseen(told.station, "A", told.now_ns)
+
+    def test_nobody_knows_the_home_of_one_seen_first_in_the_air(self) -> None:
+        told = Told().opens(1, core(), extended("Z")).passes(60.0)
+        view = ghost_view(told.station, told.station.fleet.vehicles["Z"], told.now_ns)
+        assert view is not None
+        assert view.corridor == []
+
+
+class TestDismissal:
+    def test_a_persons_word_takes_it_out_until_it_is_heard_again(self) -> None:
+        told = stale()
+        assert in_air(told) == ["A"]
+        told.happens(GhostDismissed("A", "Ann"))
+        assert in_air(told) == []
+        assert ghost(told.station, told.station.fleet.vehicles["A"], told.now_ns) is None
+        assert not is_hazard_unseen(told.station, "A", told.now_ns)
+        told.passes(600.0)
+        assert in_air(told) == []
+        told.says(1, core())
+        assert in_air(told) == ["A"]
+
+    def test_nothing_else_does(self) -> None:
+        told = stale().closes(1).passes(600.0)
+        assert in_air(told) == ["A"]
+
+    def test_what_is_no_ghost_cannot_be_dismissed(self) -> None:
+        told = stale(1.0)
+        told.happens(GhostDismissed("A", "Ann")).happens(GhostDismissed("nobody", "Ann"))
+        assert in_air(told) == ["A"]
+        assert told.station.watch.dismissed == {}
+
+    def test_one_that_never_told_where_it_is_can_be_dismissed_too(self) -> None:
+        told = Told().opens(1, core(position=None), extended()).passes(1.0)
+        assert is_hazard_unseen(told.station, "A", told.now_ns)
+        told.happens(GhostDismissed("A", "Ann"))
+        assert in_air(told) == []
+        assert not is_hazard_unseen(told.station, "A", told.now_ns)
+
+
+class TestWithoutASerial:
+    def lost(self) -> Told:
+        return Told().opens(7, core(), extended(None)).passes(1.0).closes(7).passes(10.0)
+
+    def test_it_stays_in_the_air_when_its_link_ends(self) -> None:
+        told = self.lost()
+        assert in_air(told) == ["unidentified link 7"]
+        view = ghost_view(told.station, told.station.watch.lost["link-7"], told.now_ns)
+        assert view is not None
+        assert view.dismissed_as == "link-7"
+
+    def test_a_person_takes_it_out(self) -> None:
+        told = self.lost()
+        assert is_hazard_unseen(told.station, "link-7", told.now_ns)
+        told.happens(GhostDismissed("link-7", "Ann"))
+        assert in_air(told) == []
+
+    def test_one_on_the_ground_is_gone(self) -> None:
+        told = Told().opens(7, core(flying=False), extended(None)).passes(1.0).closes(7)
+        assert in_air(told) == []
+
+    def test_the_newest_are_kept(self) -> None:
+        told = Told()
+        for link_id in range(1, 30):
+            told.opens(link_id, core(), extended(None)).closes(link_id)
+        assert list(told.station.watch.lost) == [f"link-{i}" for i in range(14, 30)]
+
+    def test_while_its_link_is_open_it_is_in_the_air_by_its_own_word(self) -> None:
+        told = Told().opens(7, core(), extended(None)).passes(1.0)
+        assert in_air(told) == ["unidentified link 7"]
+        told.says(7, core(flying=False))
+        assert in_air(told) == []

@@ -1,0 +1,213 @@
+"""What the watchdogs find becomes alarms and holds, ten times a second."""
+
+from dataclasses import replace
+
+import pytest
+from tests.fleet.said import PLACE, S, core, extended
+from tests.station.commanded import Told
+from tests.station.returning_world import LEAST_LEVEL_M
+from tests.station.test_fleet_return import SIX, six_in_the_air
+
+from recon.geo.distance import moved_m
+from recon.model.authority import Leader
+from recon.model.command import Hover, Phase, ReturnHome
+from recon.model.event import AuthorityTaken, SeparationHoldSwitched, Tick
+from recon.model.geo import LatLon
+from recon.model.intent import Commanded, Intent
+from recon.model.severity import Severity
+from recon.model.vehicle import FlightMode
+from recon.station.alarms import Alarm
+
+
+def place(north_m: float) -> LatLon:
+    return moved_m(PLACE, north_m, 0.0)
+
+
+class Two:
+    """A (link 1) and B (link 2) on one line, north of each other, moving as they say they do."""
+
+    def __init__(self, gap_m: float, a_mps: float = 5.0, b_mps: float = -5.0) -> None:
+        self.told = Told()
+        self.north_m = {1: 0.0, 2: gap_m}
+        self.mps = {1: a_mps, 2: b_mps}
+        self.flying = {1: True, 2: True}
+        self.says()
+
+    def says(self) -> None:
+        for link_id, serial in ((1, "A"), (2, "B")):
+            reports = (
+                core(
+                    flying=self.flying[link_id],
+                    position=place(self.north_m[link_id]),
+                    velocity=(self.mps[link_id], 0.0, 0.0),
+                ),
+                extended(serial, mode=FlightMode.GPS_ATTI),
+            )
+            known = link_id in self.told.station.fleet.links
+            (self.told.says if known else self.told.opens)(link_id, *reports)
+
+    def passes(self, seconds: float) -> "Two":
+        for _ in range(round(seconds * 10)):
+            for link_id in self.north_m:
+                self.north_m[link_id] += 0.1 * self.mps[link_id]
+            self.told.now_ns += S // 10
+            self.says()
+            self.told.happens(Tick())
+        return self
+
+    def holds(self) -> list[tuple[str | None, str]]:
+        """Whom the station has told to hold by itself, and for what."""
+        return [
+            (approved.command.serial, approved.command.issued_by)
+            for approved in self.told.handed
+            if isinstance(approved.command.body, Hover)
+        ]
+
+    def alarm(self, rule: str) -> Alarm:
+        (found,) = (a for a in self.told.station.alarms.alarms.values() if a.condition.rule == rule)
+        return found
+
+
+class TestSeparation:
+    def test_first_an_alarm_then_a_hold_then_the_other_too(self) -> None:
+        two = Two(140.0).passes(2.0)
+        assert two.told.alarms() == set()
+        two.passes(1.0)
+        assert two.told.alarms() == {"separation"}
+        assert two.holds() == []
+        two.passes(3.5)
+        assert two.holds()[0] == ("B", "station: separation")
+        two.passes(3.0)
+        assert ("A", "station: separation") in two.holds()
+
+    def test_a_hold_is_an_order_on_record_with_a_number_of_the_stations_own(self) -> None:
+        two = Two(70.0).passes(0.5)
+        (record,) = two.told.station.orders.records.values()
+        assert record.command.id < 0
+        assert record.command.issued_by == "station: separation"
+        assert record.phase is Phase.SENT
+
+    def test_one_that_obeys_ends_the_conflict_and_the_other_flies_on(self) -> None:
+        two = Two(120.0, a_mps=2.0, b_mps=-8.0)
+        two.passes(3.6)
+        two.mps[2] = 0.0
+        two.passes(6.0)
+        assert {serial for serial, _ in two.holds()} == {"B"}
+        assert two.told.alarms() == {"separation"} or two.told.alarms() == set()
+
+    def test_switched_off_it_says_so_and_holds_nobody(self) -> None:
+        two = Two(100.0)
+        two.told.happens(SeparationHoldSwitched(is_on=False, by="Ann"))
+        two.passes(5.0)
+        assert two.holds() == []
+        assert two.told.alarms() == {"separation", "separation_hold_off"}
+        assert "switched off" in two.alarm("separation").condition.text
+        assert two.alarm("separation_hold_off").condition.text.endswith("by Ann")
+        two.told.happens(SeparationHoldSwitched(is_on=True, by="Ann"))
+        two.passes(0.3)
+        assert "separation_hold_off" not in two.told.alarms()
+        assert two.holds() != []
+
+    def test_what_the_pilot_leads_is_not_held(self) -> None:
+        two = Two(100.0)
+        for serial in ("A", "B"):
+            two.told.happens(AuthorityTaken(serial, Leader.PILOT, "test"))
+        two.passes(5.0)
+        assert two.holds() == []
+        assert "separation" in two.told.alarms()
+
+    def test_nobody_is_held_on_the_ground_or_for_it(self) -> None:
+        two = Two(60.0, b_mps=0.0)
+        two.flying[2] = False
+        two.passes(8.0)
+        assert two.holds() == []
+        assert two.told.alarms() == set()
+
+    def test_the_alarm_stays_for_some_seconds_after_its_cause_has_ended(self) -> None:
+        two = Two(60.0).passes(0.3)
+        assert two.alarm("separation").is_active
+        two.mps = {1: -5.0, 2: 5.0}
+        two.passes(2.9)
+        assert two.alarm("separation").is_active
+        two.passes(0.5)
+        assert not two.alarm("separation").is_active
+
+    def test_a_vehicle_in_conflict_again_is_held_again_after_five_seconds(self) -> None:
+        two = Two(60.0, a_mps=0.0).passes(10.0)
+        assert [serial for serial, _ in two.holds()].count("B") >= 2
+
+    def test_a_hold_is_forgotten_with_the_flight_or_a_newer_order(self) -> None:
+        two = Two(70.0).passes(0.5)
+        held = two.told.station.watch.held
+        assert set(held) == {"B"}
+        newer = Intent(Commanded.MISSION, two.told.now_ns + 1)
+        station = replace(two.told.station, intents={"B": newer})
+        two.told.station = station
+        two.passes(0.2)
+        assert two.told.station.watch.held.get("B") is not held["B"]
+        two.flying = {1: False, 2: False}
+        two.passes(0.2)
+        assert two.told.station.watch.held == {}
+
+    def test_it_looks_ten_times_a_second_however_often_time_is_told(self) -> None:
+        two = Two(300.0).passes(1.0)
+        looked_ns = two.told.station.watch.looked_at_ns
+        two.told.now_ns += S // 20
+        two.told.happens(Tick())
+        assert two.told.station.watch.looked_at_ns == looked_ns
+        two.told.now_ns += S // 20
+        two.told.happens(Tick())
+        assert two.told.station.watch.looked_at_ns == two.told.now_ns
+
+    def test_two_links_of_one_serial_are_one_vehicle_here(self) -> None:
+        told = Told()
+        for link_id in (1, 2):
+            told.opens(link_id, core(), extended("A"))
+            told.keeps_saying(link_id, core(), extended("A"))
+        told.passes(3.0)
+        assert "separation" not in told.alarms()
+
+
+class TestOthers:
+    def test_a_link_that_is_late_is_a_warning_before_it_is_lost(self) -> None:
+        told = Told().opens(1, core(), extended()).passes(1.1)
+        assert told.alarms() == {"link_late"}
+        told.passes(2.0)
+        assert "link_lost" in told.alarms()
+
+    def test_a_position_that_jumps_is_an_alarm_until_somebody_has_seen_it(self) -> None:
+        told = Told().opens(1, core(), extended())
+        told.keeps_saying(1, core()).passes(1.0)
+        assert told.alarms() == set()
+        told.keeps_saying(1, core(position=place(60.0))).passes(0.2)
+        assert told.alarms() == {"position_jump"}
+        told.passes(5.0)
+        assert told.alarms() == set()
+        assert told.alarms(active=False) == {"position_jump"}
+
+    def test_a_position_unknown_for_a_moment_is_compared_with_the_last_known(self) -> None:
+        told = Told().opens(1, core(), extended())
+        told.keeps_saying(1, core()).passes(0.5)
+        told.keeps_saying(1, core(position=None)).passes(0.5)
+        told.keeps_saying(1, core(position=place(400.0))).passes(0.2)
+        assert "position_jump" in told.alarms()
+
+    def test_altitudes_that_drift_apart_are_an_alarm(self) -> None:
+        told = Told().opens(1, core(flying=False), extended()).says(1, core())
+        told.keeps_saying(1, core(altitude_m=300.0)).passes(0.5)
+        told.keeps_saying(1, core(altitude_m=330.0)).passes(2.0)
+        alarms = told.station.alarms.alarms.values()
+        assert [a.condition.severity for a in alarms] == [Severity.WARNING]
+        assert told.alarms() == {"altitude_mismatch"}
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+def test_six_on_crossing_ways_home_at_one_height(is_on: bool) -> None:
+    """With real apps, delays and dynamics: the watchdog keeps them apart, and without it nothing
+    does."""
+    world = six_in_the_air(go_home_height_m=35.0)
+    world.world.driver.handle(SeparationHoldSwitched(is_on=is_on, by="test"))
+    for serial in SIX:
+        world.world.order(serial, ReturnHome())
+    world.runs(60.0)
+    assert (world.nearest.level_m >= LEAST_LEVEL_M) is is_on
