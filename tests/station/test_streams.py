@@ -317,6 +317,67 @@ class TestEnds:
         s.run_for(5.0)
         assert s.sticks(ended_s) == []
 
+    def test_no_more_than_so_many_are_steered_at_once(self) -> None:
+        s = steered()
+        station = s.w.driver.station
+        none = replace(station.settings.streams, most_at_once=0)
+        s.w.driver.station = replace(station, settings=replace(station.settings, streams=none))
+        order = s.goto(50.0)
+        assert s.note(order).startswith("steered_at_once: ")
+        one = replace(none, most_at_once=1)
+        s.w.driver.station = replace(station, settings=replace(station.settings, streams=one))
+        first, second = s.goto(50.0), s.goto(60.0)
+        assert s.phase(first) is Phase.SUPERSEDED
+        assert s.lease is not None
+        assert s.lease.command.id == second
+
+    def test_a_hold_between_the_zero_and_the_stations_own_takes_its_place(self) -> None:
+        s = steered()
+        s.goto(200.0)
+        s.run_for(5.0)
+        s.holder_goes()
+        s.run_for(0.05)
+        assert s.lease is not None
+        order = s.order(Hover())
+        assert s.lease is None
+        s.run_for(5.0)
+        issuers = {r.command.issued_by for r in s.w.driver.station.orders.records.values()}
+        assert issuers == {"test"}
+        assert s.phase(order) is Phase.CONFIRMED
+
+    def test_the_pilot_who_comes_between_the_zero_and_the_hold_is_left_alone(self) -> None:
+        s = steered()
+        s.goto(200.0)
+        s.run_for(5.0)
+        s.aircraft.pilot_takes()
+        s.holder_goes()
+        s.run_until(lambda: s.w.vehicle(SERIAL).flight_mode.value is FlightMode.GPS_SPORT, 1.0)
+        told_s = s.now_s
+        s.run_for(5.0)
+        assert s.sticks(told_s + 0.05) == []
+        assert s.aircraft.flight_mode is not FlightMode.JOYSTICK
+
+    def test_a_landing_refused_for_want_of_a_link_ends_it_as_well(self) -> None:
+        s = steered()
+        order = s.goto(200.0)
+        s.run_for(5.0)
+        s.w.driver.disconnect(s.w.connected[SERIAL].link_id)
+        stop = s.order(LandNow())
+        assert s.phase(stop) is Phase.REFUSED_BY_STATION
+        assert s.phase(order) is Phase.FAILED
+        assert "land was ordered, and refused" in s.note(order)
+        assert s.lease is None
+
+    def test_a_vehicle_that_is_forgotten_is_steered_no_more(self) -> None:
+        s = steered()
+        s.goto(200.0)
+        s.run_for(5.0)
+        station = s.w.driver.station
+        s.w.driver.station = replace(station, fleet=replace(station.fleet, vehicles={}))
+        s.w.driver.disconnect(s.w.connected[SERIAL].link_id)
+        s.run_for(0.2)
+        assert s.lease is None
+
     def test_a_vehicle_on_the_ground_is_not_steered(self) -> None:
         s = steered()
         s.order(LandNow())

@@ -95,4 +95,7 @@ def _step_back() -> None:
     Linux gives each thread a priority of its own; elsewhere the process would get it, so not there.
     """
     if sys.platform == "linux":
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
+        thread = threading.get_native_id()
+        # Never a lower number than it has: that takes rights that nobody gives a station.
+        niceness = max(NICENESS, os.getpriority(os.PRIO_PROCESS, thread))
+        os.setpriority(os.PRIO_PROCESS, thread, niceness)
