@@ -1,7 +1,6 @@
 """Streams that hold steered orders: they live as long as they say so."""
 
 import asyncio
-import time
 
 import pytest
 import websockets
@@ -26,6 +25,11 @@ async def until_held(station: FakeStation, names: set[str]) -> None:
     async with asyncio.timeout(PATIENCE_S):
         while held(station) != names:
             await asyncio.sleep(0.01)
+
+
+async def read_on(reader: websockets.ClientConnection) -> None:
+    while True:
+        await reader.recv()
 
 
 def test_a_stream_holds_while_it_is_open() -> None:
@@ -53,26 +57,28 @@ def test_one_that_says_nothing_holds_no_longer_and_is_closed(
         async with asyncio.timeout(PATIENCE_S), served(station) as port:
             async with websockets.connect(url_of(port)) as reader:
                 with pytest.raises(websockets.ConnectionClosed, match="said nothing"):
-                    while True:
-                        await reader.recv()
+                    await read_on(reader)
             assert held(station) == frozenset()
 
     asyncio.run(main())
 
 
-def test_one_that_beats_holds_on_though_it_does_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_that_beats_holds_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten states a second: thirteen beats are three times as long as silence may be."""
     monkeypatch.setattr(holders, "SILENT_S", 0.4)
 
     async def main() -> None:
         station = FakeStation()
-        async with asyncio.timeout(PATIENCE_S), served(station) as port:
-            async with websockets.connect(url_of(port)) as writer:
-                until_s = time.monotonic() + 1.2
-                await until_held(station, {NAME})
-                while time.monotonic() < until_s:
-                    await writer.send("")
-                    await asyncio.sleep(0.05)
-                    assert held(station) == {NAME}
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            served(station) as port,
+            websockets.connect(url_of(port)) as reader,
+        ):
+            await until_held(station, {NAME})
+            for _ in range(13):
+                await reader.recv()
+                await reader.send("")
+                assert held(station) == {NAME}
 
     asyncio.run(main())
 
