@@ -287,3 +287,10 @@ class TestAlreadyInside:
     def test_well_above_it_is_not_inside(self) -> None:
         """Nothing is excused that begins above the zone and sinks into it."""
         assert not is_allowed(Nudge(0.0, 0.0, -20.0), LOW, over(60.0))
+
+    def test_above_a_ceiling_over_the_ellipsoid_it_may_not_sink_either(self) -> None:
+        height_m = ORIGIN.ellipsoid_height_m + 40.0
+        air = airspace(keep_out_zone(YARD, ceiling_m=height_m, datum=HeightDatum.WGS84))
+        assert is_allowed(Nudge(0.0, 0.0, 10.0), air, over(43.0))
+        assert not is_allowed(Nudge(0.0, 0.0, -2.0), air, over(43.0))
+        assert is_allowed(Nudge(0.0, 0.0, -2.0), air, over(35.0))

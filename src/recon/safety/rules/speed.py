@@ -18,7 +18,7 @@ def speed(command: Command, situation: Situation) -> Refusal | None:
     for what, speed_mps in _speeds_mps(command.body):
         if not speed_mps <= most_mps:
             return Refusal(
-                RULE, f"{what}: {speed_mps:.2f} m/s, at most {limit_mps:g} m/s is allowed"
+                RULE, f"{what} is {speed_mps:.2f} m/s, at most {limit_mps:g} m/s is allowed"
             )
     return None
 

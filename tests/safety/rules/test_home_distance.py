@@ -1,0 +1,98 @@
+"""How far from home anything may be flown."""
+
+from dataclasses import replace
+
+import pytest
+from tests.safety.fenced import (
+    WIDE,
+    airspace,
+    asked,
+    flier,
+    goto,
+    mission,
+    place,
+    reason,
+    stick,
+)
+
+from recon.model.command import Body, HoldPosition, Hover
+from recon.model.stamped import Stamped
+from recon.model.vehicle import VehicleState
+from recon.safety import OPEN_AIRSPACE
+from recon.safety.rules.home_distance import home_distance
+
+NEAR = airspace(limits=replace(WIDE, max_distance_from_home_m=300.0))
+
+
+def is_allowed(body: Body, state: VehicleState | None = None) -> bool:
+    return asked(home_distance, body, NEAR, state) is None
+
+
+def told(body: Body, state: VehicleState | None = None) -> str:
+    return reason(asked(home_distance, body, NEAR, state))
+
+
+@pytest.mark.parametrize(("east_m", "allowed"), [(239.9, True), (240.1, False)])
+def test_every_waypoint_counts(east_m: float, allowed: bool) -> None:
+    body = mission((0.0, 0.0, 400.0), (east_m, 180.0, 40.0), (0.0, 0.0, 40.0))
+    assert is_allowed(body) is allowed
+    assert allowed or told(body) == (
+        "A: leg 1 to 2 leads 300.1 m away from home, at most 300 m is allowed"
+    )
+
+
+def test_home_is_where_it_took_off() -> None:
+    body = mission((290.0, 0.0, 40.0), (290.0, 50.0, 40.0))
+    assert is_allowed(body)
+    assert not is_allowed(body, flier(takeoff_point=place(-50.0, 0.0)))
+
+
+def test_the_first_way_is_judged() -> None:
+    body = mission((310.0, 0.0, 40.0), (290.0, 50.0, 40.0))
+    assert told(body).startswith("A: the way to waypoint 1 leads 310.0 m")
+
+
+@pytest.mark.parametrize(("north_m", "allowed"), [(296.9, True), (297.1, False)])
+def test_a_goto_with_what_it_may_pass_its_target_by(north_m: float, allowed: bool) -> None:
+    assert is_allowed(goto(0.0, north_m)) is allowed
+
+
+@pytest.mark.parametrize(("speed_mps", "allowed"), [(9.9, True), (10.1, False)])
+def test_a_stick_with_its_braking(speed_mps: float, allowed: bool) -> None:
+    assert is_allowed(stick(0.0, speed_mps), flier(270.0, 0.0)) is allowed
+
+
+class TestAlreadyTooFar:
+    far = flier(400.0, 0.0)
+
+    def test_it_may_come_nearer(self) -> None:
+        assert is_allowed(stick(0.0, -5.0), self.far)
+        assert is_allowed(goto(100.0, 0.0), self.far)
+        assert is_allowed(mission((100.0, 0.0, 40.0), (0.0, 0.0, 40.0)), self.far)
+        assert is_allowed(HoldPosition(), self.far)
+
+    def test_no_farther_and_nothing_later(self) -> None:
+        assert "leads 401.2 m" in told(stick(0.0, 1.0), self.far)
+        assert "leg 1 to 2 leads 350.0 m" in told(
+            mission((350.0, 0.0, 40.0), (0.0, 0.0, 40.0)), self.far
+        )
+
+
+def test_without_a_site_the_default_limit_holds() -> None:
+    body = mission((990.0, 0.0, 40.0), (900.0, 50.0, 40.0))
+    assert asked(home_distance, body, OPEN_AIRSPACE) is None
+    body = mission((1_010.0, 0.0, 40.0), (900.0, 50.0, 40.0))
+    assert "at most 1000 m" in reason(asked(home_distance, body, OPEN_AIRSPACE))
+
+
+def test_an_unknown_home_refuses_every_motion() -> None:
+    lost = flier(takeoff_point=None)
+    for body in (mission((9.0, 0.0, 40.0), (0.0, 0.0, 40.0)), goto(1.0, 1.0), stick(1.0, 0.0)):
+        assert "its home is not known" in told(body, lost)
+
+
+def test_stops_are_not_asked() -> None:
+    lost = flier(takeoff_point=None)
+    for state in (lost, flier(900.0, 0.0), flier(position=Stamped())):
+        assert is_allowed(Hover(), state)
+        assert is_allowed(stick(0.0, 0.0), state)

@@ -1,0 +1,175 @@
+"""The greatest height above ground, the way home included."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.safety.cases import NOW, command, vehicle
+from tests.safety.fenced import (
+    WIDE,
+    airspace,
+    asked,
+    flier,
+    here,
+    hills,
+    mission,
+    reason,
+    stick,
+)
+
+from recon.model.command import Body, HoldPosition, Hover, Nudge, ReturnHome
+from recon.model.stamped import Stamped
+from recon.model.vehicle import Failsafe, VehicleState
+from recon.safety import Override, PreparedAirspace
+from recon.safety.rules.max_height import max_height
+
+LIMITS = replace(WIDE, max_height_above_ground_m=100.0)
+FLAT = airspace(limits=LIMITS)
+
+
+def over(heights: object) -> PreparedAirspace:
+    return airspace(limits=LIMITS, elevation=hills(heights))
+
+
+PIT = np.zeros((10, 10))
+PIT[4, 7] = -30.0
+"""A quarry 30 m deep, 250 m east and 50 m north of home."""
+
+
+def is_allowed(body: Body, air: PreparedAirspace = FLAT, state: VehicleState | None = None) -> bool:
+    return asked(max_height, body, air, state) is None
+
+
+def told(body: Body, air: PreparedAirspace = FLAT, state: VehicleState | None = None) -> str:
+    return reason(asked(max_height, body, air, state))
+
+
+def level(height_m: float) -> Body:
+    return mission((0.0, 50.0, height_m), (300.0, 50.0, height_m))
+
+
+class TestFlatGround:
+    @pytest.mark.parametrize(("height_m", "allowed"), [(100.0, True), (100.01, False)])
+    def test_the_limit(self, height_m: float, allowed: bool) -> None:
+        assert is_allowed(level(height_m)) is allowed
+        assert allowed or told(level(height_m)) == (
+            "A: the way to waypoint 1 is up to 100.0 m above ground (the ground is taken for "
+            "flat), at most 100 m is allowed"
+        )
+
+    def test_the_default_is_120_metres(self) -> None:
+        limited = airspace(limits=replace(WIDE, max_height_above_ground_m=120.0))
+        assert is_allowed(level(120.0), limited)
+        assert not is_allowed(level(121.0), limited)
+
+    @pytest.mark.parametrize("body", [Hover(), ReturnHome()])
+    def test_stops_are_not_asked(self, body: Body) -> None:
+        assert is_allowed(body, state=flier(height_m=300.0))
+
+    def test_corners_count(self) -> None:
+        """On the legs it is refused as well; nothing else is as high."""
+        body = mission((0.0, 50.0, 90.0), (100.0, 50.0, 110.0), (200.0, 90.0, 90.0), curved=True)
+        assert told(body).startswith("A: leg 1 to 2 is up to 110.0 m")
+
+
+class TestTheWayHome:
+    @pytest.mark.parametrize(("go_home_m", "allowed"), [(100.0, True), (101.0, False)])
+    def test_the_go_home_height_counts(self, go_home_m: float, allowed: bool) -> None:
+        state = flier(go_home_m=go_home_m)
+        assert is_allowed(level(40.0), state=state) is allowed
+        assert allowed or told(level(40.0), state=state) == (
+            "A: the way home from the way to waypoint 1 is up to 101.0 m above ground (the ground "
+            "is taken for flat), at most 100 m is allowed; set a lower go-home height in the "
+            "aircraft and in site.toml"
+        )
+
+    @pytest.mark.parametrize("failsafe", [Failsafe.HOVER, Failsafe.LAND])
+    def test_unless_the_aircraft_does_not_go_home(self, failsafe: Failsafe) -> None:
+        for height_m in (None, 300.0):
+            assert is_allowed(level(40.0), state=flier(go_home_m=height_m, failsafe=failsafe))
+
+    def test_one_that_nobody_knows_is_refused(self) -> None:
+        expected = (
+            "A: the height at which it goes home is not known; write go_home_height_m, as it is "
+            'set in the aircraft, into site.toml under [[vehicles]] serial = "A"'
+        )
+        assert told(level(40.0), state=flier(go_home_m=None)) == expected
+        assert told(Nudge(1.0, 0.0, 0.0), state=flier(go_home_m=None)) == expected
+        assert told(level(40.0), state=vehicle(None)) == expected
+
+    def test_unless_somebody_has_overridden_the_checklist(self) -> None:
+        now = replace(
+            here(FLAT, flier(go_home_m=None)), preflight_override=Override("Ann", "short hop", NOW)
+        )
+        assert max_height(command(level(40.0)), now) is None
+        assert max_height(command(level(110.0)), now) is not None
+
+    def test_sticks_and_holding_need_none(self) -> None:
+        for body in (stick(1.0, 0.0), HoldPosition()):
+            assert is_allowed(body, state=flier(go_home_m=None))
+
+
+class TestValleys:
+    def test_the_lowest_ground_under_a_leg_counts(self) -> None:
+        low_home = flier(0.0, 50.0, 60.0, go_home_m=60.0)
+        assert is_allowed(level(70.0), over(PIT), low_home)
+        assert told(level(71.0), over(PIT), low_home) == (
+            "A: leg 1 to 2 is up to 101.0 m above ground, at most 100 m is allowed"
+        )
+
+    def test_a_valley_under_the_way_home_counts(self) -> None:
+        beyond = mission((300.0, 20.0, 60.0), (300.0, 100.0, 60.0))
+        state = flier(300.0, -60.0, 60.0, go_home_m=90.0)
+        assert told(beyond, over(PIT), state).startswith(
+            "A: the way home from the way to waypoint 1"
+        )
+        assert is_allowed(beyond, over(PIT), flier(300.0, -60.0, 60.0, go_home_m=60.0))
+
+    def test_ground_that_nobody_knows_is_refused(self) -> None:
+        body = mission((100.0, 50.0, 20.0), (700.0, 50.0, 20.0))
+        assert told(body, over(PIT)) == (
+            "A: leg 1 to 2 goes over ground whose height the site's elevation model does not tell"
+        )
+
+
+class TestAlreadyTooHigh:
+    high = flier(200.0, 0.0, 140.0)
+
+    def test_it_may_be_brought_down_and_moved(self) -> None:
+        assert is_allowed(Nudge(0.0, 0.0, -20.0), state=self.high)
+        assert is_allowed(stick(5.0, 5.0, 140.0), state=self.high)
+        assert is_allowed(mission((150.0, 0.0, 90.0), (0.0, 0.0, 90.0)), state=self.high)
+
+    def test_it_may_not_climb_and_a_mission_may_not_stay_there(self) -> None:
+        assert "up to 141.0 m" in told(Nudge(0.0, 0.0, 1.0), state=self.high)
+        assert "leg 1 to 2 is up to 130.0 m" in told(
+            mission((150.0, 0.0, 130.0), (0.0, 0.0, 130.0)), state=self.high
+        )
+
+    def test_over_lower_ground_it_would_be_higher(self) -> None:
+        pit = over(PIT)
+        assert is_allowed(stick(5.0, 0.0, 140.0), pit, flier(100.0, -100.0, 140.0))
+        over_the_rim = flier(160.0, 50.0, 110.0)
+        assert not is_allowed(stick(0.0, 15.0, 110.0), pit, over_the_rim)
+
+    def test_over_ground_that_nobody_knows_nothing_is_excused(self) -> None:
+        holed = PIT.copy()
+        holed[4, 7] = np.nan
+        assert not is_allowed(stick(0.0, 0.1, 140.0), over(holed), flier(250.0, 50.0, 140.0))
+
+
+class TestZeroAndUnknown:
+    @pytest.mark.parametrize(("height_m", "allowed"), [(101.9, True), (102.1, False)])
+    def test_a_zero_has_two_metres_of_slack(self, height_m: float, allowed: bool) -> None:
+        nowhere = flier(position=Stamped())
+        for state in (flier(200.0, 0.0, 90.0), nowhere):
+            body = stick(0.0, 0.0, height_m)
+            assert is_allowed(body, state=state) is allowed
+        assert allowed or told(stick(0.0, 0.0, height_m), state=nowhere) == (
+            "102.1 m above takeoff: at most 100 m is allowed here"
+        )
+
+    def test_a_vehicle_that_is_nowhere_known(self) -> None:
+        nowhere = flier(position=Stamped())
+        assert "where it is" in told(level(40.0), state=nowhere)
+        assert "where it is" in told(stick(0.1, 0.0), state=nowhere)

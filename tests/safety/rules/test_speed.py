@@ -1,0 +1,68 @@
+"""The site's speed limit, as the wire's numbers have it."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.safety.cases import waypoint
+from tests.safety.fenced import WIDE, airspace, asked, goto, reason, stick
+
+from recon.model.command import Body, FlyMission, HoldPosition, Hover, Nudge
+from recon.model.mission import Mission
+from recon.safety import PreparedAirspace
+from recon.safety.rules.speed import speed
+
+
+def limited(max_mps: float) -> PreparedAirspace:
+    return airspace(limits=replace(WIDE, max_speed_mps=max_mps))
+
+
+SLOW = limited(8.1)
+
+
+def flown_at(*speeds_mps: float) -> Body:
+    points = (waypoint(20.0 * n, speed_mps=speed) for n, speed in enumerate(speeds_mps))
+    return FlyMission(Mission(tuple(points)))
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (flown_at(8.1, 8.11, 3.0), "the speed at waypoint 2 is 8.11 m/s"),
+        (goto(1.0, 1.0, speed_mps=8.2), "the speed is 8.20 m/s"),
+        (Nudge(1.0, 0.0, 0.0, 9.0), "the speed is 9.00 m/s"),
+        (stick(6.0, -6.0), "the stick's horizontal speed is 8.49 m/s"),
+        (flown_at(1e300, 1.0), "the speed at waypoint 1 is inf m/s"),
+        (goto(1.0, 1.0, speed_mps=float("nan")), "the speed is nan m/s"),
+    ],
+)
+def test_too_fast(body: Body, words: str) -> None:
+    assert reason(asked(speed, body, SLOW)) == f"{words}, at most 8.1 m/s is allowed"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        flown_at(8.1, 8.1),
+        goto(1.0, 1.0, speed_mps=8.1),
+        Nudge(1.0, 0.0, 0.0, 8.1),
+        stick(0.0, -8.1),
+        stick(5.7, 5.7),
+        Hover(),
+        HoldPosition(),
+    ],
+)
+def test_not_too_fast(body: Body) -> None:
+    assert asked(speed, body, SLOW) is None
+
+
+@given(max_mps=st.floats(1.0, 15.0), share=st.floats(0.0, 1.0))
+def test_the_limit_itself_is_allowed_whatever_the_wire_makes_of_it(
+    max_mps: float, share: float
+) -> None:
+    north_mps = share * max_mps
+    east_mps = float((max_mps**2 - north_mps**2) ** 0.5)
+    for body in (flown_at(max_mps, 1.0), stick(north_mps, east_mps)):
+        assert asked(speed, body, limited(max_mps)) is None
+    assert asked(speed, flown_at(max_mps + 1e-4, 1.0), limited(max_mps)) is not None
