@@ -70,6 +70,7 @@ bench: setup ## Measure; every figure beside a baseline of the same run
 	cargo bench -p recon-wire
 	$(RUN) python -m pytest benches -p no:cacheprovider
 	$(RUN) python -m benches.station.bench_load
+	$(RUN) python -m benches.station.bench_all_stop
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
 	@cargo fuzz --version >/dev/null 2>&1 || cargo install cargo-fuzz --locked --quiet

@@ -28,6 +28,10 @@ def _app(first_word: list[str]) -> typer.Typer:
     """Return the commands of a running station alone when one of them is meant: see `operating`."""
     if first_word and first_word[0] in COMMANDS:
         return operating_app()
+    if first_word == ["audit"]:
+        reading = operating_app()
+        reading.add_typer(import_module("recon.cli.audit").audit_app, name="audit")
+        return reading
     # Loaded only when it is needed: the station, its libraries and the simulator take seconds.
     app: typer.Typer = import_module("recon.cli.app").app
     return app

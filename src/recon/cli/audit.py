@@ -1,14 +1,17 @@
 """`recon audit show` and `recon audit verify`: what happened, and whether the file is whole."""
 
 import json
+import sys
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import msgspec
 import typer
 
-from recon.cli.telling import say
+from recon.cli.at_station import NO_USE
+from recon.cli.telling import clean, say
 from recon.record.audit import AuditLine, decode_line
 from recon.record.audit_check import Verdict, check_audit
 from recon.record.audit_files import audit_files, raw_lines
@@ -37,19 +40,18 @@ def show_command(
     as_json: Annotated[bool, typer.Option("--json", help="The lines as they are.")] = False,
 ) -> None:
     """Show what happened, who asked and when, the oldest first."""
-    for line in _lines(paths):
-        if not sightings and kind is None and line.kind == "vehicle.seen":
-            continue
-        if kind is not None and not line.kind.startswith(kind):
-            continue
-        if vehicle is not None and vehicle not in (line.serial, line.vehicle):
-            continue
-        if who is not None and line.by != who:
-            continue
-        if as_json:
-            print(json.dumps(msgspec.to_builtins(line)))
-        else:
-            say(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<16}  {line.text}")
+    with _files_that_can_be_read():
+        for line in _lines(paths):
+            is_chosen = (
+                (sightings or kind is not None or line.kind != "vehicle.seen")
+                and (kind is None or line.kind.startswith(kind))
+                and (vehicle is None or vehicle in (line.serial, line.vehicle))
+                and (who is None or line.by == who)
+            )
+            if is_chosen and as_json:
+                print(json.dumps(msgspec.to_builtins(line)))
+            elif is_chosen:
+                say(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<16}  {line.text}")
 
 
 @audit_app.command("verify")
@@ -58,7 +60,8 @@ def verify_command(
     as_json: Annotated[bool, typer.Option("--json", help="Tell it as JSON, for programs.")] = False,
 ) -> None:
     """Check that files are whole: exit code 0 when they are, 1 when not, 2 when unreadable."""
-    verdicts = [check_audit(path) for path in _files(paths)]
+    with _files_that_can_be_read():
+        verdicts = [check_audit(path) for path in _files(paths)]
     if as_json:
         print(json.dumps([_values(verdict) for verdict in verdicts]))
     else:
@@ -66,6 +69,16 @@ def verify_command(
             for sentence in _sentences(verdict):
                 say(sentence)
     raise typer.Exit(0 if all(verdict.is_whole for verdict in verdicts) else 1)
+
+
+@contextmanager
+def _files_that_can_be_read() -> Iterator[None]:
+    """What cannot be read is a wrong use, apart from a file that is damaged."""
+    try:
+        yield
+    except RecordError as problem:
+        print(f"recon: {clean(str(problem))}", file=sys.stderr)
+        raise typer.Exit(NO_USE) from None
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:

@@ -1,0 +1,102 @@
+"""A station with simulated drones, each a process of its own, and `recon` commands at it."""
+
+import json
+import os
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tests.cli.processes import PATIENCE_S, Started, started
+from websockets.sync.client import connect
+
+from recon.site import demo_site_folder
+
+ROOT = Path(__file__).parents[2]
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """What a command printed, and its exit code."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> Any:
+        return json.loads(self.out)
+
+
+@dataclass(slots=True)
+class Flown:
+    """A running station, its simulator, and the shell beside them."""
+
+    station: Started
+    simulator: Started | None
+    url: str
+    link_port: int
+    audit: Path
+
+    def recon(self, *words: object, address: str | None = None) -> Said:
+        """Run a command to its end; no traceback ever."""
+        environment = {**os.environ, "RECON_STATION": address or self.url}
+        ended = subprocess.run(
+            [sys.executable, "-m", "recon", *map(str, words)],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+            check=False,
+        )
+        assert "Traceback" not in ended.stderr
+        return Said(ended.returncode, ended.stdout, ended.stderr)
+
+    def get(self, path: str) -> Any:
+        """What the API tells."""
+        with urllib.request.urlopen(f"{self.url}{path}", timeout=PATIENCE_S) as response:
+            return json.load(response)
+
+    def until(self, is_so: Callable[[list[dict[str, Any]]], bool]) -> list[dict[str, Any]]:
+        """Wait until the vehicles are so; each new state of the stream is looked at."""
+        with connect(self.url.replace("http", "ws") + "/api/stream") as stream:
+            for _ in range(round(10 * PATIENCE_S)):
+                vehicles: list[dict[str, Any]] = json.loads(stream.recv(PATIENCE_S))["vehicles"]
+                if is_so(vehicles):
+                    return vehicles
+        raise AssertionError(f"it never came to this: {vehicles}")
+
+
+def run_options(audit: Path, link_port: int = 0) -> tuple[str, ...]:
+    ports = ("--link-port", str(link_port), "--http-port", "0")
+    return ("run", *ports, "--site", str(demo_site_folder()), "--audit", str(audit))
+
+
+def sim_options(link_port: int, vehicles: int, *more: str) -> tuple[str, ...]:
+    station = ("--station", f"127.0.0.1:{link_port}", "--site", str(demo_site_folder()))
+    return ("sim", *station, "--vehicles", str(vehicles), "--no-eye", *more)
+
+
+def addresses(station: Started) -> tuple[str, int]:
+    """The console's address and the link port that a station prints."""
+    port = int(station.line_with("companion apps: 127.0.0.1:").rpartition(":")[2])
+    return station.line_with("console: http://127.0.0.1:").partition(": ")[2], port
+
+
+@contextmanager
+def flown(audit: Path, vehicles: int, *more: str) -> Iterator[Flown]:
+    """Run a station and simulated drones; both are gone afterwards."""
+    with ExitStack() as stack:
+        station = stack.enter_context(started(*run_options(audit)))
+        url, link_port = addresses(station)
+        simulator = None
+        if vehicles:
+            simulator = stack.enter_context(started(*sim_options(link_port, vehicles, *more)))
+        here = Flown(station, simulator, url, link_port, audit)
+        if vehicles:
+            here.until(lambda told: len([v for v in told if v["flight_mode"]["value"]]) == vehicles)
+        yield here
