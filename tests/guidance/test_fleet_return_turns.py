@@ -3,6 +3,7 @@
 from math import hypot
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.guidance.returning_scenes import KEPT, SETTINGS
@@ -16,6 +17,7 @@ from recon.guidance.fleet_return import (
     claim_left,
     hindrance,
     layer_is_taken_by,
+    least_time_s,
     whole_claim,
 )
 from recon.guidance.fleet_return.turn import places_left
@@ -104,6 +106,11 @@ class TestLayer:
     def test_an_earlier_turn_has_it_first(self) -> None:
         far = flight("B", (500.0, 200.0, 60.0), (500.0, 0.0))
         assert layer_is_taken_by(far, [flight()], []) == "A has its layer first"
+
+
+def test_the_least_time_is_that_of_the_way_and_both_columns() -> None:
+    """40 m down, 200 m level, 20 m down: at 8 m/s level and 5 m/s upright."""
+    assert least_time_s(flight(), SETTINGS) == pytest.approx(40.0 / 5.0 + 200.0 / 8.0 + 20.0 / 5.0)
 
 
 class TestHindrance:

@@ -22,6 +22,7 @@ from recon.guidance.fleet_return.turn import (
     claim_left,
     hindrance,
     layer_is_taken_by,
+    least_time_s,
     whole_claim,
 )
 from recon.guidance.fleet_return.volume import Separation
@@ -41,6 +42,7 @@ __all__ = [
     "claim_left",
     "hindrance",
     "layer_is_taken_by",
+    "least_time_s",
     "mission_of",
     "plan_return",
     "way_home",

@@ -32,6 +32,9 @@ class FleetReturnSettings:
     speed_mps: float = 8.0
     """Between the layers' ends: half of what DJI allows, braking takes 13 m."""
 
+    fastest_upright_mps: float = 5.0
+    """No survey aircraft climbs or sinks faster by itself: the least time of a flight."""
+
     over_pad_m: float = 3.0
     """Nearer than this a vehicle counts as over its pad."""
 

@@ -6,7 +6,8 @@ others still have before them, so that neither wind nor a slow landing brings tw
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import hypot
+from itertools import pairwise
+from math import dist, hypot
 
 from recon.guidance.fleet_return.flight import Flight, Hovering, Place
 from recon.guidance.fleet_return.settings import FleetReturnSettings
@@ -19,6 +20,13 @@ from recon.guidance.fleet_return.volume import (
     level_legs,
     point,
 )
+
+
+def least_time_s(flight: Flight, settings: FleetReturnSettings) -> float:
+    """Return how long a flight takes at least, from its order to the ground at its pad."""
+    level_m = sum(dist(a, b) for a, b in pairwise(flight.way_m))
+    upright_m = abs(flight.layer_up_m - flight.start_m[2]) + flight.layer_up_m - flight.pad.up_m
+    return level_m / settings.speed_mps + upright_m / settings.fastest_upright_mps
 
 
 @dataclass(frozen=True, slots=True)

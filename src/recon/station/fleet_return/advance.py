@@ -10,6 +10,7 @@ from recon.guidance.fleet_return import (
     claim_left,
     hindrance,
     layer_is_taken_by,
+    least_time_s,
     mission_of,
     whole_claim,
 )
@@ -20,14 +21,13 @@ from recon.safety import judge
 from recon.station import commanding
 from recon.station.commanding import Stepped
 from recon.station.fleet_return import places, planning
+from recon.station.fleet_return.places import is_same_pad
 from recon.station.fleet_return.record import UNDER_WAY, FleetReturn, Member, Stage
-from recon.station.fleet_return.settings import ReturnSettings
+from recon.station.fleet_return.settings import SETTINGS, ReturnSettings
 from recon.station.fleet_return.watch import seen
 from recon.station.outputs import Output
 from recon.station.own_ids import take_id
 from recon.station.state import Station
-
-SETTINGS = ReturnSettings()
 
 WAITING_RULES = ("separation", "link_age")
 """Refusals of the gate that time may end; any other stands."""
@@ -177,14 +177,13 @@ def _anew_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) 
 def _to_be_cleared(
     running: FleetReturn, flight: Flight, settings: ReturnSettings, now_ns: int
 ) -> str | None:
-    """The vehicle that landed on this pad a moment ago and is still to be carried away."""
+    """The vehicle that landed on this pad and might still stand there when this one comes."""
+    arrives_ns = now_ns + seconds_to_ns(least_time_s(flight, settings.plan))
+    clearing_ns = seconds_to_ns(settings.pad_clearing_s)
     for other in running.at(Stage.LANDED):
-        if other.flight is None or now_ns - other.since_ns >= seconds_to_ns(
-            settings.pad_clearing_s
-        ):
+        if other.flight is None or arrives_ns - other.since_ns >= clearing_ns:
             continue
-        pad = other.flight.pad
-        if dist(pad.east_north_m, flight.pad.east_north_m) < settings.same_pad_m:
+        if is_same_pad(other.flight.pad, flight.pad, settings):
             return other.name
     return None
 

@@ -1,6 +1,7 @@
 """Where vehicles and pads are: the station's state in the words of the fleet return's plan."""
 
 from collections.abc import Sequence
+from math import dist
 
 import numpy as np
 
@@ -75,6 +76,11 @@ def separation(station: Station, settings: ReturnSettings) -> Separation:
         limits.min_separation_horizontal_m + settings.plan.horizontal_slack_m,
         limits.min_separation_vertical_m + settings.plan.vertical_slack_m,
     )
+
+
+def is_same_pad(one: Pad, other: Pad, settings: ReturnSettings) -> bool:
+    """Return whether two vehicles could not stand on both."""
+    return dist(one.east_north_m, other.east_north_m) < settings.same_pad_m
 
 
 def _pad(station: Station, vehicle: VehicleState, frame: LocalFrame) -> Pad | None:

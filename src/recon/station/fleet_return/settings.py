@@ -35,8 +35,8 @@ class ReturnSettings:
     for other vehicles; then its refusal stands."""
 
     pad_clearing_s: float = 30.0
-    """From a landing to the next one at the same pad: time to carry the first vehicle away. An
-    alarm asks for it."""
+    """From a landing to the next one at the same pad, at least: time to carry the first vehicle
+    away. An alarm asks for it."""
 
     same_pad_m: float = 5.0
     """Pads nearer than this are one: on neither could two vehicles stand."""
@@ -47,3 +47,6 @@ class ReturnSettings:
 
     hovers_after_s: float = 3.0
     """A flight out of its mission and its landing for so long was ended by somebody."""
+
+
+SETTINGS = ReturnSettings()

@@ -5,7 +5,9 @@ from collections.abc import Iterator
 from recon.api import schema
 from recon.model.units import ns_to_seconds
 from recon.station.alarms import Condition, Severity
-from recon.station.fleet_return.record import FleetReturn, Member, Stage
+from recon.station.fleet_return.places import is_same_pad
+from recon.station.fleet_return.record import UNDER_WAY, FleetReturn, Member, Stage
+from recon.station.fleet_return.settings import SETTINGS
 from recon.station.fleet_return.watch import newest_motion
 from recon.station.state import Station
 
@@ -26,9 +28,7 @@ def conditions(station: Station) -> Iterator[Condition]:
                 "pilot bring it"
             )
             yield _about(member, RULE_LEFT_OUT, Severity.ERROR, text)
-        if member.clears is not None and member.flight is not None:
-            text = f"{member.name} comes next to the pad of {member.clears}: carry it away"
-            yield _about(member, RULE_PAD, Severity.WARNING, text)
+    yield from _pads_to_clear(running)
 
 
 def view(station: Station, now_ns: int) -> schema.FleetReturnView | None:
@@ -42,6 +42,32 @@ def view(station: Station, now_ns: int) -> schema.FleetReturnView | None:
         is_over=running.is_over,
         vehicles=[_member(member, now_ns) for member in _in_turn(running)],
     )
+
+
+def _pads_to_clear(running: FleetReturn) -> Iterator[Condition]:
+    """A vehicle that has landed where another one comes must be carried away."""
+    for member in running.at(Stage.LANDED):
+        following = _next_at_its_pad(running, member)
+        if following is not None:
+            text = f"carry {member.name} off its pad: {following.name} lands there next"
+            yield _about(member, RULE_PAD, Severity.WARNING, text)
+
+
+def _next_at_its_pad(running: FleetReturn, landed: Member) -> Member | None:
+    """Who comes next to the pad of the one that has landed there last."""
+    if landed.flight is None:
+        return None
+    pad = landed.flight.pad
+    there = [
+        member
+        for member in _in_turn(running)
+        if member.flight is not None and is_same_pad(member.flight.pad, pad, SETTINGS)
+    ]
+    later = (m for m in there if m.stage is Stage.LANDED and m.since_ns > landed.since_ns)
+    if any(later):
+        return None
+    coming = [m for m in there if m.stage in (Stage.WAITING, *UNDER_WAY)]
+    return next((m for m in coming if m.stage in UNDER_WAY), coming[0] if coming else None)
 
 
 def _about(member: Member, rule: str, severity: Severity, text: str) -> Condition:
