@@ -18,6 +18,7 @@ from recon.api.orders import to_body
 from recon.api.port import StationPort
 from recon.api.security import Access, Doorman
 from recon.api.stream import StateStream
+from recon.model.authority import Leader
 
 CONSOLE_MISSING = """<!doctype html><title>Recon</title><p>The console is not built.
 Run <code>make web</code> in the project's folder, then start the station again.
@@ -44,6 +45,7 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
     app = FastAPI(title="Recon", version=version, docs_url=None, redoc_url=None)
     _add_state_routes(app, port)
     _add_order_routes(app, port)
+    _add_readiness_routes(app, port)
     _add_picture_routes(app, port)
     _add_console(app, console)
     _add_manners(app)
@@ -159,6 +161,30 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
         """Mark an alarm as seen by a person; it stays until its cause ends."""
         if not port.acknowledge(alarm_id, _who(request)):
             raise HTTPException(404, f"there is no alarm {alarm_id}")
+
+
+def _add_readiness_routes(app: FastAPI, port: StationPort) -> None:
+    @app.post("/api/vehicles/{serial}/authority")
+    async def authority(
+        serial: str, asked: schema.AuthorityRequest, request: Request
+    ) -> schema.WordResponse:
+        """Take a vehicle over, or give it away: from now on only `leader` sets it in motion."""
+        return port.take_authority(serial, Leader(asked.leader), _who(request))
+
+    @app.get("/api/vehicles/{serial}/preflight", responses=_PROBLEMS)
+    async def preflight(serial: str) -> schema.PreflightView:
+        """A vehicle's checklist, worked out now from what the station knows."""
+        return _found(port.preflight(serial), f"no vehicle has the serial {serial!r}")
+
+    @app.post("/api/vehicles/{serial}/preflight/override")
+    async def override_preflight(
+        serial: str, asked: schema.PreflightOverrideRequest, request: Request
+    ) -> schema.WordResponse:
+        """Let a vehicle fly missions although its checklist is not passed; ends with its landing.
+
+        The reason is kept in the audit, with who gave it.
+        """
+        return port.override_preflight(serial, asked.reason, _who(request))
 
 
 def _add_picture_routes(app: FastAPI, port: StationPort) -> None:

@@ -2,7 +2,14 @@
 
 from typing import Protocol
 
-from recon.api.schema import AuditPage, OrderResponse, StationState
+from recon.api.schema import (
+    AuditPage,
+    OrderResponse,
+    PreflightView,
+    StationState,
+    WordResponse,
+)
+from recon.model.authority import Leader
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
 
@@ -58,6 +65,15 @@ class StationPort(Protocol):
 
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
         """Switch on or off that the watchdogs hold vehicles."""
+
+    def take_authority(self, serial: str, leader: Leader, by: str) -> WordResponse:
+        """Let somebody else lead a vehicle; refusals are answers, not errors."""
+
+    def preflight(self, serial: str) -> PreflightView | None:
+        """Return a vehicle's checklist as of now; None when it is not known."""
+
+    def override_preflight(self, serial: str, reason: str, by: str) -> WordResponse:
+        """Let a vehicle fly missions although its checklist is not passed."""
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         """Mark an alarm as seen; False when there is none of that number."""

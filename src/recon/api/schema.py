@@ -94,6 +94,27 @@ class GhostView(Message):
     corridor_half_width_m: float
 
 
+LeaderWord = Literal["pilot", "operator", "guidance"]
+
+
+class LeadView(Message):
+    """Who may set a vehicle in motion, and how that came about; anybody may stop it."""
+
+    leader: LeaderWord
+    holder: str
+    age_s: float | None = Field(description="null: since the station began")
+    reason: str
+
+
+class OverrideView(Message):
+    """Somebody's word that a vehicle may fly missions without its checklist; it ends with the
+    landing."""
+
+    by: str
+    reason: str
+    age_s: float
+
+
 StalenessWord = Literal["live", "late", "lost", "silent"]
 
 
@@ -107,6 +128,8 @@ class VehicleView(Message):
     model: str
     is_simulated: bool
     is_eye: bool
+    lead: LeadView
+    preflight_override: OverrideView | None
     staleness: StalenessWord
     telemetry_age_s: float | None
     is_flying: AgedFlag
@@ -344,6 +367,27 @@ class StationState(Message):
     fleet_return: FleetReturnView | None
 
 
+class CheckView(Message):
+    """One point of a preflight checklist; `to_do` is empty when it is ok."""
+
+    key: str
+    name: str
+    state: Literal["ok", "attention", "unknown", "fails"]
+    text: str
+    to_do: str
+    holds_back: bool = Field(description="whether missions are refused while it stands so")
+
+
+class PreflightView(Message):
+    """A vehicle's checklist as of now; missions fly when it is passed or overridden."""
+
+    serial: str
+    name: str
+    is_passed: bool
+    override: OverrideView | None
+    points: list[CheckView]
+
+
 class AuditEntryView(Message):
     """One entry of the audit: what happened, who asked, about which vehicle."""
 
@@ -514,6 +558,26 @@ class FleetReturnRequest(Asked):
     serials: list[Annotated[str, Field(max_length=2048)]] | None = Field(
         default=None, min_length=1, max_length=256
     )
+
+
+class AuthorityRequest(Asked):
+    """Who is to lead a vehicle from now on."""
+
+    leader: LeaderWord
+
+
+class PreflightOverrideRequest(Asked):
+    """Why a vehicle may fly missions although its checklist is not passed."""
+
+    reason: str = Field(max_length=2048)
+
+
+class WordResponse(Message):
+    """What became of a word that is no order: taken, or refused by a rule for a reason."""
+
+    accepted: bool
+    rule: str | None
+    reason: str | None
 
 
 class OrderResult(Message):

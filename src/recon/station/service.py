@@ -7,14 +7,17 @@ from itertools import count
 
 from recon import __version__
 from recon.api import schema
-from recon.model.command import Body, Hover, Phase
+from recon.model.authority import Leader
+from recon.model.command import Body, Hover, Phase, Refusal
 from recon.model.event import (
     AlarmAcknowledged,
+    AuthorityTaken,
     FleetReturnOrdered,
     GhostDismissed,
     HolderCame,
     HolderGone,
     OperatorOrder,
+    PreflightOverridden,
     SeparationHoldSwitched,
 )
 from recon.model.imagery import Frame, GroundImage
@@ -22,11 +25,13 @@ from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
 from recon.record.audit_log import AuditLog
 from recon.site import Site
+from recon.station import authority, preflight
 from recon.station.air import is_hazard_unseen
 from recon.station.audit_view import audit_page
 from recon.station.checking import CHECKED_ID, check
 from recon.station.driver import AsyncioDriver
 from recon.station.orders import OrderRecord
+from recon.station.readiness_view import preflight_view
 from recon.station.site_view import site_view
 from recon.station.state import Station
 from recon.station.views import Surroundings, state_view
@@ -145,6 +150,20 @@ class Service:
         """Switch on or off that the watchdogs hold vehicles."""
         self.driver.handle(SeparationHoldSwitched(is_on, by))
 
+    def take_authority(self, serial: str, leader: Leader, by: str) -> schema.WordResponse:
+        """Let somebody else lead a vehicle."""
+        event = AuthorityTaken(serial, leader, by)
+        return self._say(event, authority.refusal(self.driver.station, event))
+
+    def preflight(self, serial: str) -> schema.PreflightView | None:
+        """Return a vehicle's checklist as of now."""
+        return preflight_view(self.driver.station, serial, self.driver.now_ns())
+
+    def override_preflight(self, serial: str, reason: str, by: str) -> schema.WordResponse:
+        """Let a vehicle fly missions although its checklist is not passed."""
+        event = PreflightOverridden(serial, by, reason)
+        return self._say(event, preflight.refusal(self.driver.station, event))
+
     def acknowledge(self, alarm_id: int, by: str) -> bool:
         """Mark an alarm as seen."""
         if alarm_id not in self.driver.station.alarms.alarms:
@@ -169,6 +188,15 @@ class Service:
         rms_px = None if self.site.eye is None else self.site.eye.solution.rms_px
         captured = datetime.fromtimestamp(ns_to_seconds(image.captured_at_ns), UTC)
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
+
+    def _say(
+        self, event: AuthorityTaken | PreflightOverridden, refusal: Refusal | None
+    ) -> schema.WordResponse:
+        """Pass a word on, unless it is refused."""
+        if refusal is not None:
+            return schema.WordResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
+        self.driver.handle(event)
+        return schema.WordResponse(accepted=True, rule=None, reason=None)
 
     def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
         return schema.OrderResponse(results=[self._give_one(order) for order in orders])

@@ -17,6 +17,7 @@ from recon.station.corners import corners_lon_lat
 from recon.station.fleet_return import told as fleet_return
 from recon.station.ghost_view import ghost_view
 from recon.station.orders import OrderRecord
+from recon.station.readiness_view import lead_view, override_view
 from recon.station.state import Station
 
 SHOWN_ORDERS = 50
@@ -84,6 +85,8 @@ def _vehicle(
         model="unknown model" if profile is None else profile.model,
         is_simulated=vehicle.is_simulated,
         is_eye=vehicle.serial is not None and vehicle.serial == station.imaging.eye_serial,
+        lead=lead_view(station, vehicle.serial, now_ns),
+        preflight_override=override_view(station, vehicle.serial, now_ns),
         staleness=staleness(vehicle, now_ns).value,
         telemetry_age_s=_age_s(vehicle.core_received_at_ns, now_ns),
         is_flying=aged.flag(vehicle.is_flying),
@@ -183,14 +186,19 @@ def _link_status(fleet: Fleet, record: LinkRecord) -> Any:
 
 def _commands(station: Station, now_ns: int) -> list[schema.CommandView]:
     newest = sorted(station.orders.records.values(), key=_issued, reverse=True)
-    return [_command(record, now_ns) for record in newest[:SHOWN_ORDERS]]
+    # A stream of sticks is one order: how many have gone is counted in its lease.
+    sticks = {lease.command.id: lease.packets_sent for lease in station.streams.values()}
+    return [
+        _command(record, sticks.get(record.command.id, record.times_sent), now_ns)
+        for record in newest[:SHOWN_ORDERS]
+    ]
 
 
 def _issued(record: OrderRecord) -> tuple[int, int]:
     return record.command.issued_at_ns, record.command.id
 
 
-def _command(record: OrderRecord, now_ns: int) -> schema.CommandView:
+def _command(record: OrderRecord, times_sent: int, now_ns: int) -> schema.CommandView:
     command = record.command
     return schema.CommandView(
         id=command.id,
@@ -203,7 +211,7 @@ def _command(record: OrderRecord, now_ns: int) -> schema.CommandView:
         phase=record.phase.value,
         is_final=not record.is_watched,
         note=record.note,
-        times_sent=record.times_sent,
+        times_sent=times_sent,
         takeoff=command.takeoff,
         sent_altitudes=record.altitudes,
         history=[

@@ -286,6 +286,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/vehicles/{serial}/authority": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Authority
+         * @description Take a vehicle over, or give it away: from now on only `leader` sets it in motion.
+         */
+        post: operations["authority_api_vehicles__serial__authority_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/vehicles/{serial}/frame.jpg": {
         parameters: {
             query?: never;
@@ -322,6 +342,48 @@ export interface paths {
          *     A vehicle without a serial is named as its ghost's `dismissed_as` says.
          */
         post: operations["dismiss_ghost_api_vehicles__serial__ghost_dismiss_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vehicles/{serial}/preflight": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Preflight
+         * @description A vehicle's checklist, worked out now from what the station knows.
+         */
+        get: operations["preflight_api_vehicles__serial__preflight_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vehicles/{serial}/preflight/override": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Override Preflight
+         * @description Let a vehicle fly missions although its checklist is not passed; ends with its landing.
+         *
+         *     The reason is kept in the audit, with who gave it.
+         */
+        post: operations["override_preflight_api_vehicles__serial__preflight_override_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -475,6 +537,17 @@ export interface components {
             problem: string | null;
         };
         /**
+         * AuthorityRequest
+         * @description Who is to lead a vehicle from now on.
+         */
+        AuthorityRequest: {
+            /**
+             * Leader
+             * @enum {string}
+             */
+            leader: "pilot" | "operator" | "guidance";
+        };
+        /**
          * CameraStartOrder
          * @description Send images.
          */
@@ -497,6 +570,30 @@ export interface components {
              * @enum {string}
              */
             kind: "camera_stop";
+        };
+        /**
+         * CheckView
+         * @description One point of a preflight checklist; `to_do` is empty when it is ok.
+         */
+        CheckView: {
+            /**
+             * Holds Back
+             * @description whether missions are refused while it stands so
+             */
+            holds_back: boolean;
+            /** Key */
+            key: string;
+            /** Name */
+            name: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "ok" | "attention" | "unknown" | "fails";
+            /** Text */
+            text: string;
+            /** To Do */
+            to_do: string;
         };
         /**
          * CommandView
@@ -717,6 +814,26 @@ export interface components {
             name: string;
         };
         /**
+         * LeadView
+         * @description Who may set a vehicle in motion, and how that came about; anybody may stop it.
+         */
+        LeadView: {
+            /**
+             * Age S
+             * @description null: since the station began
+             */
+            age_s: number | null;
+            /** Holder */
+            holder: string;
+            /**
+             * Leader
+             * @enum {string}
+             */
+            leader: "pilot" | "operator" | "guidance";
+            /** Reason */
+            reason: string;
+        };
+        /**
          * LimitsView
          * @description What the site allows every vehicle.
          */
@@ -894,6 +1011,19 @@ export interface components {
             vehicle_name: string;
         };
         /**
+         * OverrideView
+         * @description Somebody's word that a vehicle may fly missions without its checklist; it ends with the
+         *     landing.
+         */
+        OverrideView: {
+            /** Age S */
+            age_s: number;
+            /** By */
+            by: string;
+            /** Reason */
+            reason: string;
+        };
+        /**
          * PadView
          * @description A place to land; `serial` is null for one that any vehicle may use.
          */
@@ -938,6 +1068,29 @@ export interface components {
             latitude_deg: number | null;
             /** Longitude Deg */
             longitude_deg: number | null;
+        };
+        /**
+         * PreflightOverrideRequest
+         * @description Why a vehicle may fly missions although its checklist is not passed.
+         */
+        PreflightOverrideRequest: {
+            /** Reason */
+            reason: string;
+        };
+        /**
+         * PreflightView
+         * @description A vehicle's checklist as of now; missions fly when it is passed or overridden.
+         */
+        PreflightView: {
+            /** Is Passed */
+            is_passed: boolean;
+            /** Name */
+            name: string;
+            override: components["schemas"]["OverrideView"] | null;
+            /** Points */
+            points: components["schemas"]["CheckView"][];
+            /** Serial */
+            serial: string;
         };
         /**
          * Problem
@@ -1147,6 +1300,7 @@ export interface components {
             is_flying: components["schemas"]["AgedFlag"];
             /** Is Simulated */
             is_simulated: boolean;
+            lead: components["schemas"]["LeadView"];
             /** Link Id */
             link_id: number | null;
             mission_id: components["schemas"]["AgedNumber"];
@@ -1157,6 +1311,7 @@ export interface components {
             /** Number */
             number: number;
             position: components["schemas"]["PositionView"];
+            preflight_override: components["schemas"]["OverrideView"] | null;
             reported_altitude_m: components["schemas"]["AgedNumber"];
             /** Serial */
             serial: string | null;
@@ -1219,6 +1374,18 @@ export interface components {
             longitude_deg: number;
             /** Speed Mps */
             speed_mps: number;
+        };
+        /**
+         * WordResponse
+         * @description What became of a word that is no order: taken, or refused by a rule for a reason.
+         */
+        WordResponse: {
+            /** Accepted */
+            accepted: boolean;
+            /** Reason */
+            reason: string | null;
+            /** Rule */
+            rule: string | null;
         };
     };
     responses: never;
@@ -1645,6 +1812,41 @@ export interface operations {
             };
         };
     };
+    authority_api_vehicles__serial__authority_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                serial: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AuthorityRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WordResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     frame_api_vehicles__serial__frame_jpg_get: {
         parameters: {
             query?: never;
@@ -1710,6 +1912,81 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    preflight_api_vehicles__serial__preflight_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                serial: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PreflightView"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    override_preflight_api_vehicles__serial__preflight_override_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                serial: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PreflightOverrideRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WordResponse"];
                 };
             };
             /** @description Validation Error */

@@ -33,6 +33,8 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     model: "DJI Mavic 2 Pro",
     is_simulated: false,
     is_eye: false,
+    lead: { leader: "operator", holder: "", age_s: null, reason: "nobody has taken it yet" },
+    preflight_override: null,
     staleness: "live",
     telemetry_age_s: 0.1,
     is_flying: aged(true),

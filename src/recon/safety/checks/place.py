@@ -1,7 +1,8 @@
 """The vehicle in its place: fence, home, pad, ground and clock."""
 
-from datetime import UTC, datetime
-from math import isnan
+from math import floor, isnan
+
+import numpy as np
 
 from recon.geo.distance import horizontal_distance_m
 from recon.model.geo import GeoPoint, LatLon
@@ -111,4 +112,4 @@ def _place(point: GeoPoint) -> LatLon:
 
 
 def _date(seconds: float) -> str:
-    return datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M")
+    return str(np.datetime64(floor(seconds / 60.0), "m")).replace("T", " ")

@@ -1,0 +1,111 @@
+"""Authority and preflight over the API: words that are no orders."""
+
+from typing import Any
+
+import pytest
+from tests.api.client import Client
+from tests.api.fake_station import FakeStation, application
+from tests.link.approved import core, extended
+
+from recon import wire
+from recon.api import schema
+from recon.model.authority import Leader
+from recon.model.event import LinkOpened, PacketReceived
+from recon.station.authority import lead_of
+from recon.vehicles.reports import to_report
+
+
+@pytest.fixture
+def station() -> FakeStation:
+    station = FakeStation()
+    station.driver.handle(LinkOpened(1, "10.0.0.1:5"))
+    for packet in (extended(b"A"), core()):
+        station.driver.handle(PacketReceived(1, to_report(wire.decode(packet))))
+    return station
+
+
+@pytest.fixture
+def client(station: FakeStation) -> Client:
+    return Client(application(station))
+
+
+def vehicle(client: Client) -> dict[str, Any]:
+    found: dict[str, Any] = client.get("/api/vehicles/A").json()
+    return found
+
+
+class TestAuthority:
+    def take(self, client: Client, leader: str, serial: str = "A") -> dict[str, Any]:
+        response = client.post(f"/api/vehicles/{serial}/authority", json={"leader": leader})
+        assert response.status_code == 200
+        answer: dict[str, Any] = response.json()
+        return answer
+
+    def test_at_first_the_operator_leads(self, client: Client) -> None:
+        assert vehicle(client)["lead"] == {
+            "leader": "operator",
+            "holder": "",
+            "age_s": None,
+            "reason": "nobody has taken it yet",
+        }
+
+    @pytest.mark.parametrize("leader", ["pilot", "guidance", "operator"])
+    def test_a_word_changes_who_leads(
+        self, client: Client, station: FakeStation, leader: str
+    ) -> None:
+        taken = self.take(client, leader)
+        assert taken == {"accepted": True, "rule": None, "reason": None}
+        lead = lead_of(station.driver.station, "A")
+        assert (lead.leader, lead.holder) == (Leader(leader), "api 127.0.0.1")
+        told = vehicle(client)["lead"]
+        assert (told["leader"], told["holder"], told["age_s"]) == (leader, "api 127.0.0.1", 0.0)
+
+    def test_a_refusal_is_an_answer(self, client: Client, station: FakeStation) -> None:
+        self.take(client, "pilot")
+        answer = self.take(client, "guidance")
+        assert (answer["accepted"], answer["rule"]) == (False, "authority")
+        assert "takes nothing from a pilot" in answer["reason"]
+        assert lead_of(station.driver.station, "A").leader is Leader.PILOT
+
+    def test_nobody_leads_what_is_not_known(self, client: Client) -> None:
+        assert "X is not known" in self.take(client, "operator", "X")["reason"]
+
+    @pytest.mark.parametrize("body", [{}, {"leader": "cat"}, {"leader": "pilot", "by": "me"}])
+    def test_another_form_is_not_taken(self, client: Client, body: dict[str, str]) -> None:
+        assert client.post("/api/vehicles/A/authority", json=body).status_code == 422
+
+
+class TestPreflight:
+    def test_the_list_says_point_by_point_what_is_missing(self, client: Client) -> None:
+        response = client.get("/api/vehicles/A/preflight")
+        told = schema.PreflightView.model_validate_json(response.text)
+        assert (told.serial, told.name, told.is_passed, told.override) == ("A", "A", False, None)
+        points = {point.key: point for point in told.points}
+        assert (points["fence"].state, points["fence"].holds_back) == ("fails", True)
+        assert (points["gnss"].state, points["gnss"].to_do) == ("ok", "")
+        assert "endurance_min" in points["endurance"].to_do
+
+    def test_a_vehicle_nobody_knows_has_none(self, client: Client) -> None:
+        response = client.get("/api/vehicles/X/preflight")
+        assert response.status_code == 404
+        assert response.json() == {"error": "no vehicle has the serial 'X'"}
+
+    def test_an_override_is_told_everywhere(self, client: Client) -> None:
+        assert vehicle(client)["preflight_override"] is None
+        path = "/api/vehicles/A/preflight/override"
+        answer = client.post(path, json={"reason": "a test flight indoors"}).json()
+        assert answer == {"accepted": True, "rule": None, "reason": None}
+        given = {"by": "api 127.0.0.1", "reason": "a test flight indoors", "age_s": 0.0}
+        assert vehicle(client)["preflight_override"] == given
+        told = client.get("/api/vehicles/A/preflight").json()
+        assert told["override"] == given
+        assert told["is_passed"] is False
+
+    def test_no_reason_is_no_override(self, client: Client) -> None:
+        path = "/api/vehicles/A/preflight/override"
+        answer = client.post(path, json={"reason": "  "}).json()
+        assert (answer["accepted"], answer["rule"]) == (False, "preflight_override")
+        assert "needs a reason" in answer["reason"]
+        assert vehicle(client)["preflight_override"] is None
+        assert client.post(path, json={}).status_code == 422
+        assert client.post(path, json={"reason": "x" * 3000}).status_code == 422
