@@ -70,6 +70,7 @@ bench: setup ## Measure; every figure beside a baseline of the same run
 	cargo bench -p recon-wire
 	$(RUN) python -m pytest benches -p no:cacheprovider
 	$(RUN) python -m benches.station.bench_load
+	$(RUN) python -m benches.station.bench_stick_jitter
 	$(RUN) python -m benches.station.bench_all_stop
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)

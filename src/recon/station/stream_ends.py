@@ -41,10 +41,17 @@ def put(station: Station, serial: str, lease: Lease) -> Station:
 
 
 def release(station: Station, serial: str | None) -> Station:
-    """Return the station without a vehicle's lease."""
-    if serial not in station.streams:
+    """Return the station without a vehicle's lease; its order keeps the count of its sticks."""
+    lease = station.streams.get(serial or "")
+    if lease is None:
         return station
-    return replace(station, streams={s: x for s, x in station.streams.items() if s != serial})
+    station = replace(station, streams={s: x for s, x in station.streams.items() if s != serial})
+    record = station.orders.records.get(lease.command.id)
+    if record is None:
+        return station
+    counted = replace(record, times_sent=lease.packets_sent)
+    book = orders.put(station.orders, counted, station.settings.orders_kept)
+    return replace(station, orders=book)
 
 
 def change_phase(
@@ -55,7 +62,6 @@ def change_phase(
     if record is None:
         return station
     changed = orders.changed(record, phase, now_ns, note, is_watched=not ends)
-    changed = replace(changed, times_sent=lease.packets_sent)
     kept = station.settings.orders_kept
     return replace(station, orders=orders.put(station.orders, changed, kept))
 
