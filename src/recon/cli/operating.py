@@ -6,6 +6,8 @@ from collections.abc import Callable
 import typer
 
 from recon.cli.flying import camera_command, fly_command
+from recon.cli.hazards import dismiss_command, separation_hold_command
+from recon.cli.returning import fleet_return_command
 from recon.cli.steering import goto_command, nudge_command
 from recon.cli.stopping import all_stop_command, hold_command, land_command, return_command
 from recon.cli.watching import alarms_command, commands_command, status_command
@@ -20,6 +22,9 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "nudge": nudge_command,
     "fly": fly_command,
     "camera": camera_command,
+    "fleet-return": fleet_return_command,
+    "dismiss": dismiss_command,
+    "separation-hold": separation_hold_command,
     "alarms": alarms_command,
     "commands": commands_command,
 }

@@ -20,7 +20,7 @@ from recon.cli.at_station import (
 )
 from recon.cli.naming import NamingError, serials_of
 from recon.cli.telling import Outcome, outcomes, tell
-from recon.client import ClientError, Fleet, Life, Phase, Station, StopAnswer, VehicleAnswer
+from recon.client import ClientError, Fleet, Life, Station, StopAnswer, VehicleAnswer
 
 CONFIRMED_WITHIN_S = 15.0
 LOOKED_EVERY_S = 0.2
@@ -130,5 +130,6 @@ def _stopped(answer: StopAnswer, life: Life | None, wait_s: float) -> Outcome:
     if wait_s == 0.0 or life is None:
         is_done, note = wait_s == 0.0, "" if wait_s == 0.0 else "what became of it is not known"
         return Outcome(*whom, True, is_done, False, answer.command_id, note=note)
-    is_done = life.phase is Phase.CONFIRMED
-    return Outcome(*whom, True, is_done, False, answer.command_id, life.phase.value, note=life.note)
+    return Outcome(
+        *whom, True, life.is_seen, False, answer.command_id, life.phase.value, note=life.note
+    )

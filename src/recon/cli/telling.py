@@ -11,9 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from recon.cli.at_station import DONE, REFUSED
-from recon.client import Order, Phase, Refusal, Station, TookTooLongError, VehicleAnswer
-
-_DONE_PHASES = (Phase.CONFIRMED, Phase.DONE)
+from recon.client import Order, Refusal, Station, TookTooLongError, VehicleAnswer
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,11 +112,12 @@ async def _awaited(
     order: Order, whom: tuple[str | None, int | None, str], wait_s: float
 ) -> Outcome:
     try:
-        life = await order.wait(timeout_s=wait_s)
+        life = await order.effect(wait_s)
     except TookTooLongError as problem:
         return Outcome(*whom, True, False, command_id=order.command_id, note=str(problem))
-    is_done = life.phase in _DONE_PHASES
-    return Outcome(*whom, True, is_done, False, order.command_id, life.phase.value, note=life.note)
+    return Outcome(
+        *whom, True, life.is_seen, False, order.command_id, life.phase.value, note=life.note
+    )
 
 
 def _stands(station: Station, serial: str | None) -> bool:

@@ -26,6 +26,11 @@ class Life(msgspec.Struct, frozen=True):
     history: tuple[PhaseChange, ...]
 
     @property
+    def is_seen(self) -> bool:
+        """Whether telemetry shows now that it is, or was, carried out."""
+        return self.phase in (Phase.CONFIRMED, Phase.STARTED, Phase.DONE)
+
+    @property
     def is_there(self) -> bool:
         """Whether a steered order's vehicle has come to its goal."""
         return self.has_reached(Phase.DONE)

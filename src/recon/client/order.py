@@ -34,6 +34,15 @@ class Order:
             lambda life: life.has_reached(until) or life.phase.is_final, until.value, timeout_s
         )
 
+    async def effect(self, timeout_s: float = 30.0) -> Life:
+        """Return the order's life once telemetry shows that it is carried out, or it ended.
+
+        So look at `life.is_seen`. Raises as `wait` does.
+        """
+        return await self._wait(
+            lambda life: life.is_seen or life.phase.is_final, "to be seen in telemetry", timeout_s
+        )
+
     async def arrival(self, timeout_s: float = 600.0) -> Life:
         """Return the life of a steered order once the vehicle is there, or it ended otherwise.
 

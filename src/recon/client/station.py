@@ -75,6 +75,10 @@ class Station:
             "check the serial, and that its app is connected"
         )
 
+    def known(self, serial: str) -> Vehicle:
+        """Return a vehicle by its serial, heard or not; the station answers for what it knows."""
+        return Vehicle(serial, self._desk)
+
     def vehicles(self) -> tuple[Telemetry, ...]:
         """Return all vehicles, also those without a serial, with ages as of now."""
         heard = self._stream.newest
