@@ -69,6 +69,7 @@ test-e2e: setup web ## The whole thing once, seen through a headless browser
 bench: setup ## Measure; every figure beside a baseline of the same run
 	cargo bench -p recon-wire
 	$(RUN) python -m pytest benches -p no:cacheprovider
+	$(RUN) python -m benches.safety.bench_watchdogs
 	$(RUN) python -m benches.station.bench_load
 	$(RUN) python -m benches.station.bench_stick_jitter
 	$(RUN) python -m benches.station.bench_all_stop

@@ -229,6 +229,12 @@ class TestComingDown:
         coming = told(b, intent=Intent(Commanded.LAND, NOW))
         assert only(looks(separation, a, coming)).holds == "A"
 
+    def test_one_that_was_held_and_lands_now_is_foreseen_to_land(self) -> None:
+        a = aircraft("A", (60.0, 0.0), 20.0, velocity=(0.0, 0.0, 0.0))
+        lands = aircraft("B", (60.0, 0.0), 45.0, (0.0, 0.0, -3.0), mode=FlightMode.AUTO_LANDING)
+        landing = told(lands, held=held(1.0), intent=Intent(Commanded.LAND, NOW - 2 * S))
+        assert len(looks(separation, a, landing)) == 1
+
     def test_it_is_held_when_that_helps_and_the_other_cannot_be(self) -> None:
         a, b = head_on(mode=FlightMode.GO_HOME)
         pilot = told(a, leader=Leader.PILOT)

@@ -87,7 +87,7 @@ KINDS = [head_on, crossing, overtaking, climbing_into]
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_the_minimum_is_never_violated(kind: object, seed: int) -> None:
     assert min(least(kind, seed, acts=True)) >= 1.0
 

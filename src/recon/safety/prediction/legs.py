@@ -131,8 +131,9 @@ def _phases(long_m: float, leg: Leg, braking_mps2: float) -> tuple[Phase, Phase,
     """Return a leg's gaining, keeping and losing of speed; what it has none of has no length."""
     speed_mps = max(leg.speed_mps, LEAST_SPEED_MPS)
     change = 2.0 * braking_mps2 * long_m  # how much the square of a speed may change on the leg
-    start_mps = min(leg.start_mps, sqrt(leg.end_mps**2 + change))
-    end_mps = min(leg.end_mps, sqrt(start_mps**2 + change))
+    start_mps = leg.start_mps
+    slowest_mps = sqrt(max(0.0, start_mps**2 - change))  # too fast to stop: it arrives all the same
+    end_mps = min(max(leg.end_mps, slowest_mps), sqrt(start_mps**2 + change))
     gaining_m = abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2)
     losing_m = max(0.0, speed_mps**2 - end_mps**2) / (2.0 * braking_mps2)
     if gaining_m + losing_m > long_m:
