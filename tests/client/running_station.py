@@ -2,7 +2,7 @@
 
 import asyncio
 import socket
-from collections.abc import AsyncIterator, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import AsyncExitStack, asynccontextmanager
 from typing import Any
 
@@ -19,6 +19,7 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
+from recon.site import Site
 from recon.station.build import first_state, worker_tasks
 from recon.station.driver import AsyncioDriver, station_clock
 from recon.station.service import Service
@@ -72,10 +73,14 @@ async def running_station(
     token: str | None = None,
     vehicles: int = 2,
     faults: tuple[str, ...] = (),
+    prepared: Callable[[Site], Site] = lambda site: site,
 ) -> AsyncIterator[str]:
-    """Run a station and its simulated apps; yields the station's address."""
+    """Run a station and its simulated apps; yields the station's address.
+
+    `prepared` may change the site, in which nothing speaks against a flight.
+    """
     site = ready_site(HOME, (ready_profile(s, PADS[s], n) for n, s in enumerate(SERIALS)))
-    driver = AsyncioDriver(first_state(site), station_clock())
+    driver = AsyncioDriver(first_state(prepared(site)), station_clock())
     driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
     async with AsyncExitStack() as stack:
         await links.start("127.0.0.1", 0)

@@ -18,9 +18,10 @@ from recon.client.errors import (
 from recon.client.fleet import Fleet
 from recon.client.life import Life, PhaseChange
 from recon.client.order import Order, VehicleAnswer
+from recon.client.readiness import Preflight, PreflightOverride, PreflightPoint
 from recon.client.returning import Returning
 from recon.client.station import Station
-from recon.client.telemetry import Aged, Heading, Position, Telemetry, Velocity
+from recon.client.telemetry import Aged, Heading, Lead, Position, Telemetry, Velocity
 from recon.client.vehicle import Vehicle
 from recon.client.watched import Alarm, AuditEntry, AuditPage, StopAnswer
 from recon.model.command import Phase, Refusal, StickFrame
@@ -38,6 +39,7 @@ __all__ = [
     "ConnectionLostError",
     "Fleet",
     "Heading",
+    "Lead",
     "Life",
     "MaybeSentError",
     "Mission",
@@ -45,6 +47,9 @@ __all__ = [
     "Phase",
     "PhaseChange",
     "Position",
+    "Preflight",
+    "PreflightOverride",
+    "PreflightPoint",
     "Refusal",
     "RequestRefusedError",
     "Returning",

@@ -47,6 +47,18 @@ class Heading(msgspec.Struct, frozen=True):
     age_s: float | None
 
 
+class Lead(msgspec.Struct, frozen=True):
+    """Who may set a vehicle in motion: pilot, operator or guidance, and how that came about.
+
+    `age_s` is None when nobody has taken it since the station began.
+    """
+
+    leader: str
+    holder: str
+    age_s: float | None
+    reason: str
+
+
 class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     """One vehicle's newest state. Heights are above its own takeoff point (barometric).
 
@@ -58,6 +70,7 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     link_id: int | None
     name: str
     is_simulated: bool
+    lead: Lead
     staleness: Staleness
     telemetry_age_s: float | None
     is_flying: Aged[bool]
@@ -88,7 +101,7 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
         changes: dict[str, Any] = {
             name: msgspec.structs.replace(part, age_s=_older(part.age_s, seconds))
             for name in self.__struct_fields__
-            if isinstance(part := getattr(self, name), Aged | Position | Velocity | Heading)
+            if isinstance(part := getattr(self, name), Aged | Position | Velocity | Heading | Lead)
         }
         age_s = _older(self.telemetry_age_s, seconds)
         worse = max(self.staleness, staleness_at(age_s), key=_GROWING_WORSE.index)

@@ -6,8 +6,10 @@ from urllib.parse import quote
 from recon.client.desk import OrderDesk
 from recon.client.errors import ConnectionLostError
 from recon.client.order import Order
+from recon.client.readiness import Preflight, ask_preflight, say_leader, say_override
 from recon.client.stream import Heard
 from recon.client.telemetry import Telemetry
+from recon.model.authority import Leader
 from recon.model.command import (
     FlyMission,
     GoTo,
@@ -40,6 +42,7 @@ class Vehicle:
     def __init__(self, serial: str, desk: OrderDesk) -> None:
         self.serial = serial
         self._desk = desk
+        self._path = f"/api/vehicles/{quote(serial, safe='')}"
 
     async def hold(self) -> Order | Refusal:
         """Stop and hold the position."""
@@ -128,13 +131,39 @@ class Vehicle:
         """Have no more images sent."""
         return await self._desk.give_one(self.serial, StopCamera())
 
+    async def take(self) -> Refusal | None:
+        """Take the vehicle over, from guidance or from a pilot who has agreed; None when done.
+
+        Nobody else sets it in motion from now on. What it was told before goes on.
+        """
+        return await say_leader(self._desk.http, self._path, Leader.OPERATOR)
+
+    async def give_to_pilot(self) -> Refusal | None:
+        """Leave the vehicle to its pilot: the station moves it no more; None when done."""
+        return await say_leader(self._desk.http, self._path, Leader.PILOT)
+
+    async def give_to_guidance(self) -> Refusal | None:
+        """Leave the vehicle to the station's own planning; None when done."""
+        return await say_leader(self._desk.http, self._path, Leader.GUIDANCE)
+
+    async def preflight(self) -> Preflight:
+        """Return the checklist as of now: what holds missions back, and what to do about it."""
+        return await ask_preflight(self._desk.http, self._path)
+
+    async def override_preflight(self, reason: str) -> Refusal | None:
+        """Let it fly missions although its checklist is not passed; None when done.
+
+        The reason is kept in the audit; the override ends with the landing.
+        """
+        return await say_override(self._desk.http, self._path, reason)
+
     async def dismiss_ghost(self) -> None:
         """Say that somebody knows where the vehicle is, though it is not heard.
 
         Until then others keep clear of where it may be. Raises `RequestRefusedError` when it is
         no ghost.
         """
-        await self._desk.http.tell(f"/api/vehicles/{quote(self.serial, safe='')}/ghost/dismiss")
+        await self._desk.http.tell(f"{self._path}/ghost/dismiss")
 
     def now(self) -> Telemetry:
         """Return what is known now, with ages as of now; raises `ConnectionLostError`."""
