@@ -23,6 +23,7 @@ def vehicle(serial: str | None = "SIM-1", age_s: float | None = 0.05) -> schema.
         is_eye=False,
         lead=schema.LeadView(leader="operator", holder="", age_s=None, reason="nobody yet"),
         preflight_override=None,
+        steering=None,
         staleness="live",
         telemetry_age_s=age_s,
         is_flying=schema.AgedFlag(value=True, age_s=age_s),

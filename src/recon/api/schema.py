@@ -115,6 +115,18 @@ class OverrideView(Message):
     age_s: float
 
 
+class SteeringView(Message):
+    """Where the station steers a vehicle with sticks, for the order of this number."""
+
+    command_id: int
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float
+    speed_mps: float
+    has_arrived: bool = Field(description="it holds the place")
+    is_ending: bool = Field(description="zero has been sent, and a hold follows")
+
+
 StalenessWord = Literal["live", "late", "lost", "silent"]
 
 
@@ -130,6 +142,7 @@ class VehicleView(Message):
     is_eye: bool
     lead: LeadView
     preflight_override: OverrideView | None
+    steering: SteeringView | None
     staleness: StalenessWord
     telemetry_age_s: float | None
     is_flying: AgedFlag

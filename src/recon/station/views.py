@@ -19,6 +19,7 @@ from recon.station.ghost_view import ghost_view
 from recon.station.orders import OrderRecord
 from recon.station.readiness_view import lead_view, override_view
 from recon.station.state import Station
+from recon.station.steering_view import steering_view
 
 SHOWN_ORDERS = 50
 TRACK_POINTS_SHOWN = 120
@@ -87,6 +88,7 @@ def _vehicle(
         is_eye=vehicle.serial is not None and vehicle.serial == station.imaging.eye_serial,
         lead=lead_view(station, vehicle.serial, now_ns),
         preflight_override=override_view(station, vehicle.serial, now_ns),
+        steering=steering_view(station, vehicle.serial),
         staleness=staleness(vehicle, now_ns).value,
         telemetry_age_s=_age_s(vehicle.core_received_at_ns, now_ns),
         is_flying=aged.flag(vehicle.is_flying),

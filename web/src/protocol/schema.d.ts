@@ -1236,6 +1236,32 @@ export interface components {
             version: string;
         };
         /**
+         * SteeringView
+         * @description Where the station steers a vehicle with sticks, for the order of this number.
+         */
+        SteeringView: {
+            /** Command Id */
+            command_id: number;
+            /**
+             * Has Arrived
+             * @description it holds the place
+             */
+            has_arrived: boolean;
+            /** Height Above Takeoff M */
+            height_above_takeoff_m: number;
+            /**
+             * Is Ending
+             * @description zero has been sent, and a hold follows
+             */
+            is_ending: boolean;
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /** Speed Mps */
+            speed_mps: number;
+        };
+        /**
          * StickOrder
          * @description One virtual stick packet (ground: x north, y east; body: x forward, y right).
          */
@@ -1320,6 +1346,7 @@ export interface components {
              * @enum {string}
              */
             staleness: "live" | "late" | "lost" | "silent";
+            steering: components["schemas"]["SteeringView"] | null;
             /** Telemetry Age S */
             telemetry_age_s: number | null;
             /**

@@ -35,6 +35,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     is_eye: false,
     lead: { leader: "operator", holder: "", age_s: null, reason: "nobody has taken it yet" },
     preflight_override: null,
+    steering: null,
     staleness: "live",
     telemetry_age_s: 0.1,
     is_flying: aged(true),
