@@ -406,3 +406,18 @@ class TestFleetReturn:
         response = client.post("/api/fleet-return", json=asked)
         assert response.status_code == 422
         assert client.get("/api/commands").json() == []
+
+
+class TestWatching:
+    def test_only_a_ghost_can_be_dismissed(self, client: Client) -> None:
+        response = client.post("/api/vehicles/A/ghost/dismiss")
+        assert response.status_code == 404
+        assert "no ghost" in response.json()["error"]
+
+    def test_the_separation_holds_are_switched_and_shown(self, client: Client) -> None:
+        assert client.get("/api/state").json()["station"]["separation_hold_on"] is True
+        assert client.post("/api/separation-hold/off").status_code == 204
+        assert client.get("/api/state").json()["station"]["separation_hold_on"] is False
+        assert client.post("/api/separation-hold/on").status_code == 204
+        assert client.get("/api/state").json()["station"]["separation_hold_on"] is True
+        assert client.post("/api/separation-hold/maybe").status_code == 422
