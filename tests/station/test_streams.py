@@ -308,6 +308,19 @@ class TestEnds:
         assert len(s.hovers(refused_s)) >= 1
         assert s.aircraft.motion.ground_speed_mps < 0.1
 
+    def test_a_battery_that_drops_stops_it_with_the_reason(self) -> None:
+        s = steered()
+        order = s.goto(200.0)
+        s.run_for(6.0)
+        s.aircraft.battery.fraction = 0.2
+        s.run_until(lambda: s.phase(order) is Phase.FAILED, 2.0)
+        refused_s = s.now_s
+        assert "the gate refused its stick: battery: " in s.note(order)
+        s.run_for(8.0)
+        assert s.moving_sticks(refused_s + 0.05) == []
+        assert s.hovers(refused_s) != []
+        assert s.aircraft.motion.ground_speed_mps < 0.1
+
     def test_an_app_that_carries_no_stick_out_is_given_up(self) -> None:
         s = steered(faults=(f"ack-then-nothing:{SERIAL}",))
         order = s.goto(200.0)

@@ -1,14 +1,12 @@
 """Heavy work beside the loop: results as events, newer work before older, faults contained."""
 
-import os
-import sys
 import threading
 from queue import Queue
 
 from recon.model.errors import ReconError
 from recon.model.event import DeadlineMissed, Event, WorkerResult
 from recon.station.outputs import StartWork
-from recon.station.worker import NICENESS, ThreadWorker, do_work
+from recon.station.worker import ThreadWorker, do_work
 
 PATIENCE_S = 20.0
 
@@ -85,17 +83,3 @@ class TestThread:
     def test_stopping_one_that_never_began_is_nothing(self) -> None:
         worker = ThreadWorker({}, lambda event: None)
         worker.stop()
-
-
-def test_it_steps_back_behind_the_thread_that_sends_commands() -> None:
-    mine = os.getpriority(os.PRIO_PROCESS, threading.get_native_id())
-    told: Queue[Event] = Queue()
-    task = lambda _: os.getpriority(os.PRIO_PROCESS, threading.get_native_id())  # noqa: E731
-    worker = ThreadWorker({"ask": task}, told.put)
-    worker.start()
-    worker.submit(StartWork(1, "ask", None))
-    answer = told.get(timeout=PATIENCE_S)
-    worker.stop()
-    assert isinstance(answer, WorkerResult)
-    assert answer.result == (max(mine, NICENESS) if sys.platform == "linux" else mine)
-    assert os.getpriority(os.PRIO_PROCESS, threading.get_native_id()) == mine

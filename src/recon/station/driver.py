@@ -2,7 +2,6 @@
 
 import asyncio
 import gc
-import sys
 import time
 from collections.abc import Callable
 
@@ -39,15 +38,6 @@ def spare_what_is_loaded() -> None:
     """
     gc.collect()
     gc.freeze()
-
-
-def take_turns_quickly() -> None:
-    """Let a thread that waits for the interpreter have it after half a millisecond.
-
-    The interpreter's own 5 ms are what the event loop would wait for, each time it wakes while the
-    worker is in Python; a stick every 100 ms would waver by that much.
-    """
-    sys.setswitchinterval(0.0005)
 
 
 class AsyncioDriver:

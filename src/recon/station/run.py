@@ -32,12 +32,7 @@ from recon.station.audit_start import (
 )
 from recon.station.auditor import Auditor
 from recon.station.build import first_state, worker_tasks
-from recon.station.driver import (
-    AsyncioDriver,
-    spare_what_is_loaded,
-    station_clock,
-    take_turns_quickly,
-)
+from recon.station.driver import AsyncioDriver, spare_what_is_loaded, station_clock
 from recon.station.log import LogPrinter
 from recon.station.restart import first_ids, restart_entries, restored
 from recon.station.service import Service
@@ -117,7 +112,6 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         stack.callback(worker.stop)
         server = _http_server(config, service)
         spare_what_is_loaded()
-        take_turns_quickly()
         stack.enter_context(_stopped_by_signals(server))
         serving = asyncio.create_task(server.serve(sockets=[http_socket]))
         started = _started(config, service, links, http_socket)

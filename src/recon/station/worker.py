@@ -4,8 +4,6 @@ Work of one kind waits in one place: newer work drops the older that has not beg
 `DeadlineMissed`. Results come back as events, so that the core never waits.
 """
 
-import os
-import sys
 import threading
 from collections.abc import Callable, Mapping
 from typing import Protocol
@@ -13,9 +11,6 @@ from typing import Protocol
 from recon.model.errors import ReconError
 from recon.model.event import DeadlineMissed, Event, WorkerResult
 from recon.station.outputs import StartWork
-
-NICENESS = 10
-"""The share of a core is then a tenth of what the event loop's thread gets beside it."""
 
 Task = Callable[[object], object]
 """Does one kind of work: payload in, result out. What it raises is told as the result's error."""
@@ -76,7 +71,6 @@ class ThreadWorker:
             self._deliver(DeadlineMissed(older.job_id, older.kind, "newer work came"))
 
     def _run(self) -> None:
-        _step_back()
         while (work := self._next()) is not None:
             self._deliver(do_work(self._tasks, work))
 
@@ -87,15 +81,3 @@ class ThreadWorker:
             if self._is_stopping:
                 return None
             return self._waiting.pop(next(iter(self._waiting)))
-
-
-def _step_back() -> None:
-    """Let the thread that sends commands go first where there are more threads than cores.
-
-    Linux gives each thread a priority of its own; elsewhere the process would get it, so not there.
-    """
-    if sys.platform == "linux":
-        thread = threading.get_native_id()
-        # Never a lower number than it has: that takes rights that nobody gives a station.
-        niceness = max(NICENESS, os.getpriority(os.PRIO_PROCESS, thread))
-        os.setpriority(os.PRIO_PROCESS, thread, niceness)
