@@ -18,6 +18,7 @@ function Page() {
     origin: location.origin,
     token: tokenOf(location.hash),
     clock: browserClock,
+    random: (bytes) => crypto.getRandomValues(bytes),
     openSocket: (url, protocols) => new WebSocket(url, protocols),
     fetch: (request) => fetch(request),
   });

@@ -8,12 +8,14 @@ type Answer = (request: Request) => Response | Promise<Response>;
 
 function setUp(answer: Answer, token: string | null = null) {
   const clock = new FakeClock();
+  let drawn = 1;
   const sockets: FakeSocket[] = [];
   const requests: Request[] = [];
   const source = new LiveSource({
     origin: "http://127.0.0.1:8080",
     token,
     clock,
+    random: (bytes) => bytes.fill(drawn++),
     openSocket: (url, protocols) => {
       const socket = new FakeSocket(url, protocols);
       sockets.push(socket);
@@ -50,7 +52,7 @@ describe("the live source", () => {
 
   it("opens the stream of the address the page came from", () => {
     const { sockets } = setUp(() => json({}));
-    expect(sockets[0]?.url).toBe("ws://127.0.0.1:8080/api/stream");
+    expect(sockets[0]?.url).toBe(`ws://127.0.0.1:8080/api/stream?holder=${"01".repeat(16)}`);
     expect(sockets[0]?.protocols).toEqual(["recon.v1"]);
   });
 
@@ -65,6 +67,51 @@ describe("the live source", () => {
         reason: "The station refuses this page. Open it with its token.",
       });
     expect(requests.map(({ url }) => new URL(url).pathname)).toEqual(["/api/state"]);
+  });
+
+  it("names its newest stream as the holder of steered orders, and of no others", async () => {
+    const { source, sockets, requests, clock } = setUp(() => json({ results: [] }));
+    sockets[0]?.fail();
+    clock.advance(1000);
+    expect(sockets[1]?.url).toContain("02".repeat(16));
+    const place = { latitude_deg: 44.7, longitude_deg: -93.07, height_above_takeoff_m: 40 };
+    const goto = { kind: "goto" as const, ...place, speed_mps: 5 };
+    await source.check({ serials: ["A"], order: goto });
+    await source.order({ serials: ["A"], order: goto });
+    await source.order({ serials: ["A"], order: { kind: "hover" } });
+    const asked = requests.filter(({ url }) => url.includes("/api/orders"));
+    const bodies = await Promise.all(asked.map((request) => request.json()));
+    expect(asked.map(({ url }) => new URL(url).pathname)).toEqual([
+      "/api/orders/check",
+      "/api/orders",
+      "/api/orders",
+    ]);
+    expect(bodies.map(({ holder }) => holder)).toEqual([
+      "02".repeat(16),
+      "02".repeat(16),
+      undefined,
+    ]);
+  });
+
+  it("brings words about one vehicle to the vehicle named, however it is called", async () => {
+    const word = { accepted: false, rule: "stale", reason: "it is not heard" };
+    const { source, requests } = setUp(() => json(word));
+    expect(await source.takeAuthority("a/b", "operator")).toEqual({
+      kind: "answered",
+      value: word,
+    });
+    await source.overridePreflight("a/b", "test flight");
+    const paths = requests.map(({ url }) => new URL(url).pathname);
+    expect(paths).toEqual([
+      "/api/vehicles/a%2Fb/authority",
+      "/api/vehicles/a%2Fb/preflight/override",
+    ]);
+    expect(await requests[1]?.json()).toEqual({ reason: "test flight" });
+  });
+
+  it("tells why a ghost was not dismissed", async () => {
+    const { source } = setUp(() => json({ error: "'A' is heard" }, 404));
+    expect(await source.dismissGhost("A")).toEqual({ kind: "failed", problem: "'A' is heard" });
   });
 
   it("gives orders to the vehicles named and never allows a takeoff", async () => {

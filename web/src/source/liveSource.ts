@@ -1,6 +1,7 @@
 import { createSignal } from "solid-js";
-import type { StationState } from "../protocol";
+import type { Leader, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
+import { newHolder } from "./holder";
 import { StreamLag } from "./lag";
 import { Requests } from "./requests";
 import type { Connection, NamedOrder, StationSource } from "./stationSource";
@@ -13,6 +14,8 @@ export interface Surroundings {
   /** The token this page was opened with, if the station wants one. */
   readonly token: string | null;
   readonly clock: Clock;
+  /** Fills bytes with what nobody can guess. */
+  random(bytes: Uint8Array): Uint8Array;
   openSocket(url: string, protocols: string[]): Socket;
   fetch(request: Request): Promise<Response>;
 }
@@ -27,6 +30,7 @@ export class LiveSource implements StationSource {
   private readonly lag = new StreamLag();
   private readonly stream: Stream;
   private readonly requests: Requests;
+  private holder = "";
 
   constructor(surroundings: Surroundings) {
     const { clock, origin, token } = surroundings;
@@ -36,7 +40,11 @@ export class LiveSource implements StationSource {
     this.connection = connection;
     this.requests = new Requests(origin, token, (request) => surroundings.fetch(request));
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
-    const open = () => surroundings.openSocket(url, streamProtocols(token));
+    const open = () => {
+      // Nothing that an earlier connection held comes back to life.
+      this.holder = newHolder((bytes) => surroundings.random(bytes));
+      return surroundings.openSocket(`${url}?holder=${this.holder}`, streamProtocols(token));
+    };
     this.stream = new Stream(open, clock, {
       onConnection: (next) => {
         setConnection(next);
@@ -65,7 +73,35 @@ export class LiveSource implements StationSource {
   }
 
   order(order: NamedOrder) {
-    return this.requests.order(order);
+    return this.requests.order(order, this.holder);
+  }
+
+  check(order: NamedOrder) {
+    return this.requests.check(order, this.holder);
+  }
+
+  fleetReturn(serials: readonly string[] | null) {
+    return this.requests.fleetReturn(serials);
+  }
+
+  takeAuthority(serial: string, leader: Leader) {
+    return this.requests.takeAuthority(serial, leader);
+  }
+
+  preflight(serial: string) {
+    return this.requests.preflight(serial);
+  }
+
+  overridePreflight(serial: string, reason: string) {
+    return this.requests.overridePreflight(serial, reason);
+  }
+
+  dismissGhost(name: string) {
+    return this.requests.dismissGhost(name);
+  }
+
+  switchSeparationHold(isOn: boolean) {
+    return this.requests.switchSeparationHold(isOn);
   }
 
   allStop() {

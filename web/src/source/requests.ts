@@ -1,5 +1,5 @@
 import createClient from "openapi-fetch";
-import type { OrderResult } from "../protocol";
+import type { Leader, OrderResult, PreflightView, WordResponse } from "../protocol";
 import type { paths } from "../protocol/schema";
 import type { NamedOrder, Outcome, Picture } from "./stationSource";
 
@@ -20,40 +20,76 @@ export class Requests {
     this.client = createClient<paths>({ baseUrl: origin, headers: this.headers, fetch });
   }
 
-  order({ serials, order }: NamedOrder): Promise<Outcome<readonly OrderResult[]>> {
-    const body = { serials: [...serials], order, takeoff: false };
-    const signal = AbortSignal.timeout(REQUEST_MS);
+  /** `holder` names the stream whose end ends a steered order; left out of all others. */
+  order(named: NamedOrder, holder: string): Promise<Outcome<readonly OrderResult[]>> {
+    const body = orderBody(named, holder);
     return answered(
-      () => this.client.POST("/api/orders", { body, signal }),
+      () => this.client.POST("/api/orders", { body, signal: soon() }),
       (data) => data.results,
     );
+  }
+
+  check(named: NamedOrder, holder: string): Promise<Outcome<readonly OrderResult[]>> {
+    const body = orderBody(named, holder);
+    return answered(
+      () => this.client.POST("/api/orders/check", { body, signal: soon() }),
+      (data) => data.results,
+    );
+  }
+
+  fleetReturn(named: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>> {
+    const body = { serials: named === null ? null : [...named] };
+    return answered(
+      () => this.client.POST("/api/fleet-return", { body, signal: soon() }),
+      (data) => data.results,
+    );
+  }
+
+  takeAuthority(serial: string, leader: Leader): Promise<Outcome<WordResponse>> {
+    const options = { params: { path: { serial } }, body: { leader }, signal: soon() };
+    return answered(() => this.client.POST("/api/vehicles/{serial}/authority", options), same);
+  }
+
+  preflight(serial: string): Promise<Outcome<PreflightView>> {
+    const options = { params: { path: { serial } }, signal: soon() };
+    return answered(() => this.client.GET("/api/vehicles/{serial}/preflight", options), same);
+  }
+
+  overridePreflight(serial: string, reason: string): Promise<Outcome<WordResponse>> {
+    const options = { params: { path: { serial } }, body: { reason }, signal: soon() };
+    return answered(
+      () => this.client.POST("/api/vehicles/{serial}/preflight/override", options),
+      same,
+    );
+  }
+
+  dismissGhost(serial: string): Promise<Outcome<null>> {
+    const options = { params: { path: { serial } }, signal: soon() };
+    return taken(() => this.client.POST("/api/vehicles/{serial}/ghost/dismiss", options));
+  }
+
+  switchSeparationHold(isOn: boolean): Promise<Outcome<null>> {
+    const path: { switch: "on" | "off" } = { switch: isOn ? "on" : "off" };
+    const options = { params: { path }, signal: soon() };
+    return taken(() => this.client.POST("/api/separation-hold/{switch}", options));
   }
 
   allStop(): Promise<Outcome<readonly OrderResult[]>> {
-    const signal = AbortSignal.timeout(REQUEST_MS);
     return answered(
-      () => this.client.POST("/api/all-stop", { signal }),
+      () => this.client.POST("/api/all-stop", { signal: soon() }),
       (data) => data.results,
     );
   }
 
-  async acknowledge(alarm_id: number): Promise<Outcome<null>> {
-    const signal = AbortSignal.timeout(REQUEST_MS);
-    const params = { path: { alarm_id } };
-    return attempt(async () => {
-      const answer = await this.client.POST("/api/alarms/{alarm_id}/acknowledge", {
-        params,
-        signal,
-      });
-      return answer.response.ok ? done(null) : failed(refusal(answer.response, answer.error));
-    });
+  acknowledge(alarm_id: number): Promise<Outcome<null>> {
+    const options = { params: { path: { alarm_id } }, signal: soon() };
+    return taken(() => this.client.POST("/api/alarms/{alarm_id}/acknowledge", options));
   }
 
   /** Why the station turns this page away, when it answers at all; a browser does not tell for a stream. */
   async whyRefused(): Promise<string | null> {
-    const signal = AbortSignal.timeout(REQUEST_MS);
     const asked = await attempt(async () => {
-      const answer = await this.client.GET("/api/state", { signal });
+      const answer = await this.client.GET("/api/state", { signal: soon() });
       return done(answer.response.ok ? null : refusal(answer.response, answer.error));
     });
     return asked.kind === "answered" ? asked.value : null;
@@ -78,6 +114,22 @@ function frameIdOf(response: Response): number | null {
   return text !== null && /^\d+$/.test(text) ? Number(text) : null;
 }
 
+/** Orders that the station steers by sticks for as long as the page's stream lasts. */
+const STEERED: readonly string[] = ["goto", "nudge", "hold_position"];
+
+function orderBody({ serials, order }: NamedOrder, holder: string) {
+  const body = { serials: [...serials], order, takeoff: false };
+  return STEERED.includes(order.kind) ? { ...body, holder } : body;
+}
+
+function soon(): AbortSignal {
+  return AbortSignal.timeout(REQUEST_MS);
+}
+
+function same<T>(value: T): T {
+  return value;
+}
+
 interface Answer<D> {
   readonly data?: D;
   readonly error?: unknown;
@@ -88,6 +140,14 @@ function answered<D, T>(ask: () => Promise<Answer<D>>, read: (data: D) => T): Pr
   return attempt(async () => {
     const { data, error, response } = await ask();
     return data === undefined ? failed(refusal(response, error)) : done(read(data));
+  });
+}
+
+/** For what is answered with nothing but that it was taken. */
+function taken(ask: () => Promise<Answer<unknown>>): Promise<Outcome<null>> {
+  return attempt(async () => {
+    const { error, response } = await ask();
+    return response.ok ? done(null) : failed(refusal(response, error));
   });
 }
 

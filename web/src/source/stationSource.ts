@@ -1,5 +1,12 @@
 import type { Accessor } from "solid-js";
-import type { Order, OrderResult, StationState } from "../protocol";
+import type {
+  Leader,
+  Order,
+  OrderResult,
+  PreflightView,
+  StationState,
+  WordResponse,
+} from "../protocol";
 import type { Instant } from "./clock";
 
 /** How the stream of states is doing. */
@@ -36,6 +43,16 @@ export interface StationSource {
   order(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Makes every flying vehicle hold its position; motors stay on. */
   allStop(): Promise<Outcome<readonly OrderResult[]>>;
+  /** What the gate would say to an order now; nothing is given. */
+  check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
+  /** Calls vehicles home as landing missions at heights of their own; null: all that fly or may. */
+  fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
+  takeAuthority(serial: string, leader: Leader): Promise<Outcome<WordResponse>>;
+  preflight(serial: string): Promise<Outcome<PreflightView>>;
+  overridePreflight(serial: string, reason: string): Promise<Outcome<WordResponse>>;
+  /** Says that somebody knows where a vehicle is that is not heard. */
+  dismissGhost(name: string): Promise<Outcome<null>>;
+  switchSeparationHold(isOn: boolean): Promise<Outcome<null>>;
   acknowledge(alarmId: number): Promise<Outcome<null>>;
   vehicleFrame(serial: string, frameId: number): Promise<Outcome<Picture>>;
   groundImage(frameId: number): Promise<Outcome<Picture>>;

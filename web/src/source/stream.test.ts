@@ -42,6 +42,19 @@ describe("the stream", () => {
     expect(connections.map(({ kind }) => kind)).toEqual(["connecting", "live", "lost", "live"]);
   });
 
+  it("says that the page lives as it shows states, and no longer when none come", () => {
+    const { stream, newest, clock } = setUp();
+    stream.open();
+    newest().accept();
+    for (let message = 0; message < 20; message += 1) {
+      newest().say(station([]));
+      clock.advance(100);
+    }
+    expect(newest().sent).toHaveLength(5);
+    clock.advance(1500);
+    expect(newest().sent).toHaveLength(5);
+  });
+
   it("waits longer after each failure, up to a limit, and soon again after a success", () => {
     const { stream, newest, sockets, clock } = setUp();
     stream.open();

@@ -1,5 +1,6 @@
 import type { StationState } from "../protocol";
 import type { Clock } from "./clock";
+import { BEAT_MS } from "./holder";
 import type { Connection } from "./stationSource";
 
 /** Waits between attempts: soon at first, since most losses are short, then calm. */
@@ -14,6 +15,7 @@ export interface Socket {
   onopen: ((event: Event) => void) | null;
   onmessage: ((event: MessageEvent) => void) | null;
   onclose: ((event: CloseEvent) => void) | null;
+  send(text: string): void;
   close(): void;
 }
 
@@ -28,6 +30,7 @@ export class Stream {
   private socket: Socket | null = null;
   private attempt = 0;
   private isFirst = true;
+  private beatAtMs = Number.NEGATIVE_INFINITY;
   private cancelTimer: () => void = () => {};
 
   constructor(
@@ -51,6 +54,7 @@ export class Stream {
     if (socket === null) return;
     this.socket = socket;
     this.isFirst = true;
+    this.beatAtMs = Number.NEGATIVE_INFINITY;
     this.expectNewsWithin(OPENING_MS, "The station did not answer.");
     socket.onopen = () => this.expectNewsWithin(SILENCE_MS, "The station says nothing.");
     socket.onmessage = (event) => this.take(event.data);
@@ -79,6 +83,18 @@ export class Stream {
     this.isFirst = false;
     if (isFirst) this.listener.onConnection({ kind: "live" });
     this.listener.onState(state, isFirst);
+    this.beat();
+  }
+
+  /**
+   * Says that the page lives. Only what has just read and shown a state says it: a page that hangs, or
+   * shows nothing new, holds no steered order any more.
+   */
+  private beat(): void {
+    const nowMs = this.clock.now().monotonicMs;
+    if (this.socket === null || nowMs - this.beatAtMs < BEAT_MS) return;
+    this.beatAtMs = nowMs;
+    this.socket.send("");
   }
 
   private expectNewsWithin(delayMs: number, otherwise: string): void {

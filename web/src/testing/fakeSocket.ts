@@ -7,11 +7,16 @@ export class FakeSocket implements Socket {
   onmessage: Socket["onmessage"] = null;
   onclose: Socket["onclose"] = null;
   isClosed = false;
+  readonly sent: string[] = [];
 
   constructor(
     readonly url = "",
     readonly protocols: readonly string[] = [],
   ) {}
+
+  send(text: string): void {
+    this.sent.push(text);
+  }
 
   close(): void {
     this.isClosed = true;

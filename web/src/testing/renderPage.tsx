@@ -2,8 +2,8 @@ import { createRoot, createSignal, type JSX } from "solid-js";
 import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
 import type { ThemeSwitch } from "../look/theme";
-import type { OrderResult, StationState } from "../protocol";
-import type { Connection, NamedOrder, StationSource } from "../source/stationSource";
+import type { Leader, OrderResult, PreflightView, StationState, WordResponse } from "../protocol";
+import type { Connection, NamedOrder, Outcome, StationSource } from "../source/stationSource";
 import { FakeClock } from "./fakeClock";
 
 /** A part of the page with a source, a clock and a hand on both. */
@@ -12,10 +12,17 @@ export interface RenderedPage {
   readonly shared: Console;
   readonly clock: FakeClock;
   readonly orders: NamedOrder[];
+  /** Orders whose judgement was asked for. */
+  readonly checks: NamedOrder[];
   readonly acknowledged: number[];
+  /** Words that are no orders, as they were said. */
+  readonly said: Said[];
   readonly allStops: () => number;
   /** From now on every order is answered with this. */
   answerWith(results: readonly OrderResult[]): void;
+  /** From now on every word that is no order, and every checklist, is answered with these. */
+  answerWordsWith(word: WordResponse): void;
+  showPreflight(preflight: PreflightView): void;
   /** From now on a vehicle's picture is brought by this. */
   bringFrames(fetch: StationSource["vehicleFrame"]): void;
   say(state: StationState): void;
@@ -25,10 +32,22 @@ export interface RenderedPage {
   dispose(): void;
 }
 
+/** Something said to the station that is no order of a vehicle. */
+export type Said =
+  | { readonly lead: Leader; readonly serial: string }
+  | { readonly override: string; readonly serial: string }
+  | { readonly dismissed: string }
+  | { readonly separationHold: boolean }
+  | { readonly fleetReturn: readonly string[] | null };
+
 /** What the page asked for, and what every order is answered with. */
 interface Asked {
   orders: NamedOrder[];
+  checks: NamedOrder[];
   acknowledged: number[];
+  said: Said[];
+  word: WordResponse;
+  preflight: Outcome<PreflightView>;
   allStops: number;
   answer: readonly OrderResult[];
   bringFrame: StationSource["vehicleFrame"];
@@ -46,7 +65,11 @@ export function renderPage(part: () => JSX.Element, first: StationState | null):
   const [now, setNow] = createSignal(clock.now());
   const asked: Asked = {
     orders: [],
+    checks: [],
     acknowledged: [],
+    said: [],
+    word: { accepted: true, rule: null, reason: null },
+    preflight: { kind: "failed", problem: "no checklist in this test" },
     allStops: 0,
     answer: [],
     bringFrame: noPicture,
@@ -65,10 +88,18 @@ export function renderPage(part: () => JSX.Element, first: StationState | null):
     shared,
     clock,
     orders: asked.orders,
+    checks: asked.checks,
     acknowledged: asked.acknowledged,
+    said: asked.said,
     allStops: () => asked.allStops,
     answerWith: (results) => {
       asked.answer = results;
+    },
+    answerWordsWith: (word) => {
+      asked.word = word;
+    },
+    showPreflight: (value) => {
+      asked.preflight = { kind: "answered", value };
     },
     bringFrames: (fetch) => {
       asked.bringFrame = fetch;
@@ -105,6 +136,31 @@ function fakeSource(
     allStop: async () => {
       asked.allStops += 1;
       return { kind: "answered", value: [] };
+    },
+    check: async (order) => {
+      asked.checks.push(order);
+      return { kind: "answered", value: asked.answer };
+    },
+    fleetReturn: async (serials) => {
+      asked.said.push({ fleetReturn: serials });
+      return { kind: "answered", value: asked.answer };
+    },
+    takeAuthority: async (serial, lead) => {
+      asked.said.push({ lead, serial });
+      return { kind: "answered", value: asked.word };
+    },
+    preflight: async () => asked.preflight,
+    overridePreflight: async (serial, override) => {
+      asked.said.push({ override, serial });
+      return { kind: "answered", value: asked.word };
+    },
+    dismissGhost: async (dismissed) => {
+      asked.said.push({ dismissed });
+      return { kind: "answered", value: null };
+    },
+    switchSeparationHold: async (separationHold) => {
+      asked.said.push({ separationHold });
+      return { kind: "answered", value: null };
     },
     acknowledge: async (id) => {
       asked.acknowledged.push(id);
