@@ -97,6 +97,8 @@ class TestWithoutASerial:
         assert is_hazard_unseen(told.station, "link-7", told.now_ns)
         told.happens(GhostDismissed("link-7", "Ann"))
         assert in_air(told) == []
+        again = self.lost().happens(GhostDismissed("unidentified link 7", "Ann"))
+        assert in_air(again) == []
 
     def test_one_on_the_ground_is_gone(self) -> None:
         told = Told().opens(7, core(flying=False), extended(None)).passes(1.0).closes(7)

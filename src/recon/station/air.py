@@ -47,7 +47,7 @@ def ghost(station: Station, vehicle: VehicleState, now_ns: int) -> Ghost | None:
 
 def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
     """Return whether there is something to dismiss: a ghost, or a vehicle that never told where."""
-    if name in station.watch.lost:
+    if _lost_as(station, name) is not None:
         return True
     vehicle = station.fleet.vehicles.get(name)
     if vehicle is None or vehicle.core_received_at_ns is None:
@@ -62,9 +62,9 @@ def dismiss(station: Station, event: GhostDismissed, now_ns: int) -> Station:
     """Return the station after somebody has taken a ghost out of the air; only what is one."""
     if not is_hazard_unseen(station, event.serial, now_ns):
         return station
-    watch = station.watch
-    if event.serial in watch.lost:
-        lost = {name: state for name, state in watch.lost.items() if name != event.serial}
+    watch, lost_as = station.watch, _lost_as(station, event.serial)
+    if lost_as is not None:
+        lost = {name: state for name, state in watch.lost.items() if name != lost_as}
         return replace(station, watch=replace(watch, lost=lost))
     heard_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
     dismissed = {**watch.dismissed, event.serial: heard_at_ns}
@@ -82,6 +82,12 @@ def keep_lost(station: Station, link_id: int) -> Station:
 def lost_name(link_id: int) -> str:
     """Return what the ghost of a vehicle without a serial is dismissed by."""
     return f"link-{link_id}"
+
+
+def _lost_as(station: Station, name: str) -> str | None:
+    """Which of the lost is meant: by what it is dismissed by, or as its alarm names it."""
+    lost = station.watch.lost
+    return next((key for key, s in lost.items() if name in (key, s.display_name)), None)
 
 
 def _is_dismissed(station: Station, serial: str, vehicle: VehicleState) -> bool:

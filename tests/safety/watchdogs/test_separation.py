@@ -303,6 +303,28 @@ class TestGhosts:
         ):
             assert len(looks(separation, ghost, aircraft("A", place, height_m))) == count, place
 
+    def test_one_that_may_fly_its_mission_on_is_foreseen_to(self) -> None:
+        """Sent 900 m east at 5 m/s and not heard for 100 s: half-way, give or take 50 m."""
+        mission = route((0.0, 0.0), (0.0, 900.0))
+        state = aircraft("G", velocity=(0.0, 5.0, 0.0), age_s=100.0, failsafe=Failsafe.HOVER)
+        ghost = told(state, intent=flies(mission, 1))
+        found = only(looks(separation, ghost, aircraft("A", (0.0, 540.0))))
+        assert found.vehicle_name == "A"
+        assert "to G (not heard for 100 s, if it flies its mission on)" in found.text
+        assert looks(separation, told(state), aircraft("A", (0.0, 540.0))) == []
+        assert looks(separation, ghost, aircraft("A", (0.0, 800.0))) == []
+        coming = aircraft("A", (0.0, 660.0), velocity=(0.0, -10.0, 0.0))
+        assert only(looks(separation, ghost, coming)).holds == "A"
+
+    def test_two_that_may_fly_their_missions_on_are_no_conflict(self) -> None:
+        mission = flies(route((0.0, 0.0), (0.0, 900.0)), 1)
+        ghosts = [
+            told(aircraft(n, (0.0, e), age_s=20.0, failsafe=Failsafe.HOVER), intent=mission)
+            for n, e in (("G", 0.0), ("H", 10.0))
+        ]
+        far = aircraft("A", (500.0, 0.0))
+        assert looks(separation, far, *ghosts) == []
+
     def test_two_ghosts_are_no_conflict(self) -> None:
         assert looks(separation, self.ghost, replace(self.ghost, serial="H")) == []
 

@@ -26,9 +26,8 @@ ALL_HEIGHTS_M = 1.0e5
 (RADIUS_0, RADIUS_1, CURVE, PART) = range(10, 14)
 COLUMNS = 14
 
-Row = tuple[
-    float, float, float, float, float, float, float, float, float, float, float, float, float, float
-]
+Row = tuple[float, ...]
+"""One row's `COLUMNS`."""
 
 
 class Part(IntEnum):

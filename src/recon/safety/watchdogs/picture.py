@@ -76,6 +76,11 @@ class Watched:
         return self.flyer is not None and self.ghost is None and self.state.is_flying.value is True
 
     @property
+    def may_fly_on_unseen(self) -> bool:
+        """Whether it is not heard and was sent a mission: its app may fly that on by itself."""
+        return self.ghost is not None and self.intent.commanded is Commanded.MISSION
+
+    @property
     def is_coming_down(self) -> bool:
         """Whether it lands or returns: it is on its way out of the air."""
         return (
@@ -114,14 +119,17 @@ class Watched:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Everything that is watched, at one moment. `ahead` is of the `flying` ones, in their order.
+    """Everything that is watched, at one moment.
 
-    `since_ns` says for how long each finding has been made, by its key.
+    `flying` are heard to fly. `unseen` are not heard any more, and may be flying on a mission.
+    `ahead` is of the one and then of the other, in their order. `since_ns` says since when each
+    finding has been made, by its key.
     """
 
     now_ns: int
     watched: tuple[Watched, ...]
     flying: tuple[Watched, ...]
+    unseen: tuple[Watched, ...]
     ahead: Ahead
     airspace: PreparedAirspace
     settings: WatchSettings = field(default_factory=WatchSettings)
@@ -129,6 +137,11 @@ class Picture:
     energy: EnergySettings = field(default_factory=EnergySettings)
     since_ns: Mapping[str, int] = field(default_factory=dict)
     is_hold_on: bool = True
+
+    @property
+    def foreseen(self) -> tuple[Watched, ...]:
+        """Those that `ahead` is of."""
+        return self.flying + self.unseen
 
     def lasted_s(self, key: str) -> float:
         """Return how long a finding has been made, 0 for a new one."""

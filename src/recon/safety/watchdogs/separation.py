@@ -38,11 +38,13 @@ def separation(picture: Picture) -> Iterator[Finding]:
     """Find the pairs, and the vehicles and ghosts, that come too near within the next seconds."""
     if not picture.flying:
         return
-    need = watched_separation(picture)
+    need, heard = watched_separation(picture), len(picture.flying)
     flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
     first, second = near_pairs(flies, need)
     close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need)
     for row in np.flatnonzero((close < 1.0).any(axis=1)):
+        if min(first[row], second[row]) >= heard:
+            continue  # nobody hears either: there is nothing to be done
         found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
         yield _pair(picture, int(first[row]), int(second[row]), found, need)
     for watched in picture.watched:
@@ -60,21 +62,23 @@ def watched_separation(picture: Picture) -> Separation:
 
 
 def in_order_of_yielding(one: Watched, other: Watched) -> tuple[Watched, Watched]:
-    """Return who yields first and who second."""
+    """Return who yields first and who second: always who is heard before who is not."""
 
-    def rank(watched: Watched) -> tuple[bool, int, bool, bool]:
+    def rank(watched: Watched) -> tuple[bool, bool, int, bool, bool]:
         profile = watched.state.profile
         priority = 0 if profile is None else profile.priority
         is_operators = watched.leader is not Leader.GUIDANCE
-        return watched.is_coming_down, priority, watched.is_eye, is_operators
+        is_unheard = watched.ghost is not None
+        return is_unheard, watched.is_coming_down, priority, watched.is_eye, is_operators
 
     later, earlier = sorted((one, other), key=lambda watched: watched.key, reverse=True)
     return (later, earlier) if rank(later) <= rank(earlier) else (earlier, later)
 
 
 def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separation) -> Finding:
-    yielding, second = in_order_of_yielding(picture.flying[one], picture.flying[other])
-    indices = {id(picture.flying[one]): one, id(picture.flying[other]): other}
+    both = picture.foreseen[one], picture.foreseen[other]
+    yielding, second = in_order_of_yielding(*both)
+    indices = {id(both[0]): one, id(both[1]): other}
     keys = sorted((yielding.key, second.key))
     key = f"{RULE}:{keys[0]}:{keys[1]}"
     held = None
@@ -86,14 +90,14 @@ def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separat
             if _can_be_held(picture, candidate) and _helps(picture, pair, found, need):
                 held = candidate
                 break
-    text = f"{_how(found)} {second.name}{_outcome(picture, held)}"
+    text = f"{_how(found)} {second.name}{_unheard(second)}{_outcome(picture, held)}"
     return _finding(picture, key, yielding, text, found, held)
 
 
 def _ghost(picture: Picture, ghost: Ghost, need: Separation) -> Iterator[Finding]:
     ahead = picture.ahead
     flies = ghost_closeness(ahead.as_it_flies, ahead.times_s, ghost, need)
-    rows = np.flatnonzero((flies[0] < 1.0).any(axis=1))
+    rows = np.flatnonzero((flies[0][: len(picture.flying)] < 1.0).any(axis=1))
     if len(rows) == 0:
         return
     if_held = ghost_closeness(ahead.if_held, ahead.times_s, ghost, need)
@@ -172,6 +176,12 @@ def _how(found: Approach) -> str:
         f"{when} too near, as near as {found.horizontal_m:.0f} m and {found.vertical_m:.0f} m in "
         "height, to"
     )
+
+
+def _unheard(watched: Watched) -> str:
+    if watched.ghost is None:
+        return ""
+    return f" (not heard for {watched.ghost.age_s:.0f} s, if it flies its mission on)"
 
 
 def _outcome(picture: Picture, held: Watched | None) -> str:

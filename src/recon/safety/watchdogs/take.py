@@ -7,8 +7,8 @@ from recon.model.intent import Commanded, Intent
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace
-from recon.safety.prediction import Plane, flyer, ghost_of
-from recon.safety.prediction.course import Row
+from recon.safety.prediction import Follower, Plane, flyer, ghost_of
+from recon.safety.prediction.course import CURVE, RADIUS_0, RADIUS_1, Row
 from recon.safety.settings import SafetySettings
 from recon.safety.watchdogs.ahead import Braking, look_ahead, next_rows
 from recon.safety.watchdogs.picture import Picture, Watched
@@ -31,11 +31,14 @@ def take_picture(
     plane = plane_of(airspace, (one.state for one in known))
     watched = tuple(_placed(one, airspace, settings, plane, now_ns) for one in known)
     flying = tuple(one for one in watched if one.is_heard_flying)
+    unseen = tuple(one for one in watched if one.may_fly_on_unseen)
     rows = [_next_rows(one, settings, now_ns) for one in flying]
+    rows += [_rows_unseen(one, settings) for one in unseen]
     return Picture(
         now_ns=now_ns,
         watched=watched,
         flying=flying,
+        unseen=unseen,
         ahead=look_ahead(rows, settings.watch, settings.prediction),
         airspace=airspace,
         settings=settings.watch,
@@ -92,3 +95,16 @@ def _next_rows(one: Watched, settings: SafetySettings, now_ns: int) -> list[Row]
         braking = Braking((now_ns - held.since_ns) / NS_PER_S, held.speed_mps)
     horizon_s = settings.watch.horizon_s
     return next_rows(one.flyer, intent, braking, horizon_s, now_ns, settings.prediction)
+
+
+def _rows_unseen(one: Watched, settings: SafetySettings) -> list[Row]:
+    """The mission it was sent, flown on: anywhere within what time has made of its place."""
+    flyer, prediction = one.flyer, settings.prediction
+    assert flyer is not None, "only a vehicle that has told where it is has a ghost"
+    follower = Follower(flyer, prediction, until_s=settings.watch.horizon_s)
+    follower.follow(one.intent)
+    off_m = prediction.time_uncertainty * flyer.age_s * flyer.speed_mps
+    return [
+        (*row[:RADIUS_0], row[RADIUS_0] + off_m, row[RADIUS_1] + off_m, *row[CURVE:])
+        for row in follower.writer.rows
+    ]
