@@ -91,6 +91,13 @@ class TestReserve:
     def test_nobody_at_all_is_another_rules_matter(self) -> None:
         assert battery(command(FAR), replace(situation(), vehicle=None)) is None
 
+    def test_an_unknown_go_home_height_counts_as_the_highest_the_site_allows(self) -> None:
+        unsaid = replace(TAKEOFF, go_home_height_m=None)
+        highest = replace(TAKEOFF, go_home_height_m=120.0)
+        enough = whole(FAR, out(highest)) + 0.25
+        assert reason(FAR, out(unsaid, battery_fraction=enough)) is None
+        assert reason(FAR, out(unsaid, battery_fraction=enough - 1e-6)) is not None
+
 
 class TestWarning:
     @pytest.mark.parametrize("body", AWAY)
@@ -185,6 +192,14 @@ class TestNumbers:
         assert told is not None
         assert "it has 29 %" in told
         assert "and 62 % to be left" in told
+
+    def test_a_whole_percent_is_not_rounded_up_to_the_next(self) -> None:
+        limits = FlightLimits(battery_reserve_fraction=0.62)
+        now = replace(situation(), airspace=PreparedAirspace(Airspace(limits)))
+        endless = replace(TAKEOFF, endurance_s=1e300)
+        told = reason(FAR, out(endless, battery_fraction=0.5), now)
+        assert told is not None
+        assert "the goto needs 62 % of its battery, it has 50 %" in told
 
     def test_what_no_battery_could_do_is_said_so(self) -> None:
         endless = replace(TAKEOFF, endurance_s=5e-324)

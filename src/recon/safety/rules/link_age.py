@@ -1,7 +1,7 @@
 """What sets a vehicle in motion needs to know where it is now, not where it was."""
 
 from recon.model.command import MOVING_BODIES, Command, Refusal
-from recon.model.stamped import Stamped
+from recon.model.units import ns_to_seconds
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_zero_stick
 
@@ -27,9 +27,9 @@ def link_age(command: Command, situation: Situation) -> Refusal | None:
 
 
 def _fault(kind: str, heard_at_ns: int | None, most_s: float, situation: Situation) -> str | None:
-    age_s = Stamped(True, heard_at_ns).age_s(situation.now_ns)
-    if age_s is None:
+    if heard_at_ns is None:
         return f"its app has sent no {kind} telemetry yet: wait for it, or look at the app"
+    age_s = ns_to_seconds(situation.now_ns - heard_at_ns)
     if age_s <= most_s:
         return None
     return (
