@@ -259,6 +259,8 @@ class TestEnds:
         seen_s = s.now_s
         assert s.phase(order) is Phase.SUPERSEDED
         assert "pilot" in s.note(order)
+        assert s.w.driver.station.leads[SERIAL].leader is Leader.PILOT
+        assert s.note(s.goto(50.0)).startswith("leader: ")
         s.run_for(10.0)
         assert s.sticks(seen_s + 0.05) == []
         assert s.hovers() == []

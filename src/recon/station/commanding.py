@@ -45,14 +45,14 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     judged = approve(command, situation(station, command, now_ns))
     if isinstance(judged, Refusal):
         if _may_wait(command, judged):
-            station = streams.release(station, command.serial)
+            station = streams.release(station, command.serial, now_ns)
             station = _supersede_older(station, command, now_ns)
             return _put(station, _waiting(station, command, judged, now_ns)), ()
         station = _put(station, _refused(station, command, judged, now_ns))
         return _end_stream_for(station, command, now_ns)
     if lane_of(command) is not Lane.CAMERA:
         station = stick_zero.forget(station, command)
-        station = streams.release(station, command.serial)
+        station = streams.release(station, command.serial, now_ns)
     station = _supersede_older(station, command, now_ns)
     return _put(station, _queued(station, command, judged, now_ns)), (SendCommand(judged),)
 
@@ -64,7 +64,7 @@ def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int
     if refusal is not None:
         return _put(station, _refused(station, command, refusal, now_ns)), ()
     station = stick_zero.forget(station, command)
-    station = streams.release(station, command.serial)
+    station = streams.release(station, command.serial, now_ns)
     station = _supersede_older(station, command, now_ns)
     queued = PhaseChange(Phase.QUEUED, now_ns, "")
     station = _put(station, OrderRecord(command, _name(station, command), (queued,)))
@@ -96,6 +96,9 @@ def _ask(now_ns: int) -> Ask:
 
 def _after(driven: Driven, now_ns: int) -> Stepped:
     station, outputs = driven.station, driven.outputs
+    for serial, why in driven.pilots:
+        station, withdrawn = authority.pilot_has_it(station, serial, now_ns, why)
+        outputs += withdrawn
     for order in driven.holds:
         station, sent = place(station, order, now_ns)
         outputs += sent

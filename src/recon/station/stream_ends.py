@@ -8,6 +8,7 @@ from recon.guidance.steering import halted
 from recon.model.authority import Lead, Leader
 from recon.model.command import Command, Hover, Phase, Refusal, StickFrame, VirtualStick
 from recon.model.event import OperatorOrder
+from recon.model.intent import Commanded, Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import ApprovedCommand
@@ -28,11 +29,15 @@ _NOBODY_YET = Lead()
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """The station after a beat, what is to be sent, and the holds that are to be ordered."""
+    """The station after a beat, what is to be sent, and the holds that are to be ordered.
+
+    `pilots` are the vehicles found in their pilots' hands, and how that was seen.
+    """
 
     station: Station
     outputs: tuple[Output, ...] = ()
     holds: tuple[OperatorOrder, ...] = ()
+    pilots: tuple[tuple[str, str], ...] = ()
 
 
 def put(station: Station, serial: str, lease: Lease) -> Station:
@@ -40,12 +45,20 @@ def put(station: Station, serial: str, lease: Lease) -> Station:
     return replace(station, streams={**station.streams, serial: lease})
 
 
-def release(station: Station, serial: str | None) -> Station:
-    """Return the station without a vehicle's lease; its order keeps the count of its sticks."""
+def release(
+    station: Station, serial: str | None, now_ns: int, told: Commanded = Commanded.NOTHING
+) -> Station:
+    """Return the station without a vehicle's lease, which is told something else now.
+
+    Its order keeps the count of its sticks.
+    """
     lease = station.streams.get(serial or "")
-    if lease is None:
+    if lease is None or serial is None:
         return station
     station = replace(station, streams={s: x for s, x in station.streams.items() if s != serial})
+    if station.intents.get(serial, Intent()).command_id == lease.command.id:
+        intents = {**station.intents, serial: Intent(told, now_ns)}
+        station = replace(station, intents=intents)
     record = station.orders.records.get(lease.command.id)
     if record is None:
         return station
@@ -105,7 +118,7 @@ def taken(station: Station, lease: Lease, vehicle: VehicleState) -> tuple[Phase,
             None if lease.is_obeyed else lease.mode_before,
         )
         if reading.verdict is Verdict.PILOT:
-            return Phase.SUPERSEDED, f"the pilot has taken over: {reading.why}"
+            return Phase.SUPERSEDED, f"the pilot has taken the sticks: {reading.why}"
         if reading.verdict is Verdict.FAILSAFE:
             return Phase.FAILED, reading.why
     lead = _lead(station, lease)
@@ -141,7 +154,9 @@ def let_go(
 ) -> Driven:
     """End a lease without a word to the vehicle: somebody else flies it, and is not fought."""
     phase, why = taken
-    station = release(driven.station, serial)
+    station = release(driven.station, serial, now_ns)
+    if phase is Phase.SUPERSEDED:
+        driven = replace(driven, pilots=(*driven.pilots, (serial, why)))
     if lease.closing is None:
         ended = phase if lease.arrived_at_ns is None else Phase.DONE
         station = change_phase(station, lease, ended, now_ns, why, ends=True)
@@ -166,9 +181,9 @@ def leave_alone(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask
     return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
 
 
-def hold(driven: Driven, serial: str) -> Driven:
+def hold(driven: Driven, serial: str, now_ns: int) -> Driven:
     """Order the hold that follows the zero; a vehicle on the ground needs none."""
-    station = release(driven.station, serial)
+    station = release(driven.station, serial, now_ns, Commanded.HOLD)
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None or vehicle.is_flying.value is False:
         return replace(driven, station=station)
@@ -183,7 +198,7 @@ def _close(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask
     station, answer, lease = judged(driven.station, lease, now_ns, ask)
     driven = replace(driven, station=station)
     if isinstance(answer, Refusal):
-        return hold(driven, serial)
+        return hold(driven, serial, now_ns)
     due_ns = now_ns + seconds_to_ns(station.settings.streams.zero_to_hold_s)
     closing = replace(lease, closing=why, next_due_ns=due_ns)
     station = put(station, serial, closing)

@@ -74,9 +74,9 @@ def lease_out(station: Station, command: Command, holder: str | None, now_ns: in
     return put(station, serial, lease)
 
 
-def release(station: Station, serial: str | None) -> Station:
+def release(station: Station, serial: str | None, now_ns: int) -> Station:
     """Return the station without a vehicle's lease: what comes instead has taken over."""
-    return stream_ends.release(station, serial)
+    return stream_ends.release(station, serial, now_ns)
 
 
 def next_due_ns(station: Station) -> int | None:
@@ -128,12 +128,12 @@ def _drive(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask) -> 
     station = driven.station
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None:
-        return replace(driven, station=stream_ends.release(station, serial))
+        return replace(driven, station=stream_ends.release(station, serial, now_ns))
     taken = stream_ends.taken(station, lease, vehicle)
     if taken is not None:
         return stream_ends.let_go(driven, serial, lease, taken, now_ns)
     if lease.closing is not None:
-        return stream_ends.hold(driven, serial)
+        return stream_ends.hold(driven, serial, now_ns)
     seen = sight(vehicle, now_ns)
     if seen is not None:
         seen_at_ns = now_ns - seconds_to_ns(seen.age_s)
