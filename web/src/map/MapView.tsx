@@ -5,15 +5,21 @@ import "maplibre-gl/dist/maplibre-gl.css";
 import "./map.css";
 import { useConsole } from "../console";
 import { listNames, vehicleLabel } from "../words/names";
+import { BoundaryLayer } from "./boundaryLayer";
 import { readColours } from "./colours";
 import { createGroundOnMap } from "./createGroundOnMap";
 import { GroundImageNote } from "./GroundImageNote";
 import { GhostLayer } from "./ghostLayer";
 import { GraticuleLayer } from "./graticuleLayer";
 import { GroundImageLayer } from "./groundImageLayer";
+import { HeightZoneLayer } from "./heightZoneLayer";
+import { KeepOutLayer } from "./keepOutLayer";
 import type { Layer } from "./layer";
 import type { Box } from "./localGrid";
+import { PadLayer } from "./padLayer";
 import { positionOf, wholeView } from "./scene";
+import { SteeringLayer } from "./steeringLayer";
+import { SurveyLayer } from "./surveyLayer";
 import { TrailLayer } from "./trailLayer";
 import { VehicleLayer } from "./vehicleLayer";
 
@@ -40,8 +46,14 @@ export function MapView() {
     layers = [
       new GroundImageLayer((frameId) => source.groundImage(frameId), ground),
       new GraticuleLayer(labels, scaleBar),
+      new SurveyLayer(),
+      new HeightZoneLayer(),
+      new KeepOutLayer(),
+      new BoundaryLayer(),
+      new PadLayer(),
       new GhostLayer(),
       new TrailLayer(),
+      new SteeringLayer(),
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }, [tools, notes]),
     ];
     made.on("load", () => {

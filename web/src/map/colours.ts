@@ -8,6 +8,10 @@ export interface Colours {
   readonly casing: string;
   readonly stale: string;
   readonly critical: string;
+  readonly boundary: string;
+  readonly keepOut: string;
+  readonly heightZone: string;
+  readonly survey: string;
   vehicle(number: number): string;
 }
 
@@ -25,6 +29,10 @@ export function readColours(page: Document): Colours {
     gridAxis: read("--grid-axis"),
     casing: read("--casing"),
     critical: read("--critical"),
+    boundary: read("--boundary"),
+    keepOut: read("--keep-out"),
+    heightZone: read("--height-zone"),
+    survey: read("--survey"),
     stale,
     vehicle: (number) => vehicles[(number - 1) % VEHICLE_COLOURS] ?? stale,
   };

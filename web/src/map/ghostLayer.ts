@@ -1,22 +1,18 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
-import { reachM, stalenessNow } from "../fleet/staleness";
-import type { VehicleView } from "../protocol";
-import { agedBy } from "../words/age";
-import { groundSpeedMps } from "../words/quantity";
 import type { Colours } from "./colours";
+import { band, type GhostShape, ghostOf } from "./ghosts";
 import type { Layer } from "./layer";
-import { addFeatures, areaFeature, setFeatures } from "./lines";
+import { addFeatures, areaFeature, lineFeature, setFeatures } from "./lines";
 import { circle } from "./localGrid";
-import { positionOf, type Scene } from "./scene";
+import type { Scene } from "./scene";
 
 const SOURCE = "ghosts";
 const AREA = "ghosts-area";
 const EDGE = "ghosts-edge";
-/** Beyond this the circle says nothing any more. */
-const WIDEST_M = 2000;
+const WAY = "ghosts-way";
 
-/** A growing circle around each vehicle whose telemetry is old: it may be anywhere inside. */
+/** A growing circle around each vehicle that is not heard, and its way home: it may be anywhere there. */
 export class GhostLayer implements Layer {
   private map: MapLibre | null = null;
   private hasGhosts = false;
@@ -28,38 +24,45 @@ export class GhostLayer implements Layer {
       id: AREA,
       type: "fill",
       source: SOURCE,
-      paint: { "fill-color": colours.stale, "fill-opacity": 0.16 },
+      paint: { "fill-color": colours.stale, "fill-opacity": 0.18 },
+      filter: ["==", ["geometry-type"], "Polygon"],
     });
     map.addLayer({
       id: EDGE,
       type: "line",
       source: SOURCE,
-      paint: { "line-color": colours.stale, "line-width": 2, "line-dasharray": [3, 2] },
+      paint: { "line-color": colours.stale, "line-width": 2.5, "line-dasharray": [3, 2] },
+      filter: ["==", ["geometry-type"], "Polygon"],
+    });
+    map.addLayer({
+      id: WAY,
+      type: "line",
+      source: SOURCE,
+      paint: { "line-color": colours.stale, "line-width": 2, "line-dasharray": [1, 2] },
+      filter: ["==", ["geometry-type"], "LineString"],
     });
   }
 
   update(scene: Scene): void {
     if (this.map === null) return;
-    const ghosts = scene.state.vehicles.flatMap((vehicle) => ghost(vehicle, scene.behindS) ?? []);
+    const ghosts = scene.state.vehicles.flatMap((one) => ghostOf(one, scene.behindS) ?? []);
     // Most of the time there are none, and drawing costs.
     if (ghosts.length === 0 && !this.hasGhosts) return;
     this.hasGhosts = ghosts.length > 0;
-    setFeatures(this.map, SOURCE, ghosts);
+    setFeatures(this.map, SOURCE, ghosts.flatMap(featuresOf));
   }
 
   recolour(colours: Colours): void {
     this.map?.setPaintProperty(AREA, "fill-color", colours.stale);
-    this.map?.setPaintProperty(EDGE, "line-color", colours.stale);
+    for (const line of [EDGE, WAY]) this.map?.setPaintProperty(line, "line-color", colours.stale);
   }
 }
 
-function ghost(vehicle: VehicleView, behindS: number): Feature | null {
-  const here = positionOf(vehicle);
-  const ageS = agedBy(vehicle.position.age_s, behindS);
-  if (here === null || ageS === null || stalenessNow(vehicle, behindS) === "live") return null;
-  const { north_mps, east_mps } = vehicle.velocity_ned;
-  // A vehicle of unknown speed may have had any: 15 m/s is what DJI's missions allow.
-  const speedMps = groundSpeedMps(north_mps, east_mps) ?? 15;
-  const radiusM = Math.min(WIDEST_M, reachM(ageS, speedMps, vehicle.is_flying.value !== false));
-  return areaFeature(circle(here, radiusM), { number: vehicle.number });
+function featuresOf(ghost: GhostShape): Feature[] {
+  const around = areaFeature(circle(ghost.centre, ghost.radius_m), {});
+  const [from, to] = ghost.corridor;
+  if (from === undefined || to === undefined) return [around];
+  const way = lineFeature([from, to], {});
+  const ring = band(from, to, ghost.corridorHalfWidth_m);
+  return ring.length === 0 ? [around] : [around, areaFeature(ring, {}), way];
 }

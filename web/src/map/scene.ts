@@ -18,7 +18,7 @@ export function positionOf(vehicle: Pick<VehicleView, "position">): LonLat | nul
 /** A view is never closer than this, so that a lone vehicle has its surroundings. */
 const LEAST_VIEW_M = 120;
 
-/** What the first view shows: every vehicle and the ground image, else the site; null when nothing is placed. */
+/** What the first view shows: every vehicle and the ground image, else the site's areas, else its place; null when nothing is placed. */
 export function wholeView(state: StationState): Box | null {
   const vehicles = state.vehicles.flatMap((vehicle) => positionOf(vehicle) ?? []);
   const corners = (state.ground_image?.corners ?? []).map(([lon, lat]) => ({ lon, lat }));
@@ -26,6 +26,12 @@ export function wholeView(state: StationState): Box | null {
 }
 
 function siteView(state: StationState): Box | null {
+  const drawn = (state.site?.areas ?? []).flatMap((area) => area.rings.flat());
+  const around = boxAround(
+    drawn.map(([lon, lat]) => ({ lon, lat })),
+    LEAST_VIEW_M,
+  );
+  if (around !== null) return around;
   const { longitude_deg: lon, latitude_deg: lat } = state.site ?? {};
   if (lon === null || lon === undefined || lat === null || lat === undefined) return null;
   return boxAround([{ lon, lat }], LEAST_VIEW_M * 2);

@@ -13,6 +13,10 @@ const PLAIN: Colours = {
   casing: "white",
   stale: "grey",
   critical: "red",
+  boundary: "#000001",
+  keepOut: "#000002",
+  heightZone: "#000003",
+  survey: "#000004",
   vehicle: (number) => `colour ${number}`,
 };
 

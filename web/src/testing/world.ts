@@ -1,6 +1,8 @@
 import type {
   AlarmView,
+  AreaView,
   CommandView,
+  GhostView,
   LinkView,
   OrderResult,
   StationState,
@@ -193,6 +195,52 @@ export function station(
     alarms: [],
     ground_image: null,
     fleet_return: null,
+    ...changes,
+  };
+}
+
+/** A square area around a place of the field, `half_m` to each side. */
+export function area(
+  kind: AreaView["kind"],
+  [east_m, north_m]: readonly [number, number],
+  half_m: number,
+  changes: Partial<AreaView> = {},
+): AreaView {
+  const corners: [number, number][] = [
+    [-half_m, -half_m],
+    [half_m, -half_m],
+    [half_m, half_m],
+    [-half_m, half_m],
+    [-half_m, -half_m],
+  ];
+  const ring = corners.map(([east, north]) => at(east_m + east, north_m + north));
+  return {
+    kind,
+    name: kind === "boundary" ? "" : "Barn",
+    rings: [ring],
+    floor_m: null,
+    ceiling_m: null,
+    datum: null,
+    ...changes,
+  };
+}
+
+/** A ghost at a place of the field that grows 10 m in a second. */
+export function ghost(
+  [east_m, north_m]: readonly [number, number],
+  changes: Partial<GhostView> = {},
+): GhostView {
+  const [longitude_deg, latitude_deg] = at(east_m, north_m);
+  return {
+    dismissed_as: "SN-003",
+    age_s: 5,
+    longitude_deg,
+    latitude_deg,
+    radius_m: 50,
+    growth_mps: 10,
+    largest_radius_m: 150,
+    corridor: [],
+    corridor_half_width_m: 12,
     ...changes,
   };
 }

@@ -1,0 +1,80 @@
+import type { Feature } from "geojson";
+import type { AreaView, SiteView } from "../protocol";
+import { formatQuantity } from "../words/quantity";
+import type { LonLat } from "./localGrid";
+
+/** The areas of one kind, as features to draw. */
+export function areaFeatures(site: SiteView | null, kind: AreaView["kind"]): Feature[] {
+  return areasOf(site, kind).map((area) => ({
+    type: "Feature",
+    geometry: {
+      type: "Polygon",
+      coordinates: area.rings.map((ring) => ring.map(([lon, lat]) => [lon, lat])),
+    },
+    properties: {},
+  }));
+}
+
+export function areasOf(site: SiteView | null, kind: AreaView["kind"]): AreaView[] {
+  return (site?.areas ?? []).filter((area) => area.kind === kind && outerRing(area).length > 2);
+}
+
+/** What an area is called on the map. Heights say from where they count. */
+export function areaText(area: AreaView): string {
+  switch (area.kind) {
+    case "boundary":
+      return named("Boundary", area.name);
+    case "keep_out":
+      return joined(named("Keep out", area.name), areaHeights(area));
+    case "height":
+      return joined(named("Heights", area.name), areaHeights(area));
+    case "survey":
+      return named("Survey", area.name);
+  }
+}
+
+function named(what: string, name: string): string {
+  return name === "" ? what : `${what}: ${name}`;
+}
+
+function joined(text: string, heights: string): string {
+  return heights === "" ? text : `${text}, ${heights}`;
+}
+
+/** The heights an area holds between; empty when it has none, which for a keep-out means all. */
+export function areaHeights({ floor_m, ceiling_m, datum }: AreaView): string {
+  if (floor_m === null && ceiling_m === null) return "";
+  const from = datum === "wgs84" ? "WGS84" : "above ground";
+  const metres = (m: number) => formatQuantity(m, "m", 0);
+  if (floor_m === null) return `up to ${metres(ceiling_m ?? 0)} ${from}`;
+  if (ceiling_m === null) return `from ${metres(floor_m)} ${from}`;
+  return `${metres(floor_m)} to ${metres(ceiling_m)} ${from}`;
+}
+
+/** Where an area's label stands: the northernmost corner of a boundary, the middle of all others. */
+export function labelPoint(area: AreaView): LonLat {
+  const ring = outerRing(area);
+  if (area.kind === "boundary") {
+    const [lon, lat] = ring.reduce((top, next) => (next[1] > top[1] ? next : top));
+    return { lon, lat };
+  }
+  const { west, east, south, north } = extent(area);
+  return { lon: (west + east) / 2, lat: (south + north) / 2 };
+}
+
+/** The box around an area, degrees. */
+export function extent(area: AreaView) {
+  const ring = outerRing(area);
+  const lons = ring.map(([lon]) => lon);
+  const lats = ring.map(([, lat]) => lat);
+  return {
+    west: Math.min(...lons),
+    east: Math.max(...lons),
+    south: Math.min(...lats),
+    north: Math.max(...lats),
+  };
+}
+
+function outerRing(area: AreaView): readonly (readonly [number, number])[] {
+  return (area.rings[0] ?? []) as [number, number][];
+}

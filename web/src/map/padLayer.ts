@@ -1,0 +1,52 @@
+import { type Map as MapLibre, Marker } from "maplibre-gl";
+import type { PadView, StationState } from "../protocol";
+import type { Layer } from "./layer";
+import type { Scene } from "./scene";
+
+/** The landing pads: an H in a square, and whose it is when it is one vehicle's own. */
+export class PadLayer implements Layer {
+  private map: MapLibre | null = null;
+  private markers: Marker[] = [];
+  private shown = "";
+
+  add(map: MapLibre): void {
+    this.map = map;
+  }
+
+  update(scene: Scene): void {
+    const { map } = this;
+    if (map === null) return;
+    const pads = scene.state.site?.pads ?? [];
+    const names = pads.map((pad) => padText(pad, scene.state));
+    const shown = JSON.stringify([pads, names]);
+    if (shown === this.shown) return;
+    this.shown = shown;
+    for (const marker of this.markers) marker.remove();
+    this.markers = pads.map((pad, index) =>
+      new Marker({ element: padElement(names[index] ?? ""), anchor: "center" })
+        .setLngLat([pad.longitude_deg, pad.latitude_deg])
+        .addTo(map),
+    );
+  }
+
+  recolour(): void {}
+}
+
+/** What a pad is called, and whose it is: by name once its vehicle was heard. */
+export function padText(pad: PadView, state: StationState): string {
+  if (pad.serial === null) return `${pad.name}: for any vehicle`;
+  const owner = state.vehicles.find((vehicle) => vehicle.serial === pad.serial);
+  return `${pad.name}: for ${owner?.name ?? pad.serial}`;
+}
+
+function padElement(text: string): HTMLElement {
+  const element = document.createElement("span");
+  element.className = "pad";
+  element.title = `Landing pad ${text}`;
+  element.textContent = "H";
+  const read = document.createElement("span");
+  read.className = "hidden-but-read";
+  read.textContent = `: landing pad ${text}`;
+  element.append(read);
+  return element;
+}

@@ -1,0 +1,53 @@
+import { type Map as MapLibre, Marker } from "maplibre-gl";
+import type { LonLat } from "./localGrid";
+import { moveTo } from "./markerLabel";
+
+/** A place that a vehicle is to go to, with its words. */
+export interface Target {
+  readonly key: number;
+  readonly at: LonLat;
+  /** As the style sheet takes it. */
+  readonly colour: string;
+  readonly text: string;
+}
+
+interface Shown {
+  readonly marker: Marker;
+  readonly text: HTMLElement;
+}
+
+/** Rings with a cross at targets, each with its words above. */
+export class TargetMarkers {
+  private readonly shown = new Map<number, Shown>();
+
+  /** `className` is added to each: what is only meant looks otherwise than what is flown. */
+  constructor(private readonly className = "target-flown") {}
+
+  show(map: MapLibre, targets: readonly Target[]): void {
+    for (const target of targets) {
+      const { marker, text } = this.shownFor(target);
+      if (text.textContent !== target.text) text.textContent = target.text;
+      moveTo(marker, map, target.at);
+    }
+    const kept = new Set(targets.map(({ key }) => key));
+    for (const [key, { marker }] of this.shown) {
+      if (kept.has(key)) continue;
+      marker.remove();
+      this.shown.delete(key);
+    }
+  }
+
+  private shownFor(target: Target): Shown {
+    const known = this.shown.get(target.key);
+    if (known !== undefined) return known;
+    const element = document.createElement("div");
+    element.className = `target ${this.className}`;
+    element.style.setProperty("--own", target.colour);
+    const text = document.createElement("span");
+    text.className = "target-text";
+    element.append(text);
+    const made = { marker: new Marker({ element, anchor: "center" }), text };
+    this.shown.set(target.key, made);
+    return made;
+  }
+}
