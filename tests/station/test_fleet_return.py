@@ -5,6 +5,7 @@ Distances and places are the simulator's own truth, not what the station believe
 
 from itertools import pairwise
 from math import hypot
+from random import Random
 
 import pytest
 from tests.station.returning_world import LEAST_LEVEL_M, ReturningWorld, returning_world
@@ -29,6 +30,14 @@ LOW_CEILING_M = 40.0
 
 def six_in_the_air(pads: list[tuple[int, int]] = CROSSED, **options: object) -> ReturningWorld:
     return returning_world(FIELD, pads, max_height_m=LOW_CEILING_M, **options)  # type: ignore[arg-type]
+
+
+FOUR = SIX[:4]
+
+
+def four_in_the_air(**options: object) -> ReturningWorld:
+    """The first four with room for two layers, 20 and 28 m; a fifth hovers and is not called."""
+    return returning_world(FIELD[:5], CROSSED[:5], max_height_m=31.0, **options)  # type: ignore[arg-type]
 
 
 def landed_on_its_pad(world: ReturningWorld, serial: str) -> bool:
@@ -117,12 +126,31 @@ def test_the_control_all_going_home_at_one_height_come_too_near() -> None:
     assert world.nearest.level_m < LEAST_LEVEL_M
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_drawn_fleets_land_by_the_real_gate_on_shared_pads(seed: int) -> None:
+    rng = Random(seed)
+    places: list[tuple[float, float, float]] = []
+    while len(places) < 6:
+        place = rng.uniform(-200, 200), rng.uniform(20, 250), rng.uniform(15, 100)
+        if all(
+            abs(place[2] - p[2]) >= 7.0 or hypot(place[0] - p[0], place[1] - p[1]) >= 18.0
+            for p in places
+        ):
+            places.append(place)
+    world = returning_world(places, [(-40 + 40 * (i % 3), -40) for i in range(6)], seed=seed)
+    world.call(*world.pads_m)
+    assert world.runs_until_over(900.0)
+    assert set(world.stages().values()) == {Stage.LANDED}
+    assert all(landed_on_its_pad(world, serial) for serial in world.pads_m)
+    assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+
 class TestWhatComesBetween:
     def test_a_pilot_who_takes_one_has_it_and_the_others_go_on(self) -> None:
-        world = six_in_the_air()
-        world.call(*SIX)
+        world = four_in_the_air()
+        world.call(*FOUR)
         world.runs(20.0)
-        (taken, *_) = [m.serial for m in map(world.member, SIX) if m.stage is Stage.FLYING]
+        (taken, *_) = [m.serial for m in map(world.member, FOUR) if m.stage is Stage.FLYING]
         world.world.driver.handle(AuthorityTaken(taken, Leader.PILOT, "the pilot"))
         world.world.app(taken).aircraft.hover()
         assert world.runs_until_over(900.0)
@@ -131,16 +159,16 @@ class TestWhatComesBetween:
         assert world.flies(taken)
         landed = {serial for serial, stage in stages.items() if stage is Stage.LANDED}
         left = {serial for serial, stage in stages.items() if stage is Stage.LEFT_OUT}
-        assert len(landed) >= 3
+        assert len(landed) >= 2
         assert landed | left == set(stages)
         assert {("fleet_return", serial) for serial in left} <= world.alarms()
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     def test_a_vehicle_told_something_newer_is_let_go(self) -> None:
-        world = six_in_the_air()
-        world.call(*SIX)
+        world = four_in_the_air()
+        world.call(*FOUR)
         world.runs(15.0)
-        waiting = [m for m in map(world.member, SIX) if m.stage is Stage.WAITING]
+        waiting = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
         world.world.order(waiting[-1].serial, LandNow())
         assert world.runs_until_over(900.0)
         stages = world.stages()
@@ -150,45 +178,72 @@ class TestWhatComesBetween:
         assert set(stages.values()) == {Stage.LANDED}
 
     def test_all_stop_ends_it_for_all_that_are_held(self) -> None:
-        world = six_in_the_air()
-        world.call(*SIX)
+        world = four_in_the_air()
+        world.call(*FOUR)
         world.runs(20.0)
-        for serial in SIX:
+        for serial in FOUR:
             world.world.order(serial, Hover())
         world.runs(60.0)
         assert set(world.stages().values()) == {Stage.RELEASED}
-        assert all(world.flies(serial) for serial in SIX)
+        assert all(world.flies(serial) for serial in FOUR)
 
     def test_one_whose_link_breaks_while_it_waits_is_not_resumed(self) -> None:
-        world = six_in_the_air(faults=("restart:SIM-5:20:5",))
-        world.call(*SIX)
+        world = four_in_the_air(faults=("restart:SIM-4:20:5",))
+        world.call(*FOUR)
         assert world.runs_until_over(900.0)
         stages = world.stages()
-        assert stages.pop("SIM-5") is Stage.LEFT_OUT
-        assert world.member("SIM-5").mission_id is None
-        assert world.flies("SIM-5")
-        assert ("fleet_return", "SIM-5") in world.alarms()
+        assert stages.pop("SIM-4") is Stage.LEFT_OUT
+        assert world.member("SIM-4").mission_id is None
+        assert world.flies("SIM-4")
+        assert ("fleet_return", "SIM-4") in world.alarms()
         assert set(stages.values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     def test_one_that_is_silent_for_a_moment_in_flight_lands_all_the_same(self) -> None:
-        world = six_in_the_air(faults=("telemetry-dropout:SIM-2:25:6",))
-        world.call(*SIX)
+        world = four_in_the_air(faults=("telemetry-dropout:SIM-2:25:6",))
+        world.call(*FOUR)
         assert world.runs_until_over(900.0)
         assert set(world.stages().values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     def test_one_whose_app_ignores_its_mission_is_an_alarm_and_the_others_go_on(self) -> None:
-        world = six_in_the_air(faults=("ack-then-nothing:SIM-5:8:900",))
-        world.call(*SIX)
+        world = four_in_the_air(faults=("ack-then-nothing:SIM-4:8:900",))
+        world.call(*FOUR)
         assert world.runs_until_over(900.0)
         stages = world.stages()
-        assert stages.pop("SIM-5") is Stage.LEFT_OUT
-        assert ("fleet_return", "SIM-5") in world.alarms()
+        assert stages.pop("SIM-4") is Stage.LEFT_OUT
+        assert ("fleet_return", "SIM-4") in world.alarms()
         assert set(stages.values()) == {Stage.LANDED}
         newest = list(world.world.driver.station.orders.records.values())
         holds = [r for r in newest if "was ignored" in r.command.issued_by]
-        assert [(r.command.serial, r.command.body) for r in holds] == [("SIM-5", Hover())]
+        assert [(r.command.serial, r.command.body) for r in holds] == [("SIM-4", Hover())]
+
+    def test_one_whose_link_breaks_while_it_flies_lands_and_is_told_nothing(self) -> None:
+        world = four_in_the_air(faults=("restart:SIM-1:20:5",))
+        world.call(*FOUR)
+        world.runs(15.0)
+        assert world.member("SIM-1").stage is Stage.FLYING
+        given = world.member("SIM-1").mission_id
+        assert world.runs_until_over(900.0)
+        assert set(world.stages().values()) == {Stage.LANDED}
+        assert landed_on_its_pad(world, "SIM-1")
+        book = world.world.driver.station.orders.records.values()
+        assert [r.command.id for r in book if r.command.serial == "SIM-1"][-1] == given
+
+    def test_one_left_out_stays_an_alarm_when_others_are_called(self) -> None:
+        pads = [(0, -20), (0, -20), (60, -20)]
+        world = returning_world(FIELD[:3], pads, faults=("restart:SIM-1:10:2",))
+        world.call("SIM-1", "SIM-2")
+        assert world.runs_until_over(300.0)
+        assert world.member("SIM-1").stage is Stage.LEFT_OUT
+        world.call("SIM-3")
+        world.runs(1.0)
+        assert ("fleet_return", "SIM-1") in world.alarms()
+        world.call("SIM-1")
+        world.runs(1.0)
+        assert ("fleet_return", "SIM-1") not in world.alarms()
+        assert world.runs_until_over(300.0)
+        assert landed_on_its_pad(world, "SIM-1")
 
     def test_one_that_guidance_leads_is_taken_from_it_by_its_hold(self) -> None:
         world = returning_world([(0, 100, 30)], [(0, 0)])
@@ -198,43 +253,43 @@ class TestWhatComesBetween:
         assert landed_on_its_pad(world, "SIM-1")
 
     def test_one_whose_app_refuses_is_reported_with_that(self) -> None:
-        world = six_in_the_air(faults=("negative-ack:SIM-5:8:900",))
-        world.call(*SIX)
+        world = four_in_the_air(faults=("negative-ack:SIM-4:8:900",))
+        world.call(*FOUR)
         assert world.runs_until_over(900.0)
-        assert "refused by app" in world.member("SIM-5").reason
+        assert "refused by app" in world.member("SIM-4").reason
 
     def test_the_alarm_of_one_left_out_ends_when_somebody_sees_to_it(self) -> None:
-        world = six_in_the_air(faults=("negative-ack:SIM-5:8:60",))
-        world.call(*SIX)
+        world = four_in_the_air(faults=("negative-ack:SIM-4:8:60",))
+        world.call(*FOUR)
         assert world.runs_until_over(900.0)
-        assert ("fleet_return", "SIM-5") in world.alarms()
-        world.world.order("SIM-5", LandNow())
+        assert ("fleet_return", "SIM-4") in world.alarms()
+        world.world.order("SIM-4", LandNow())
         world.runs(2.0)
-        assert ("fleet_return", "SIM-5") not in world.alarms()
+        assert ("fleet_return", "SIM-4") not in world.alarms()
 
     def test_somebody_who_comes_to_hover_in_the_way_is_flown_around(self) -> None:
-        world = six_in_the_air()
-        world.call(*SIX[:5])
+        world = four_in_the_air()
+        world.call(*FOUR)
         world.runs(10.0)
-        (waiting, *_) = [m for m in map(world.member, SIX[:5]) if m.stage is Stage.WAITING]
+        (waiting, *_) = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
         assert waiting.flight is not None
         start, end = waiting.flight.way_m[0], waiting.flight.way_m[-1]
-        middle = (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
-        world.put("SIM-6", (*middle, waiting.flight.layer_up_m))
+        ahead = (0.8 * start[0] + 0.2 * end[0], 0.8 * start[1] + 0.2 * end[1])
+        world.put("SIM-5", (*ahead, waiting.flight.layer_up_m))
         assert world.runs_until_over(900.0)
         assert set(world.stages().values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     def test_somebody_who_hovers_over_its_pad_leaves_it_out(self) -> None:
-        world = six_in_the_air()
-        world.call(*SIX[:5])
+        world = four_in_the_air()
+        world.call(*FOUR)
         world.runs(10.0)
-        (waiting, *_) = [m for m in map(world.member, SIX[:5]) if m.stage is Stage.WAITING]
-        world.put("SIM-6", (*world.pads_m[waiting.serial], 10.0))
+        (waiting, *_) = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
+        world.put("SIM-5", (*world.pads_m[waiting.serial], 10.0))
         assert world.runs_until_over(900.0)
         stages = world.stages()
         assert stages.pop(waiting.serial) is Stage.LEFT_OUT
-        assert "SIM-6 hovers where it would" in world.member(waiting.serial).reason
+        assert "SIM-5 hovers where it would" in world.member(waiting.serial).reason
         assert set(stages.values()) == {Stage.LANDED}
 
 
@@ -281,13 +336,13 @@ class TestCalling:
         assert list(world.stages()) == ["SIM-1"]
 
     def test_one_called_later_joins(self) -> None:
-        world = six_in_the_air()
-        world.call(*SIX[:4])
+        world = four_in_the_air()
+        world.call(*FOUR[:2])
         world.runs(20.0)
-        world.call(*SIX[4:])
+        world.call(*FOUR[2:])
         assert world.runs_until_over(900.0)
         assert set(world.stages().values()) == {Stage.LANDED}
-        assert len(world.stages()) == 6
+        assert len(world.stages()) == 4
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     def test_a_mission_is_stopped_before_its_vehicle_is_planned_for(self) -> None:

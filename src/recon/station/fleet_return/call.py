@@ -9,6 +9,7 @@ from recon.safety.datum import frame_for
 from recon.station import commanding
 from recon.station.commanding import Stepped
 from recon.station.fleet_return.record import ENDED, FleetReturn, Member, Stage
+from recon.station.fleet_return.watch import is_still_left
 from recon.station.outputs import Output
 from recon.station.state import Station
 
@@ -64,7 +65,9 @@ def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Sta
     if running is None or running.is_over:
         frame = frame_for(station.airspace, vehicle)
         assert frame is not None  # or it was refused
-        running = FleetReturn(by, now_ns, frame)
+        left = () if running is None else running.members.values()
+        still = {member.serial: member for member in left if is_still_left(station, member)}
+        running = FleetReturn(by, now_ns, frame, still)
     hold_id = order.command_id
     name = vehicle.display_name
     member = Member(serial, name, vehicle.link_id, hold_id, Stage.STOPPING, now_ns)

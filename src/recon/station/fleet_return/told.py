@@ -8,7 +8,7 @@ from recon.station.alarms import Condition, Severity
 from recon.station.fleet_return.places import is_same_pad
 from recon.station.fleet_return.record import UNDER_WAY, FleetReturn, Member, Stage
 from recon.station.fleet_return.settings import SETTINGS
-from recon.station.fleet_return.watch import newest_motion
+from recon.station.fleet_return.watch import is_still_left
 from recon.station.state import Station
 
 RULE_LEFT_OUT = "fleet_return"
@@ -21,7 +21,7 @@ def conditions(station: Station) -> Iterator[Condition]:
     if running is None:
         return
     for member in running.members.values():
-        if member.stage is Stage.LEFT_OUT and _is_still_left(station, member):
+        if is_still_left(station, member):
             text = (
                 f"{member.name} is not flown home with the fleet: {member.reason}. Order its own "
                 "return (it climbs to the aircraft's go-home height first), land it, or let its "
@@ -73,15 +73,6 @@ def _next_at_its_pad(running: FleetReturn, landed: Member) -> Member | None:
 def _about(member: Member, rule: str, severity: Severity, text: str) -> Condition:
     key = f"{rule}:{member.serial}"
     return Condition(key, severity, rule, member.name, text, member.serial, member.link_id)
-
-
-def _is_still_left(station: Station, member: Member) -> bool:
-    """Whether it still flies, and nobody has ordered it anything since."""
-    vehicle = station.fleet.vehicles.get(member.serial)
-    if vehicle is None or vehicle.is_flying.value is False:
-        return False
-    newest = newest_motion(station, member.serial)
-    return newest is None or newest.command.issued_at_ns <= member.since_ns
 
 
 def _in_turn(running: FleetReturn) -> list[Member]:

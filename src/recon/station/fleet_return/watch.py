@@ -63,6 +63,15 @@ def newest_motion(station: Station, serial: str) -> OrderRecord | None:
     return None
 
 
+def is_still_left(station: Station, member: Member) -> bool:
+    """Return whether a vehicle left out still flies, and nobody has ordered it anything since."""
+    vehicle = station.fleet.vehicles.get(member.serial)
+    if member.stage is not Stage.LEFT_OUT or vehicle is None or vehicle.is_flying.value is False:
+        return False
+    newest = newest_motion(station, member.serial)
+    return newest is None or newest.command.issued_at_ns <= member.since_ns
+
+
 def _taken(station: Station, member: Member, now_ns: int) -> Member | None:
     """The pilot, or whoever ordered something newer, has the vehicle."""
     lead = station.leads.get(member.serial)
