@@ -4,10 +4,12 @@ import re
 import runpy
 import sys
 import tomllib
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
 import typer
+import typer.core
 
 from recon.cli.app import app
 from recon.site import load_site
@@ -49,8 +51,13 @@ def test_commands_and_options_exist(page: Path) -> None:
         for line in re.findall(r"^(?:uv run (?:--locked )?)?recon (.+)$", block, re.MULTILINE):
             name, *words = line.split("#")[0].split()
             assert name in group.commands, f"{page_id(page)}: recon {name}"
-            known = {o for p in group.commands[name].params for o in (*p.opts, *p.secondary_opts)}
-            named = {word.split("=")[0] for word in words if word.startswith("--")}
+            command = group.commands[name]
+            if isinstance(command, typer.core.TyperGroup):
+                assert words[0] in command.commands, f"{page_id(page)}: recon {line}"
+                command = command.commands[words[0]]
+            known = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}
+            options = takewhile(lambda word: word != "--", words)
+            named = {word.split("=")[0] for word in options if word.startswith("--")}
             assert named <= known, f"{page_id(page)}: recon {line}"
 
 

@@ -68,7 +68,9 @@ class AuditLog:
         self._run_before: dict[str, Any] | None = None
         self._file: int | None = None
         self._hash = NO_LINE_BEFORE
-        self._written_n = 0
+        self.written_n = 0
+        """The number of the latest entry in the file: it survives the end of the process."""
+        self._encoded_n = 0
         self._unwritten = b""
         self._synced_at_s = 0.0
         self._is_synced = True
@@ -174,7 +176,7 @@ class AuditLog:
     def _encode(self, batch: list[Stamped]) -> None:
         lines = [self._unwritten]
         for stamped in batch:
-            missing = stamped.n - self._written_n - 1
+            missing = stamped.n - self._encoded_n - 1
             if missing > 0:
                 lines.append(self._line(self._lost(stamped, missing)))
             lines.append(self._line(stamped))
@@ -187,7 +189,7 @@ class AuditLog:
 
     def _line(self, stamped: Stamped) -> bytes:
         line = encode_line(stamped, self._hash)
-        self._hash, self._written_n = line_hash(line), stamped.n
+        self._hash, self._encoded_n = line_hash(line), stamped.n
         return line + b"\n"
 
     def _append(self) -> None:
@@ -197,6 +199,7 @@ class AuditLog:
             # A line that was written in part is completed by the next call, never begun anew.
             self._unwritten = self._unwritten[written:]
             self._is_synced = False
+        self.written_n = self._encoded_n
 
     def _sync(self) -> None:
         assert self._file is not None
@@ -226,10 +229,10 @@ class AuditLog:
         self.path = path
         entry = AuditEntry(OPENED_KIND, "the audit begins", details={"previous": previous})
         now_ns = self._utc_ns()
-        self._unwritten = self._line(Stamped(self._written_n, now_ns, now_ns, entry))
+        self._unwritten = self._line(Stamped(self._encoded_n, now_ns, now_ns, entry))
 
     def _file_before(self, path: Path) -> dict[str, Any]:
-        return {"file": path.name, "n": self._written_n, "hash": self._hash}
+        return {"file": path.name, "n": self._encoded_n, "hash": self._hash}
 
 
 def refuse_other_writer(folder: Path) -> None:
