@@ -22,14 +22,15 @@ from recon.client import (
 TOKEN = "a-secret-of-the-field"
 
 
-def leg_north(vehicle: Vehicle) -> Mission:
+def leg_north(vehicle: Vehicle, first_deg: float = 0.0002) -> Mission:
+    """From 22 m north of the vehicle, or from right above it, as a takeoff needs."""
     here = vehicle.now().position
     assert here.latitude_deg is not None
     assert here.longitude_deg is not None
     return Mission(
         tuple(
             Waypoint(here.latitude_deg + north_deg, here.longitude_deg, 50.0, 5.0)
-            for north_deg in (0.0002, 0.0004)
+            for north_deg in (first_deg, 0.0004)
         )
     )
 
@@ -87,7 +88,7 @@ def test_what_the_station_will_not_do_is_a_value() -> None:
     async def main() -> None:
         async with running_station(airborne=False) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            leg = leg_north(vehicle)
+            leg = leg_north(vehicle, first_deg=0.0)
             assert refused(await vehicle.fly(leg)).rule == "flying"
             nowhere = replace(leg.waypoints[0], speed_mps=float("nan"))
             told = refused(await vehicle.fly(Mission((nowhere,)), takeoff=True))

@@ -1,7 +1,7 @@
 """A station and simulated apps joined by fake links, in virtual time."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tests.ready import ready_profile, ready_site
 
@@ -168,6 +168,14 @@ def world(
     for app in apps:
         made.connect(app)
     return made
+
+
+def from_the_ground(vehicle: VehicleState, flown: Mission) -> Mission:
+    """Return the mission with a waypoint right above the vehicle before it: it climbs first."""
+    here, first = vehicle.position.value, flown.waypoints[0]
+    assert here is not None
+    above = replace(first, latitude_deg=here.latitude_deg, longitude_deg=here.longitude_deg)
+    return replace(flown, waypoints=(above, *flown.waypoints))
 
 
 def square_mission(height_m: float = 45.0, side_m: float = 30.0) -> Mission:

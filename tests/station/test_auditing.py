@@ -4,7 +4,7 @@ import pytest
 from tests.link.approved import core, extended
 from tests.station.audited import Audited
 from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
-from tests.station.station_world import square_mission, world
+from tests.station.station_world import from_the_ground, square_mission, world
 
 from recon import wire
 from recon.fleet.state import Fleet
@@ -209,7 +209,8 @@ class TestFlights:
         here = world(1, airborne=Airborne.NONE)
         audited = Audited(here)
         here.run_for(3.0)
-        here.order("SIM-1", FlyMission(square_mission()), takeoff=True)
+        mission = from_the_ground(here.vehicle("SIM-1"), square_mission())
+        here.order("SIM-1", FlyMission(mission), takeoff=True)
         here.run_for(40.0)
         here.order("SIM-1", LandNow())
         here.run_for(60.0)

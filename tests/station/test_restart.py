@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.station.audited import UTC_NS, Audited
-from tests.station.station_world import World, square_mission, world
+from tests.station.station_world import World, from_the_ground, square_mission, world
 
 from recon.model.authority import Lead, Leader
 from recon.model.command import FlyMission, Hover, LandNow, Phase
@@ -61,7 +61,8 @@ def flown() -> tuple[World, Audited]:
     here = world(2, airborne=Airborne.NONE)
     audited = Audited(here)
     here.run_for(3.0)
-    here.order("SIM-1", FlyMission(square_mission()), takeoff=True)
+    mission = from_the_ground(here.vehicle("SIM-1"), square_mission())
+    here.order("SIM-1", FlyMission(mission), takeoff=True)
     here.run_for(30.0)
     return here, audited
 

@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.safety.cases import NOW, command, vehicle
+from tests.safety.cases import vehicle
 from tests.safety.fenced import (
     WIDE,
     airspace,
     asked,
     flier,
-    here,
     hills,
     mission,
     reason,
@@ -20,7 +19,7 @@ from tests.safety.fenced import (
 from recon.model.command import Body, HoldPosition, Hover, Nudge, ReturnHome
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
-from recon.safety import Override, PreparedAirspace
+from recon.safety import PreparedAirspace
 from recon.safety.rules.max_height import max_height
 
 LIMITS = replace(WIDE, max_height_above_ground_m=100.0)
@@ -96,13 +95,6 @@ class TestTheWayHome:
         assert told(level(40.0), state=flier(go_home_m=None)) == expected
         assert told(Nudge(1.0, 0.0, 0.0), state=flier(go_home_m=None)) == expected
         assert told(level(40.0), state=vehicle(None)) == expected
-
-    def test_unless_somebody_has_overridden_the_checklist(self) -> None:
-        now = replace(
-            here(FLAT, flier(go_home_m=None)), preflight_override=Override("Ann", "short hop", NOW)
-        )
-        assert max_height(command(level(40.0)), now) is None
-        assert max_height(command(level(110.0)), now) is not None
 
     def test_sticks_and_holding_need_none(self) -> None:
         for body in (stick(1.0, 0.0), HoldPosition()):

@@ -122,7 +122,8 @@ class TestColumns:
         grounded = flier(0.0, 0.0, 0.0, is_flying=False)
         assert is_allowed(mission((0.0, 3.0, 40.0), (50.0, 0.0, 40.0)), state=grounded)
         assert told(mission((0.0, 30.0, 40.0), (50.0, 0.0, 40.0)), state=grounded).endswith(
-            "; let it climb straight up first, where it is"
+            "; it must climb straight up first, where it is (a mission's first waypoint may be "
+            "right above)"
         )
 
     @pytest.mark.parametrize(("east_m", "allowed"), [(1.9, True), (2.1, False)])
@@ -150,7 +151,9 @@ class TestColumns:
         assert is_allowed(Nudge(0.0, 0.0, 20.0), state=low)
         assert is_allowed(stick(0.5, 0.0, 5.0), state=low)
         assert not is_allowed(Nudge(0.0, 30.0, 20.0), state=low)
-        assert told(level(40.0), state=low).endswith("let it climb straight up first, where it is")
+        assert told(level(40.0), state=low).endswith(
+            "(a mission's first waypoint may be right above)"
+        )
         assert not is_allowed(stick(0.5, 0.0, 2.5), state=low)
         assert is_allowed(HoldPosition(), state=low)
 

@@ -24,11 +24,10 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
 
     Every flight, corner and way home must be at most `max_height_above_ground_m` above the lowest
     ground under the whole piece; without an elevation model the ground is taken for flat. A way
-    home is at the go-home height; when nobody has told it, the path is refused, unless somebody has
-    overridden the vehicle's checklist, which asks for it. A piece that begins where the vehicle is
-    may be as high above the lowest ground under it as the vehicle is above ground now. A stick
-    without velocity may be `stop_slack_m` higher; where the vehicle is not known to be, its height
-    above takeoff counts.
+    home is at the go-home height; when nobody has told it, the path is refused. A piece that begins
+    where the vehicle is may be as high above the lowest ground under it as the vehicle is above
+    ground now. A stick without velocity may be `stop_slack_m` higher; where the vehicle is not
+    known to be, its height above takeoff counts.
     """
     path = flown(command, situation)
     if path is None:
@@ -39,10 +38,7 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     settings = situation.settings.fences
     limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
     most_m = limit_m + (settings.stop_slack_m if is_stop else 0.0)
-    pieces = path.pieces
     judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME)
-    if situation.preflight_override is not None:
-        judged &= pieces.high_m < inf
     high = _higher(path, np.flatnonzero(judged), situation, most_m)
     high = _worse(path, high, situation, settings.not_worse_m)
     return None if len(high) == 0 else Refusal(RULE, _reason(path, int(high[0]), situation))

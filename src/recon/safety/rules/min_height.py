@@ -13,6 +13,9 @@ from recon.safety.situation import Situation
 from recon.safety.standstill import is_zero_stick
 
 RULE = "min_height"
+_CLIMB_FIRST = (
+    "; it must climb straight up first, where it is (a mission's first waypoint may be right above)"
+)
 
 
 def min_height(command: Command, situation: Situation) -> Refusal | None:
@@ -54,7 +57,7 @@ def _reason(path: FlownPath, index: int, situation: Situation) -> str:
     above_m = float(pieces.low_m[index]) - highest_m
     flat = " (the ground is taken for flat)" if is_ground_assumed_flat(situation.airspace) else ""
     low_now = path.here_m[2] <= pieces.low_m[index] and bool(pieces.is_entry[index])
-    advice = "; let it climb straight up first, where it is" if low_now else ""
+    advice = _CLIMB_FIRST if low_now else ""
     return (
         f"{what} comes down to {above_m:.1f} m above ground{flat}, at least {least_m:g} m is "
         f"needed outside takeoff and landing{advice}"
