@@ -385,8 +385,10 @@ class TestGhosts:
 
     def test_one_with_a_mission_is_foreseen_to_fly_it_on(self) -> None:
         stale = seen(aircraft(age_s=5.0))
-        assert len(foresee_traffic(stale, Intent(), SETTINGS)) == 3
-        assert len(foresee_traffic(stale, flies(route((0.0, 0.0), (9.0, 0.0))), SETTINGS)) == 4
+        assert len(foresee_traffic(stale, Intent(), SETTINGS, FOREVER_S)) == 3
+        assert (
+            len(foresee_traffic(stale, flies(route((0.0, 0.0), (9.0, 0.0))), SETTINGS, 60.0)) == 4
+        )
 
 
 def test_every_part_of_a_flight_has_words() -> None:

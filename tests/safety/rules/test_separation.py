@@ -7,6 +7,7 @@ from tests.safety.traffic import AIR, NOW, aircraft, at, flies, judged, route
 
 from recon.model.airspace import Airspace
 from recon.model.command import (
+    Command,
     FlyMission,
     GoTo,
     HoldPosition,
@@ -22,7 +23,8 @@ from recon.model.intent import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, TrackPoint, VehicleState
-from recon.safety import PreparedAirspace, Traffic
+from recon.safety import PreparedAirspace, Situation, Traffic
+from recon.safety.rules.separation import separation
 
 NORTH = route((0.0, 0.0), (200.0, 0.0))
 
@@ -38,7 +40,12 @@ class TestStanding:
     def test_a_path_past_a_standing_vehicle_is_refused_with_leg_time_and_distance(self) -> None:
         own, other = aircraft("A"), aircraft("B", (100.0, 10.0))
         found = judged(NORTH, own, other)
-        refused(found, "A: between waypoints 1 and 2", "about 1", "10 m", "of B", "15 m", "6 m")
+        assert found is not None
+        assert found.reason == (
+            "A: between waypoints 1 and 2, about 17 s from now, it could come within 10 m and 0 m "
+            "in height of B (while it hovers); 15 m, or 6 m in height, must be kept: fly at "
+            "another height, elsewhere, or later"
+        )
 
     @pytest.mark.parametrize(("east_m", "height_m"), [(15.5, 40.0), (0.0, 46.5), (10.0, 33.5)])
     def test_it_passes_beside_above_and_below(self, east_m: float, height_m: float) -> None:
@@ -96,11 +103,19 @@ class TestTime:
             found = judged(route((-far_m, 0.0), (600.0, 0.0)), own, other)
             assert (found is None) is passes
 
-    def test_a_mission_may_start_seconds_late(self) -> None:
-        crossing = route((20.0, -45.0), (20.0, 600.0))
-        other = Traffic(aircraft("B", (20.0, -45.0)), flies(crossing, passed=1))
+    @pytest.mark.parametrize(
+        ("east_m", "missions", "orders"), [(144, 0, 0), (148, 0, 1), (200, 1, 1)]
+    )
+    def test_a_mission_may_start_seconds_late(
+        self, east_m: float, missions: int, orders: int
+    ) -> None:
+        """What B crosses when A is past passes for an order that starts now, not for a mission."""
+        crossing = route((20.0, -east_m), (20.0, 600.0))
+        other = Traffic(aircraft("B", (20.0, -east_m)), flies(crossing, passed=1))
         own = aircraft("A", (-30.0, 0.0))
-        refused(judged(route((-30.0, 0.0), (100.0, 0.0)), own, other))
+        there = route((-30.0, 0.0), (100.0, 0.0))
+        assert (judged(there, own, other) is None) is bool(missions)
+        assert (judged(GoTo(at(100.0, 0.0), 40.0, 5.0), own, other) is None) is bool(orders)
 
     def test_layers_and_areas_pass_however_long(self) -> None:
         def survey(north_m: float, height_m: float) -> Mission:
@@ -251,16 +266,29 @@ class TestUnseen:
         refused(judged(NORTH, aircraft("A"), blind), "B")
 
     def test_one_that_has_never_told_where_it_is_refuses_motion(self) -> None:
-        refused(judged(NORTH, aircraft("A"), aircraft("B", None)), "B may be in the air")
+        refused(judged(NORTH, aircraft("A"), aircraft("B", None)), "A: B may be in the air")
 
-    def test_an_app_without_an_aircraft_is_no_traffic(self) -> None:
-        assert judged(NORTH, aircraft("A"), VehicleState("B", link_id=2)) is None
+    def test_an_app_without_an_aircraft_is_no_traffic_and_hides_none(self) -> None:
+        app = VehicleState("B", link_id=2)
+        assert judged(NORTH, aircraft("A"), app) is None
+        refused(judged(NORTH, aircraft("A"), app, aircraft("C", (100.0, 0.0))), "of C")
+
+    def test_the_order_of_traffic_does_not_matter(self) -> None:
+        wall, far = aircraft("B", (100.0, 0.0)), aircraft("C", (0.0, 60.0))
+        refused(judged(NORTH, aircraft("A"), wall, far), "of B")
+        refused(judged(NORTH, aircraft("A"), far, wall), "of B")
 
     def test_a_vehicle_that_does_not_know_where_it_is_does_not_move_among_others(self) -> None:
-        refused(judged(NORTH, aircraft("A", None), aircraft("B")), "A: it does not tell where")
-        nowhere = PreparedAirspace(Airspace())
-        found = judged(NORTH, aircraft("A", None), aircraft("B"), airspace=nowhere)
-        refused(found, "does not tell where")
+        words = "A: it does not tell where it is, and others are in the air"
+        for airspace in (AIR, PreparedAirspace(Airspace())):
+            found = judged(NORTH, aircraft("A", None), aircraft("B"), airspace=airspace)
+            assert found is not None
+            assert found.reason == words
+
+    def test_a_vehicle_nobody_knows_is_another_rules_matter(self) -> None:
+        situation = Situation(NOW, None, (), airspace=AIR, traffic=(Traffic(aircraft("B")),))
+        command = Command(1, FlyMission(NORTH), "test", NOW, NOW, serial="A")
+        assert separation(command, situation) is None
 
 
 class TestUnknownHeights:

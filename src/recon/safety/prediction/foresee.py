@@ -12,7 +12,6 @@ from recon.safety.prediction.course import (
     EAST_0,
     EAST_1,
     END_S,
-    FOREVER_S,
     HIGH_0,
     HIGH_1,
     LOW_0,
@@ -40,7 +39,7 @@ def foresee_order(flyer: Flyer, body: Body, settings: PredictionSettings) -> Cou
 
 
 def foresee_traffic(
-    flyer: Flyer, intent: Intent, settings: PredictionSettings, until_s: float = FOREVER_S
+    flyer: Flyer, intent: Intent, settings: PredictionSettings, until_s: float
 ) -> tuple[Course, ...]:
     """Return what others must keep clear of: a vehicle's course; of a stale one, its ghost too.
 

@@ -46,7 +46,7 @@ def first_meeting(
     others: Sequence[Course],
     need: Separation,
     settings: PredictionSettings,
-    start_delay_s: float = 0.0,
+    start_delay_s: float,
 ) -> Meeting | None:
     """Return where `own` first comes nearer than `need` to any other course; None if it does not.
 

@@ -9,6 +9,7 @@ A vehicle that is not heard any more is a hazard about its last place and along 
 from math import ceil
 
 from recon.model.command import MOVING_BODIES, Command, FlyMission, Refusal
+from recon.model.vehicle import VehicleState
 from recon.safety.datum import frame_for
 from recon.safety.prediction import (
     Course,
@@ -32,30 +33,32 @@ RULE = "separation"
 
 def separation(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path that comes too near to another vehicle's, or to where one may be unseen."""
-    body = command.body
+    body, vehicle = command.body, situation.vehicle
     if not isinstance(body, MOVING_BODIES) or is_zero_stick(body) or not situation.traffic:
         return None
-    vehicle = situation.vehicle
-    frame = None if vehicle is None else frame_for(situation.airspace, vehicle)
-    if vehicle is None or frame is None:
-        return _refusal("this vehicle", "it does not tell where it is, and others are in the air")
-    plane = Plane(frame.origin)
-    prediction = situation.settings.prediction
-    own = flyer(vehicle, situation.airspace, plane, situation.now_ns, prediction)
-    if own is None:
-        return _refusal(
-            vehicle.display_name, "it does not tell where it is, and others are in the air"
-        )
+    if vehicle is None:
+        return None
+    prediction, need = situation.settings.prediction, _need(situation)
+    frame = frame_for(situation.airspace, vehicle)
+    plane = None if frame is None else Plane(frame.origin)
+    own = None if plane is None else _placed(vehicle, plane, situation)
+    if plane is None or own is None:
+        text = "it does not tell where it is, and others are in the air"
+        return _refusal(vehicle.display_name, text)
     course = foresee_order(own, body, prediction)
     others = _others(own, course, plane, situation)
     if isinstance(others, Refusal):
         return others
-    need = _need(situation)
     delay_s = prediction.start_delay_s if isinstance(body, FlyMission) else 0.0
     meeting = first_meeting(course, others, need, prediction, delay_s)
     if meeting is None:
         return None
     return _refusal(own.name, _words(meeting, others[meeting.other], need))
+
+
+def _placed(vehicle: VehicleState, plane: Plane, situation: Situation) -> Flyer | None:
+    prediction = situation.settings.prediction
+    return flyer(vehicle, situation.airspace, plane, situation.now_ns, prediction)
 
 
 def _others(
@@ -66,7 +69,7 @@ def _others(
     around = surroundings(course, _need(situation), prediction)
     courses: list[Course] = []
     for other in situation.traffic:
-        seen = flyer(other.vehicle, situation.airspace, plane, situation.now_ns, prediction)
+        seen = _placed(other.vehicle, plane, situation)
         if seen is None:
             if other.vehicle.core_received_at_ns is None:
                 continue  # an app without an aircraft: nothing has said that it flies
