@@ -11,6 +11,7 @@ import { VehicleDetail } from "./panels/detail/VehicleDetail";
 import { HelpDialog } from "./panels/help/HelpDialog";
 import { LinkList } from "./panels/links/LinkList";
 import { OrderBar } from "./panels/orders/OrderBar";
+import { SeparationBanner } from "./panels/separation/SeparationBanner";
 import { StationPanel } from "./panels/station/StationPanel";
 import { VehicleList } from "./panels/vehicles/VehicleList";
 import "./layout.css";
@@ -45,7 +46,10 @@ export function App() {
   return (
     <div class="page" classList={{ "is-lost": source.connection().kind === "lost" }}>
       <TopBar onHelp={() => setHelpOpen(!isHelpOpen())} />
-      <LostBanner />
+      <div class="banners">
+        <LostBanner />
+        <SeparationBanner />
+      </div>
       <aside class="side side-vehicles" aria-label="Vehicles">
         <VehicleList />
         <VehicleDetail />

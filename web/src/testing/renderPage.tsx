@@ -23,6 +23,7 @@ export interface RenderedPage {
   /** From now on every word that is no order, and every checklist, is answered with these. */
   answerWordsWith(word: WordResponse): void;
   showPreflight(preflight: PreflightView): void;
+  failPreflight(problem: string): void;
   /** From now on a vehicle's picture is brought by this. */
   bringFrames(fetch: StationSource["vehicleFrame"]): void;
   say(state: StationState): void;
@@ -100,6 +101,9 @@ export function renderPage(part: () => JSX.Element, first: StationState | null):
     },
     showPreflight: (value) => {
       asked.preflight = { kind: "answered", value };
+    },
+    failPreflight: (problem) => {
+      asked.preflight = { kind: "failed", problem };
     },
     bringFrames: (fetch) => {
       asked.bringFrame = fetch;

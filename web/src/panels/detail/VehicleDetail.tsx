@@ -5,7 +5,11 @@ import { colourOf } from "../../look/identity";
 import { createDesk } from "../../orders/desk";
 import type { VehicleView } from "../../protocol";
 import { agedBy, formatAge } from "../../words/age";
+import { vehicleLabel } from "../../words/names";
+import { GhostSection } from "../ghost/GhostSection";
+import { LeadSection } from "../lead/LeadSection";
 import { Panel } from "../Panel";
+import { PreflightSection } from "../preflight/PreflightSection";
 import { CameraControl } from "./CameraControl";
 import { CameraFrame } from "./CameraFrame";
 import { type Fact, factsOf } from "./facts";
@@ -40,6 +44,12 @@ export function VehicleDetail() {
           }
         >
           <Identity vehicle={vehicle()} />
+          <Show when={vehicle().ghost}>
+            {(ghost) => <GhostSection ghost={ghost()} name={vehicleLabel(vehicle())} />}
+          </Show>
+          <Show when={vehicle().serial} keyed>
+            {(serial) => <Words serial={serial} vehicle={vehicle()} />}
+          </Show>
           <Show when={vehicle().frame === null ? null : vehicle().serial} keyed>
             {(serial) => <CameraFrame serial={serial} vehicle={vehicle()} />}
           </Show>
@@ -50,6 +60,17 @@ export function VehicleDetail() {
         </Panel>
       )}
     </Show>
+  );
+}
+
+/** Who leads it and whether it is ready: made anew for another vehicle, so that no answer stays. */
+function Words(props: { serial: string; vehicle: VehicleView }) {
+  const label = () => vehicleLabel(props.vehicle);
+  return (
+    <>
+      <LeadSection serial={props.serial} name={label()} lead={props.vehicle.lead} />
+      <PreflightSection serial={props.serial} name={label()} />
+    </>
   );
 }
 

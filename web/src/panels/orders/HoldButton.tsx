@@ -2,9 +2,8 @@ import { createEffect, Show } from "solid-js";
 import type { HoldTimer } from "../../orders/holdTimer";
 import type { OrderKind } from "../../orders/kinds";
 import { listNames } from "../../words/names";
+import { holdHandlers } from "../guard/holdHandlers";
 import { OrderIcon } from "./OrderIcon";
-
-const HOLD_KEYS = [" ", "Enter"];
 
 /** A button that acts only when it is held, by pointer or keyboard, until its bar is full. */
 export function HoldButton(props: {
@@ -16,18 +15,6 @@ export function HoldButton(props: {
   createEffect(() => {
     if (isDisabled()) props.timer.cancel();
   });
-  const onKeyDown = (event: KeyboardEvent) => {
-    if (event.key === "Escape") props.timer.cancel();
-    if (!HOLD_KEYS.includes(event.key)) return;
-    event.preventDefault();
-    if (!event.repeat && !isDisabled()) props.timer.press();
-  };
-  const onKeyUp = (event: KeyboardEvent) => {
-    if (HOLD_KEYS.includes(event.key)) props.timer.release();
-  };
-  const onPointerDown = (event: PointerEvent) => {
-    if (event.button === 0 && !isDisabled()) props.timer.press();
-  };
   return (
     <button
       type="button"
@@ -37,14 +24,7 @@ export function HoldButton(props: {
       aria-label={accessibleName(props.order, props.labels)}
       aria-keyshortcuts={`Shift+${props.order.key}`}
       style={{ "--held": props.timer.progress() }}
-      onPointerDown={onPointerDown}
-      onPointerUp={() => props.timer.release()}
-      onPointerLeave={() => props.timer.cancel()}
-      onPointerCancel={() => props.timer.cancel()}
-      onContextMenu={(event) => event.preventDefault()}
-      onKeyDown={onKeyDown}
-      onKeyUp={onKeyUp}
-      onBlur={() => props.timer.cancel()}
+      {...holdHandlers(props.timer, isDisabled)}
     >
       <OrderIcon kind={props.order.kind} />
       <span class="order-text">

@@ -4,6 +4,7 @@ import type { SiteView, StationView } from "../../protocol";
 import { formatAge, UNKNOWN } from "../../words/age";
 import { formatBytes, formatQuantity } from "../../words/quantity";
 import { Panel } from "../Panel";
+import { SeparationSwitch } from "../separation/SeparationSwitch";
 
 /** The station itself and the site it stands at. */
 export function StationPanel() {
@@ -12,6 +13,16 @@ export function StationPanel() {
     <Panel title="Station">
       <Show when={fleet.station} fallback={<p class="panel-empty">Not heard yet.</p>}>
         {(station) => <StationFacts station={station()} />}
+      </Show>
+      <Show when={fleet.station}>
+        {(station) => (
+          <section class="section" aria-label="Separation holds">
+            <p>
+              Separation holds: <strong>{station().separation_hold_on ? "on" : "OFF"}</strong>
+            </p>
+            <SeparationSwitch />
+          </section>
+        )}
       </Show>
       <Show when={fleet.site}>{(site) => <SiteFacts site={site()} />}</Show>
       <Show when={fleet.groundImage}>
