@@ -159,6 +159,14 @@ class TestHistory:
         assert len(story.fleet.vehicles) == 4
         assert story.vehicle("S49").link_id == 1
 
+    def test_what_was_last_known_to_fly_is_not_forgotten_for_it(self) -> None:
+        story = Story(Fleet(settings=FleetSettings(vehicles_kept=4)))
+        story.at(0.0).opens(9).says(9, core(), extended("GONE")).closes(9).opens(1)
+        for number in range(50):
+            story.at(number).says(1, extended(f"S{number}"))
+        assert len(story.fleet.vehicles) == 4
+        assert story.vehicle("GONE").is_flying.value is True
+
     def test_closed_links_are_kept_up_to_a_limit(self) -> None:
         story = Story(Fleet(settings=FleetSettings(closed_links_kept=3)))
         for link_id in range(1, 11):

@@ -85,13 +85,20 @@ def settle(fleet: Fleet, now_ns: int) -> tuple[Fleet, tuple[tuple[int, str], ...
 
 
 def forget_vehicles(fleet: Fleet) -> Fleet:
-    """Return the fleet without the vehicles beyond its limit that have no link, silent longest."""
+    """Return the fleet without the vehicles beyond its limit that have no link, silent longest.
+
+    Those last known to fly go last: they are hazards still.
+    """
     excess = len(fleet.vehicles) - fleet.settings.vehicles_kept
     if excess <= 0:
         return fleet
     absent = sorted(
         (v for v in fleet.vehicles.values() if v.link_id is None),
-        key=lambda v: (v.serial in fleet.profiles, v.core_received_at_ns or 0),
+        key=lambda v: (
+            v.is_flying.value is True,
+            v.serial in fleet.profiles,
+            v.core_received_at_ns or 0,
+        ),
     )
     forgotten = {vehicle.serial for vehicle in absent[:excess]}
     kept = {key: v for key, v in fleet.vehicles.items() if key not in forgotten}
