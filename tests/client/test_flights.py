@@ -51,7 +51,7 @@ def test_orders_are_flown_and_confirmed_by_telemetry() -> None:
             vehicle = await station.vehicle("SIM-1")
             flown = accepted(await vehicle.fly(leg_north(vehicle)))
             life = await flown.wait()
-            assert life.phase is Phase.CONFIRMED
+            assert life.phase is Phase.STARTED
             assert [change.phase for change in life.history[:3]] == [
                 Phase.QUEUED,
                 Phase.SENT,
@@ -59,7 +59,7 @@ def test_orders_are_flown_and_confirmed_by_telemetry() -> None:
             ]
             assert (life.kind, life.serial, life.times_sent) == ("mission", "SIM-1", 1)
             held = await accepted(await vehicle.hold()).wait()
-            assert (held.kind, held.phase) == ("hover", Phase.CONFIRMED)
+            assert (held.kind, held.phase) == ("hover", Phase.DONE)
             stick = await vehicle.stick(
                 yaw_deg=0.0, velocity_x_mps=2.0, velocity_y_mps=0.0, height_above_takeoff_m=50.0
             )

@@ -28,4 +28,4 @@ def test_the_first_block_holds_a_vehicle(capsys: pytest.CaptureFixture[str]) -> 
             await eval(compiled(BLOCKS[0].replace("http://127.0.0.1:8080", url)), {})
 
     asyncio.run(main())
-    assert "confirmed" in capsys.readouterr().out
+    assert "done" in capsys.readouterr().out

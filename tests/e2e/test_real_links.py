@@ -93,7 +93,7 @@ def test_orders_are_answered_and_confirmed_by_telemetry() -> None:
             vehicle = here.vehicle("SIM-1")
             assert vehicle is not None
             flown = here.order("SIM-1", short_mission(vehicle))
-            await here.until(lambda: "confirmed" in here.phases(flown))
+            await here.until(lambda: "started" in here.phases(flown))
             assert here.phases(flown)[:3] == ["queued", "sent", "acknowledged"]
             landed = here.order("SIM-1", LandNow())
             await here.until(lambda: "confirmed" in here.phases(landed))
@@ -133,7 +133,7 @@ def test_an_app_that_acknowledges_and_does_nothing_is_seen_through() -> None:
             flown = here.order("SIM-2", short_mission(vehicle))
             await here.until(lambda: here.phases(flown)[-1] == "timed_out")
             assert "acknowledged" in here.phases(flown)
-            assert "confirmed" not in here.phases(flown)
+            assert "started" not in here.phases(flown)
 
     uvloop.run(main())
 

@@ -3,13 +3,8 @@
 import pytest
 from tests.fleet.said import S, Story, core, extended
 
-from recon.fleet.confirmation import (
-    Progress,
-    SentContext,
-    has_stopped_landing,
-    pilot_took_over,
-    progress,
-)
+from recon.fleet.confirmation import Progress, SentContext, progress, reading_of_sent
+from recon.fleet.flight_table import Verdict
 from recon.model.command import (
     Body,
     FlyMission,
@@ -96,15 +91,12 @@ class TestLand:
     def test_not_knowing_whether_it_flies_is_not_the_ground(self) -> None:
         assert seen(LandNow(), after(core(flying=None), extended(mode=GPS))) is Progress.UNSEEN
 
-    def test_a_landing_that_ends_in_the_air_is_noticed(self) -> None:
-        assert has_stopped_landing(sent(), after(core(), extended(mode=GPS)))
-        assert not has_stopped_landing(sent(), after(core(), extended(mode=CONFIRM)))
-        assert not has_stopped_landing(sent(), after(core(flying=False), extended(mode=GPS)))
-
 
 class TestReturn:
-    def test_return_is_confirmed_by_mode_11(self) -> None:
-        assert seen(ReturnHome(), after(core(), extended(mode=HOME))) is Progress.COMPLETE
+    def test_return_is_confirmed_by_mode_11_then_on_ground(self) -> None:
+        assert seen(ReturnHome(), after(core(), extended(mode=HOME))) is Progress.CONFIRMED
+        on_ground = after(core(flying=False), extended(mode=GPS))
+        assert seen(ReturnHome(), on_ground) is Progress.COMPLETE
         assert seen(ReturnHome(), after(core(), extended(mode=GPS))) is Progress.UNSEEN
         assert seen(ReturnHome(), after(core(), extended(mode=LANDING))) is Progress.UNSEEN
 
@@ -112,7 +104,7 @@ class TestReturn:
 class TestMission:
     def test_a_mission_is_confirmed_when_the_mode_becomes_10(self) -> None:
         state = after(core(velocity=(-5.0, 0.0, 0.0)), extended(mode=WAYPOINT))
-        assert seen(NORTH_THEN_EAST, state, sent(GPS)) is Progress.COMPLETE
+        assert seen(NORTH_THEN_EAST, state, sent(GPS)) is Progress.CONFIRMED
         assert seen(NORTH_THEN_EAST, after(extended(mode=GPS)), sent(GPS)) is Progress.UNSEEN
 
     @pytest.mark.parametrize("before", [WAYPOINT, None])
@@ -134,7 +126,7 @@ class TestMission:
         is_seen: bool,
     ) -> None:
         state = after(core(velocity=velocity), extended(mode=WAYPOINT))
-        expected = Progress.COMPLETE if is_seen else Progress.UNSEEN
+        expected = Progress.CONFIRMED if is_seen else Progress.UNSEEN
         assert seen(NORTH_THEN_EAST, state, sent(before)) is expected
 
     @pytest.mark.parametrize(
@@ -147,8 +139,16 @@ class TestMission:
         state = after(
             core(position=LatLon(42.01, -93.6), velocity=velocity), extended(mode=WAYPOINT)
         )
-        expected = Progress.COMPLETE if is_seen else Progress.UNSEEN
+        expected = Progress.CONFIRMED if is_seen else Progress.UNSEEN
         assert seen(NORTH_THEN_EAST, state) is expected
+
+    def test_taking_off_for_it_is_only_its_beginning(self) -> None:
+        state = after(core(), extended(mode=FlightMode.AUTO_TAKEOFF))
+        assert seen(NORTH_THEN_EAST, state, sent(GPS)) is Progress.BEGUN
+
+    def test_on_the_ground_it_is_not_flown(self) -> None:
+        state = after(core(flying=False), extended(mode=WAYPOINT))
+        assert seen(NORTH_THEN_EAST, state, sent(GPS)) is Progress.UNSEEN
 
     def test_without_a_position_nothing_agrees(self) -> None:
         state = after(core(position=None, velocity=MOVING), extended(mode=WAYPOINT))
@@ -157,7 +157,7 @@ class TestMission:
 
 class TestStickAndCamera:
     def test_a_stick_is_confirmed_by_mode_12(self) -> None:
-        assert seen(STICK, after(extended(mode=JOYSTICK))) is Progress.COMPLETE
+        assert seen(STICK, after(extended(mode=JOYSTICK))) is Progress.CONFIRMED
         assert seen(STICK, after(extended(mode=GPS))) is Progress.UNSEEN
 
     def test_a_camera_start_is_confirmed_by_an_image(self) -> None:
@@ -174,21 +174,27 @@ class TestStickAndCamera:
 
 
 class TestPilot:
+    def took_over(self, state: VehicleState, context: SentContext | None = None) -> bool:
+        reading = reading_of_sent(Hover(), context or sent(), state)
+        return reading.verdict is Verdict.PILOT and reading.is_at_once
+
     def test_a_mode_only_a_pilot_selects_is_a_takeover(self) -> None:
-        assert pilot_took_over(sent(), after(extended(mode=FlightMode.GPS_SPORT)))
-        assert pilot_took_over(sent(), after(extended(mode=FlightMode.MANUAL)))
+        assert self.took_over(after(extended(mode=FlightMode.GPS_SPORT)))
+        assert self.took_over(after(extended(mode=FlightMode.MANUAL)))
 
     def test_the_mode_of_a_cancelled_mission_is_none(self) -> None:
         for mode in (GPS, FlightMode.GPS_NOVICE, None):
-            assert not pilot_took_over(sent(), after(extended(mode=mode)))
+            assert not self.took_over(after(extended(mode=mode)))
 
-    def test_a_mode_that_held_before_is_none(self) -> None:
+    def test_a_mode_that_held_before_is_none_and_does_not_speak_against_a_hover(self) -> None:
+        state = after(core(), extended(mode=FlightMode.GPS_SPORT))
         context = sent(FlightMode.GPS_SPORT)
-        assert not pilot_took_over(context, after(extended(mode=FlightMode.GPS_SPORT)))
+        assert not self.took_over(state, context)
+        assert seen(Hover(), state, context) is Progress.COMPLETE
 
     @pytest.mark.parametrize(("level", "is_pilot"), [(3, True), (2, False), (None, False)])
     def test_atti_is_the_pilots_only_while_gnss_is_good(
         self, level: int | None, is_pilot: bool
     ) -> None:
         state = after(extended(mode=FlightMode.ATTI, gnss_level=level))
-        assert pilot_took_over(sent(), state) is is_pilot
+        assert self.took_over(state) is is_pilot

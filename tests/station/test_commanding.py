@@ -38,13 +38,13 @@ def test_takeoff_is_always_explicit(body: Body) -> None:
 
 
 class TestMission:
-    def test_it_is_confirmed_when_the_mode_becomes_10(self) -> None:
+    def test_it_has_started_when_the_mode_becomes_10(self) -> None:
         told = hovering()
         order = told.order(mission())
         told.answered(order, True)
         assert told.phase(order) is Phase.ACKNOWLEDGED
         told.keeps_saying(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.1)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.phase(order) is Phase.STARTED
 
     def test_an_old_mode_is_no_knowledge_of_the_mode_now(self) -> None:
         """Mode 3 four seconds ago: it may be 10 by now, from the mission before."""
@@ -120,13 +120,13 @@ class TestCameraAndStick:
         second = told.order(StopCamera())
         assert told.phase(first) is Phase.SUPERSEDED
         told.passes(3.0)
-        assert told.phase(second) is Phase.CONFIRMED
+        assert told.phase(second) is Phase.DONE
 
     def test_a_start_is_confirmed_by_an_image(self) -> None:
         told = hovering()
         order = told.order(StartCamera(1.0))
         told.passes(0.1).says(1, ImageReport(target_fps_hz=1.0, jpeg=b"x")).passes(0.1)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.phase(order) is Phase.DONE
 
     @pytest.mark.parametrize(("body", "limit_s"), [(StartCamera(1.0), 8.0), (STICK, 2.0)])
     def test_without_confirmation_it_times_out_quietly(self, body: Body, limit_s: float) -> None:

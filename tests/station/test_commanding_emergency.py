@@ -60,7 +60,12 @@ class TestRepeats:
         order = told.order(Hover())
         told.keeps_saying(1, *STANDING).passes(DEAF)
         assert len(told.times_s(order)) == 1
-        assert told.phases(order) == [Phase.QUEUED, Phase.SENT, Phase.CONFIRMED]
+        assert told.phases(order) == [
+            Phase.QUEUED,
+            Phase.SENT,
+            Phase.CONFIRMED,
+            Phase.DONE,
+        ]
 
     def test_an_acknowledgment_ends_nothing(self) -> None:
         told = flying()
@@ -130,7 +135,9 @@ class TestUnconfirmed:
         told.passes(0.4)
         assert "order_not_confirmed" in told.alarms()
         told.keeps_saying(1, *STANDING).passes(0.2)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert "order_not_confirmed" not in told.alarms()
+        assert told.phase(order) is Phase.TIMED_OUT
+        assert told.record(order).note == "by telemetry: it stands, after its time"
 
     def test_it_ends_when_confirmed_late(self) -> None:
         told = flying()
@@ -188,7 +195,8 @@ class TestUnconfirmed:
         assert told.phase(order) is Phase.TIMED_OUT
         assert "order_not_confirmed" in told.alarms()
         told.opens(2, *LANDING)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.record(order).note == "by telemetry: it is landing, after its time"
+        assert "order_not_confirmed" not in told.passes(0.1).alarms()
 
 
 class TestLanding:
@@ -197,16 +205,15 @@ class TestLanding:
         order = told.order(LandNow())
         told.keeps_saying(1, *LANDING).passes(40.0)
         assert told.phases(order) == [Phase.QUEUED, Phase.SENT, Phase.CONFIRMED]
-        assert told.record(order).is_watched
+        assert not told.phase(order).is_final
         assert len(told.times_s(order)) == 1
         told.keeps_saying(1, *GROUND).passes(0.1)
-        assert not told.record(order).is_watched
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.phase(order) is Phase.DONE
 
     def test_a_landing_that_stops_in_the_air_is_an_alarm(self) -> None:
         told = flying()
         told.order(LandNow())
-        told.keeps_saying(1, *LANDING).passes(5.0).keeps_saying(1, *STANDING).passes(1.9)
+        told.keeps_saying(1, *LANDING).passes(5.0).keeps_saying(1, *STANDING).passes(0.9)
         assert "landing_stopped" not in told.alarms()
         told.passes(0.3)
         assert "landing_stopped" in told.alarms()
@@ -233,7 +240,7 @@ class TestTakeoffByHover:
         told.passes(1.0)
         assert told.phase(order) is Phase.SENT
         told.keeps_saying(1, *STANDING).passes(0.1)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.phase(order) is Phase.DONE
 
 
 class TestSeveralLinks:
@@ -255,7 +262,7 @@ class TestSeveralLinks:
         told.keeps_saying(1, *STANDING).passes(0.5)
         assert told.phase(order) is Phase.SENT
         told.keeps_saying(2, *STANDING).passes(0.2)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.phase(order) is Phase.DONE
 
     def test_dropped_by_one_link_it_lives_on_at_the_other(self) -> None:
         told = self.conflict()
@@ -277,7 +284,7 @@ class TestUnidentified:
         order = told.order(Hover(), None, link=1)
         assert told.times_s(order) == [0.2]
         told.keeps_saying(1, core(), extended(None)).passes(0.2)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.phase(order) is Phase.DONE
 
     def test_the_order_follows_the_link_when_it_says_its_serial(self) -> None:
         told = self.nameless()
@@ -285,7 +292,7 @@ class TestUnidentified:
         told.keeps_saying(1, core(velocity=(5.0, 0.0, 0.0)), extended("A")).passes(1.0)
         assert len(told.times_s(order)) == 2
         told.keeps_saying(1, core(), extended("A")).passes(0.2)
-        assert told.phase(order) is Phase.CONFIRMED
+        assert told.phase(order) is Phase.DONE
 
     def test_an_order_by_serial_supersedes_the_one_by_link(self) -> None:
         told = self.nameless()

@@ -57,7 +57,7 @@ def test_a_mission_around_each_survey_region_is_let_through_and_flown() -> None:
     ]
     assert [world.record(order).note for order in orders] == ["", ""]
     assert world.run_until(
-        lambda: all(world.record(order).phase is Phase.CONFIRMED for order in orders), 20.0
+        lambda: all(world.record(order).phase is Phase.STARTED for order in orders), 20.0
     )
     world.run_for(60.0)
     assert world.driver.station.alarms.alarms == {}

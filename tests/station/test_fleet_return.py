@@ -200,7 +200,7 @@ class TestWhatComesBetween:
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     def test_one_that_is_silent_for_a_moment_in_flight_lands_all_the_same(self) -> None:
-        world = four_in_the_air(faults=("telemetry-dropout:SIM-2:25:6",))
+        world = four_in_the_air(faults=("telemetry-dropout:SIM-2:25:4",))
         world.call(*FOUR)
         assert world.runs_until_over(900.0)
         assert set(world.stages().values()) == {Stage.LANDED}

@@ -18,15 +18,15 @@ from recon.station.orders import (
 CONTEXT = SentContext(5, None, True)
 
 
-def record(number: int, *, is_watched: bool = True) -> OrderRecord:
+def record(number: int, *, phase: Phase = Phase.QUEUED) -> OrderRecord:
     order = Command(number, StopCamera(), "test", 0, 9, serial="A")
-    return OrderRecord(order, "A", (PhaseChange(Phase.QUEUED, 0, ""),), is_watched=is_watched)
+    return OrderRecord(order, "A", (PhaseChange(phase, 0, ""),))
 
 
 def test_the_oldest_finished_ones_are_forgotten_and_no_living_one() -> None:
     book = put(OrderBook(), record(0), kept=5)
     for number in range(1, 20):
-        book = put(book, record(number, is_watched=False), kept=5)
+        book = put(book, record(number, phase=Phase.DONE), kept=5)
     assert list(book.records) == [0, 16, 17, 18, 19]
 
 
@@ -34,7 +34,7 @@ def test_the_newest_is_never_the_one_forgotten() -> None:
     book = OrderBook()
     for number in range(10):
         book = put(book, record(number), kept=5)
-    book = put(book, record(10, is_watched=False), kept=5)
+    book = put(book, record(10, phase=Phase.DONE), kept=5)
     assert 10 in book.records
 
 
@@ -54,7 +54,7 @@ def test_a_repeat_dropped_unsent_changes_nothing() -> None:
 
 
 def test_an_ended_order_that_leaves_after_all_does_not_come_to_life() -> None:
-    ended = changed(record(1), Phase.SUPERSEDED, 3, is_watched=False)
+    ended = changed(record(1), Phase.SUPERSEDED, 3)
     left = on_sent(ended, CommandSent(1, 1), CONTEXT)
     assert left.phase is Phase.SUPERSEDED
     assert not left.is_watched
@@ -65,5 +65,5 @@ def test_the_end_of_an_order_is_the_end_of_its_repeats() -> None:
     repeating = OrderRecord(
         command(Hover()), "A", (PhaseChange(Phase.SENT, 0, ""),), next_repeat_ns=7, repeats_left=3
     )
-    ended = changed(repeating, Phase.CONFIRMED, 1, is_watched=False)
+    ended = changed(repeating, Phase.DONE, 1)
     assert (ended.next_repeat_ns, ended.repeats_left) == (None, 0)

@@ -148,7 +148,7 @@ class TestVehicles:
         here.run_for(3.0)
         here.driver.handle(OperatorOrder(1001, Hover(), "test", serial="SIM-1"))
         here.run_for(10.0)
-        assert here.record(1001).phase is Phase.CONFIRMED
+        assert here.record(1001).phase is Phase.DONE
 
     def test_one_that_landed_meanwhile_is_on_the_ground(self, flown: tuple[World, Audited]) -> None:
         here, audited = flown
@@ -269,7 +269,7 @@ class TestOrders:
         here, audited = flown
         number = here.order("SIM-1", Hover())
         here.run_for(15.0)
-        assert here.record(number).phase is Phase.CONFIRMED
+        assert here.record(number).phase is Phase.DONE
         assert number not in restart(here, audited).orders.records
 
     def test_a_second_restart_does_not_tell_them_again(self, flown: tuple[World, Audited]) -> None:

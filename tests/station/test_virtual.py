@@ -207,7 +207,7 @@ class TestMissions:
         for _ in range(60):
             w.run_for(1.0)
             heights_m.append(w.app("SIM-1").aircraft.motion.height_m)
-        assert Phase.CONFIRMED in w.phases(order)
+        assert Phase.STARTED in w.phases(order)
         assert max(heights_m) == pytest.approx(55.0, abs=1.0)
         assert "wgs84" in str(w.record(order).altitudes).lower() or (
             reference is AltitudeReference.TAKEOFF

@@ -36,5 +36,22 @@ class Life(msgspec.Struct, frozen=True):
         return self.has_reached(Phase.DONE)
 
     def has_reached(self, phase: Phase) -> bool:
-        """Return whether the order is in this phase or has been."""
-        return phase is self.phase or any(change.phase is phase for change in self.history)
+        """Return whether the order is in this phase, has been, or has come farther.
+
+        Confirmed and started are as far as each other: a mission starts where others are confirmed.
+        """
+        gone = (self.phase, *(change.phase for change in self.history))
+        wanted = _HOW_FAR.get(phase)
+        if wanted is None:
+            return phase in gone
+        return any(_HOW_FAR.get(passed, -1) >= wanted for passed in gone)
+
+
+_HOW_FAR = {
+    Phase.QUEUED: 0,
+    Phase.SENT: 1,
+    Phase.ACKNOWLEDGED: 2,
+    Phase.CONFIRMED: 3,
+    Phase.STARTED: 3,
+    Phase.DONE: 4,
+}

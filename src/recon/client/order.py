@@ -24,9 +24,11 @@ class Order:
     _stream: Stream = field(repr=False, compare=False)
 
     async def wait(self, until: Phase = Phase.CONFIRMED, timeout_s: float = 30.0) -> Life:
-        """Return the order's life once it reached a phase, or ended in another one.
+        """Return the order's life once it came as far as a phase, or ended in another way.
 
-        So look at `life.phase`: an order that timed out or was superseded is returned as well.
+        By default that is what telemetry shows: confirmed, or a mission's start. `Phase.DONE` waits
+        for its end. So look at `life.phase`: an order that timed out or was superseded is returned
+        as well.
         Raises `TookTooLongError`, and `ConnectionLostError` when the station was started anew and
         knows nothing of this order.
         """

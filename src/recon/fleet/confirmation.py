@@ -1,4 +1,4 @@
-"""When telemetry confirms a command, and when the pilot has taken over.
+"""When telemetry confirms a command that was sent; what its modes mean is in `flight_table`.
 
 An app acknowledges before it acts, so an acknowledgment confirms nothing. Only telemetry received
 after the command was sent counts.
@@ -10,6 +10,7 @@ from enum import IntEnum
 from math import atan2, degrees, hypot
 from typing import Any
 
+from recon.fleet.flight_table import ModeKind, Place, Reading, Told, Verdict, read
 from recon.geo.distance import offset_north_east_m
 from recon.model.command import (
     Body,
@@ -35,35 +36,13 @@ AT_WAYPOINT_M = 5.0
 CAMERA_QUIET_S = 2.0
 """No image for this long after a stop was sent: the feed has stopped."""
 
-_COMMANDED_MODES = frozenset(
-    {
-        FlightMode.AUTO_LANDING,
-        FlightMode.GPS_WAYPOINT,
-        FlightMode.GO_HOME,
-        FlightMode.JOYSTICK,
-        FlightMode.CONFIRM_LANDING,
-    }
-)
-"""Decision 14 names 9 to 12 for hover; 21 is a landing too, though it stands still at 0.3 m."""
-
-_LANDING_MODES = frozenset({FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING})
-_PILOT_MODES = frozenset(
-    {
-        FlightMode.MANUAL,
-        FlightMode.GPS_COURSE_LOCK,
-        FlightMode.GPS_HOME_LOCK,
-        FlightMode.GPS_SPORT,
-        FlightMode.TRIPOD,
-    }
-)
-"""Modes that only a person with the sticks selects. GPS_ATTI is not among them: an app that cancels
-a mission passes through it. Nor is GPS_NOVICE: with the beginner setting it stands for GPS_ATTI."""
-
-_FALLBACK_MODES = frozenset({FlightMode.ATTI, FlightMode.ATTI_COURSE_LOCK})
-"""Selected by a pilot, but also by the aircraft itself when it loses GNSS."""
-
-GOOD_GNSS_LEVEL = 3
-"""From this level on DJI holds position by GNSS: no reason to fall back to ATTI by itself."""
+_TOLD: dict[type, Told] = {
+    Hover: Told.HOLD_SENT,
+    LandNow: Told.LAND_SENT,
+    ReturnHome: Told.RETURN_SENT,
+    FlyMission: Told.MISSION_SENT,
+    VirtualStick: Told.STICK_SENT,
+}
 
 
 class Progress(IntEnum):
@@ -71,10 +50,11 @@ class Progress(IntEnum):
 
     UNSEEN = 0
     BEGUN = 1
-    """Hover: its mode has left the mission; it is not standing yet."""
+    """Hover: its mode has left the mission; it is not standing yet. Mission: it takes off."""
     CONFIRMED = 2
-    """Land: it is landing; the ground is still to be seen."""
+    """It is being carried out; the end is still to be seen."""
     COMPLETE = 3
+    """It is carried out, and nothing is left to be seen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,21 +71,12 @@ def progress(body: Body, sent: SentContext, state: VehicleState, now_ns: int) ->
     return _CONFIRMATIONS[type(body)](body, sent, state, now_ns)
 
 
-def pilot_took_over(sent: SentContext, state: VehicleState) -> bool:
-    """Return whether the mode changed, after the command, to one that only a pilot selects."""
-    mode = _new_mode(sent, state)
-    if mode is sent.mode_when_sent:
-        return False
-    if mode in _FALLBACK_MODES:
-        level = state.gnss_signal_level.value
-        return level is not None and level >= GOOD_GNSS_LEVEL
-    return mode in _PILOT_MODES
-
-
-def has_stopped_landing(sent: SentContext, state: VehicleState) -> bool:
-    """Return whether a vehicle that was landing flies on in another mode."""
-    mode = _new_mode(sent, state)
-    return mode is not None and mode not in _LANDING_MODES and state.is_flying.value is not False
+def reading_of_sent(body: Body, sent: SentContext, state: VehicleState) -> Reading:
+    """Return what the newest mode means for an order to move that telemetry has not shown yet."""
+    is_down = _core_is_new(sent, state) and state.is_flying.value is False
+    place = Place.GROUND_AT_END if is_down else Place.AT_END
+    level = state.gnss_signal_level.value
+    return read(_TOLD[type(body)], _new_mode(sent, state), level, place, sent.mode_when_sent)
 
 
 def _complete_if(is_seen: bool) -> Progress:
@@ -122,9 +93,8 @@ def _core_is_new(sent: SentContext, state: VehicleState) -> bool:
     return state.core_received_at_ns is not None and state.core_received_at_ns > sent.sent_at_ns
 
 
-def _hover(_body: Hover, sent: SentContext, state: VehicleState, _now_ns: int) -> Progress:
-    mode = _new_mode(sent, state)
-    if mode is None or mode in _COMMANDED_MODES or not _core_is_new(sent, state):
+def _hover(body: Hover, sent: SentContext, state: VehicleState, _now_ns: int) -> Progress:
+    if not _has_left(reading_of_sent(body, sent, state)) or not _core_is_new(sent, state):
         return Progress.UNSEEN
     if sent.was_flying is not True and state.is_flying.value is not True:
         return Progress.UNSEEN  # a takeoff by hover that has not left the ground
@@ -133,25 +103,47 @@ def _hover(_body: Hover, sent: SentContext, state: VehicleState, _now_ns: int) -
     return Progress.COMPLETE if is_standing else Progress.BEGUN
 
 
-def _land(_body: LandNow, sent: SentContext, state: VehicleState, _now_ns: int) -> Progress:
-    if _core_is_new(sent, state) and state.is_flying.value is False:
-        return Progress.COMPLETE
-    is_landing = _new_mode(sent, state) in _LANDING_MODES
-    return Progress.CONFIRMED if is_landing else Progress.UNSEEN
+def _has_left(reading: Reading) -> bool:
+    """Whether it flies no mission, no way home, no landing and no sticks (decision 14).
+
+    A mode of the pilot's own is the pilot's only when it is new; else it is where it was before.
+    """
+    was_so = reading.verdict is Verdict.UNDECIDED and reading.kind in _PILOTED
+    return was_so or reading.verdict is Verdict.CARRIED_OUT
+
+
+_PILOTED = (ModeKind.PILOT, ModeKind.ATTI_GOOD)
+
+
+def _land(body: LandNow, sent: SentContext, state: VehicleState, _now_ns: int) -> Progress:
+    return _until_on_ground(body, sent, state)
 
 
 def _return_home(
-    _body: ReturnHome, sent: SentContext, state: VehicleState, _now_ns: int
+    body: ReturnHome, sent: SentContext, state: VehicleState, _now_ns: int
 ) -> Progress:
-    return _complete_if(_new_mode(sent, state) is FlightMode.GO_HOME)
+    return _until_on_ground(body, sent, state)
+
+
+def _until_on_ground(
+    body: LandNow | ReturnHome, sent: SentContext, state: VehicleState
+) -> Progress:
+    if _core_is_new(sent, state) and state.is_flying.value is False:
+        return Progress.COMPLETE
+    verdict = reading_of_sent(body, sent, state).verdict
+    return Progress.CONFIRMED if verdict is Verdict.CARRIED_OUT else Progress.UNSEEN
 
 
 def _mission(body: FlyMission, sent: SentContext, state: VehicleState, _now_ns: int) -> Progress:
-    if _new_mode(sent, state) is not FlightMode.GPS_WAYPOINT:
+    verdict = reading_of_sent(body, sent, state).verdict
+    if verdict is Verdict.CARRIED_OUT:
+        return Progress.BEGUN
+    if verdict is not Verdict.STARTED:
         return Progress.UNSEEN
     if sent.mode_when_sent not in (None, FlightMode.GPS_WAYPOINT):
-        return Progress.COMPLETE
-    return _complete_if(_core_is_new(sent, state) and _is_on_first_leg(body, state))
+        return Progress.CONFIRMED
+    agrees = _core_is_new(sent, state) and _is_on_first_leg(body, state)
+    return Progress.CONFIRMED if agrees else Progress.UNSEEN
 
 
 def _is_on_first_leg(body: FlyMission, state: VehicleState) -> bool:
@@ -175,8 +167,9 @@ def _flies_towards(point: LatLon, position: LatLon, velocity: VelocityNed) -> bo
     return abs(wrap_degrees(course_deg - bearing_deg)) < LEG_DIRECTION_TOLERANCE_DEG
 
 
-def _stick(_body: VirtualStick, sent: SentContext, state: VehicleState, _now_ns: int) -> Progress:
-    return _complete_if(_new_mode(sent, state) is FlightMode.JOYSTICK)
+def _stick(body: VirtualStick, sent: SentContext, state: VehicleState, _now_ns: int) -> Progress:
+    verdict = reading_of_sent(body, sent, state).verdict
+    return Progress.CONFIRMED if verdict is Verdict.CARRIED_OUT else Progress.UNSEEN
 
 
 def _camera_start(

@@ -156,10 +156,11 @@ class Phase(Enum):
     SENT = "sent"
     ACKNOWLEDGED = "acknowledged"
     CONFIRMED = "confirmed"
+    """By telemetry: it is being carried out."""
     STARTED = "started"
-    """Telemetry shows it being carried out; its end is still to be seen."""
+    """By telemetry: the mission is flown."""
     DONE = "done"
-    """Telemetry shows its end."""
+    """By telemetry: it is carried out."""
     REFUSED_BY_STATION = "refused_by_station"
     REFUSED_BY_APP = "refused_by_app"
     TIMED_OUT = "timed_out"
@@ -169,8 +170,11 @@ class Phase(Enum):
 
     @property
     def is_final(self) -> bool:
-        """Whether the life has ended."""
-        return self not in (Phase.QUEUED, Phase.SENT, Phase.ACKNOWLEDGED, Phase.STARTED)
+        """Whether the life has ended. It ends once: no other phase follows a final one."""
+        return self not in LIVING_PHASES
+
+
+LIVING_PHASES = (Phase.QUEUED, Phase.SENT, Phase.ACKNOWLEDGED, Phase.CONFIRMED, Phase.STARTED)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@
 """
 
 from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
-from recon.safety.gate import ApprovedCommand, approve, judge
+from recon.safety.gate import ApprovedCommand, approve, judge, judge_parts
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import Claimant, Override, Situation, Traffic
 
@@ -19,4 +19,5 @@ __all__ = [
     "Traffic",
     "approve",
     "judge",
+    "judge_parts",
 ]

@@ -13,11 +13,14 @@ from recon.model.command import (
     Refusal,
     ReturnHome,
 )
+from recon.model.mission import Mission
 from recon.model.stamped import Stamped
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, VehicleProfile
 from recon.safety.rules import RULES
+from recon.safety.rules.dji_limits import dji_limits
 from recon.safety.situation import Situation
+from recon.vehicles.mission_repair import joined
 
 _KEY: Final = object()
 """Held by this module alone: without it nobody makes an `ApprovedCommand`."""
@@ -54,6 +57,23 @@ class ApprovedCommand:
 def judge(command: Command, situation: Situation) -> Refusal | None:
     """Return the first rule's refusal, or None: nothing speaks against the command. Pure."""
     refusals = (rule(command, situation) for rule in RULES)
+    return next((refusal for refusal in refusals if refusal is not None), None)
+
+
+def judge_parts(
+    command: Command, parts: tuple[Mission, ...], situation: Situation
+) -> Refusal | None:
+    """Return the first refusal of a mission that is flown in parts, or None. Pure.
+
+    Where it leads and what it costs is judged of the whole; what DJI takes, of each part.
+    """
+    whole = replace(command, body=FlyMission(joined(parts)))
+    packets = [replace(command, body=FlyMission(part)) for part in parts]
+    refusals = (
+        rule(asked, situation)
+        for rule in RULES
+        for asked in (packets if rule is dji_limits else (whole,))
+    )
     return next((refusal for refusal in refusals if refusal is not None), None)
 
 

@@ -115,6 +115,6 @@ def _superseded(station: Station, serial: str, why: str, now_ns: int) -> Station
     book = station.orders
     for record in book.watched:
         if record.command.serial == serial and lane_of(record.command) is Lane.MOTION:
-            ended = orders.changed(record, Phase.SUPERSEDED, now_ns, why, is_watched=False)
+            ended = orders.ended(record, Phase.SUPERSEDED, now_ns, why)
             book = orders.put(book, ended, station.settings.orders_kept)
     return replace(station, orders=book)

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from recon.fleet.confirmation import Progress, SentContext, pilot_took_over, progress
+from recon.fleet.confirmation import Progress, SentContext, progress, reading_of_sent
+from recon.fleet.flight_table import Verdict
 from recon.link.outbox import Lane, lane_of
 from recon.model.authority import Lead
 from recon.model.command import (
@@ -11,9 +12,9 @@ from recon.model.command import (
     Command,
     FlyMission,
     Hover,
-    LandNow,
     Phase,
     Refusal,
+    VirtualStick,
 )
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
 from recon.model.intent import Intent
@@ -21,7 +22,16 @@ from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve, judge
 from recon.safety.facts import NO_FACTS
-from recon.station import authority, orders, preflight, stick_zero, streams
+from recon.station import (
+    authority,
+    flight_watch,
+    intents,
+    missions,
+    orders,
+    preflight,
+    stick_zero,
+    streams,
+)
 from recon.station.air import in_the_air
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
@@ -42,19 +52,24 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     station = authority.after_stop(station, command, now_ns)
     if isinstance(command.body, STEERED_BODIES):
         return _steer(station, order, command, now_ns)
-    judged = approve(command, situation(station, command, now_ns))
+    flight_plan = missions.plan(station, command)
+    seen = situation(station, command, now_ns)
+    first = missions.present_part(command, flight_plan)
+    judged = missions.refusal_of_whole(command, flight_plan, seen) or approve(first, seen)
     if isinstance(judged, Refusal):
         if _may_wait(command, judged):
             station = streams.release(station, command.serial, now_ns)
             station = _supersede_older(station, command, now_ns)
             return _put(station, _waiting(station, command, judged, now_ns)), ()
-        station = _put(station, _refused(station, command, judged, now_ns))
+        refused = replace(_refused(station, command, judged, now_ns), plan=flight_plan)
+        station = _put(station, refused)
         return _end_stream_for(station, command, now_ns)
     if lane_of(command) is not Lane.CAMERA:
         station = stick_zero.forget(station, command)
         station = streams.release(station, command.serial, now_ns)
     station = _supersede_older(station, command, now_ns)
-    return _put(station, _queued(station, command, judged, now_ns)), (SendCommand(judged),)
+    queued = replace(_queued(station, command, judged, now_ns), plan=flight_plan)
+    return _put(station, queued), (SendCommand(judged),)
 
 
 def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int) -> Stepped:
@@ -168,32 +183,103 @@ def follow(
     match event:
         case CommandSent():
             station = stick_zero.begin(station, record.command, now_ns)
-            return _put(station, orders.on_sent(record, event, _context(station, record, now_ns)))
+            return _sent(station, record, event, now_ns)
         case CommandAnswered():
             return _put(station, orders.on_answered(record, event, now_ns))
         case CommandDropped():
             return _put(station, orders.on_dropped(record, event, now_ns))
 
 
-def watch(station: Station, now_ns: int) -> Stepped:
-    """Let time and telemetry change the orders still alive; repeat emergency orders."""
-    outputs: list[Output] = []
+def _sent(station: Station, record: OrderRecord, event: CommandSent, now_ns: int) -> Station:
+    """An order has left: from its first sending on it is what the vehicle does."""
+    context = _context(station, record, now_ns)
+    is_first = record.sent is None and not record.phase.is_final
+    station = _put(station, orders.on_sent(record, event, context))
+    target = _target(station, record.command)
+    if not is_first or target is None or target.serial is None:
+        return station
+    body = missions.present_part(record.command, record.plan).body
+    return intents.on_sent(station, target.serial, record.command.id, body, context)
+
+
+def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None) -> Stepped:
+    """Let time and telemetry change the orders still alive; repeat emergency orders.
+
+    `serials` are the vehicles that have spoken; None: time went on for all.
+    """
+    outputs: tuple[Output, ...] = ()
     for record in station.orders.watched:
-        if isinstance(record.command.body, STEERED_BODIES):
-            continue  # its stream tells its life
-        updated, seen = _confirm(station, record, now_ns)
-        if updated.is_watched:
-            updated = _time_out(updated, seen, station.settings, now_ns)
-        if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
-            updated, again = _repeat(station, updated, now_ns)
-            outputs += again
-        if updated is not record:
-            station = _put(station, updated)
+        if not isinstance(record.command.body, STEERED_BODIES):  # a stream tells its order's life
+            station, sent = _watch_order(station, record, now_ns)
+            outputs += sent
+    seen = tuple(station.fleet.vehicles) if serials is None else serials
+    station, sent = flight_watch.follow(station, seen, now_ns, _ask(now_ns))
+    outputs += sent
     station, zeros = stick_zero.due(station, now_ns)
     for order in zeros:
-        station, zero = place(station, order, now_ns)
-        outputs += zero
-    return stick_zero.give_up(station, now_ns), tuple(outputs)
+        station, sent = place(station, order, now_ns)
+        outputs += sent
+    return stick_zero.give_up(station, now_ns), outputs
+
+
+def _watch_order(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
+    """Let time and telemetry change one order."""
+    target = _target(station, record.command)
+    if target is None:
+        note = "its connection closed before telemetry showed its end"
+        return _put(station, orders.ended(record, Phase.FAILED, now_ns, note)), ()
+    pilot = _pilot_of(station, record, target)
+    if pilot is not None:
+        return _pilot_has_it(station, record, target, pilot, now_ns)
+    if record.alarm == orders.MISSION_BROKEN_OFF and target.is_flying.value is False:
+        return _put(station, replace(record, alarm=None)), ()
+    outputs: tuple[Output, ...] = ()
+    seen = _progress(station, record, target, now_ns)
+    updated = orders.shown(orders.stick_over(record, now_ns), seen, now_ns)
+    if updated.is_watched:
+        updated = _time_out(updated, target, seen, station.settings, now_ns)
+    if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
+        updated, outputs = _repeat(station, updated, now_ns)
+    if updated is not record:
+        station = _follow_life(_put(station, updated), record, updated, seen, now_ns)
+    return station, outputs
+
+
+def _pilot_of(station: Station, record: OrderRecord, target: VehicleState) -> str | None:
+    """Return why an order that telemetry has not shown meets a pilot, else None."""
+    if record.sent is None or isinstance(record.command.body, CAMERA_BODIES) or _is_shown(record):
+        return None
+    body = missions.present_part(record.command, record.plan).body
+    states = (target, *_flying_rivals(station, record, target))
+    readings = [reading_of_sent(body, record.sent, state) for state in states]
+    is_pilot = all(r.verdict is Verdict.PILOT and r.is_at_once for r in readings)
+    return readings[0].why if is_pilot else None
+
+
+def _pilot_has_it(
+    station: Station, record: OrderRecord, target: VehicleState, why: str, now_ns: int
+) -> Stepped:
+    note = f"the pilot has taken over: {why}"
+    station = _put(station, orders.ended(record, Phase.SUPERSEDED, now_ns, note))
+    if target.serial is None:
+        return station, ()
+    return flight_watch.pilot_has_it(station, target.serial, why, now_ns)
+
+
+def _follow_life(
+    station: Station, before: OrderRecord, record: OrderRecord, seen: Progress, now_ns: int
+) -> Station:
+    """Keep what the vehicle does true to what telemetry has just shown of an order."""
+    target = _target(station, record.command)
+    if target is None or target.serial is None:
+        return station
+    body = missions.present_part(record.command, record.plan).body
+    if isinstance(body, VirtualStick) and record.phase is Phase.DONE:
+        return intents.holds_here(station, target.serial, now_ns)
+    is_news = record.phase is not before.phase or record.alarm is not before.alarm
+    if seen >= Progress.CONFIRMED and is_news and not isinstance(body, CAMERA_BODIES):
+        return intents.begun(station, target.serial, record.command.id, body, now_ns)
+    return station
 
 
 def _claimants(station: Station, command: Command) -> tuple[Claimant, ...]:
@@ -210,7 +296,7 @@ def _claimants(station: Station, command: Command) -> tuple[Claimant, ...]:
 def _refused(station: Station, command: Command, refusal: Refusal, now_ns: int) -> OrderRecord:
     note = f"{refusal.rule}: {refusal.reason}"
     change = PhaseChange(Phase.REFUSED_BY_STATION, now_ns, note)
-    return OrderRecord(command, _name(station, command), (change,), is_watched=False)
+    return OrderRecord(command, _name(station, command), (change,))
 
 
 def _may_wait(command: Command, refusal: Refusal) -> bool:
@@ -258,7 +344,8 @@ def _name(station: Station, command: Command) -> str:
 def _supersede_older(station: Station, command: Command, now_ns: int) -> Station:
     """A newer order to move ends the life of older ones to the same target, repeats included.
 
-    Camera orders end older camera orders only: looking must never end the repeats of a stop.
+    Camera orders end older camera orders only: looking must never end the repeats of a stop. Of
+    older ones that have ended already it ends the alarm.
     """
     target = _target(station, command)
     is_camera = lane_of(command) is Lane.CAMERA
@@ -266,8 +353,7 @@ def _supersede_older(station: Station, command: Command, now_ns: int) -> Station
         older = record.command
         if (lane_of(older) is Lane.CAMERA) is is_camera and _target(station, older) is target:
             note = f"by order {command.id}"
-            ended = orders.changed(record, Phase.SUPERSEDED, now_ns, note, is_watched=False)
-            station = _put(station, ended)
+            station = _put(station, orders.ended(record, Phase.SUPERSEDED, now_ns, note))
     return station
 
 
@@ -286,30 +372,17 @@ def _context(station: Station, record: OrderRecord, now_ns: int) -> SentContext:
     return SentContext(now_ns, mode, target.is_flying.value)
 
 
-def _confirm(station: Station, record: OrderRecord, now_ns: int) -> tuple[OrderRecord, Progress]:
-    """Return the record after what telemetry shows, and how much that is."""
-    target = _target(station, record.command)
-    if target is None:
-        note = "its connection closed before telemetry confirmed it"
-        ended = orders.changed(record, Phase.FAILED, now_ns, note, is_watched=False)
-        return ended, Progress.UNSEEN
+def _progress(station: Station, record: OrderRecord, target: VehicleState, now_ns: int) -> Progress:
+    """Return how much of an order telemetry shows, on every link it is for."""
     if record.sent is None:
-        return record, Progress.UNSEEN
-    body, sent = record.command.body, record.sent
+        return Progress.UNSEEN
+    body, sent = missions.present_part(record.command, record.plan).body, record.sent
     states = (target, *_flying_rivals(station, record, target))
-    seen = min(progress(body, sent, state, now_ns) for state in states)
-    if seen is Progress.COMPLETE:
-        is_land = isinstance(body, LandNow)
-        note = "by telemetry: it is on the ground" if is_land else "by telemetry"
-        if record.phase is Phase.TIMED_OUT:
-            note += ", after its time"
-        return orders.changed(record, Phase.CONFIRMED, now_ns, note, is_watched=False), seen
-    if record.command.is_emergency and all(pilot_took_over(sent, state) for state in states):
-        note = "the pilot has taken over"
-        return orders.changed(record, Phase.SUPERSEDED, now_ns, note, is_watched=False), seen
-    if seen is Progress.CONFIRMED and record.phase is not Phase.CONFIRMED:
-        return orders.underway(record, now_ns, "by telemetry: it is landing"), seen
-    return record, seen
+    return min(progress(body, sent, state, now_ns) for state in states)
+
+
+def _is_shown(record: OrderRecord) -> bool:
+    return record.phase in (Phase.CONFIRMED, Phase.STARTED)
 
 
 def _flying_rivals(
@@ -323,9 +396,18 @@ def _flying_rivals(
 
 
 def _time_out(
-    record: OrderRecord, seen: Progress, settings: StationSettings, now_ns: int
+    record: OrderRecord,
+    target: VehicleState,
+    seen: Progress,
+    settings: StationSettings,
+    now_ns: int,
 ) -> OrderRecord:
-    """What telemetry does not confirm in time is unsure; motion can still be confirmed late."""
+    """What telemetry does not show in time has ended; that it is shown late ends the alarm."""
+    heard_ns = target.core_received_at_ns or record.command.issued_at_ns
+    if _is_shown(record) and now_ns - heard_ns > seconds_to_ns(settings.unheard_s):
+        return orders.ended(
+            record, Phase.FAILED, now_ns, "not heard any more: nobody knows its end"
+        )
     if record.phase is Phase.QUEUED:
         if now_ns < record.command.expires_at_ns:
             return record
@@ -336,19 +418,19 @@ def _time_out(
     limit_s = _confirm_limit_s(record, seen, settings)
     if waited_ns < seconds_to_ns(limit_s):
         return record
-    note = f"telemetry has not confirmed it within {limit_s:g} s"
-    is_serious = record.command.is_emergency or isinstance(record.command.body, FlyMission)
-    return orders.changed(record, Phase.TIMED_OUT, now_ns, note, is_watched=is_serious)
+    return orders.timed_out(record, now_ns, limit_s)
 
 
 def _confirm_limit_s(record: OrderRecord, seen: Progress, settings: StationSettings) -> float:
     body = record.command.body
+    is_begun = seen is Progress.BEGUN
     if record.command.is_emergency:
-        is_begun = seen is Progress.BEGUN
         return settings.emergency_confirm_s if is_begun else settings.emergency_answer_s
     if isinstance(body, CAMERA_BODIES):
         return settings.camera_confirm_s
-    return settings.mission_confirm_s if isinstance(body, FlyMission) else settings.stick_confirm_s
+    if isinstance(body, FlyMission):
+        return settings.mission_takeoff_s if is_begun else settings.mission_confirm_s
+    return settings.stick_confirm_s
 
 
 def _repeat(

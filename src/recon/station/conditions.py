@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from recon.fleet.confirmation import has_stopped_landing
 from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
+from recon.station import orders
 from recon.station.alarms import Condition, Severity
 from recon.station.fleet_return import told as fleet_return
 from recon.station.orders import OrderRecord
@@ -22,14 +22,14 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _never_heard(vehicle, station.settings.first_telemetry_s)
         yield from _battery(vehicle, station.settings)
         yield from _landing(vehicle, station.settings.landing_wait_s)
+        yield from _by_itself(station, vehicle)
     for link in station.fleet.unbound_links():
         yield from _unidentified(link)
         if link.own_state.is_flying.value is not False:
             yield from _silence(link.own_state, now_ns)
     for record in station.orders.watched:
         yield from _waiting(record)
-        yield from _unconfirmed(record)
-        yield from _stopped_landing(station, record)
+        yield from _of_order(record)
     yield from fleet_return.conditions(station)
     yield from _watch(station)
     yield from _imaging(station)
@@ -99,6 +99,13 @@ def _landing(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
         yield _about(vehicle, "landing_waits", Severity.ERROR, text, after_s)
 
 
+def _by_itself(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
+    """What the aircraft does that nobody here ordered, by the flight table."""
+    follows = station.followings.get(vehicle.serial or "")
+    if follows is not None and follows.failsafe is not None:
+        yield _about(vehicle, "failsafe", Severity.ERROR, follows.failsafe)
+
+
 def _unidentified(link: LinkRecord) -> Iterator[Condition]:
     if link.claimed_serial is None and link.own_state.is_flying.value is True:
         text = f"a vehicle without a serial is flying ({link.remote_address})"
@@ -120,30 +127,21 @@ def _waiting(record: OrderRecord) -> Iterator[Condition]:
     )
 
 
-def _unconfirmed(record: OrderRecord) -> Iterator[Condition]:
-    if not record.is_unsure:
+def _of_order(record: OrderRecord) -> Iterator[Condition]:
+    """An order that a person must look after, until telemetry shows it or a newer one comes."""
+    if record.alarm is None:
         return
     command = record.command
-    ignored = command.name == "mission" and record.phase is Phase.TIMED_OUT
+    is_critical = record.alarm in (orders.UNCONFIRMED, orders.LANDING_STOPPED)
     yield Condition(
-        key=f"unconfirmed:{command.id}",
-        severity=Severity.ERROR if ignored else Severity.CRITICAL,
-        rule="mission_ignored" if ignored else "order_not_confirmed",
+        key=f"{record.alarm}:{command.id}",
+        severity=Severity.CRITICAL if is_critical else Severity.ERROR,
+        rule=record.alarm,
         vehicle_name=record.vehicle_name,
         text=f"{record.vehicle_name}: {command.name.replace('_', ' ')}: {record.note}",
         serial=command.serial,
         link_id=command.link_id,
     )
-
-
-def _stopped_landing(station: Station, record: OrderRecord) -> Iterator[Condition]:
-    """A landing that telemetry confirmed, and that ended in the air."""
-    vehicle = station.target(record.command.serial, record.command.link_id)
-    if record.phase is not Phase.CONFIRMED or record.sent is None or vehicle is None:
-        return
-    if has_stopped_landing(record.sent, vehicle):
-        text = "it began to land as ordered, has stopped landing and still flies"
-        yield _about(vehicle, "landing_stopped", Severity.CRITICAL, text, after_s=2.0)
 
 
 def _watch(station: Station) -> Iterator[Condition]:

@@ -238,7 +238,7 @@ def _interrupted(order: OpenOrder, now_ns: int) -> OrderRecord:
     )
     was = PhaseChange(order.phase, order.given_at_ns, "in the run before")
     failed = PhaseChange(Phase.FAILED, now_ns, INTERRUPTED)
-    return OrderRecord(command, order.vehicle, (was, failed), is_watched=False)
+    return OrderRecord(command, order.vehicle, (was, failed))
 
 
 def _name(station: Station, serial: str) -> str:

@@ -37,6 +37,22 @@ class StationSettings:
     mission_confirm_s: float = 8.0
     """Upload and start of 99 waypoints take seconds; after this it was rejected silently."""
 
+    mission_takeoff_s: float = 20.0
+    """A mission that is seen to take off for it: motors, climb, then the mission's mode."""
+
+    mode_lasts_s: float = 1.0
+    """A sign of the pilot or a failsafe that an app may show in passing counts after this: three
+    reports of the mode at its usual rate."""
+
+    undecided_s: float = 30.0
+    """An order whose vehicle is in a mode that says nothing for this long is not carried out."""
+
+    parts_gap_s: float = 3.0
+    """A vehicle not heard for longer may have been flown by anybody: no next part is sent to it."""
+
+    unheard_s: float = 600.0
+    """What has become of an order whose vehicle is not heard for this long, nobody will learn."""
+
     camera_confirm_s: float = 8.0
     stick_confirm_s: float = 2.0
 

@@ -12,6 +12,7 @@ from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, Override, PreparedAirspace
 from recon.station.alarms import AlarmBook
 from recon.station.fleet_return.record import FleetReturn
+from recon.station.following import Following
 from recon.station.imaging import Imaging
 from recon.station.lease import Lease
 from recon.station.orders import OrderBook
@@ -61,6 +62,8 @@ class Station:
     """Who leads each vehicle, by serial; the default for one that nobody has taken."""
     intents: Mapping[str, Intent] = field(default_factory=dict)
     """What each vehicle does on the station's word, by serial."""
+    followings: Mapping[str, Following] = field(default_factory=dict)
+    """How telemetry follows each vehicle's intent, by serial."""
     preflight_overrides: Mapping[str, Override] = field(default_factory=dict)
     """By serial, until the vehicle has landed."""
     clock: Clock | None = None

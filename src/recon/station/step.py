@@ -35,8 +35,8 @@ from recon.station import air, alarms, authority, commanding, imaging, preflight
 from recon.station.alarms import Condition, Severity
 from recon.station.commanding import Stepped
 from recon.station.conditions import conditions
-from recon.station.fleet_return.advance import advance as advance_fleet_return
 from recon.station.fleet_return import planning
+from recon.station.fleet_return.advance import advance as advance_fleet_return
 from recon.station.fleet_return.call import call as fleet_return_call
 from recon.station.outputs import Output, StartWork
 from recon.station.state import Station
@@ -60,13 +60,13 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return _packet(station, event, now_ns)
         case Tick():
             return _tick(station, now_ns)
-        case WorkerResult():
         case WorkerResult(kind=planning.PLAN_RETURN):
             return planning.take(station, event, now_ns), ()
+        case WorkerResult():
             return _work_done(station, event), ()
-        case DeadlineMissed():
         case DeadlineMissed(job_id, planning.PLAN_RETURN):
             return planning.lost(station, job_id), ()
+        case DeadlineMissed():
             dropped = station.imaging.frames_dropped + 1
             return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
         case AuthorityTaken():
@@ -135,7 +135,8 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
             return station, (*outputs, *work)
         case MessageReport() as report:
             station = _message(station, vehicle, report, now_ns)
-    station, orders = commanding.watch(station, now_ns)
+    spoken = () if vehicle.serial is None else (vehicle.serial,)
+    station, orders = commanding.watch(station, now_ns, spoken)
     return station, (*outputs, *orders)
 
 

@@ -67,14 +67,12 @@ def release(
     return replace(station, orders=book)
 
 
-def change_phase(
-    station: Station, lease: Lease, phase: Phase, now_ns: int, note: str, *, ends: bool = False
-) -> Station:
+def change_phase(station: Station, lease: Lease, phase: Phase, now_ns: int, note: str) -> Station:
     """Return the station with the order's record gone on, as long as it is kept."""
     record = station.orders.records.get(lease.command.id)
     if record is None:
         return station
-    changed = orders.changed(record, phase, now_ns, note, is_watched=not ends)
+    changed = orders.changed(record, phase, now_ns, note)
     kept = station.settings.orders_kept
     return replace(station, orders=orders.put(station.orders, changed, kept))
 
@@ -159,7 +157,7 @@ def let_go(
         driven = replace(driven, pilots=(*driven.pilots, (serial, why)))
     if lease.closing is None:
         ended = phase if lease.arrived_at_ns is None else Phase.DONE
-        station = change_phase(station, lease, ended, now_ns, why, ends=True)
+        station = change_phase(station, lease, ended, now_ns, why)
         if phase is Phase.FAILED:
             station = _alarm(station, lease, f"{why}; nothing more is sent", now_ns)
     return replace(driven, station=station)
@@ -168,7 +166,7 @@ def let_go(
 def give_up(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask: Ask) -> Driven:
     """End a lease that the station cannot carry on: the order fails, with an alarm."""
     phase = Phase.FAILED if lease.arrived_at_ns is None else Phase.DONE
-    station = change_phase(driven.station, lease, phase, now_ns, why, ends=True)
+    station = change_phase(driven.station, lease, phase, now_ns, why)
     station = _alarm(station, lease, f"{why}; it is stopped and holds", now_ns)
     return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
 
@@ -177,7 +175,7 @@ def leave_alone(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask
     """Leave a vehicle that was held for long to its own position hold; nothing has failed."""
     held_s = driven.station.settings.streams.hold_at_most_s
     why = f"held for {held_s:g} s; from now on by the aircraft itself"
-    station = change_phase(driven.station, lease, Phase.DONE, now_ns, why, ends=True)
+    station = change_phase(driven.station, lease, Phase.DONE, now_ns, why)
     return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
 
 

@@ -187,7 +187,7 @@ def _followed(
     if lease.is_obeyed and lease.arrived_at_ns is None and has_come:
         lease = replace(lease, arrived_at_ns=now_ns)
         note = "by telemetry: it is there, and is held there"
-        station = change_phase(station, lease, Phase.DONE, now_ns, note, ends=True)
+        station = change_phase(station, lease, Phase.DONE, now_ns, note)
     return station, lease
 
 

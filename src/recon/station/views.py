@@ -211,7 +211,7 @@ def _command(record: OrderRecord, times_sent: int, now_ns: int) -> schema.Comman
         issued_by=command.issued_by,
         age_s=ns_to_seconds(now_ns - command.issued_at_ns),
         phase=record.phase.value,
-        is_final=not record.is_watched,
+        is_final=record.phase.is_final,
         note=record.note,
         times_sent=times_sent,
         takeoff=command.takeoff,

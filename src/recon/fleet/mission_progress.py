@@ -1,0 +1,100 @@
+"""Which waypoints of a mission a vehicle has passed, told from its positions alone.
+
+The count only grows. A waypoint is passed when the vehicle has been near it, or is nearer to a leg
+that it leads to; how far legs are looked ahead is bounded by how far the vehicle can have come
+since the position before, so that neighbouring rows are not mistaken for each other.
+"""
+
+from collections.abc import Sequence
+from math import hypot, sqrt
+
+from recon.geo.distance import offset_north_east_m
+from recon.model.geo import LatLon
+from recon.model.mission import Mission, Waypoint
+
+NEAR_M = 3.0
+"""Twice the noise of a GNSS position; a mission stops at half a metre from its waypoints."""
+
+CLEARLY_NEARER_M = 0.5
+FASTEST_MPS = 18.0
+"""The SDK's 15 m/s and some wind behind it."""
+
+GAP_S = 1.0
+"""After a gap this long the first waypoint may have been passed unseen."""
+
+Point = tuple[float, float, float]
+
+
+def waypoints_passed(
+    mission: Mission, passed: int, position: LatLon, height_m: float | None, since_s: float
+) -> int:
+    """Return how many waypoints are passed, at least `passed`.
+
+    `height_m` is above takeoff, as the waypoints' own; None leaves heights out. `since_s` is the
+    time since the position that `passed` was told from.
+    """
+    points = mission.waypoints
+    while passed < len(points) and _distance_m(position, height_m, points[passed]) <= NEAR_M:
+        passed += 1
+    if passed == 0 and since_s < GAP_S:
+        return 0
+    reach_m = NEAR_M + FASTEST_MPS * max(0.0, since_s)
+    return _onto_the_nearest_leg(points, passed, position, height_m, reach_m)
+
+
+def distance_to_m(waypoint: Waypoint, position: LatLon, height_m: float | None) -> float:
+    """Return how far a waypoint is; without a height, in the horizontal."""
+    return _distance_m(position, height_m, waypoint)
+
+
+def _onto_the_nearest_leg(
+    points: Sequence[Waypoint],
+    passed: int,
+    position: LatLon,
+    height_m: float | None,
+    reach_m: float,
+) -> int:
+    """Leg k leads from waypoint k - 1 to waypoint k: who flies it has passed k waypoints."""
+    best_m = NEAR_M + CLEARLY_NEARER_M
+    if passed > 0 and passed < len(points):
+        best_m = _to_leg_m(points[passed - 1], points[passed], position, height_m)
+    between_m, on = 0.0, passed
+    for leg in range(passed + 1, len(points)):
+        if between_m > reach_m:
+            break
+        distance_m = _to_leg_m(points[leg - 1], points[leg], position, height_m)
+        if distance_m < best_m - CLEARLY_NEARER_M:
+            best_m, on = distance_m, leg
+        between_m += _length_m(points[leg - 1], points[leg])
+    return on
+
+
+def _to_leg_m(start: Waypoint, end: Waypoint, position: LatLon, height_m: float | None) -> float:
+    a, b = _offset(position, height_m, start), _offset(position, height_m, end)
+    along = tuple(y - x for x, y in zip(a, b, strict=True))
+    length_squared = sum(part * part for part in along)
+    if length_squared < 1e-9:
+        return _norm(a)
+    share = -sum(x * d for x, d in zip(a, along, strict=True)) / length_squared
+    share = max(0.0, min(1.0, share))
+    nearest = tuple(x + share * d for x, d in zip(a, along, strict=True))
+    return sqrt(sum(part * part for part in nearest))
+
+
+def _distance_m(position: LatLon, height_m: float | None, waypoint: Waypoint) -> float:
+    return _norm(_offset(position, height_m, waypoint))
+
+
+def _offset(position: LatLon, height_m: float | None, waypoint: Waypoint) -> Point:
+    place = LatLon(waypoint.latitude_deg, waypoint.longitude_deg)
+    up_m = 0.0 if height_m is None else waypoint.height_above_takeoff_m - height_m
+    return (*offset_north_east_m(position, place), up_m)
+
+
+def _length_m(a: Waypoint, b: Waypoint) -> float:
+    place = LatLon(a.latitude_deg, a.longitude_deg)
+    return _distance_m(place, a.height_above_takeoff_m, b)
+
+
+def _norm(point: Point) -> float:
+    return hypot(hypot(point[0], point[1]), point[2])
