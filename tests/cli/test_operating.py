@@ -71,6 +71,39 @@ class TestOnTheGround:
         assert "there is no alarm 999" in said.err
 
 
+class TestReadiness:
+    def test_a_checklist_is_told_and_an_override_needs_a_reason(self, here: Flown) -> None:
+        told = here.recon("preflight", "SIM-2")
+        assert told.code == 0, told.out
+        assert told.out.endswith("passed\n")
+        assert here.recon("preflight", "SIM-2", "--override", "").code == 1
+        overridden = here.recon("preflight", "SIM-2", "--override", "it is a test")
+        assert "it is a test" in overridden.out
+        shown = here.recon("audit", "show", here.audit, "--kind", "preflight.overridden")
+        assert "it is a test" in shown.out
+
+    def test_who_leads_it_is_taken_and_given(self, here: Flown, mission: Path) -> None:
+        assert here.recon("release", "SIM-2", "--to", "pilot").code == 0
+        refused = here.recon("fly", "SIM-2", mission, "--dry-run")
+        assert "rule leader" in refused.out
+        assert here.recon("release", "SIM-2", "--to", "guidance").code == 1
+        taken = here.recon("take", "SIM-2")
+        assert (taken.code, taken.out) == (0, "SIM-2: led by the operator\n")
+        assert "rule leader" not in here.recon("fly", "SIM-2", mission, "--dry-run").out
+
+    def test_what_is_heard_is_no_ghost(self, here: Flown) -> None:
+        said = here.recon("dismiss", "SIM-2")
+        assert said.code == 2
+        assert "no ghost" in said.err
+
+    def test_the_holds_are_switched_and_the_audit_says_so(self, here: Flown) -> None:
+        assert here.recon("separation-hold", "off").code == 0
+        assert here.get("/api/state")["station"]["separation_hold_on"] is False
+        assert here.recon("separation-hold", "on").code == 0
+        shown = here.recon("audit", "show", here.audit, "--kind", "separation_hold")
+        assert len(shown.out.splitlines()) == 2
+
+
 class TestWrongUse:
     @pytest.mark.parametrize(
         ("words", "says"),

@@ -66,7 +66,8 @@ class Field:
         self.station_port = free_port()
         self.tap: WireTap = stack.enter_context(tapped(self.station_port))
         self.here = self.start()
-        sim = sim_options(self.tap.port, VEHICLES, "--grounded")
+        fault = ("--fault", "no-ack:SIM-3:0:600")
+        sim = sim_options(self.tap.port, VEHICLES, "--grounded", *fault)
         self.simulator: Started = stack.enter_context(started(*sim))
 
     def start(self) -> Flown:
@@ -92,7 +93,7 @@ def field(tmp_path: Path) -> Any:
 def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: Field) -> None:
     field.take_off()
     here = field.here
-    # An order is under way: this drone has no camera, so telemetry never shows that it films.
+    # An order is under way: this drone has no camera, and its app answers nothing.
     (filming,) = here.recon("camera", "SIM-3", "--on", "--wait", "0", "--json").json
     while not audit_holds(field.audit, filming["command_id"], "order.sent"):
         pass

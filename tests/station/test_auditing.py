@@ -26,6 +26,7 @@ from recon.model.event import (
     LinkOpened,
     OperatorOrder,
     PacketReceived,
+    PreflightOverridden,
     SeparationHoldSwitched,
     Tick,
 )
@@ -273,6 +274,24 @@ class TestWords:
         assert (taken.kind, taken.by, taken.serial) == ("authority.taken", "Ms Smith", "A")
         assert (taken.details["from"], taken.details["leader"]) == ("operator", "pilot")
         assert steps.handle(AuthorityTaken("A", Leader.PILOT, "Ms Smith")) == []
+
+    def test_a_word_that_is_refused_is_told_with_the_reason(self, steps: Steps) -> None:
+        steps.connect(1)
+        told = steps.handle(
+            AuthorityTaken("Z", Leader.OPERATOR, "Ms Smith"),
+            PreflightOverridden("A", "Ms Smith", ""),
+        )
+        assert [(e.kind, e.by, e.serial) for e in told] == [
+            ("authority.refused", "Ms Smith", "Z"),
+            ("preflight.refused", "Ms Smith", "A"),
+        ]
+        assert all(e.details["reason"] for e in told)
+
+    def test_an_override_is_told_with_its_reason(self, steps: Steps) -> None:
+        steps.connect(1)
+        (told,) = steps.handle(PreflightOverridden("A", "Ms Smith", "home point was checked"))
+        assert (told.kind, told.by) == ("preflight.overridden", "Ms Smith")
+        assert told.details["reason"] == "home point was checked"
 
     def test_what_people_say_is_told_with_their_name(self, steps: Steps) -> None:
         told = steps.handle(

@@ -7,6 +7,7 @@ import typer
 
 from recon.cli.flying import camera_command, fly_command
 from recon.cli.hazards import dismiss_command, separation_hold_command
+from recon.cli.leading import preflight_command, release_command, take_command
 from recon.cli.returning import fleet_return_command
 from recon.cli.steering import goto_command, nudge_command
 from recon.cli.stopping import all_stop_command, hold_command, land_command, return_command
@@ -22,6 +23,9 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "nudge": nudge_command,
     "fly": fly_command,
     "camera": camera_command,
+    "take": take_command,
+    "release": release_command,
+    "preflight": preflight_command,
     "fleet-return": fleet_return_command,
     "dismiss": dismiss_command,
     "separation-hold": separation_hold_command,

@@ -5,17 +5,21 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from recon.model.authority import Lead
+from recon.model.command import Refusal
 from recon.model.event import (
     AlarmAcknowledged,
     AuditTroubled,
+    AuthorityTaken,
     Event,
     FleetReturnOrdered,
     GhostDismissed,
+    PreflightOverridden,
     SeparationHoldSwitched,
     Tick,
 )
 from recon.record.audit import AuditEntry
 from recon.safety import Override
+from recon.station import authority, preflight
 from recon.station.audited_alarms import AlarmsTold, alarm_entries, seen_entry
 from recon.station.audited_links import LinksTold, link_entries
 from recon.station.audited_orders import OrdersTold, ended_streams, order_entries
@@ -67,6 +71,10 @@ def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry
     match event:
         case AlarmAcknowledged(alarm_id, by) if alarm_id in before.alarms.alarms:
             yield seen_entry(before.alarms.alarms[alarm_id], by)
+        case AuthorityTaken(serial=serial, by=by):
+            yield from _refused(after, "authority", authority.refusal(before, event), by, serial)
+        case PreflightOverridden(serial=serial, by=by):
+            yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
         case GhostDismissed(serial, by):
             yield _about(after, "ghost.dismissed", "is no longer counted as in the air", by, serial)
         case SeparationHoldSwitched(is_on, by):
@@ -80,6 +88,15 @@ def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry
         case AuditTroubled(problem):
             text = problem or "the audit can be written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
+
+
+def _refused(
+    station: Station, what: str, refusal: Refusal | None, by: str, serial: str
+) -> Iterator[AuditEntry]:
+    """A word that changed nothing; what it would have changed is told where it did."""
+    if refusal is not None:
+        details = {"rule": refusal.rule, "reason": refusal.reason}
+        yield _about(station, f"{what}.refused", f"refused: {refusal.reason}", by, serial, details)
 
 
 def _leads(before: Mapping[str, Lead], after: Station) -> Iterator[AuditEntry]:
