@@ -291,7 +291,7 @@ class SessionStudy:
     def _judge_sticks(self, vehicle: _Vehicle) -> None:
         grace_ns = seconds_to_ns(STICK_GRACE_S)
         spans = [
-            (order.placed_ns, (order.ended_ns or self.driver.now_ns) + grace_ns)
+            (order.placed_ns, self._steers_until_ns(vehicle, order) + grace_ns)
             for order in self._orders.values()
             if order.vehicle is vehicle and isinstance(order.body, (GoTo, VirtualStick))
         ]
@@ -300,6 +300,22 @@ class SessionStudy:
             if not any(start <= at_ns <= end for start, end in spans):
                 said = f"{vehicle.app.serial}: a stick moved it at {at_ns / 1e9:.1f} s, unordered"
                 self.tally.broken.append(said)
+
+    def _steers_until_ns(self, vehicle: _Vehicle, order: _Order) -> int:
+        """A goto that is done holds its place with sticks until the next order to move is taken."""
+        assert order.record is not None
+        if order.record.phase is not Phase.DONE:
+            return order.ended_ns or self.driver.now_ns
+        later = (
+            other.placed_ns
+            for other in self._orders.values()
+            if other.vehicle is vehicle
+            and other.placed_ns > order.placed_ns
+            and not isinstance(other.body, (StartCamera, StopCamera))
+            and other.record is not None
+            and other.record.phase is not Phase.REFUSED_BY_STATION
+        )
+        return min(later, default=self.driver.now_ns)
 
 
 def _profile(serial: str, home: GeoPoint) -> VehicleProfile:
@@ -347,9 +363,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=100_000.0)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--vehicles", type=int, default=1)
     asked = parser.parse_args()
     began_s = time.perf_counter()
-    tally = SessionStudy(asked.seed).run(asked.seconds, progress_every_s=10_000.0)
+    tally = SessionStudy(asked.seed, asked.vehicles).run(asked.seconds, progress_every_s=10_000.0)
     print(f"{tally.seconds:.0f} simulated seconds in {time.perf_counter() - began_s:.0f} s")
     for name, counts in (("orders", tally.orders), ("ends", tally.ends), ("faults", tally.faults)):
         print(f"{name}:")
