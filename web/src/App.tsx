@@ -8,9 +8,11 @@ import { LostBanner } from "./panels/bar/LostBanner";
 import { TopBar } from "./panels/bar/TopBar";
 import { CommandList } from "./panels/commands/CommandList";
 import { VehicleDetail } from "./panels/detail/VehicleDetail";
+import { FlyHereCard } from "./panels/fly/FlyHereCard";
 import { HelpDialog } from "./panels/help/HelpDialog";
 import { LinkList } from "./panels/links/LinkList";
 import { OrderBar } from "./panels/orders/OrderBar";
+import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationBanner";
 import { StationPanel } from "./panels/station/StationPanel";
 import { VehicleList } from "./panels/vehicles/VehicleList";
@@ -18,11 +20,16 @@ import "./layout.css";
 
 /** The whole page. */
 export function App() {
-  const { source, fleet, selection, desk, theme, fit } = useConsole();
+  const { source, fleet, selection, desk, theme, fit, flyHere } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, how: (key: number) => void) => {
     if (keys().includes(key)) how(key);
+  };
+
+  const clear = () => {
+    if (isHelpOpen()) setHelpOpen(false);
+    else if (!flyHere.clear()) selection.clear();
   };
 
   onMount(() => {
@@ -32,7 +39,8 @@ export function App() {
         selectOnly: (number) => select(number, selection.only),
         toggle: (number) => select(number, selection.toggle),
         selectAll: () => selection.all(keys()),
-        clear: () => (isHelpOpen() ? setHelpOpen(false) : selection.clear()),
+        clear,
+        flyHere: flyHere.toggle,
         fit,
         toggleTheme: theme.toggle,
         help: () => setHelpOpen(!isHelpOpen()),
@@ -55,9 +63,11 @@ export function App() {
         <VehicleDetail />
       </aside>
       <MapView />
+      <FlyHereCard />
       <OrderBar />
       <aside class="side side-events" aria-label="Alarms and commands">
         <AlarmList />
+        <FleetReturn />
         <CommandList />
         <LinkList />
         <StationPanel />

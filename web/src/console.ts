@@ -2,7 +2,9 @@ import { type Accessor, createContext, createMemo, createSignal, useContext } fr
 import { createFleetView, type FleetView } from "./fleet/fleetView";
 import { createSelection, type Selection, selectedVehicles } from "./fleet/selection";
 import type { ThemeSwitch } from "./look/theme";
+import type { LonLat } from "./map/localGrid";
 import { createDesk, type Desk } from "./orders/desk";
+import { createFlyHere, type FlyHere } from "./orders/flyHere";
 import { type Targets, targetsOf } from "./orders/targets";
 import type { Clock, Instant } from "./source/clock";
 import type { StationSource } from "./source/stationSource";
@@ -18,12 +20,17 @@ export interface Console {
   /** Whom an order would go to. */
   readonly targets: Accessor<Targets>;
   readonly desk: Desk;
+  readonly flyHere: FlyHere;
   readonly theme: ThemeSwitch;
   /** Seconds to add to every age of the newest state, growing as one looks. */
   readonly behindS: Accessor<number>;
   readonly fitRequests: Accessor<number>;
   /** Asks the map to show everything. */
   fit(): void;
+  /** Aims at what is in the map's middle, for those who move the map by keys. */
+  aimAtMiddle(): void;
+  /** The map says where its middle is. */
+  setMiddle(middle: () => LonLat): void;
 }
 
 /** Puts the page's shared parts together; `now` ticks as often as ages shall be shown anew. */
@@ -41,17 +48,31 @@ export function createConsole(
     return source.behindS(now()) ?? 0;
   });
   const targets = createMemo(() => targetsOf(selectedVehicles(fleet.vehicles, selection)));
+  const desk = createDesk(source, clock);
+  const alone = createMemo(() => {
+    const [only, ...others] = selectedVehicles(fleet.vehicles, selection);
+    return only === undefined || only.serial === null || others.length > 0 ? null : only;
+  });
+  const flyHere = createFlyHere(alone, source, desk, clock);
+  let middle: (() => LonLat) | null = null;
   return {
     source,
     clock,
     fleet,
     selection,
     targets,
-    desk: createDesk(source, clock),
+    desk,
+    flyHere,
     theme,
     behindS,
     fitRequests,
     fit: () => setFitRequests((count) => count + 1),
+    aimAtMiddle: () => {
+      if (middle !== null) flyHere.aim(middle());
+    },
+    setMiddle: (of) => {
+      middle = of;
+    },
   };
 }
 

@@ -9,6 +9,7 @@ function press(init: KeyboardEventInit, target?: HTMLElement) {
     selectAll: vi.fn(),
     clear: vi.fn(),
     fit: vi.fn(),
+    flyHere: vi.fn(),
     toggleTheme: vi.fn(),
     help: vi.fn(),
   } satisfies KeyActions;

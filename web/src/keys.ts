@@ -9,7 +9,11 @@ export const SHORTCUTS: readonly { readonly keys: string; readonly does: string 
   { keys: "1 to 9", does: "Select that vehicle alone" },
   { keys: "Shift + 1 to 9", does: "Add that vehicle, or take it out" },
   { keys: "Ctrl + A", does: "Select all vehicles" },
-  { keys: "Esc", does: "Select none; while holding, give no order" },
+  { keys: "G", does: "Fly here: say on the map where the one selected vehicle is to fly" },
+  {
+    keys: "Esc",
+    does: "Clear the target, leave fly here, select none; while holding, give no order",
+  },
   { keys: "F", does: "Fit everything into the map" },
   { keys: "T", does: "High contrast for bright sun, and back" },
   { keys: "?", does: "This help" },
@@ -23,6 +27,7 @@ export interface KeyActions {
   selectAll(): void;
   clear(): void;
   fit(): void;
+  flyHere(): void;
   toggleTheme(): void;
   help(): void;
 }
@@ -58,6 +63,8 @@ function plainAction(event: KeyboardEvent, actions: KeyActions): (() => void) | 
       return actions.clear;
     case "f":
       return actions.fit;
+    case "g":
+      return actions.flyHere;
     case "t":
       return actions.toggleTheme;
     default:

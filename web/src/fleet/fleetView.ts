@@ -3,6 +3,7 @@ import { createStore, reconcile } from "solid-js/store";
 import type {
   AlarmView,
   CommandView,
+  FleetReturnView,
   GroundImageView,
   LinkView,
   SiteView,
@@ -26,6 +27,7 @@ interface Contents {
   station: StationView | null;
   site: SiteView | null;
   groundImage: GroundImageView | null;
+  fleetReturn: FleetReturnView | null;
 }
 
 const NOTHING: Contents = {
@@ -37,6 +39,7 @@ const NOTHING: Contents = {
   station: null,
   site: null,
   groundImage: null,
+  fleetReturn: null,
 };
 
 /**
@@ -60,6 +63,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("alarms", reconcile([...state.alarms], { key: "id" }));
     setView("station", reconcile(state.station));
     setView("site", reconcile(state.site));
+    setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
     setView("groundImage", reconcile(state.ground_image));
   });
   return view;

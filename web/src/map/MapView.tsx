@@ -4,10 +4,12 @@ import { createEffect, createMemo, createSignal, on, onCleanup, onMount, Show } 
 import "maplibre-gl/dist/maplibre-gl.css";
 import "./map.css";
 import { useConsole } from "../console";
+import { courseText } from "../panels/fly/courseText";
 import { listNames, vehicleLabel } from "../words/names";
 import { BoundaryLayer } from "./boundaryLayer";
 import { readColours } from "./colours";
 import { createGroundOnMap } from "./createGroundOnMap";
+import { FlyHereLayer } from "./flyHereLayer";
 import { GroundImageNote } from "./GroundImageNote";
 import { GhostLayer } from "./ghostLayer";
 import { GraticuleLayer } from "./graticuleLayer";
@@ -17,7 +19,7 @@ import { KeepOutLayer } from "./keepOutLayer";
 import type { Layer } from "./layer";
 import type { Box } from "./localGrid";
 import { PadLayer } from "./padLayer";
-import { positionOf, wholeView } from "./scene";
+import { type Meant, positionOf, wholeView } from "./scene";
 import { SteeringLayer } from "./steeringLayer";
 import { SurveyLayer } from "./surveyLayer";
 import { TrailLayer } from "./trailLayer";
@@ -31,7 +33,7 @@ const LATE_STEP_S = 0.2;
 
 /** The map with everything that has a place. */
 export function MapView() {
-  const { source, selection, theme, behindS, fitRequests } = useConsole();
+  const { source, selection, theme, behindS, fitRequests, flyHere, setMiddle } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createGroundOnMap(source);
   let holder!: HTMLDivElement;
@@ -54,8 +56,11 @@ export function MapView() {
       new GhostLayer(),
       new TrailLayer(),
       new SteeringLayer(),
+      new FlyHereLayer(),
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }, [tools, notes]),
     ];
+    made.on("click", ({ lngLat }) => flyHere.aim({ lon: lngLat.lng, lat: lngLat.lat }));
+    setMiddle(() => ({ lon: made.getCenter().lng, lat: made.getCenter().lat }));
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
       setMap(made);
@@ -65,10 +70,16 @@ export function MapView() {
 
   // While news comes in, states alone move the map; only old news is drawn anew as it ages.
   const lateS = createMemo(() => Math.floor(behindS() / LATE_STEP_S) * LATE_STEP_S);
+  const meant = createMemo<Meant | null>(() => {
+    const [vehicle, at, course] = [flyHere.vehicle(), flyHere.target(), flyHere.course()];
+    if (vehicle === null || at === null) return null;
+    const text = course === null ? vehicleLabel(vehicle) : courseText(course);
+    return { from: positionOf(vehicle), at, text };
+  });
   createEffect(() => {
     const state = source.state();
     if (map() === null || state === null) return;
-    const scene = { state, behindS: lateS(), selected: selection.keys() };
+    const scene = { state, behindS: lateS(), selected: selection.keys(), meant: meant() };
     for (const layer of layers) layer.update(scene);
   });
 
@@ -97,7 +108,7 @@ export function MapView() {
   });
 
   return (
-    <section class="map" aria-label="Map">
+    <section class="map" classList={{ "is-aiming": flyHere.isOn() }} aria-label="Map">
       <div class="map-canvas" ref={holder} />
       <div class="grid-labels" ref={labels} aria-hidden="true" />
       <div class="map-tools" ref={tools}>
@@ -109,6 +120,17 @@ export function MapView() {
         </button>
         <button type="button" class="button" onClick={() => fit(false)} title="Fit everything (F)">
           Fit
+        </button>
+        <button
+          type="button"
+          class="button"
+          aria-pressed={flyHere.isOn()}
+          disabled={flyHere.vehicle() === null}
+          aria-label="Fly here"
+          title="Fly the one selected vehicle to a place on the map (G)"
+          onClick={() => flyHere.toggle()}
+        >
+          ⌖
         </button>
       </div>
       <div class="map-scale">

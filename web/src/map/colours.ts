@@ -6,6 +6,7 @@ export interface Colours {
   readonly grid: string;
   readonly gridAxis: string;
   readonly casing: string;
+  readonly text: string;
   readonly stale: string;
   readonly critical: string;
   readonly boundary: string;
@@ -28,6 +29,7 @@ export function readColours(page: Document): Colours {
     grid: read("--grid"),
     gridAxis: read("--grid-axis"),
     casing: read("--casing"),
+    text: read("--text"),
     critical: read("--critical"),
     boundary: read("--boundary"),
     keepOut: read("--keep-out"),

@@ -59,6 +59,7 @@ function setUp() {
       state: station([], { time_ns: seconds * 1e9, ground_image: image(frame_id) }),
       behindS: 0,
       selected: [],
+      meant: null,
     });
   const answer = async (index: number, frameId: number | null) => {
     asked[index]?.answer({ kind: "answered", value: { blob: new Blob(["x"]), frameId } });

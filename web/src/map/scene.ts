@@ -7,6 +7,15 @@ export interface Scene {
   /** Seconds to add to the state's ages. */
   readonly behindS: number;
   readonly selected: readonly number[];
+  /** Where a vehicle would fly that nobody has confirmed yet. */
+  readonly meant: Meant | null;
+}
+
+/** A place that is meant, with its words; `from` is null while the vehicle's own place is not known. */
+export interface Meant {
+  readonly from: LonLat | null;
+  readonly at: LonLat;
+  readonly text: string;
 }
 
 /** Where a vehicle was last seen; null when that is unknown. */

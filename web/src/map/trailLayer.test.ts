@@ -11,6 +11,7 @@ const PLAIN: Colours = {
   grid: "grey",
   gridAxis: "grey",
   casing: "white",
+  text: "black",
   stale: "grey",
   critical: "red",
   boundary: "#000001",
@@ -51,7 +52,7 @@ function show(east_m: number, changes: Partial<VehicleView> = {}): void {
   const [longitude_deg, latitude_deg] = at(east_m, 0);
   const position = { longitude_deg, latitude_deg, age_s: 0.1 };
   const one = vehicle(1, { position, track: [at(-50, 0)], ...changes });
-  layer.update({ state: station([one]), behindS: 0, selected: [] });
+  layer.update({ state: station([one]), behindS: 0, selected: [], meant: null });
 }
 
 describe("trails", () => {

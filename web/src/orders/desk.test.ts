@@ -28,6 +28,7 @@ function setUp() {
         return wait();
       },
       allStop: wait,
+      fleetReturn: wait,
     },
     clock,
   );

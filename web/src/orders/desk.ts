@@ -17,13 +17,17 @@ export interface Desk {
   readonly last: Accessor<Answer | null>;
   order(order: NamedOrder, labels: readonly string[]): Promise<void>;
   allStop(): Promise<void>;
+  /** Calls vehicles home in layers; null: every one in reach. */
+  fleetReturn(serials: readonly string[] | null, labels: readonly string[]): Promise<void>;
   dismiss(): void;
 }
 
 /** An answer without a refusal goes by itself after this; the commands' list tells on. */
 export const ALL_WELL_FOR_MS = 10_000;
 
-export function createDesk(source: Pick<StationSource, "order" | "allStop">, clock: Clock): Desk {
+type Asks = Pick<StationSource, "order" | "allStop" | "fleetReturn">;
+
+export function createDesk(source: Asks, clock: Clock): Desk {
   const [last, setLast] = createSignal<Answer | null>(null);
   let newest = 0;
 
@@ -53,6 +57,8 @@ export function createDesk(source: Pick<StationSource, "order" | "allStop">, clo
       await run(commandName(order.order.kind), labels, () => source.order(order));
     },
     allStop: () => run("All stop", ["all flying vehicles"], () => source.allStop()),
+    fleetReturn: (serials, labels) =>
+      run("Return in layers, first hold", labels, () => source.fleetReturn(serials)),
     dismiss: () => setLast(null),
   };
 }

@@ -4,6 +4,8 @@ export interface OrderKind {
   readonly label: string;
   /** Completes "Keep holding to ...", before the vehicles' names. */
   readonly verb: string;
+  /** What one must know of it before. */
+  readonly note: string;
   /** How long the button is held. */
   readonly hold_ms: number;
   /** With Shift, held as long as the button. */
@@ -17,7 +19,28 @@ export interface OrderKind {
  * ask for 1.5 s.
  */
 export const ORDER_KINDS: readonly OrderKind[] = [
-  { kind: "hover", label: "Hover", verb: "hover", hold_ms: 400, key: "H" },
-  { kind: "return_home", label: "Return home", verb: "return home", hold_ms: 1500, key: "R" },
-  { kind: "land", label: "Land", verb: "land", hold_ms: 1500, key: "L" },
+  {
+    kind: "hover",
+    label: "Hover",
+    verb: "hover",
+    note: "Stops and holds its position.",
+    hold_ms: 400,
+    key: "H",
+  },
+  {
+    kind: "return_home",
+    label: "Return home",
+    verb: "climb to the aircraft's own go-home height and return home",
+    note: "First climbs to the aircraft's own go-home height.",
+    hold_ms: 1500,
+    key: "R",
+  },
+  {
+    kind: "land",
+    label: "Land",
+    verb: "land",
+    note: "Lands where it is.",
+    hold_ms: 1500,
+    key: "L",
+  },
 ];

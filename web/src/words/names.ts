@@ -8,6 +8,9 @@ const COMMANDS: Readonly<Record<string, string>> = {
   camera_stop: "Camera off",
   mission: "Mission",
   stick: "Stick",
+  goto: "Fly here",
+  nudge: "Nudge",
+  hold_position: "Hold position",
 };
 
 /** A command's kind in plain words; an unknown kind stands as the station said it. */
@@ -29,6 +32,14 @@ export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
   expired: "Expired",
   failed: "Failed",
 };
+
+/** A note beside a phase. A refusal by the station begins with its rule's name, said here in plain words. */
+export function noteText(phase: Phase, note: string): string {
+  const match = /^([a-z0-9_]+): (.*)$/s.exec(note);
+  if (phase !== "refused_by_station" || match === null) return note;
+  const [, rule = "", reason = ""] = match;
+  return `rule ${plainWords(rule)}: ${reason}`;
+}
 
 export type Tone = "good" | "bad" | "over" | "underway";
 

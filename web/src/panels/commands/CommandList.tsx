@@ -2,7 +2,7 @@ import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { CommandView } from "../../protocol";
 import { formatAge } from "../../words/age";
-import { commandName, PHASE_NAMES, phaseTone } from "../../words/names";
+import { commandName, noteText, PHASE_NAMES, phaseTone } from "../../words/names";
 import { Empty } from "../Empty";
 import { Panel } from "../Panel";
 import "./commands.css";
@@ -45,7 +45,7 @@ function CommandRow(props: { command: CommandView }) {
         <Show when={props.command.sent_altitudes}>{(text) => <>, altitudes {text()}</>}</Show>
       </p>
       <Show when={!isNotedInLife(props.command)}>
-        <p class="wire-text">{props.command.note}</p>
+        <p class="wire-text">{noteText(props.command.phase, props.command.note)}</p>
       </Show>
     </li>
   );
@@ -65,7 +65,7 @@ function Life(props: { command: CommandView }) {
           <li>
             {PHASE_NAMES[phase.phase].toLowerCase()}{" "}
             <span class="muted">+{formatAge(props.command.age_s - phase.age_s)}</span>
-            <Show when={phase.note !== ""}> ({phase.note})</Show>
+            <Show when={phase.note !== ""}> ({noteText(phase.phase, phase.note)})</Show>
           </li>
         )}
       </For>

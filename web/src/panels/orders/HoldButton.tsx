@@ -22,6 +22,8 @@ export function HoldButton(props: {
       classList={{ "is-holding": props.timer.kind() === "holding" }}
       aria-disabled={isDisabled()}
       aria-label={accessibleName(props.order, props.labels)}
+      title={props.order.note}
+      aria-description={props.order.note}
       aria-keyshortcuts={`Shift+${props.order.key}`}
       style={{ "--held": props.timer.progress() }}
       {...holdHandlers(props.timer, isDisabled)}

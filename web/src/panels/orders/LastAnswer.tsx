@@ -2,7 +2,7 @@ import { For, Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import type { Answer } from "../../orders/desk";
 import type { OrderResult } from "../../protocol";
-import { listNames } from "../../words/names";
+import { listNames, plainWords } from "../../words/names";
 import { SeverityMark } from "../SeverityMark";
 
 /** What the station said to the last order, vehicle by vehicle, until it is put away. */
@@ -142,8 +142,8 @@ function RefusedLine(props: { result: OrderResult }) {
         <SeverityMark severity="error" />
       </span>
       <span>
-        Refused: <Name result={props.result} /> ({props.result.rule ?? "no rule given"}):{" "}
-        {props.result.reason}
+        Refused: <Name result={props.result} /> ({plainWords(props.result.rule ?? "no rule given")}
+        ): {props.result.reason}
       </span>
     </li>
   );

@@ -50,6 +50,9 @@ export function OrderBar() {
           )}
         </For>
       </div>
+      <p class="muted orders-note">
+        Return home first climbs to the aircraft's own go-home height.
+      </p>
     </section>
   );
 }

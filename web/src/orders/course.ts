@@ -1,0 +1,20 @@
+import { type LonLat, metresPerDegree } from "../map/localGrid";
+
+/** The straight way from one place to another. */
+export interface Course {
+  readonly distance_m: number;
+  /** Clockwise from north. */
+  readonly bearing_deg: number;
+  /** At the speed asked for, without setting off and stopping. */
+  readonly time_s: number;
+}
+
+/** The course over a climb (or descent) of so many metres at so many metres per second. */
+export function courseOf(from: LonLat, to: LonLat, climb_m: number, speed_mps: number): Course {
+  const per = metresPerDegree((from.lat + to.lat) / 2);
+  const east_m = (to.lon - from.lon) * per.lon;
+  const north_m = (to.lat - from.lat) * per.lat;
+  const distance_m = Math.hypot(east_m, north_m);
+  const bearing_deg = ((Math.atan2(east_m, north_m) * 180) / Math.PI + 360) % 360;
+  return { distance_m, bearing_deg, time_s: Math.hypot(distance_m, climb_m) / speed_mps };
+}

@@ -1,0 +1,129 @@
+import { Match, Show, Switch } from "solid-js";
+import { useConsole } from "../../console";
+import { vehicleLabel } from "../../words/names";
+import { GUARD_MS, GuardButton } from "../guard/GuardButton";
+import { SeverityMark } from "../SeverityMark";
+import { courseText } from "./courseText";
+import { NudgePad } from "./NudgePad";
+import "./fly.css";
+
+/** Fly here: where to, how high, how fast, what the gate says to it, and the button to be held. */
+export function FlyHereCard() {
+  const { flyHere } = useConsole();
+  const name = () => {
+    const vehicle = flyHere.vehicle();
+    return vehicle === null ? "" : vehicleLabel(vehicle);
+  };
+  const onKeyDown = (event: KeyboardEvent) => {
+    if (event.key !== "Escape") return;
+    event.stopPropagation();
+    flyHere.clear();
+  };
+  return (
+    <Show when={flyHere.isOn()}>
+      <section class="fly" aria-label={`Fly ${name()} here`} onKeyDown={onKeyDown}>
+        <header class="fly-head">
+          <h2 class="wire-text">Fly here: {name()}</h2>
+          <button
+            type="button"
+            class="button"
+            aria-label="Leave fly here"
+            onClick={() => flyHere.toggle()}
+          >
+            ✕
+          </button>
+        </header>
+        <Show when={flyHere.target()} fallback={<Aim />}>
+          <p class="fly-course">
+            <Show when={flyHere.course()} fallback="Distance not known">
+              {(course) => <strong>{courseText(course())}</strong>}
+            </Show>
+          </p>
+        </Show>
+        <div class="fly-fields">
+          <label>
+            Height <span class="muted">above takeoff, m</span>
+            <input
+              class="field"
+              type="text"
+              inputmode="decimal"
+              value={flyHere.height()}
+              onInput={(event) => flyHere.setHeight(event.currentTarget.value)}
+            />
+          </label>
+          <label>
+            Speed <span class="muted">m/s</span>
+            <input
+              class="field"
+              type="text"
+              inputmode="decimal"
+              value={flyHere.speed()}
+              onInput={(event) => flyHere.setSpeed(event.currentTarget.value)}
+            />
+          </label>
+        </div>
+        <Verdict />
+        <GuardButton
+          label="Fly there and hold"
+          name={`Fly ${name()} there and hold`}
+          class="fly-go"
+          hold_ms={GUARD_MS}
+          subject={flyHere.subject()}
+          onConfirm={() => flyHere.confirm()}
+        />
+        <NudgePad name={name()} />
+      </section>
+    </Show>
+  );
+}
+
+function Aim() {
+  const { aimAtMiddle } = useConsole();
+  return (
+    <div class="fly-aim">
+      <p>Press on the map where it is to fly.</p>
+      <button type="button" class="button" onClick={() => aimAtMiddle()}>
+        Aim at the map's middle
+      </button>
+    </div>
+  );
+}
+
+/** What the gate says, before anything is confirmed. */
+function Verdict() {
+  const { flyHere } = useConsole();
+  const refusal = () => {
+    const judgement = flyHere.judgement();
+    return judgement.kind === "refused" ? judgement.text : null;
+  };
+  return (
+    <div class="fly-verdict wire-text" role="status">
+      <Switch>
+        <Match when={refusal()}>
+          {(text) => (
+            <p class="check">
+              <span class="tone-error">
+                <SeverityMark severity="error" />
+              </span>
+              <span>{text()}</span>
+            </p>
+          )}
+        </Match>
+        <Match when={flyHere.judgement().kind === "allowed"}>
+          <p class="check">
+            <span class="tone-good">
+              <SeverityMark severity={null} />
+            </span>
+            <span>The safety gate allows it as of now.</span>
+          </p>
+        </Match>
+        <Match when={flyHere.judgement().kind === "asking"}>
+          <p class="muted">Asking the safety gate</p>
+        </Match>
+        <Match when={flyHere.target() !== null}>
+          <p class="muted">Height and speed must be numbers, the speed above 0.</p>
+        </Match>
+      </Switch>
+    </div>
+  );
+}

@@ -1,0 +1,66 @@
+import { createSignal, For } from "solid-js";
+import { useConsole } from "../../console";
+import type { NudgeBy } from "../../orders/flyHere";
+import { BRIEF_MS, GuardButton } from "../guard/GuardButton";
+
+const STEPS_M = [1, 2, 5] as const;
+const TURN_DEG = 15;
+
+interface Nudge {
+  readonly sign: string;
+  readonly name: string;
+  by(step_m: number): NudgeBy;
+}
+
+/** In the order they stand: north above, its opposites around the middle. */
+const NUDGES: readonly Nudge[] = [
+  { sign: "↺", name: `turn left by ${TURN_DEG}°`, by: () => ({ turn_deg: -TURN_DEG }) },
+  { sign: "N", name: "north", by: (north_m) => ({ north_m }) },
+  { sign: "↻", name: `turn right by ${TURN_DEG}°`, by: () => ({ turn_deg: TURN_DEG }) },
+  { sign: "↥", name: "up", by: (up_m) => ({ up_m }) },
+  { sign: "W", name: "west", by: (step_m) => ({ east_m: -step_m }) },
+  { sign: "S", name: "south", by: (step_m) => ({ north_m: -step_m }) },
+  { sign: "E", name: "east", by: (east_m) => ({ east_m }) },
+  { sign: "↧", name: "down", by: (step_m) => ({ up_m: -step_m }) },
+];
+
+/** Small steps from where the vehicle is: each button is held briefly. */
+export function NudgePad(props: { name: string }) {
+  const { flyHere } = useConsole();
+  const [step_m, setStep_m] = createSignal<number>(STEPS_M[0]);
+  const subject = () => JSON.stringify([flyHere.vehicle()?.serial, step_m()]);
+  return (
+    <details class="nudges">
+      <summary>Nudge by small steps</summary>
+      <fieldset class="nudge-steps" aria-label="Metres in a step">
+        <For each={STEPS_M}>
+          {(metres) => (
+            <button
+              type="button"
+              class="button"
+              aria-pressed={step_m() === metres}
+              onClick={() => setStep_m(metres)}
+            >
+              {metres} m
+            </button>
+          )}
+        </For>
+      </fieldset>
+      <div class="nudge-pad">
+        <For each={NUDGES}>
+          {(nudge) => (
+            <GuardButton
+              label={nudge.sign}
+              name={`Nudge ${props.name} ${nudge.name}`}
+              class="guard-small"
+              hold_ms={BRIEF_MS}
+              subject={subject()}
+              onConfirm={() => flyHere.nudge(nudge.by(step_m()))}
+            />
+          )}
+        </For>
+      </div>
+      <p class="muted">Hold a button briefly.</p>
+    </details>
+  );
+}

@@ -1,0 +1,167 @@
+import { afterEach, beforeEach, describe, expect, it } from "vitest";
+import { courseOf } from "../../orders/course";
+import { numberIn } from "../../orders/flyHere";
+import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { at, orderResult, station, vehicle } from "../../testing/world";
+import { courseText } from "./courseText";
+import { FlyHereCard } from "./FlyHereCard";
+
+const lonLat = (east_m: number, north_m: number) => {
+  const [lon, lat] = at(east_m, north_m);
+  return { lon, lat };
+};
+const settled = async () => {
+  for (let turn = 0; turn < 5; turn += 1) await Promise.resolve();
+};
+
+describe("the course", () => {
+  it.each([
+    [[0, 100], 0, 0],
+    [[100, 0], 0, 90],
+    [[-100, 0], 0, 270],
+    [[0, -100], 0, 180],
+  ] as const)("to %j points %d", ([east_m, north_m], climb_m, bearing_deg) => {
+    const course = courseOf(lonLat(0, 0), lonLat(east_m, north_m), climb_m, 5);
+    expect(course.bearing_deg).toBeCloseTo(bearing_deg, 1);
+    expect(course.distance_m / 100).toBeCloseTo(1, 2);
+  });
+
+  it("takes the climb's time too, and no time for granted", () => {
+    const here = lonLat(0, 0);
+    expect(courseOf(here, here, 30, 5)).toMatchObject({ distance_m: 0, time_s: 6 });
+  });
+
+  it("reads as a sentence", () => {
+    const course = { distance_m: 120.4, bearing_deg: 44.6, time_s: 24.1 };
+    expect(courseText(course)).toBe("120\u00a0m towards 045°, about 25 s");
+  });
+});
+
+describe("a number in a field", () => {
+  it.each([
+    ["40", 40],
+    [" 7,5 ", 7.5],
+    ["", null],
+    ["4o", null],
+    ["Infinity", null],
+  ])("%j is %s", (text, value) => expect(numberIn(text)).toBe(value));
+});
+
+describe("fly here", () => {
+  let page: RenderedPage;
+  beforeEach(() => {
+    page = renderPage(FlyHereCard, station([vehicle(1), vehicle(2)]));
+    page.answerWith([orderResult()]);
+  });
+  afterEach(() => page.dispose());
+
+  const fly = () => page.shared.flyHere;
+  const begin = async () => {
+    page.shared.selection.only(1);
+    fly().toggle();
+    fly().aim(lonLat(0, 0));
+    page.clock.advance(300);
+    await settled();
+  };
+  const go = () => find(page.root, ".fly-go");
+  const hold = (ms: number) => {
+    go().dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(ms);
+  };
+
+  it("needs exactly one vehicle that is known", () => {
+    fly().toggle();
+    expect(fly().isOn()).toBe(false);
+    page.shared.selection.all([1, 2]);
+    fly().toggle();
+    expect(fly().isOn()).toBe(false);
+    page.shared.selection.only(1);
+    fly().toggle();
+    expect(fly().isOn()).toBe(true);
+  });
+
+  it("asks the gate first and shows distance, bearing and time", async () => {
+    await begin();
+    expect(page.checks).toHaveLength(1);
+    expect(page.checks[0]?.order).toMatchObject({
+      kind: "goto",
+      height_above_takeoff_m: 45,
+      speed_mps: 5,
+    });
+    expect(find(page.root, ".fly-course").textContent).toMatch(/m towards \d{3}°, about \d+ s/);
+    expect(find(page.root, ".fly-verdict").textContent).toContain("The safety gate allows it");
+    expect(page.orders).toEqual([]);
+  });
+
+  it("orders what was judged when the button was held, and once", async () => {
+    await begin();
+    hold(1400);
+    expect(page.orders).toEqual([]);
+    page.clock.advance(200);
+    await settled();
+    expect(page.orders).toEqual([page.checks[0]]);
+    expect(fly().target()).toBeNull();
+  });
+
+  it("says in words what the gate refuses, and orders nothing", async () => {
+    const reason = "the way leads through the keep-out zone Barn";
+    page.answerWith([orderResult({ accepted: false, rule: "keep_out", reason })]);
+    await begin();
+    expect(find(page.root, ".fly-verdict").textContent).toContain(`Refused (keep out): ${reason}`);
+    hold(3000);
+    expect(go().getAttribute("aria-disabled")).toBe("true");
+    expect(page.orders).toEqual([]);
+  });
+
+  it("asks again each second, for the air changes", async () => {
+    await begin();
+    page.answerWith([orderResult({ accepted: false, rule: "separation", reason: "too close" })]);
+    page.clock.advance(1000);
+    await settled();
+    expect(find(page.root, ".fly-verdict").textContent).toContain("too close");
+  });
+
+  it("gives no order for a target that was moved while the button was held", async () => {
+    await begin();
+    hold(1000);
+    fly().aim(lonLat(50, 0));
+    page.clock.advance(2000);
+    await settled();
+    expect(page.orders).toEqual([]);
+  });
+
+  it("asks nothing while a field holds no number", async () => {
+    await begin();
+    const [height] = page.root.querySelectorAll("input");
+    if (height === undefined) throw new Error("no field for the height");
+    height.value = "high";
+    height.dispatchEvent(new InputEvent("input", { bubbles: true }));
+    page.clock.advance(3000);
+    await settled();
+    expect(page.checks).toHaveLength(1);
+    expect(find(page.root, ".fly-verdict").textContent).toContain("must be numbers");
+    expect(go().getAttribute("aria-disabled")).toBe("true");
+  });
+
+  it("takes back the target, then the mode; another selection takes back both", async () => {
+    await begin();
+    expect([fly().clear(), fly().target(), fly().isOn()]).toEqual([true, null, true]);
+    expect([fly().clear(), fly().isOn(), fly().clear()]).toEqual([true, false, false]);
+    await begin();
+    page.shared.selection.only(2);
+    expect([fly().target(), fly().isOn()]).toEqual([null, false]);
+  });
+
+  it("nudges by the step chosen, when a button was held briefly", async () => {
+    await begin();
+    const west = find(page.root, "[aria-label^='Nudge 1 Alder west']");
+    west.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(450);
+    expect(page.orders).toEqual([
+      {
+        serials: ["SN-001"],
+        order: { kind: "nudge", north_m: 0, east_m: -1, up_m: 0, turn_deg: 0, speed_mps: 2 },
+      },
+    ]);
+  });
+});
