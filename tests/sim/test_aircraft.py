@@ -181,3 +181,32 @@ def test_motion_does_not_depend_on_how_often_it_is_asked(flights) -> None:
     often.advance(10_000_000_000)
     seldom.advance(10_000_000_000)
     assert often.motion == seldom.motion
+
+
+def test_wind_drifts_an_aircraft_under_sticks_and_not_in_position_mode(flights) -> None:
+    aircraft = flights.hovering()
+    aircraft.stick(
+        stick(velocity_x_mps=2.0, drift_north_mps=0.5, drift_east_mps=-1.0, timeout_s=60)
+    )
+    drifting = flights.fly_on(aircraft, 5.0)
+    assert drifting.velocity_north_mps == pytest.approx(2.5)
+    assert drifting.velocity_east_mps == pytest.approx(-1.0)
+    aircraft.hover()
+    assert flights.fly_on(aircraft, 5.0).ground_speed_mps == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_pilot_keeps_the_apps_sticks_and_missions_out(flights) -> None:
+    aircraft = flights.hovering()
+    aircraft.stick(stick(velocity_x_mps=5.0, timeout_s=60.0))
+    flights.fly_on(aircraft, 3.0)
+    aircraft.pilot_takes()
+    aircraft.stick(stick(velocity_x_mps=5.0, timeout_s=60.0))
+    aircraft.fly_mission((), is_curved=False, lands_at_end=False)
+    assert aircraft.flight_mode is FlightMode.GPS_SPORT
+    assert flights.fly_on(aircraft, 5.0).ground_speed_mps == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_pilot_takes_no_aircraft_off_by_the_mode_switch() -> None:
+    aircraft = Aircraft(0)
+    aircraft.pilot_takes()
+    assert aircraft.is_on_ground
