@@ -37,6 +37,7 @@ of the last entry before it, 0 in the first file of a run."""
 
 STARTED_KIND = "station.started"
 STOPPED_KIND = "station.stopped"
+FAILED_KIND = "station.failed"
 
 _LONGEST_TEXT = 2_000
 _MOST_ITEMS = 512

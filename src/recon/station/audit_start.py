@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from recon import __version__
-from recon.record.audit import STARTED_KIND, STOPPED_KIND, AuditEntry
+from recon.record.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
 from recon.record.audit_files import RunEnd, audit_files, read_run_end
 from recon.record.audit_log import AuditLog, refuse_other_writer
 from recon.record.errors import RecordError
@@ -96,9 +96,13 @@ def started_entry(
     return AuditEntry(STARTED_KIND, f"the station starts, version {__version__}", details=details)
 
 
-def stopped_entry() -> AuditEntry:
-    """Return the entry of an end in order."""
-    return AuditEntry(STOPPED_KIND, "the station stops; what flies, flies on by its last order")
+def ended_entry(problem: BaseException | None) -> AuditEntry:
+    """Return the entry of a station's end, in order or by a fault of its own."""
+    words = "what flies, flies on by its last order"
+    if problem is None:
+        return AuditEntry(STOPPED_KIND, f"the station stops; {words}")
+    fault = f"{type(problem).__name__}: {problem}"
+    return AuditEntry(FAILED_KIND, f"the station ends by a fault ({fault}); {words}")
 
 
 def _read(path: Path, troubles: list[str]) -> tuple[LastRun, RunEnd | None]:

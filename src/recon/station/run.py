@@ -27,8 +27,8 @@ from recon.station.audit_start import (
     Begun,
     begin_audit,
     default_place,
+    ended_entry,
     started_entry,
-    stopped_entry,
 )
 from recon.station.auditor import Auditor
 from recon.station.build import first_state, worker_tasks
@@ -151,7 +151,7 @@ def _start_auditor(
     stack.callback(printer.close)
     begun.log.start()
     stack.callback(begun.log.close)
-    stack.callback(lambda: auditor.put([stopped_entry()]))
+    stack.push(lambda kind, problem, trace: auditor.put([ended_entry(problem)]))
     settings, folder = first_state(config.site).settings, config.site_folder
     site = {
         "name": config.site.name,
