@@ -211,4 +211,5 @@ class TestParts:
         there = moved_m(origin, north_m, east_m)
         assert there.is_valid()
         assert offset_north_east_m(origin, there) == pytest.approx((north_m, east_m), abs=1e-6)
-        assert horizontal_distance_m(origin, there) == pytest.approx(hypot(north_m, east_m))
+        distance_m = horizontal_distance_m(origin, there)
+        assert distance_m == pytest.approx(hypot(north_m, east_m), abs=1e-6)
