@@ -62,6 +62,8 @@ def command(number: int = 1, phase: schema.PhaseWord = "sent") -> schema.Command
         times_sent=1,
         takeoff=False,
         sent_altitudes=None,
+        part=None,
+        repairs=[],
         history=[schema.PhaseView(phase=phase, age_s=1.0, note="")],
     )
 

@@ -228,6 +228,8 @@ class CommandView(Message):
     times_sent: int
     takeoff: bool
     sent_altitudes: str | None = Field(description="which altitudes a mission was sent with")
+    part: str | None = Field(description="the part of a mission flown now, as in 'part 2 of 3'")
+    repairs: list[str] = Field(description="what was changed in a mission so that DJI accepts it")
     history: list[PhaseView]
 
 

@@ -216,6 +216,8 @@ def _command(record: OrderRecord, times_sent: int, now_ns: int) -> schema.Comman
         times_sent=times_sent,
         takeoff=command.takeoff,
         sent_altitudes=record.altitudes,
+        part=None if record.plan is None else record.plan.label or None,
+        repairs=[] if record.plan is None else list(record.plan.repairs),
         history=[
             schema.PhaseView(
                 phase=change.phase.value,

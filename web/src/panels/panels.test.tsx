@@ -230,6 +230,29 @@ describe("links", () => {
   });
 });
 
+describe("a command", () => {
+  it("tells its mission's part and what was repaired in it", () => {
+    const repairs = ["waypoint 3 is 0.40 m from waypoint 2 and was merged into it"];
+    const one = command(1, { kind: "mission", part: "part 2 of 3", repairs });
+    const root = show(CommandList, station([], { commands: [one, command(2)] }));
+    const [mission, other] = root.querySelectorAll("li.command");
+    expect(mission?.textContent).toContain("part 2 of 3");
+    expect(mission?.querySelector("details")?.textContent).toContain("merged into it");
+    expect(other?.querySelector("details")).toBeNull();
+  });
+
+  it("names the rule that refused it in plain words", () => {
+    const note = "keep_out: the way leads through the Barn";
+    const one = command(1, {
+      phase: "refused_by_station",
+      note,
+      history: [{ phase: "refused_by_station", age_s: 3, note }],
+    });
+    const root = show(CommandList, station([], { commands: [one] }));
+    expect(root.textContent).toContain("rule keep out: the way leads through the Barn");
+  });
+});
+
 describe("the station", () => {
   it("tells of refused connections and a capture with holes, once there are any", () => {
     const state = station([]);

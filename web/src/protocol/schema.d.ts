@@ -617,10 +617,20 @@ export interface components {
             /** Note */
             note: string;
             /**
+             * Part
+             * @description the part of a mission flown now, as in 'part 2 of 3'
+             */
+            part: string | null;
+            /**
              * Phase
              * @enum {string}
              */
             phase: "queued" | "sent" | "acknowledged" | "confirmed" | "started" | "done" | "refused_by_station" | "refused_by_app" | "timed_out" | "superseded" | "expired" | "failed";
+            /**
+             * Repairs
+             * @description what was changed in a mission so that DJI accepts it
+             */
+            repairs: string[];
             /**
              * Sent Altitudes
              * @description which altitudes a mission was sent with

@@ -125,6 +125,8 @@ export function command(id: number, changes: Partial<CommandView> = {}): Command
     times_sent: 1,
     takeoff: false,
     sent_altitudes: null,
+    part: null,
+    repairs: [],
     history,
     ...changes,
   };

@@ -44,10 +44,35 @@ function CommandRow(props: { command: CommandView }) {
         <Show when={props.command.takeoff}>, takeoff allowed</Show>
         <Show when={props.command.sent_altitudes}>{(text) => <>, altitudes {text()}</>}</Show>
       </p>
+      <Show when={props.command.part}>
+        {(part) => (
+          <p>
+            Mission: <strong>{part()}</strong>
+          </p>
+        )}
+      </Show>
+      <Show when={props.command.repairs.length > 0}>
+        <Repairs repairs={props.command.repairs} />
+      </Show>
       <Show when={!isNotedInLife(props.command)}>
         <p class="wire-text">{noteText(props.command.phase, props.command.note)}</p>
       </Show>
     </li>
+  );
+}
+
+/** What the station changed in a mission so that the aircraft takes it. */
+function Repairs(props: { repairs: readonly string[] }) {
+  return (
+    <details class="repairs wire-text">
+      <summary>
+        Repaired before sending: {props.repairs.length}{" "}
+        {props.repairs.length === 1 ? "change" : "changes"}
+      </summary>
+      <ul>
+        <For each={props.repairs}>{(repair) => <li>{repair}</li>}</For>
+      </ul>
+    </details>
   );
 }
 

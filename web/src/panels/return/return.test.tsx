@@ -34,10 +34,7 @@ const VIEW: FleetReturnView = {
   ],
 };
 
-let page: RenderedPage;
-afterEach(() => page.dispose());
-
-describe("the return in layers", () => {
+describe("the order of a return", () => {
   it("goes in waves, with those left out before all", () => {
     const groups = stagesInTurn(VIEW).map(({ title, vehicles }) => [
       title,
@@ -49,6 +46,11 @@ describe("the return in layers", () => {
       ["Wave 2", "B"],
     ]);
   });
+});
+
+describe("the return in layers", () => {
+  let page: RenderedPage;
+  afterEach(() => page.dispose());
 
   it("tells who waits and why, and how many have landed", () => {
     page = renderPage(FleetReturn, station([vehicle(1)], { fleet_return: VIEW }));
