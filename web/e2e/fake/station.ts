@@ -1,11 +1,16 @@
 import type { Page, WebSocketRoute } from "@playwright/test";
-import type { OrderRequest, StationState } from "../../src/protocol";
+import type { OrderRequest, OrderResult, PreflightView, StationState } from "../../src/protocol";
 
 /** A station inside the browser: answers the page's requests, and says what a test lets it say. */
 export class FakeStation {
   readonly orders: OrderRequest[] = [];
   readonly acknowledged: number[] = [];
   allStops = 0;
+  /** Every other thing said to the station: its path and what it carried. */
+  readonly said: [path: string, body: unknown][] = [];
+  /** What the gate says to orders that are checked. */
+  judgement: Partial<OrderResult> = {};
+  preflight: PreflightView | null = null;
   private sockets: WebSocketRoute[] = [];
   private isReachable = true;
   private picture: Buffer | null = null;
@@ -15,7 +20,9 @@ export class FakeStation {
   /** Takes the place of the station for `page`, before it is opened. */
   static async behind(page: Page, state: StationState): Promise<FakeStation> {
     const fake = new FakeStation(state);
-    await page.routeWebSocket("**/api/stream", (socket) => fake.accept(socket));
+    await page.routeWebSocket(/\/api\/stream\?holder=[0-9a-f]{32}$/, (socket) =>
+      fake.accept(socket),
+    );
     await page.route("**/api/**", (route) => {
       const request = route.request();
       const answer = fake.answer(new URL(request.url()).pathname, request.postData());
@@ -60,6 +67,17 @@ export class FakeStation {
   private answer(path: string, body: string | null) {
     if (!this.isReachable) return null;
     if (path === "/api/orders") return this.order(JSON.parse(body ?? "{}") as OrderRequest);
+    if (path === "/api/orders/check") return this.judge(JSON.parse(body ?? "{}") as OrderRequest);
+    if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
+    const isWord = /\/(authority|override)$/.test(path);
+    if (isWord || path === "/api/fleet-return") {
+      this.said.push([path, JSON.parse(body ?? "{}")]);
+      return { json: isWord ? { accepted: true, rule: null, reason: null } : { results: [] } };
+    }
+    if (/\/dismiss$|^\/api\/separation-hold\//.test(path)) {
+      this.said.push([path, null]);
+      return { status: 204 };
+    }
     if (path === "/api/all-stop") return this.stopAll();
     const alarm = /^\/api\/alarms\/(\d+)\/acknowledge$/.exec(path);
     if (alarm !== null) {
@@ -75,7 +93,16 @@ export class FakeStation {
 
   private order(request: OrderRequest) {
     this.orders.push(request);
-    const results = request.serials.map((serial, index) => ({
+    return { json: { results: this.results(request) } };
+  }
+
+  private judge(request: OrderRequest) {
+    const judged = this.results(request).map((result) => ({ ...result, ...this.judgement }));
+    return { json: { results: judged } };
+  }
+
+  private results(request: OrderRequest) {
+    return request.serials.map((serial, index) => ({
       serial,
       link_id: index + 1,
       vehicle_name: this.nameOf(serial),
@@ -85,7 +112,6 @@ export class FakeStation {
       rule: null,
       reason: null,
     }));
-    return { json: { results } };
   }
 
   private stopAll() {

@@ -1,0 +1,140 @@
+import type { PreflightView, StationState } from "../../src/protocol";
+import { alarm, area, at, command, ghost, station, vehicle } from "../../src/testing/world";
+
+/** A field with fences, a vehicle that is not heard, one that is steered, and a fleet on its way home. */
+export function fencedState(elapsed_s: number): StationState {
+  const [longitude_deg, latitude_deg] = at(40, 110);
+  const vehicles = [
+    vehicle(1, {
+      lead: { leader: "guidance", holder: "survey", age_s: 64, reason: "it flies the survey" },
+    }),
+    vehicle(2, {
+      steering: {
+        command_id: 21,
+        latitude_deg,
+        longitude_deg,
+        height_above_takeoff_m: 42,
+        speed_mps: 5,
+        has_arrived: false,
+        is_ending: false,
+      },
+    }),
+    vehicle(3, {
+      staleness: "lost",
+      telemetry_age_s: 5 + elapsed_s,
+      ghost: ghost([30, 30], { corridor: [at(30, 30), at(-120, -100)], radius_m: 60 }),
+    }),
+    vehicle(4, { is_flying: { value: false, age_s: 0.1 } }),
+  ];
+  const plain = station(vehicles, { time_ns: 1e9 * (1 + elapsed_s) });
+  const pad = (name: string, serial: string | null, east_m: number) => {
+    const [lon, lat] = at(east_m, -130);
+    return { name, serial, longitude_deg: lon, latitude_deg: lat, altitude_m: 281.5 };
+  };
+  const returning = {
+    since_age_s: 8,
+    reason: null,
+    layer_height_m: 48,
+    layer_height_above_takeoff_m: 48,
+    pad: "P1",
+    hold_command_id: 7,
+    mission_command_id: 8,
+  };
+  return {
+    ...plain,
+    station: { ...plain.station, separation_hold_on: false },
+    site: plain.site && {
+      ...plain.site,
+      areas: [
+        area("boundary", [0, 0], 190),
+        area("keep_out", [-120, 60], 34),
+        area("height", [115, -95], 55, {
+          name: "Power line",
+          floor_m: 45,
+          ceiling_m: 90,
+          datum: "ground",
+        }),
+      ],
+      pads: [pad("P1", "SN-001", -120), pad("P2", null, -90)],
+    },
+    alarms: [
+      alarm(1, {
+        severity: "critical",
+        vehicle_name: "Cedar",
+        text: "Flying, and nothing heard for 5 s.",
+      }),
+    ],
+    commands: [
+      command(21, {
+        kind: "goto",
+        vehicle_name: "Birch",
+        phase: "started",
+        is_final: false,
+        history: [
+          { phase: "queued", age_s: 9, note: "" },
+          { phase: "started", age_s: 8, note: "" },
+        ],
+      }),
+      command(20, {
+        kind: "mission",
+        part: "part 2 of 3",
+        repairs: ["waypoint 3 is 0.40 m from waypoint 2 and was merged into it"],
+        phase: "started",
+        is_final: false,
+      }),
+    ],
+    fleet_return: {
+      called_by: "api 127.0.0.1",
+      age_s: 31,
+      is_over: false,
+      vehicles: [
+        { ...returning, serial: "SN-001", vehicle_name: "Alder", stage: "flying", wave: 1 },
+        {
+          ...returning,
+          serial: "SN-002",
+          vehicle_name: "Birch",
+          stage: "waiting",
+          wave: 2,
+          reason: "its pad is in use by Alder",
+        },
+        {
+          ...returning,
+          serial: "SN-003",
+          vehicle_name: "Cedar",
+          stage: "left_out",
+          wave: null,
+          layer_height_m: null,
+          layer_height_above_takeoff_m: null,
+          pad: null,
+          reason: "it is not heard",
+        },
+      ],
+    },
+  };
+}
+
+/** A checklist with a point that holds missions back. */
+export const CHECKLIST: PreflightView = {
+  serial: "SN-001",
+  name: "Alder",
+  is_passed: false,
+  override: null,
+  points: [
+    {
+      key: "battery",
+      name: "Battery",
+      state: "ok",
+      text: "80 % at takeoff",
+      to_do: "",
+      holds_back: false,
+    },
+    {
+      key: "go_home_height",
+      name: "Go-home height",
+      state: "fails",
+      text: "the site's file does not say it",
+      to_do: "Write go_home_height_m into the vehicle's profile.",
+      holds_back: true,
+    },
+  ],
+};
