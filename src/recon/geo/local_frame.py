@@ -5,6 +5,7 @@ height lies d^2 / 12,756 km below the plane at distance d (5 mm at 256 m, 8 cm a
 """
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -14,6 +15,10 @@ from recon.geo.ellipsoid import ecef_from_geodetic, geodetic_from_ecef
 from recon.model.geo import GeoPoint, LocalFrame
 
 FloatArray = npt.NDArray[np.float64]
+
+
+FRAMES_KEPT = 64
+"""A site has one frame; where there is none, each vehicle has one of its own for a moment."""
 
 
 class OnGlobe(Protocol):
@@ -90,6 +95,7 @@ def point_from_enu(frame: LocalFrame, enu_m: npt.ArrayLike) -> GeoPoint:
     return GeoPoint(float(latitude[0]), float(longitude[0]), float(height[0]))
 
 
+@lru_cache(maxsize=FRAMES_KEPT)
 def _origin_ecef(frame: LocalFrame) -> FloatArray:
     origin = frame.origin
     return ecef_from_geodetic(
@@ -99,6 +105,7 @@ def _origin_ecef(frame: LocalFrame) -> FloatArray:
     )
 
 
+@lru_cache(maxsize=FRAMES_KEPT)
 def _rotation_enu_ecef(frame: LocalFrame) -> FloatArray:
     """Rows: east, north and up at the origin, in earth-centred axes."""
     latitude = np.deg2rad(frame.origin.latitude_deg)

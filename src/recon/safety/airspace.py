@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from recon.geo import Polygon, Surface
+from recon.geo import Footprints, Polygon, Surface
 from recon.model.airspace import Airspace
 from recon.model.zone import Zone, ZoneKind
 
@@ -40,9 +40,7 @@ class PreparedAirspace:
         boundary = airspace.boundary
         self.boundary = None if boundary is None else Polygon(boundary)
         self.zones = tuple(PreparedZone(zone, Polygon(zone.region)) for zone in airspace.zones)
-        self._zones = {
-            kind: tuple(zone for zone in self.zones if zone.zone.kind is kind) for kind in ZoneKind
-        }
+        self._zones = {kind: _boxed(self.zones, kind) for kind in ZoneKind}
         self._ground = _ground(airspace)
 
     @property
@@ -51,9 +49,23 @@ class PreparedAirspace:
         frame = self.airspace.frame
         return 0.0 if frame is None else frame.origin.ellipsoid_height_m
 
+    def zones_near(
+        self, kind: ZoneKind, footprints: Footprints, gap_m: float
+    ) -> list[PreparedZone]:
+        """Return the zones of a kind, in the site's order, that any footprint may be near to.
+
+        The others' boxes are more than `gap_m` from the box round all the footprints.
+        """
+        zones, least_m, most_m = self._zones[kind]
+        if not zones:
+            return []
+        is_apart = (footprints.least_m.min(axis=0) > most_m + gap_m).any(axis=1)
+        is_apart |= (footprints.most_m.max(axis=0) < least_m - gap_m).any(axis=1)
+        return [zones[index] for index in np.flatnonzero(~is_apart)]
+
     def zones_of(self, kind: ZoneKind) -> tuple[PreparedZone, ...]:
         """Return the zones of one kind, in the site's order."""
-        return self._zones[kind]
+        return self._zones[kind][0]
 
     def ground_up_m(self, points_m: npt.ArrayLike) -> FloatArray:
         """Return the ground's heights (N,) at (N, 2) east-north points."""
@@ -77,6 +89,17 @@ class PreparedAirspace:
         if self._ground is None:
             return np.asarray(up_m <= 0.0)
         return self._ground.is_above(triangles_m, up_m)
+
+
+def _boxed(
+    zones: tuple[PreparedZone, ...], kind: ZoneKind
+) -> tuple[tuple[PreparedZone, ...], FloatArray, FloatArray]:
+    """The N zones of a kind and the boxes around them, (N, 2) each."""
+    chosen = tuple(zone for zone in zones if zone.zone.kind is kind)
+    outlines = [zone.zone.region.outline_m for zone in chosen]
+    least_m = np.array([outline.min(axis=0) for outline in outlines]).reshape(-1, 2)
+    most_m = np.array([outline.max(axis=0) for outline in outlines]).reshape(-1, 2)
+    return chosen, least_m, most_m
 
 
 def _ground(airspace: Airspace) -> Surface | None:

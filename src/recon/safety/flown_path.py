@@ -117,7 +117,9 @@ class FlownPath:
 
     def of_kinds(self, *kinds: Kind) -> BoolArray:
         """Return which pieces are of these kinds, (N,)."""
-        return np.isin(self.pieces.kinds, kinds)
+        wanted = np.zeros(len(Kind), dtype=np.bool_)
+        wanted[[*kinds]] = True
+        return wanted[self.pieces.kinds]
 
 
 def joined(*blocks: Pieces) -> Pieces:

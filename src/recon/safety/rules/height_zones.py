@@ -28,14 +28,15 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
     without velocity is held to zones that the vehicle is in, with `stop_slack_m`; where the vehicle
     is not known to be, it is not asked.
     """
-    zones = situation.airspace.zones_of(ZoneKind.HEIGHT)
-    path = flown(command, situation) if zones else None
+    airspace = situation.airspace
+    path = flown(command, situation) if airspace.zones_of(ZoneKind.HEIGHT) else None
     if path is None:
         return None
     is_stop = is_zero_stick(command.body)
     if isinstance(path, Unknown):
         return None if is_stop else Refusal(RULE, path.reason)
-    for zone in zones:
+    margin_m = airspace.airspace.limits.boundary_margin_m
+    for zone in airspace.zones_near(ZoneKind.HEIGHT, path.footprints, margin_m):
         reason = _fault(zone, path, situation, is_stop)
         if reason is not None:
             return Refusal(RULE, reason)
@@ -52,7 +53,8 @@ def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, is_stop: b
     if floor_m is not None:
         low_m = pieces.low_m[near] + slack_m
         is_low = ~stays_above(airspace, triangles_m, low_m, floor_m, datum)
-        is_low &= ~columns(path, situation, is_stop)[near]
+        if is_low.any():
+            is_low &= ~columns(path, situation, is_stop)[near]
         if is_low.any():
             limit = f"fly no lower than {height_words(floor_m, datum)} there"
             return _reason(zone, path, int(near[is_low][0]), limit)

@@ -37,14 +37,15 @@ def keep_out(command: Command, situation: Situation) -> Refusal | None:
     A stick without velocity is held to the zones without the margins, and may be `stop_slack_m`
     beyond their floors and ceilings; where the vehicle is not known to be, it is not asked.
     """
-    zones = situation.airspace.zones_of(ZoneKind.KEEP_OUT)
-    path = flown(command, situation) if zones else None
+    airspace = situation.airspace
+    path = flown(command, situation) if airspace.zones_of(ZoneKind.KEEP_OUT) else None
     if path is None:
         return None
     is_stop = is_zero_stick(command.body)
     if isinstance(path, Unknown):
         return None if is_stop else Refusal(RULE, path.reason)
-    for zone in zones:
+    margin_m = airspace.airspace.limits.boundary_margin_m
+    for zone in airspace.zones_near(ZoneKind.KEEP_OUT, path.footprints, margin_m):
         entered = _Judged(zone, path, situation, is_stop).worse()
         if entered is not None:
             return Refusal(RULE, _reason(zone, path, entered, situation))
