@@ -55,6 +55,7 @@ class Jitter:
 
     off_ms: list[float]
     sticks: int
+    expected: int
     frames_laid: int
     waited_share: float
     """Time the station's thread was ready to run but had no core, per time that it ran."""
@@ -68,7 +69,7 @@ class Jitter:
         return (
             f"{name}: p50 {self.at(50):.2f} ms, p99 {self.at(99):.2f} ms, "
             f"most {self.at(100):.2f} ms off 100 ms; "
-            f"{self.sticks} sticks, {self.frames_laid} frames laid; "
+            f"{self.sticks} sticks of some {self.expected}, {self.frames_laid} frames laid; "
             f"the station waited {100 * self.waited_share:.0f} % as long for a core as it ran"
         )
 
@@ -94,11 +95,11 @@ async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
     ticking.cancel()
     await links.stop()
     gaps_s = [b - a for times in arrived_s for a, b in pairwise(times[FIRST_STICKS:])]
-    expected = 10 * (seconds - SETTLING_S) * apps
     sticks = sum(map(len, arrived_s))
-    if sticks < 0.95 * expected:
-        raise RuntimeError(f"expected some {expected:.0f} sticks, got {sticks}")
-    return Jitter([1e3 * abs(gap_s - 0.1) for gap_s in gaps_s], sticks, laid[0], waited_ns / ran_ns)
+    expected = round(10 * (seconds - SETTLING_S)) * apps
+    return Jitter(
+        [1e3 * abs(gap_s - 0.1) for gap_s in gaps_s], sticks, expected, laid[0], waited_ns / ran_ns
+    )
 
 
 def _site(apps: int) -> Site:
@@ -192,7 +193,8 @@ def main() -> int:
     busy = uvloop.run(measure(asked.apps, asked.seconds, is_worker_busy=True))
     print(busy.told("worker busy"))
     is_good = busy.at(99) < LIMIT_MS and busy.frames_laid > 0
-    print("good" if is_good else f"FAILED: p99 under {LIMIT_MS:g} ms expected")
+    is_good = is_good and busy.sticks > 0.95 * busy.expected
+    print("good" if is_good else f"FAILED: p99 under {LIMIT_MS:g} ms, no stick lost")
     return 0 if is_good else 1
 
 

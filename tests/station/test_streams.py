@@ -359,7 +359,7 @@ class TestEnds:
         s.run_for(5.0)
         issuers = {r.command.issued_by for r in s.w.driver.station.orders.records.values()}
         assert issuers == {"test"}
-        assert s.phase(order) is Phase.CONFIRMED
+        assert s.phase(order) is Phase.DONE
 
     def test_the_pilot_who_comes_between_the_zero_and_the_hold_is_left_alone(self) -> None:
         s = steered()
