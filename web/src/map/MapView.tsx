@@ -130,7 +130,7 @@ export function MapView() {
           title="Fly the one selected vehicle to a place on the map (G)"
           onClick={() => flyHere.toggle()}
         >
-          ⌖
+          <AimSign />
         </button>
       </div>
       <div class="map-scale">
@@ -144,6 +144,16 @@ export function MapView() {
         <UnplacedNote />
       </div>
     </section>
+  );
+}
+
+/** A ring with a cross, drawn: not every font has such a sign. */
+function AimSign() {
+  return (
+    <svg class="aim-sign" viewBox="0 0 24 24" width="24" height="24" aria-hidden="true">
+      <circle cx="12" cy="12" r="7" />
+      <path d="M12 1v8M12 15v8M1 12h8M15 12h8" />
+    </svg>
   );
 }
 

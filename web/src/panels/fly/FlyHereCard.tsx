@@ -42,7 +42,7 @@ export function FlyHereCard() {
         </Show>
         <div class="fly-fields">
           <label>
-            Height <span class="muted">above takeoff, m</span>
+            Height above takeoff, m
             <input
               class="field"
               type="text"
@@ -52,7 +52,7 @@ export function FlyHereCard() {
             />
           </label>
           <label>
-            Speed <span class="muted">m/s</span>
+            Speed, m/s
             <input
               class="field"
               type="text"

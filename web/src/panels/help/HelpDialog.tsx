@@ -31,6 +31,11 @@ export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
         order. None of them makes a vehicle take off.
       </p>
       <p>
+        Return home first climbs to the aircraft's own go-home height. Return in layers flies each
+        vehicle home at a height of its own. Fly here shows what the safety gate says before it is
+        confirmed; the target is held for as long as this page is open.
+      </p>
+      <p>
         ALL STOP needs one press. Everything that flies holds its position; motors stay on. The
         pilot with the sticks always wins.
       </p>
