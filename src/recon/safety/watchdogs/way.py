@@ -57,8 +57,8 @@ def way_ahead(picture: Picture, frame: LocalFrame) -> Way:
         there_m=there_m,
         triangles_m=triangles_m,
         ahead=Footprints(triangles_m),
-        low_m=np.minimum(flies.low_m[:, 0], flies.low_m[rows, last]),
-        high_m=np.maximum(flies.high_m[:, 0], flies.high_m[rows, last]),
+        low_m=np.minimum(flies.low_m[rows, 0], flies.low_m[rows, last]),
+        high_m=np.maximum(flies.high_m[rows, 0], flies.high_m[rows, last]),
         is_near_home=_is_near_home(picture),
     )
 
