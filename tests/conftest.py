@@ -6,6 +6,10 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+settings.register_profile("unhurried", deadline=None)
+settings.load_profile("unhurried")
+"""How long an example takes is the machine's business; what is measured is in benches/."""
+
 settings.register_profile(
     "mutants",
     max_examples=20,
