@@ -128,10 +128,15 @@ def returning_world(
     faults: tuple[str, ...] = (),
     seed: int = 0,
     go_home_height_m: float | None = None,
+    knows_pads: bool = True,
+    plans: bool = True,
+    plan_takes_s: float = 0.05,
+    **profile: object,
 ) -> ReturningWorld:
     """Return a fleet that hovers at (east, north, up) places, each with its pad.
 
     Pads may be the same place for several vehicles. `go_home_height_m` is set in all aircraft.
+    `profile` changes what the site's file says of every vehicle.
     """
     serials = [f"SIM-{number}" for number in range(1, len(places_m) + 1)]
     points = {
@@ -154,9 +159,12 @@ def returning_world(
     profiles = [
         ready_profile(
             serial,
-            points[serial],
-            failsafe=Failsafe.HOVER,
-            go_home_height_m=go_home_height_m or app.aircraft.settings.go_home_height_m,
+            points[serial] if knows_pads else None,
+            **{
+                "failsafe": Failsafe.HOVER,
+                "go_home_height_m": go_home_height_m or app.aircraft.settings.go_home_height_m,
+                **profile,
+            },
         )
         for serial, app in zip(serials, apps, strict=True)
     ]
@@ -174,12 +182,16 @@ def returning_world(
         HOME,
         limits=FlightLimits(max_height_above_ground_m=max_height_m),
         zones=zones,
-        landing_pads=tuple(LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items()),
+        landing_pads=tuple(
+            LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items() if knows_pads
+        ),
     )
     site = ready_site(HOME, profiles)
     station = first_state(site)
     station = replace(station, airspace=PreparedAirspace(airspace))
-    world = World(VirtualDriver(station, tasks=worker_tasks(site), keeps_log=False))
+    tasks = worker_tasks(site) if plans else {}
+    driver = VirtualDriver(station, tasks=tasks, work_takes_s=plan_takes_s, keeps_log=False)
+    world = World(driver)
     for app in apps:
         world.connect(app)
     made = ReturningWorld(world, dict(zip(serials, map(tuple, pads_m), strict=True)))
