@@ -3,7 +3,7 @@ import type { AreaView } from "../protocol";
 import { areaText, extent, labelPoint } from "./areas";
 
 /** An area narrower than this on the screen has no room for its label; nearer to it, it has. */
-const LEAST_WIDTH_PX = 70;
+const LEAST_WIDTH_PX = 40;
 
 interface Placed {
   readonly area: AreaView;

@@ -9,6 +9,7 @@ const site = station([]).site;
 describe("what an area is called", () => {
   it.each([
     [area("boundary", [0, 0], 300), "Boundary"],
+    [area("boundary", [0, 0], 300, { name: "boundary" }), "Boundary"],
     [area("keep_out", [0, 0], 20), "Keep out: Barn"],
     [
       area("keep_out", [0, 0], 20, { ceiling_m: 30, datum: "ground" }),

@@ -34,7 +34,8 @@ export function areaText(area: AreaView): string {
 }
 
 function named(what: string, name: string): string {
-  return name === "" ? what : `${what}: ${name}`;
+  const isSaid = name === "" || name.toLowerCase() === what.toLowerCase();
+  return isSaid ? what : `${what}: ${name}`;
 }
 
 function joined(text: string, heights: string): string {
