@@ -192,6 +192,14 @@ class TestHeights:
         assert looks(fences, aircraft("A", (0.0, 0.0), None), airspace=SITE) == []
 
 
+def test_one_that_may_fly_its_mission_on_unheard_is_not_asked_and_others_are() -> None:
+    mission = route((0.0, 0.0), (0.0, 400.0))
+    unseen = told(aircraft("G", age_s=10.0), intent=flies(mission, 1))
+    outside = aircraft("A", (520.0, 0.0))
+    assert [f.serial for f in looks(fences, unseen, outside, airspace=SITE)] == ["A"]
+    assert looks(fences, unseen, airspace=SITE) == []
+
+
 def test_no_vehicle_is_asked_that_is_not_heard_flying() -> None:
     stale = aircraft("A", (520.0, 0.0), age_s=5.0)
     assert picture(stale, airspace=SITE).flying == ()

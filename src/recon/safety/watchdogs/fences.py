@@ -36,9 +36,9 @@ def fences(picture: Picture) -> Iterator[Finding]:
     way = way_ahead(picture, frame)
     if picture.airspace.boundary is not None:
         yield from _boundary(picture, way, picture.airspace.boundary)
-    for zone in picture.airspace.zones_of(ZoneKind.KEEP_OUT):
+    for zone in picture.airspace.zones_near(ZoneKind.KEEP_OUT, way.ahead, 0.0):
         yield from _keep_out(picture, way, zone)
-    for zone in picture.airspace.zones_of(ZoneKind.HEIGHT):
+    for zone in picture.airspace.zones_near(ZoneKind.HEIGHT, way.ahead, 0.0):
         yield from _heights(picture, way, zone)
     yield from _ceiling(picture, way)
 

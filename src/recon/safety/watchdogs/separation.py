@@ -39,6 +39,11 @@ def separation(picture: Picture) -> Iterator[Finding]:
     if not picture.flying:
         return
     need, heard = watched_separation(picture), len(picture.flying)
+    for watched in picture.watched:
+        if watched.ghost is not None:
+            yield from _ghost(picture, watched.ghost, need)
+    if len(picture.foreseen) < 2:
+        return
     flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
     first, second = near_pairs(flies, need)
     close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need)
@@ -47,9 +52,6 @@ def separation(picture: Picture) -> Iterator[Finding]:
             continue  # nobody hears either: there is nothing to be done
         found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
         yield _pair(picture, int(first[row]), int(second[row]), found, need)
-    for watched in picture.watched:
-        if watched.ghost is not None:
-            yield from _ghost(picture, watched.ghost, need)
 
 
 def watched_separation(picture: Picture) -> Separation:
