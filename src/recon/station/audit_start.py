@@ -69,12 +69,14 @@ def begin_audit(place: AuditPlace) -> Begun:
     except RecordError as problem:
         return Begun(log, last, (str(problem),))
     troubles: list[str] = []
-    for number, path in enumerate(reversed(files[-MOST_FILES_LOOKED_AT:])):
+    newest: RunEnd | None = None
+    for path in reversed(files[-MOST_FILES_LOOKED_AT:]):
         run, end = _read(path, troubles)
-        if number == 0:
-            log.follow(end)
+        newest = end if newest is None or newest.last is None else newest
         if run.lines > 1:
-            return Begun(log, run, tuple(troubles))
+            last = run
+            break
+    log.follow(newest)
     return Begun(log, last, tuple(troubles))
 
 
