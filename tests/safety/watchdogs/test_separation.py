@@ -44,8 +44,8 @@ class TestAlarms:
     def test_a_conflict_within_ten_seconds_names_both_and_tells_when(self) -> None:
         found = only(looks(separation, *head_on(150.0)))
         assert found.severity is Severity.ERROR
-        assert found.text.startswith("B: in 7 s comes too near, as near as 0 m and 0 m")
-        assert found.text.endswith("to A; B is told to hold")
+        apart = "0 m, and 0 m in height"
+        assert found.text == f"B: comes too near in 7 s to A: {apart}; B is told to hold"
         assert (found.serial, found.vehicle_name) == ("B", "B")
 
     def test_beyond_ten_seconds_it_is_none(self) -> None:
@@ -55,7 +55,7 @@ class TestAlarms:
     def test_a_near_one_is_critical(self) -> None:
         assert only(looks(separation, *head_on(80.0))).severity is Severity.CRITICAL
         there = only(looks(separation, *head_on(10.0)))
-        assert "is too near" in there.text
+        assert there.text.startswith("B: is too near to A: ")
 
     @pytest.mark.parametrize("place", [(150.0, 18.0), (0.0, -18.0)])
     def test_side_by_side_is_none(self, place: tuple[float, float]) -> None:

@@ -92,7 +92,7 @@ def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separat
             if _can_be_held(picture, candidate) and _helps(picture, pair, found, need):
                 held = candidate
                 break
-    text = f"{_how(found)} {second.name}{_unheard(second)}{_outcome(picture, held)}"
+    text = f"{_words(found, second.name + _unheard(second))}{_outcome(picture, held)}"
     return _finding(picture, key, yielding, text, found, held)
 
 
@@ -111,10 +111,8 @@ def _ghost(picture: Picture, ghost: Ghost, need: Separation) -> Iterator[Finding
         is_due = _is_due(picture, key, found, watched)
         can = is_due and _can_be_held(picture, watched) and _is_better(picture, found, instead)
         held = watched if can else None
-        text = (
-            f"{_how(found)} where {ghost.name} may be, which has not been heard for "
-            f"{ghost.age_s:.0f} s{_outcome(picture, held)}"
-        )
+        where = f"where {ghost.name} may be, which has not been heard for {ghost.age_s:.0f} s"
+        text = f"{_words(found, where)}{_outcome(picture, held)}"
         yield _finding(picture, key, watched, text, found, held)
 
 
@@ -171,13 +169,11 @@ def _speed_mps(watched: Watched) -> float:
     return 0.0 if watched.flyer is None else watched.flyer.speed_mps
 
 
-def _how(found: Approach) -> str:
+def _words(found: Approach, what: str) -> str:
     assert found.in_s is not None
-    when = "is" if found.in_s == 0.0 else f"in {found.in_s:.0f} s comes"
-    return (
-        f"{when} too near, as near as {found.horizontal_m:.0f} m and {found.vertical_m:.0f} m in "
-        "height, to"
-    )
+    how = "is too near" if found.in_s == 0.0 else f"comes too near in {found.in_s:.0f} s"
+    apart = f"{found.horizontal_m:.0f} m, and {found.vertical_m:.0f} m in height"
+    return f"{how} to {what}: {apart}"
 
 
 def _unheard(watched: Watched) -> str:
