@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.safety.fenced import (
     WIDE,
@@ -24,7 +24,6 @@ from recon.safety.rules.boundary import boundary
 L_SHAPE = region((-50, -50), (400, -50), (400, 50), (50, 50), (50, 400), (-50, 400))
 
 
-@settings(max_examples=60)
 @given(
     seed=st.integers(0, 1_000_000),
     margin_m=st.floats(0.0, 20.0),
@@ -48,7 +47,6 @@ def test_it_is_allowed_if_every_sample_of_the_path_is_inside(
         assert worst_m <= margin_m + 10.0
 
 
-@settings(max_examples=60)
 @given(seed=st.integers(0, 1_000_000), by_m=st.floats(0.0, 60.0))
 def test_a_narrower_boundary_allows_nothing_more(seed: int, by_m: float) -> None:
     """For a vehicle that is inside the narrower one: outside, only the way back in is open."""

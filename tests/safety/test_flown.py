@@ -297,7 +297,7 @@ class TestStick:
         end = 0.9999 * reach_m * np.array([np.sin(bearing), np.cos(bearing)])
         assert any(is_within(triangle, end) for triangle in found.pieces.triangles_m)
         farthest_m = np.linalg.norm(found.pieces.triangles_m, axis=-1).max()
-        assert farthest_m < 1.01 * reach_m + 0.01
+        assert farthest_m < 1.04 * reach_m + 0.01
 
     @pytest.mark.parametrize("attitude", [Stamped(), Stamped(Attitude(0.0, 0.0, 0.0), NOW)])
     def test_it_may_go_anywhere_when_it_turns_round_or_nobody_knows_its_yaw(

@@ -137,16 +137,23 @@ class _Highest:
 
     def is_below(self, triangles: FloatArray, heights: FloatArray) -> BoolArray:
         """Whether the highest within each triangle is at most as high; the easy ones quickly."""
-        below = self._bounds(triangles) <= heights
+        highest_of_all = float(self._pyramid[-1][0, 0])
+        below: BoolArray = self._are_known(triangles) & (heights >= highest_of_all)
+        if not below.all():
+            below = self._bounds(triangles) <= heights
         if not below.all():
             below[~below] = self.within(triangles[~below]) <= heights[~below]
         return below
 
+    def _are_known(self, triangles: FloatArray) -> BoolArray:
+        nodes = triangles.reshape(-1, 2)
+        known = _are_on_lattice(nodes, self._heights.shape)
+        return np.asarray(known.reshape(-1, 3).all(axis=1))
+
     def _bounds(self, triangles: FloatArray) -> FloatArray:
         """Heights (N,) that no ground within the triangles' boxes is above."""
         low, high = triangles.min(axis=1), triangles.max(axis=1)
-        shape = self._heights.shape
-        known = _are_on_lattice(low, shape) & _are_on_lattice(high, shape)
+        known = self._are_known(triangles)
         first = np.floor(np.where(known[:, np.newaxis], low, 0.0)).astype(np.int64)
         last = np.ceil(np.where(known[:, np.newaxis], high, 0.0)).astype(np.int64)
         # At this level two tiles each way cover the box.

@@ -10,6 +10,7 @@ ground: the frame is put at the vehicle itself, and all ground is flat, at its o
 """
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +27,9 @@ FloatArray = npt.NDArray[np.float64]
 NEAR_PAD_M = 10.0
 """Where a vehicle took off and where its pad is are both known by GNSS: twice 2.5 m off, and a
 pilot steps aside."""
+
+TAKEOFF_POINTS_KEPT = 256
+"""Their ground's heights, more than vehicles fly: they are asked for with every stick."""
 
 
 def frame_for(airspace: PreparedAirspace, vehicle: VehicleState) -> LocalFrame | None:
@@ -75,8 +79,7 @@ def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | N
     pad = _pad_at(airspace, vehicle, point)
     if pad is not None:
         return pad.ellipsoid_height_m - frame.origin.ellipsoid_height_m
-    ground_m = float(airspace.ground_up_m(places_m(frame, [point]))[0])
-    return None if np.isnan(ground_m) else ground_m
+    return 0.0 if is_ground_assumed_flat(airspace) else _ground_at_m(airspace, frame, point)
 
 
 def is_ground_assumed_flat(airspace: PreparedAirspace) -> bool:
@@ -125,6 +128,12 @@ def waypoints_enu_m(
         return None
     heights_m = [takeoff_m + waypoint.height_above_takeoff_m for waypoint in mission.waypoints]
     return _raised(places_m(frame, mission.waypoints), heights_m)
+
+
+@lru_cache(maxsize=TAKEOFF_POINTS_KEPT)
+def _ground_at_m(airspace: PreparedAirspace, frame: LocalFrame, point: LatLon) -> float | None:
+    ground_m = float(airspace.ground_up_m(places_m(frame, [point]))[0])
+    return None if np.isnan(ground_m) else ground_m
 
 
 def _pad_at(airspace: PreparedAirspace, vehicle: VehicleState, point: LatLon) -> GeoPoint | None:

@@ -19,8 +19,8 @@ from recon.safety.ways_home import ways_home
 
 FloatArray = npt.NDArray[np.float64]
 
-FAN_STEP_DEG: Final = 15.0
-"""A circle of what a stick may reach is drawn as a polygon round it, 1 % larger at most."""
+FAN_STEP_DEG: Final = 30.0
+"""A circle of what a stick may reach is drawn as a polygon round it, 4 % larger at most."""
 
 EITHER_WAY_DEG: Final = 170.0
 """A turn of nearly half a circle may go the one way or the other."""

@@ -56,8 +56,10 @@ def _higher(path: FlownPath, indices: IntArray, situation: Situation, most_m: fl
 def _worse(path: FlownPath, high: IntArray, situation: Situation, rounding_m: float) -> IntArray:
     """Of the pieces that break the rule, those that the vehicle does not break as much now."""
     begins = high[path.pieces.is_entry[high]]
+    if len(begins) == 0:
+        return high
     ground_m = float(situation.airspace.ground_up_m(path.here_m[np.newaxis, :2])[0])
-    if len(begins) == 0 or np.isnan(ground_m):
+    if np.isnan(ground_m):
         return high
     here_m = float(path.here_m[2]) - ground_m
     worse = _higher(path, begins, situation, here_m + rounding_m)
