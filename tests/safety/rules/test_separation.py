@@ -104,7 +104,7 @@ class TestTime:
             assert (found is None) is passes
 
     @pytest.mark.parametrize(
-        ("east_m", "missions", "orders"), [(144, 0, 0), (148, 0, 1), (200, 1, 1)]
+        ("east_m", "missions", "orders"), [(166, 0, 0), (178, 0, 1), (230, 1, 1)]
     )
     def test_a_mission_may_start_seconds_late(
         self, east_m: float, missions: int, orders: int
@@ -112,8 +112,8 @@ class TestTime:
         """What B crosses when A is past passes for an order that starts now, not for a mission."""
         crossing = route((20.0, -east_m), (20.0, 600.0))
         other = Traffic(aircraft("B", (20.0, -east_m)), flies(crossing, passed=1))
-        own = aircraft("A", (-30.0, 0.0))
-        there = route((-30.0, 0.0), (100.0, 0.0))
+        own = aircraft("A", (-55.0, 0.0))
+        there = route((-55.0, 0.0), (100.0, 0.0))
         assert (judged(there, own, other) is None) is bool(missions)
         assert (judged(GoTo(at(100.0, 0.0), 40.0, 5.0), own, other) is None) is bool(orders)
 

@@ -29,6 +29,7 @@ from recon.safety.situation import Situation
 from recon.safety.standstill import is_zero_stick
 
 RULE = "separation"
+NOWHERE = "it does not tell where it is, and others are in the air"
 
 
 def separation(command: Command, situation: Situation) -> Refusal | None:
@@ -40,11 +41,12 @@ def separation(command: Command, situation: Situation) -> Refusal | None:
         return None
     prediction, need = situation.settings.prediction, _need(situation)
     frame = frame_for(situation.airspace, vehicle)
-    plane = None if frame is None else Plane(frame.origin)
-    own = None if plane is None else _placed(vehicle, plane, situation)
-    if plane is None or own is None:
-        text = "it does not tell where it is, and others are in the air"
-        return _refusal(vehicle.display_name, text)
+    if frame is None:
+        return _refusal(vehicle.display_name, NOWHERE)
+    plane = Plane(frame.origin)
+    own = _placed(vehicle, plane, situation)
+    if own is None:
+        return _refusal(vehicle.display_name, NOWHERE)
     course = foresee_order(own, body, prediction)
     others = _others(own, course, plane, situation)
     if isinstance(others, Refusal):
