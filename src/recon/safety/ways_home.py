@@ -20,14 +20,12 @@ def ways_home(flown: Pieces, departure: Departure) -> Pieces:
     flight and home; those of a corner lie in the corner and in its legs' triangles. Landing: from
     everywhere straight down. Hovering: nothing.
     """
-    match departure.failsafe:
-        case Failsafe.HOVER:
-            return _none()
-        case Failsafe.LAND:
-            low_m = np.full(len(flown), -np.inf)
-            return _like(flown, Kind.LANDING, flown.triangles_m, low_m, flown.high_m)
-        case Failsafe.GO_HOME:
-            return _going_home(flown, departure)
+    if departure.failsafe is Failsafe.HOVER:
+        return _none()
+    if departure.failsafe is Failsafe.LAND:
+        low_m = np.full(len(flown), -np.inf)
+        return _like(flown, Kind.LANDING, flown.triangles_m, low_m, flown.high_m)
+    return _going_home(flown, departure)
 
 
 def _going_home(flown: Pieces, departure: Departure) -> Pieces:
