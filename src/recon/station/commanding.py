@@ -25,6 +25,7 @@ from recon.safety.facts import NO_FACTS
 from recon.station import (
     authority,
     flight_watch,
+    going_home,
     intents,
     missions,
     orders,
@@ -205,10 +206,13 @@ def _sent(station: Station, record: OrderRecord, event: CommandSent, now_ns: int
 def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None) -> Stepped:
     """Let time and telemetry change the orders still alive; repeat emergency orders.
 
-    `serials` are the vehicles that have spoken; None: time went on for all.
+    `serials` are the vehicles that have spoken; None: time went on for all. What one says shows
+    nothing of the others' orders, and right after an all stop every vehicle has one.
     """
     outputs: tuple[Output, ...] = ()
     for record in station.orders.watched:
+        if serials is not None and record.command.serial not in (None, *serials):
+            continue
         if not isinstance(record.command.body, STEERED_BODIES):  # a stream tells its order's life
             station, sent = _watch_order(station, record, now_ns)
             outputs += sent
@@ -322,10 +326,11 @@ def _queued(
 ) -> OrderRecord:
     settings = station.settings
     repeat_ns = now_ns + seconds_to_ns(settings.emergency_repeat_s)
+    note = going_home.said_of(command.body, _target(station, command))
     return OrderRecord(
         command=command,
         vehicle_name=_name(station, command),
-        history=(PhaseChange(Phase.QUEUED, now_ns, ""),),
+        history=(PhaseChange(Phase.QUEUED, now_ns, note),),
         altitudes=describe_altitudes(command.body, approved.altitude_offset_m),
         next_repeat_ns=repeat_ns if command.is_emergency else None,
         repeats_left=settings.emergency_repeats if command.is_emergency else 0,
