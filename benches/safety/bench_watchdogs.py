@@ -31,6 +31,7 @@ from recon.safety.rules.separation import separation as rule
 from recon.safety.watchdogs import WATCHDOGS, Picture, Watched, take_picture
 from recon.safety.watchdogs.closeness import closeness, near_pairs
 from recon.safety.watchdogs.separation import watched_separation
+from recon.station.driver import spare_what_is_loaded
 
 VEHICLES = 64
 ZONES = 20
@@ -170,6 +171,7 @@ def judge_ms(air: PreparedAirspace, watched: list[Watched], body: Body, times: i
 
 
 def main() -> int:
+    spare_what_is_loaded()
     rng = Random(7)
     air, watched = airspace(rng), fleet(rng)
 

@@ -1,6 +1,6 @@
 """What foreseeing needs to know of a vehicle, in the plane."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
@@ -17,8 +17,7 @@ _Key = tuple[PreparedAirspace, VehicleProfile | None, LatLon | None, float | Non
 _remembered: dict[str | None, _Key] = {}
 
 
-@dataclass(frozen=True, slots=True)
-class Flyer:
+class Flyer(NamedTuple):
     """A vehicle as it was last heard, `age_s` ago.
 
     `low_m` and `high_m` are equal but for a vehicle whose height nobody knows. `velocity_mps` is

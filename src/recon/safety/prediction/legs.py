@@ -1,7 +1,7 @@
 """Straight ways flown with limited acceleration, and stopping: rows for a course."""
 
-from dataclasses import dataclass
 from math import hypot, sqrt
+from typing import NamedTuple
 
 from recon.safety.prediction.course import CourseWriter, Part
 from recon.safety.prediction.settings import PredictionSettings
@@ -23,8 +23,7 @@ Phase = tuple[float, float, float, float]
 """How long, from and to which speed, and in which time."""
 
 
-@dataclass(frozen=True, slots=True)
-class Leg:
+class Leg(NamedTuple):
     """A straight way to a place: the heights at its end, the speeds at its start, in it and at its
     end, and which part of the flight it is."""
 

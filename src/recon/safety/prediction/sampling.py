@@ -46,7 +46,7 @@ def sample(courses: Sequence[Sequence[Row] | FloatArray], times_s: npt.ArrayLike
     No course may be without a row.
     """
     times = np.asarray(times_s, dtype=np.float64)
-    rows = np.concatenate([np.asarray(course, dtype=np.float64) for course in courses])
+    rows = np.array([row for course in courses for row in course], dtype=np.float64)
     counts = np.array([len(course) for course in courses])
     vehicle = np.repeat(np.arange(len(courses)), counts)
     axis = rows[:, START_S] + vehicle * _APART_S
