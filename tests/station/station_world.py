@@ -137,6 +137,7 @@ def world(
     seed: int = 0,
     make_link: Callable[[], FakeLink] = FakeLink,
     keeps_log: bool = True,
+    max_waypoints: int = 99,
 ) -> World:
     """Return a station with connected simulated vehicles SIM-1, SIM-2, ...
 
@@ -160,6 +161,7 @@ def world(
             app.settings.home,
             waypoint_altitude=believed,
             go_home_height_m=app.aircraft.settings.go_home_height_m,
+            max_waypoints=max_waypoints,
         )
         for app in apps
     )

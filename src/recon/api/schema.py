@@ -485,7 +485,9 @@ class MissionOrder(Asked):
     """Fly waypoints, replacing any mission being flown."""
 
     kind: Literal["mission"]
-    waypoints: list[WaypointOrder] = Field(max_length=99)
+    waypoints: list[WaypointOrder] = Field(
+        max_length=2000, description="more than the vehicle's app takes are flown in parts"
+    )
     land_at_end: bool = False
     curved: bool = False
 
@@ -606,6 +608,8 @@ class OrderResult(Message):
     command_id: int
     rule: str | None
     reason: str | None
+    repairs: list[str] = Field(description="what was changed in a mission so that DJI accepts it")
+    parts: int = Field(description="in how many parts a mission is flown; 0 for other orders")
 
 
 class OrderResponse(Message):

@@ -108,6 +108,8 @@ class OrderDesk:
                 result.vehicle_name,
                 run_started_ns,
                 self.stream,
+                result.repairs,
+                result.parts,
             )
         else:
             answer = Refusal(result.rule or "unnamed", result.reason or "no reason was given")

@@ -24,6 +24,8 @@ class Life(msgspec.Struct, frozen=True):
     note: str
     times_sent: int
     history: tuple[PhaseChange, ...]
+    part: str | None = None
+    """The part of a mission that is flown now, as in `part 2 of 3`; None for a mission of one."""
 
     @property
     def is_seen(self) -> bool:

@@ -48,6 +48,8 @@ class ResultMessage(msgspec.Struct, frozen=True):
     command_id: int
     rule: str | None
     reason: str | None
+    repairs: tuple[str, ...] = ()
+    parts: int = 0
 
 
 class OrderMessage(msgspec.Struct, frozen=True):

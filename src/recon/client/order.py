@@ -22,6 +22,10 @@ class Order:
     vehicle_name: str
     _run_started_ns: int = field(repr=False)
     _stream: Stream = field(repr=False, compare=False)
+    repairs: tuple[str, ...] = ()
+    """What the station changed in a mission so that the aircraft accepts it, in sentences."""
+    parts: int = 0
+    """In how many parts a mission is flown; 0 for other orders."""
 
     async def wait(self, until: Phase = Phase.CONFIRMED, timeout_s: float = 30.0) -> Life:
         """Return the order's life once it came as far as a phase, or ended in another way.

@@ -187,9 +187,15 @@ def read(
         return UNTOLD
     kind = kind_of(mode, gnss_level)
     verdict = TABLE[told, kind, place]
-    if mode is mode_before and not place.is_ground and verdict in (Verdict.PILOT, Verdict.FAILSAFE):
+    is_old = mode is mode_before and not place.is_ground and not _is_moved_hold(told, kind)
+    if is_old and verdict in (Verdict.PILOT, Verdict.FAILSAFE):
         return Reading(Verdict.UNDECIDED, kind, "it was in this mode before")
     return Reading(verdict, kind, _why(verdict, told, kind, place))
+
+
+def _is_moved_hold(told: Told, kind: ModeKind) -> bool:
+    """Whether the place is the news: a vehicle that holds is in position mode anyway."""
+    return told is Told.HOLD and kind is ModeKind.NEUTRAL
 
 
 def _why(verdict: Verdict, told: Told, kind: ModeKind, place: Place) -> str:

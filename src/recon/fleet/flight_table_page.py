@@ -29,12 +29,13 @@ place where *started*, *finished*, *taken over by the pilot* and *failsafe* are 
 
 *At its end*: within {AT_END_M:g} m of the last waypoint, on its last leg; for a hold, within
 {AT_END_M:g} m of where it began to hold. Orders without a place of their own are always *at their
-end*. *Sent* rows hold until telemetry shows the order carried out. A mode counts as **pilot** or
-**failsafe** only when it is new, that is, when the vehicle was not in it when it was told, and,
-but for the pilot's own modes and ATTI with good GNSS, only when it has lasted a second: an app
-that cancels a mission shows position mode before it goes home. ATTI is a pilot's choice while the
-GNSS signal level is {GOOD_GNSS_LEVEL} or more; below, the aircraft may have fallen back to it by
-itself.
+end*. *Sent* rows hold until telemetry shows the order carried out.
+
+A mode counts as **pilot** or **failsafe** only when it is new: when the vehicle was not in it when
+it was told. (Of a hold that is left, the place is new.) But for the pilot's own modes and ATTI with
+good GNSS it must also have lasted a second, for an app that cancels a mission shows position mode
+before it goes home. ATTI is a pilot's choice while the GNSS signal level is {GOOD_GNSS_LEVEL} or
+more; below, the aircraft may have fallen back to it by itself.
 
 ## Flight modes
 

@@ -34,17 +34,25 @@ def waypoints_passed(
     time since the position that `passed` was told from.
     """
     points = mission.waypoints
-    while passed < len(points) and _distance_m(position, height_m, points[passed]) <= NEAR_M:
-        passed += 1
+    passed = _past_the_near_ones(points, passed, position, height_m)
     if passed == 0 and since_s < GAP_S:
         return 0
     reach_m = NEAR_M + FASTEST_MPS * max(0.0, since_s)
-    return _onto_the_nearest_leg(points, passed, position, height_m, reach_m)
+    passed = _onto_the_nearest_leg(points, passed, position, height_m, reach_m)
+    return _past_the_near_ones(points, passed, position, height_m)
 
 
 def distance_to_m(waypoint: Waypoint, position: LatLon, height_m: float | None) -> float:
     """Return how far a waypoint is; without a height, in the horizontal."""
     return _distance_m(position, height_m, waypoint)
+
+
+def _past_the_near_ones(
+    points: Sequence[Waypoint], passed: int, position: LatLon, height_m: float | None
+) -> int:
+    while passed < len(points) and _distance_m(position, height_m, points[passed]) <= NEAR_M:
+        passed += 1
+    return passed
 
 
 def _onto_the_nearest_leg(

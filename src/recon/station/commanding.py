@@ -216,7 +216,7 @@ def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None)
         if not isinstance(record.command.body, STEERED_BODIES):  # a stream tells its order's life
             station, sent = _watch_order(station, record, now_ns)
             outputs += sent
-    seen = tuple(station.fleet.vehicles) if serials is None else serials
+    seen = flight_watch.silent(station, now_ns) if serials is None else serials
     station, sent = flight_watch.follow(station, seen, now_ns, _ask(now_ns))
     outputs += sent
     station, zeros = stick_zero.due(station, now_ns)
@@ -238,7 +238,8 @@ def _watch_order(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
     if record.alarm == orders.MISSION_BROKEN_OFF and target.is_flying.value is False:
         return _put(station, replace(record, alarm=None)), ()
     outputs: tuple[Output, ...] = ()
-    seen = _progress(station, record, target, now_ns)
+    is_flown = record.phase is Phase.STARTED  # its end is the flight table's matter
+    seen = Progress.UNSEEN if is_flown else _progress(station, record, target, now_ns)
     updated = orders.shown(orders.stick_over(record, now_ns), seen, now_ns)
     if updated.is_watched:
         updated = _time_out(updated, target, seen, station.settings, now_ns)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from recon.fleet.flight_table import Reading, Told, Verdict, kind_of, read
 from recon.model.command import STEERED_BODIES, Command, LandNow, Phase, Refusal
 from recon.model.intent import Commanded, Intent
-from recon.model.units import ns_to_seconds
+from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand
 from recon.station import authority, intents, missions, orders
@@ -23,6 +23,9 @@ Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
 """Asks the gate."""
 
 Stepped = tuple[Station, tuple[Output, ...]]
+
+_SPEAKS_WITHIN_S = 0.5
+"""Who speaks more often is followed whenever it speaks: nothing is gained by looking between."""
 
 _LASTING = (Verdict.PILOT, Verdict.FAILSAFE)
 _SENT_BY_LIFE = (Told.HOLD_SENT, Told.RETURN_SENT, Told.LAND_SENT)
@@ -38,6 +41,16 @@ def follow(station: Station, serials: tuple[str, ...], now_ns: int, ask: Ask) ->
     return station, outputs
 
 
+def silent(station: Station, now_ns: int) -> tuple[str, ...]:
+    """Return the vehicles that have not just been followed by their own telemetry."""
+    limit_ns = seconds_to_ns(_SPEAKS_WITHIN_S)
+    return tuple(
+        serial
+        for serial, vehicle in station.fleet.vehicles.items()
+        if vehicle.core_received_at_ns is None or now_ns - vehicle.core_received_at_ns > limit_ns
+    )
+
+
 def _follow(station: Station, serial: str, now_ns: int, ask: Ask) -> Stepped:
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None:
@@ -50,6 +63,9 @@ def _follow(station: Station, serial: str, now_ns: int, ask: Ask) -> Stepped:
     reading = _reading(station, serial, vehicle)
     if reading is None:
         return station, ()
+    follows = intents.following_of(station, serial)
+    follows = replace(follows, read=vehicle.flight_mode)
+    station = intents.with_following(station, serial, follows)
     return _apply(station, serial, vehicle, reading, now_ns, ask)
 
 
@@ -60,7 +76,7 @@ def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | 
     if told in _SENT_BY_LIFE or mode.value is None or mode.received_at_ns is None:
         return None
     core_ns = vehicle.core_received_at_ns
-    is_new = mode.received_at_ns > following.told_at_ns
+    is_new = mode.received_at_ns > following.told_at_ns and mode != following.read
     if not is_new or core_ns is None or core_ns < mode.received_at_ns:
         return None
     level = vehicle.gnss_signal_level.value

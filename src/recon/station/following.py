@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from recon.fleet.flight_table import Verdict
+from recon.model.stamped import Stamped
 from recon.model.vehicle import FlightMode
 
 
@@ -21,6 +22,8 @@ class Following:
     has_begun: bool = False
     mode_before: FlightMode | None = None
     link_id: int | None = None
+    read: Stamped[FlightMode] = Stamped()
+    """The mode report that was read last; each is read once, with a place as new."""
     doubt: Verdict | None = None
     doubt_since_ns: int = 0
     core_at_ns: int | None = None

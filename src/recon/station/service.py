@@ -263,4 +263,6 @@ def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
         command_id=record.command.id,
         rule=rule if is_refused else None,
         reason=reason if is_refused else record.note or None,
+        repairs=[] if record.plan is None else list(record.plan.repairs),
+        parts=0 if record.plan is None else len(record.plan.parts),
     )

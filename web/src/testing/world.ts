@@ -143,6 +143,8 @@ export function orderResult(changes: Partial<OrderResult> = {}): OrderResult {
     command_id: 41,
     rule: null,
     reason: null,
+    repairs: [],
+    parts: 0,
     ...changes,
   };
 }

@@ -1,0 +1,74 @@
+"""A vehicle that flies north in a straight line, told by its reports."""
+
+from dataclasses import replace
+
+from tests.fleet.said import PLACE, core, extended
+from tests.safety.cases import mission, waypoint
+from tests.station.commanded import Told
+
+from recon.model.command import Body, FlyMission
+from recon.model.geo import LatLon
+from recon.model.report import Report
+from recon.model.vehicle import FlightMode
+
+METRES_PER_DEG = 111_070.7
+WAYPOINT, GPS = FlightMode.GPS_WAYPOINT, FlightMode.GPS_ATTI
+STANDING, NORTHWARD = (0.0, 0.0, 0.0), (5.0, 0.0, 0.0)
+
+
+def at(
+    north_m: float,
+    mode: FlightMode | None,
+    *,
+    flying: bool | None = True,
+    velocity: tuple[float, float, float] = STANDING,
+    height_m: float = 40.0,
+    gnss_level: int | None = 4,
+) -> tuple[Report, ...]:
+    """What its app says when it is this far north of the first waypoint."""
+    place = LatLon(PLACE.latitude_deg + north_m / METRES_PER_DEG, PLACE.longitude_deg)
+    said = core(flying=flying, position=place, velocity=velocity, height_m=height_m)
+    return said, extended(mode=mode, gnss_level=gnss_level)
+
+
+def hovering() -> Told:
+    """A vehicle that hovers at the first waypoint."""
+    said = at(0.0, GPS)
+    return Told().opens(1, *said).keeps_saying(1, *said).passes(0.5)
+
+
+def ordered(body: Body) -> tuple[Told, int]:
+    """A vehicle that hovers, and an order to it that its app acknowledged."""
+    told = hovering()
+    order = told.order(body)
+    told.answered(order, True)
+    return told, order
+
+
+def to_land(flown: FlyMission) -> FlyMission:
+    """The same mission, but it lands at its end."""
+    return FlyMission(replace(flown.mission, land_at_end=True))
+
+
+def flies(told: Told, *norths_m: float) -> Told:
+    """The vehicle flies its mission past these places, a second at each."""
+    for north_m in norths_m:
+        told.keeps_saying(1, *at(north_m, WAYPOINT, velocity=NORTHWARD)).passes(1.0)
+    return told
+
+
+def under_way(body: FlyMission | None = None) -> tuple[Told, int]:
+    """A vehicle half way along a mission of 50 m northwards."""
+    told, order = ordered(body or mission())
+    return flies(told, 0.0, 10.0, 25.0), order
+
+
+def at_the_end(body: FlyMission | None = None) -> tuple[Told, int]:
+    """A vehicle that has come to the end of that mission, and is still in it."""
+    told, order = under_way(body)
+    return flies(told, 35.0, 45.0, 50.0), order
+
+
+def row(count: int, spacing_m: float = 10.0) -> FlyMission:
+    """A mission of many waypoints in a row northwards."""
+    return mission(*(waypoint(spacing_m * number) for number in range(count)))
