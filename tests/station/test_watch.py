@@ -10,7 +10,7 @@ from tests.station.test_fleet_return import SIX, six_in_the_air
 
 from recon.geo.distance import moved_m
 from recon.model.authority import Leader
-from recon.model.command import Hover, Phase, ReturnHome
+from recon.model.command import GoTo, Hover, Phase, ReturnHome
 from recon.model.event import AuthorityTaken, SeparationHoldSwitched, Tick
 from recon.model.geo import LatLon
 from recon.model.intent import Commanded, Intent
@@ -191,6 +191,19 @@ class TestOthers:
         told.keeps_saying(1, core(position=None)).passes(0.5)
         told.keeps_saying(1, core(position=place(400.0))).passes(0.2)
         assert "position_jump" in told.alarms()
+
+    def test_a_stream_of_sticks_that_runs_dry_is_an_alarm(self) -> None:
+        for is_stuck, alarms in ((False, set()), (True, {"stick_starved"})):
+            told = Told().opens(1, core(flying=False, height_m=0.0), extended()).says(1, core())
+            told.keeps_saying(1, core(), extended()).passes(1.0)
+            told.is_stuck = is_stuck
+            told.order(GoTo(place(50.0), 40.0, 5.0))
+            told.keeps_saying(1, core(), extended(mode=FlightMode.JOYSTICK)).passes(0.9)
+            assert told.alarms() == alarms
+            told.order(Hover())
+            told.passes(4.0)
+            assert "stick_starved" not in told.alarms()
+            assert told.station.watch.sticks == {}
 
     def test_altitudes_that_drift_apart_are_an_alarm(self) -> None:
         told = Told().opens(1, core(flying=False), extended()).says(1, core())
