@@ -931,7 +931,10 @@ export interface components {
              * @default false
              */
             land_at_end: boolean;
-            /** Waypoints */
+            /**
+             * Waypoints
+             * @description more than the vehicle's app takes are flown in parts
+             */
             waypoints: components["schemas"]["WaypointOrder"][];
         };
         /**
@@ -1011,8 +1014,18 @@ export interface components {
             is_simulated: boolean;
             /** Link Id */
             link_id: number | null;
+            /**
+             * Parts
+             * @description in how many parts a mission is flown; 0 for other orders
+             */
+            parts: number;
             /** Reason */
             reason: string | null;
+            /**
+             * Repairs
+             * @description what was changed in a mission so that DJI accepts it
+             */
+            repairs: string[];
             /** Rule */
             rule: string | null;
             /** Serial */
