@@ -1,6 +1,5 @@
 """The boundary is kept along whole legs, corners, the way there and the way home."""
 
-
 import pytest
 from tests.safety.cases import NOW
 from tests.safety.fenced import (
