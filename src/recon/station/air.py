@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from recon.model.command import FlyMission, Phase
 from recon.model.event import GhostDismissed
-from recon.model.intent import Intent
+from recon.model.intent import Commanded, Intent
+from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety.prediction import Ghost, flyer, ghost_of
 from recon.safety.watchdogs import plane_of
@@ -30,6 +32,28 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
             yield link.own_state, link.claimed_serial
     for state in station.watch.lost.values():
         yield state, None
+
+
+def setting_out(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, Intent]]:
+    """Yield who is about to fly a mission that telemetry does not show yet, and that mission.
+
+    One whose mission still waits to be sent; and one on the ground that was sent one a moment ago,
+    for it may be taking off.
+    """
+    for record in station.orders.watched:
+        body, serial = record.command.body, record.command.serial
+        vehicle = station.fleet.vehicles.get(serial or "")
+        if vehicle is not None and isinstance(body, FlyMission) and record.phase is Phase.QUEUED:
+            issued_at_ns, number = record.command.issued_at_ns, record.command.id
+            yield vehicle, Intent(Commanded.MISSION, issued_at_ns, number, mission=body.mission)
+    starts_ns = seconds_to_ns(station.settings.safety.prediction.start_delay_s)
+    for serial, intent in station.intents.items():
+        vehicle = station.fleet.vehicles.get(serial)
+        is_new = now_ns - intent.since_ns <= starts_ns
+        if vehicle is None or vehicle.is_flying.value is not False or not is_new:
+            continue
+        if intent.commanded is Commanded.MISSION:
+            yield vehicle, intent
 
 
 def ghost(station: Station, vehicle: VehicleState, now_ns: int) -> Ghost | None:

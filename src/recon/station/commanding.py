@@ -33,7 +33,7 @@ from recon.station import (
     stick_zero,
     streams,
 )
-from recon.station.air import in_the_air
+from recon.station.air import in_the_air, setting_out
 from recon.station.orders import OrderRecord, PhaseChange
 from recon.station.outputs import Output, SendCommand
 from recon.station.settings import StationSettings
@@ -155,15 +155,20 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         airspace=station.airspace,
         lead=station.leads.get(serial, _NOBODY_YET),
         intent=station.intents.get(serial, _TOLD_NOTHING),
-        traffic=_traffic(station, command, serial),
+        traffic=_traffic(station, command, serial, now_ns),
         preflight_override=station.preflight_overrides.get(serial),
         facts=preflight.facts(station, target) if is_mission else NO_FACTS,
     )
 
 
-def _traffic(station: Station, command: Command, serial: str) -> tuple[Traffic, ...]:
-    """Every other vehicle that flies or was last known to, heard or not."""
-    return tuple(
+def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tuple[Traffic, ...]:
+    """Every other vehicle that flies or was last known to, heard or not, or is about to fly."""
+    about_to = tuple(
+        Traffic(state, intent)
+        for state, intent in setting_out(station, now_ns)
+        if state.serial != serial
+    )
+    return about_to + tuple(
         Traffic(state, station.intents.get(state.serial or "", _TOLD_NOTHING))
         for state, claimed in in_the_air(station)
         if state.serial is None or state.serial != serial
