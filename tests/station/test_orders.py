@@ -1,5 +1,9 @@
 """The order book is bounded and forgets nothing that is alive."""
 
+from dataclasses import replace
+
+from hypothesis import given
+from hypothesis import strategies as st
 from tests.safety.cases import command
 
 from recon.model.command import Command, Hover, Phase, StopCamera
@@ -67,3 +71,16 @@ def test_the_end_of_an_order_is_the_end_of_its_repeats() -> None:
     )
     ended = changed(repeating, Phase.DONE, 1)
     assert (ended.next_repeat_ns, ended.repeats_left) == (None, 0)
+
+
+@given(st.lists(st.tuples(st.integers(0, 9), st.sampled_from(Phase), st.booleans()), max_size=60))
+def test_the_watched_are_those_that_live_or_whose_alarm_does(
+    puts: list[tuple[int, Phase, bool]],
+) -> None:
+    book = OrderBook()
+    for number, phase, has_alarm in puts:
+        alarm = "x" if has_alarm else None
+        book = put(book, replace(record(number, phase=phase), alarm=alarm), kept=5)
+        expected = {r.command.id: r for r in book.records.values() if r.is_watched}
+        assert {r.command.id: r for r in book.watched} == expected
+        assert len(book.watched) == len(expected)

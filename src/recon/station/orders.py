@@ -6,6 +6,7 @@ and changes nothing but the alarm.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 from recon.fleet.confirmation import Progress, SentContext
 from recon.model.command import (
@@ -82,14 +83,11 @@ class OrderRecord:
 
 @dataclass(frozen=True, slots=True)
 class OrderBook:
-    """All orders lately given; `watched` are those that time and telemetry still change."""
+    """All orders lately given. `watched` are those still alive, and those whose alarm is: time and
+    telemetry still change them. `put` keeps it, for it is asked for with every packet."""
 
     records: Mapping[int, OrderRecord] = field(default_factory=dict)
-
-    @property
-    def watched(self) -> tuple[OrderRecord, ...]:
-        """The orders still alive, and those whose alarm is."""
-        return tuple(record for record in self.records.values() if record.is_watched)
+    watched: tuple[OrderRecord, ...] = ()
 
 
 def changed(record: OrderRecord, phase: Phase, at_ns: int, note: str = "") -> OrderRecord:
@@ -205,10 +203,19 @@ def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
     newest_id = record.command.id
     records = {**book.records, newest_id: record}
     if len(records) > kept:
-        finished = [key for key, r in records.items() if not r.is_watched and key != newest_id]
-        for key in finished[: len(records) - kept]:
+        finished = (key for key, r in records.items() if not r.is_watched and key != newest_id)
+        for key in tuple(islice(finished, len(records) - kept)):
             del records[key]
-    return OrderBook(records)
+    return OrderBook(records, _watched(book.watched, record))
+
+
+def _watched(before: tuple[OrderRecord, ...], newest: OrderRecord) -> tuple[OrderRecord, ...]:
+    """Return the watched records with the newest form of one, each in its old place."""
+    newest_id = newest.command.id
+    if all(record.command.id != newest_id for record in before):
+        return (*before, newest) if newest.is_watched else before
+    changed_ones = (newest if r.command.id == newest_id else r for r in before)
+    return tuple(record for record in changed_ones if record.is_watched)
 
 
 def on_sent(record: OrderRecord, event: CommandSent, context: SentContext) -> OrderRecord:
