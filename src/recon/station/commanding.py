@@ -8,6 +8,7 @@ from recon.link.outbox import Lane, lane_of
 from recon.model.authority import Lead
 from recon.model.command import (
     CAMERA_BODIES,
+    MOVING_BODIES,
     STEERED_BODIES,
     Command,
     FlyMission,
@@ -143,10 +144,15 @@ def refuse(station: Station, order: OperatorOrder, refusal: Refusal, now_ns: int
 
 
 def situation(station: Station, command: Command, now_ns: int) -> Situation:
-    """Return the snapshot the gate judges a command by."""
+    """Return the snapshot the gate judges a command by.
+
+    The others in the air matter to what sets a vehicle in motion alone: a stop waits for no look
+    at all of them.
+    """
     target = station.target(command.serial, command.link_id)
     serial = "" if target is None or target.serial is None else target.serial
     is_mission = isinstance(command.body, FlyMission)
+    moves = isinstance(command.body, MOVING_BODIES)
     return Situation(
         now_ns=now_ns,
         vehicle=target,
@@ -155,7 +161,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         airspace=station.airspace,
         lead=station.leads.get(serial, _NOBODY_YET),
         intent=station.intents.get(serial, _TOLD_NOTHING),
-        traffic=_traffic(station, command, serial, now_ns),
+        traffic=_traffic(station, command, serial, now_ns) if moves else (),
         preflight_override=station.preflight_overrides.get(serial),
         facts=preflight.facts(station, target) if is_mission else NO_FACTS,
     )
