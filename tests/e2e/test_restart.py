@@ -93,6 +93,7 @@ def field(tmp_path: Path) -> Any:
 def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: Field) -> None:
     field.take_off()
     here = field.here
+    assert here.recon("release", "SIM-2", "--to", "pilot").code == 0
     # An order is under way: this drone has no camera, and its app answers nothing.
     (filming,) = here.recon("camera", "SIM-3", "--on", "--wait", "0", "--json").json
     while not audit_holds(field.audit, filming["command_id"], "order.sent"):
@@ -112,6 +113,11 @@ def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: 
     flying = by_serial(vehicles)
     assert all(vehicle["is_flying"]["value"] for vehicle in flying.values())
     assert flying["SIM-1"]["flight_mode"]["value"] == "gps_waypoint"
+    assert {s: v["lead"]["leader"] for s, v in flying.items()} == {
+        "SIM-1": "operator",
+        "SIM-2": "pilot",
+        "SIM-3": "operator",
+    }
     # Seconds pass: repeats come every 0.7 s, and watchdogs look ten times a second.
     seen_ns = again.get("/api/state")["time_ns"]
     again.until(lambda told: again.get("/api/state")["time_ns"] > seen_ns + 4_000_000_000)
@@ -133,7 +139,7 @@ def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: 
     assert set(field.tap.take()) == {("SIM-1", "EmergencyCommand")}
 
     # Its home is known again: without, the gate would refuse every mission.
-    dry = again.recon("fly", "SIM-2", field.folder / "SIM-2.json", "--dry-run")
+    dry = again.recon("fly", "SIM-1", field.folder / "SIM-1.json", "--dry-run")
     assert dry.code == 0, dry.out
     assert again.station.end(signal.SIGTERM) == 0
     assert again.recon("audit", "verify", field.audit).code == 0
