@@ -243,6 +243,12 @@ class TestOtherOrders:
         assert leader(told) is Leader.PILOT
         assert commanded(told) is Commanded.NOTHING
 
+    def test_a_place_that_wanders_without_gnss_does_not_blame_the_pilot(self) -> None:
+        told = hovering()
+        told.order(Hover())
+        told.passes(1.0).keeps_saying(1, *at(8.0, GPS, gnss_level=1)).passes(5.0)
+        assert leader(told) is Leader.OPERATOR
+
     def test_a_stick_is_confirmed_then_done_when_its_time_is_over(self) -> None:
         told = hovering()
         order = told.order(STICK)

@@ -28,8 +28,8 @@ place where *started*, *finished*, *taken over by the pilot* and *failsafe* are 
 - **undecided**: nothing follows from it. An order that stays undecided for long fails.
 
 *At its end*: within {AT_END_M:g} m of the last waypoint, on its last leg; for a hold, within
-{AT_END_M:g} m of where it began to hold. Orders without a place of their own are always *at their
-end*. *Sent* rows hold until telemetry shows the order carried out.
+{AT_END_M:g} m of where it began to hold (while GNSS is good). Orders without a place of their own
+are always *at their end*. *Sent* rows hold until telemetry shows the order carried out.
 
 A mode counts as **pilot** or **failsafe** only when it is new: when the vehicle was not in it when
 it was told. (Of a hold that is left, the place is new.) But for the pilot's own modes and ATTI with

@@ -105,6 +105,9 @@ def _entry(record: OrderRecord, change: PhaseChange) -> AuditEntry:
         details["takeoff"] = command.takeoff
         details["asked_as"] = command.asked_as.value
         details["sent_altitudes"] = record.altitudes
+        if record.plan is not None:
+            details["parts"] = len(record.plan.parts)
+            details["repairs"] = list(record.plan.repairs)
     words = f"{record.vehicle_name}: {command.name.replace('_', ' ')}: {phase.replace('_', ' ')}"
     text = f"{words} ({change.note})" if change.note else words
     return AuditEntry(

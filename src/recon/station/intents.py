@@ -8,7 +8,7 @@ nothing.
 from dataclasses import replace
 
 from recon.fleet.confirmation import STANDING_SPEED_MPS, SentContext
-from recon.fleet.flight_table import AT_END_M, ModeKind, Place, Told
+from recon.fleet.flight_table import AT_END_M, GOOD_GNSS_LEVEL, ModeKind, Place, Told
 from recon.fleet.mission_progress import distance_to_m, waypoints_passed
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import Body, FlyMission, Hover, LandNow, ReturnHome, VirtualStick
@@ -194,5 +194,8 @@ def _is_at_end(intent: Intent, vehicle: VehicleState, is_level: bool) -> bool | 
     if intent.commanded is Commanded.HOLD and intent.target is not None:
         if position is None:
             return None
+        level = vehicle.gnss_signal_level.value
+        if level is None or level < GOOD_GNSS_LEVEL:
+            return True  # a place that wanders says nothing of the vehicle
         return horizontal_distance_m(intent.target, position) <= AT_END_M
     return True
