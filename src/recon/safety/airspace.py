@@ -54,14 +54,20 @@ class PreparedAirspace:
     ) -> list[PreparedZone]:
         """Return the zones of a kind, in the site's order, that any footprint may be near to.
 
-        The others' boxes are more than `gap_m` from the box round all the footprints.
+        The others' boxes are more than `gap_m` from the box round each footprint. What is not
+        finite may be near to every zone.
         """
         zones, least_m, most_m = self._zones[kind]
-        if not zones:
-            return []
+        if not zones or not footprints.is_finite.all():
+            return list(zones)
         is_apart = (footprints.least_m.min(axis=0) > most_m + gap_m).any(axis=1)
         is_apart |= (footprints.most_m.max(axis=0) < least_m - gap_m).any(axis=1)
-        return [zones[index] for index in np.flatnonzero(~is_apart)]
+        near = np.flatnonzero(~is_apart)
+        # Round them all at once is seldom near round each: vehicles fly all over a site.
+        beyond = footprints.least_m > (most_m[near] + gap_m)[:, np.newaxis]
+        before = footprints.most_m < (least_m[near] - gap_m)[:, np.newaxis]
+        is_apart_each: BoolArray = np.any(beyond | before, axis=2)
+        return [zones[index] for index in near[~np.all(is_apart_each, axis=1)]]
 
     def zones_of(self, kind: ZoneKind) -> tuple[PreparedZone, ...]:
         """Return the zones of one kind, in the site's order."""

@@ -94,7 +94,7 @@ class Follower:
                 end_mps,
                 index,
             )
-            fly(writer, leg, self.settings, exactly=self.exactly)
+            fly(writer, leg, self.settings, exactly=self.exactly, until_s=self.until_s)
             writer.low_m, writer.high_m = band_m
             start_mps = end_mps
             if waypoint.loiter_s is not None and waypoint.loiter_s > 0.0:

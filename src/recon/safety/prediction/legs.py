@@ -3,7 +3,7 @@
 from math import hypot, sqrt
 from typing import NamedTuple
 
-from recon.safety.prediction.course import CourseWriter, Part
+from recon.safety.prediction.course import FOREVER_S, CourseWriter, Part
 from recon.safety.prediction.settings import PredictionSettings
 
 LEAST_M = 1e-3
@@ -36,8 +36,18 @@ class Leg(NamedTuple):
     part: int
 
 
-def fly(writer: CourseWriter, leg: Leg, settings: PredictionSettings, *, exactly: bool) -> None:
-    """Write a leg: as its phases of gaining, keeping and losing speed, or as one even row."""
+def fly(
+    writer: CourseWriter,
+    leg: Leg,
+    settings: PredictionSettings,
+    *,
+    exactly: bool,
+    until_s: float = FOREVER_S,
+) -> None:
+    """Write a leg: as its phases of gaining, keeping and losing speed, or as one even row.
+
+    No phase that begins after `until_s` is written.
+    """
     long_m = hypot(leg.east_m - writer.east_m, leg.north_m - writer.north_m)
     low_m, high_m = leg.band_m
     rise_s = 0.0
@@ -48,7 +58,7 @@ def fly(writer: CourseWriter, leg: Leg, settings: PredictionSettings, *, exactly
         phases = _phases(long_m, leg, settings.braking_mps2)
         seconds = phases[0][3] + phases[1][3] + phases[2][3]
         if seconds >= rise_s:
-            _write_phases(writer, leg, long_m, phases)
+            _write_phases(writer, leg, long_m, phases, until_s)
             return
     else:
         seconds = _even_seconds(long_m, leg, settings.braking_mps2)
@@ -153,12 +163,16 @@ def _phase(long_m: float, from_mps: float, to_mps: float) -> Phase:
 
 
 def _write_phases(
-    writer: CourseWriter, leg: Leg, long_m: float, phases: tuple[Phase, Phase, Phase]
+    writer: CourseWriter,
+    leg: Leg,
+    long_m: float,
+    phases: tuple[Phase, Phase, Phase],
+    until_s: float,
 ) -> None:
     east_m, north_m, low_m, high_m = writer.east_m, writer.north_m, writer.low_m, writer.high_m
     gone_m = 0.0
     for distance_m, from_mps, to_mps, seconds in phases:
-        if distance_m < LEAST_M:
+        if distance_m < LEAST_M or writer.time_s > until_s:
             continue
         gone_m += distance_m
         share = gone_m / long_m
