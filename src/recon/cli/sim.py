@@ -4,12 +4,34 @@ import asyncio
 import contextlib
 import signal
 import sys
-from enum import Enum
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
 import typer
 
+from recon.cli.sim_options import (
+    AirborneOption,
+    AltitudeBiasMOption,
+    AltitudeReferenceOption,
+    EnduranceMinOption,
+    EyeOption,
+    FaultOption,
+    FeedOption,
+    FpsOption,
+    FrameSizeOption,
+    FramesOption,
+    HomeOption,
+    HoverOnGroundOption,
+    ImageFormatOption,
+    LatencySOption,
+    ReplaySiteOption,
+    SeedOption,
+    SiteOption,
+    StationOption,
+    VehiclesOption,
+    WanderOption,
+    WaypointAltitude,
+)
 from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint
 from recon.model.vehicle import AltitudeReference
@@ -17,7 +39,7 @@ from recon.sim.camera_feed import FeedSettings, FrameSource, ImageFormat
 from recon.sim.cloud_shadows import CloudShadows
 from recon.sim.commands import HoverOnGround
 from recon.sim.errors import SimulationError
-from recon.sim.faults import FaultKind, parse_fault
+from recon.sim.faults import parse_fault
 from recon.sim.field import FieldFrames
 from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig
 from recon.sim.frame_files import folder_frames
@@ -26,15 +48,7 @@ from recon.sim.rig import EyeRig
 from recon.sim.run import run_fleet
 from recon.site import Eye, Site, SiteError, demo_site_folder, load_site
 
-MOST_VEHICLES = 256
 LONGEST_LATENCY_S = 60.0
-
-
-class WaypointAltitude(Enum):
-    """What a waypoint's altitude means to the simulated apps."""
-
-    WGS84 = "wgs84"
-    TAKEOFF = "takeoff"
 
 
 class EyeWorld(NamedTuple):
@@ -45,67 +59,26 @@ class EyeWorld(NamedTuple):
 
 
 def sim_command(
-    vehicles: Annotated[
-        int, typer.Option(min=1, max=MOST_VEHICLES, help="How many, the eye included.")
-    ] = 4,
-    station: Annotated[str, typer.Option(help="HOST:PORT of the station.")] = "127.0.0.1:3001",
-    altitude_reference: Annotated[
-        WaypointAltitude, typer.Option(help="What a waypoint's altitude means to the apps.")
-    ] = WaypointAltitude.TAKEOFF,
-    hover_on_ground: Annotated[
-        HoverOnGround, typer.Option(help="What hover and return do on the ground.")
-    ] = HoverOnGround.NOTHING,
-    eye: Annotated[
-        bool, typer.Option("--eye/--no-eye", help="Whether the first vehicle has a camera.")
-    ] = True,
-    airborne: Annotated[
-        bool | None,
-        typer.Option(
-            "--airborne/--grounded",
-            help="All start in the air, or none; otherwise only the eye does.",
-        ),
-    ] = None,
-    wander: Annotated[
-        bool, typer.Option(help="Survey vehicles fly to and fro until ordered otherwise.")
-    ] = False,
-    home: Annotated[
-        str | None, typer.Option(help="LAT,LON to start from; default is the site's.")
-    ] = None,
-    site: Annotated[
-        Path | None, typer.Option(help="Folder with a site.toml: place, eye, pads.")
-    ] = None,
-    replay_site: Annotated[
-        Path | None,
-        typer.Option(help="Folder with RefFrame.jpeg and GCPs.txt: the eye over a real field."),
-    ] = None,
-    frames: Annotated[
-        Path | None, typer.Option(help="Folder of images that the eye sends in turn.")
-    ] = None,
-    frame_size: Annotated[
-        str, typer.Option(help="COLSxROWS of frames from a folder.")
-    ] = "1280x720",
-    fps: Annotated[float, typer.Option(help="Most frames per second the eye sends.")] = 1.0,
-    image_format: Annotated[
-        ImageFormat, typer.Option(help="How frames travel: packet 2 or packet 5.")
-    ] = ImageFormat.RAW,
-    latency_s: Annotated[
-        float | None, typer.Option(help="Capture to send; default is drawn from 0.2 to 1 s.")
-    ] = None,
-    feed: Annotated[
-        bool, typer.Option("--feed/--no-feed", help="Whether the eye's feed is on at the start.")
-    ] = True,
-    altitude_bias_m: Annotated[
-        float | None, typer.Option(help="Error of the absolute altitude; default is drawn.")
-    ] = None,
-    endurance_min: Annotated[float, typer.Option(help="Hover time of a full battery.")] = 25.0,
-    fault: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="NAME[:vehicle[:start_s[:duration_s]]], again for more. Names: "
-            + ", ".join(kind.value for kind in FaultKind)
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option(help="The same seed behaves the same way.")] = 0,
+    vehicles: VehiclesOption = 4,
+    station: StationOption = "127.0.0.1:3001",
+    altitude_reference: AltitudeReferenceOption = WaypointAltitude.TAKEOFF,
+    hover_on_ground: HoverOnGroundOption = HoverOnGround.NOTHING,
+    eye: EyeOption = True,
+    airborne: AirborneOption = None,
+    wander: WanderOption = False,
+    home: HomeOption = None,
+    site: SiteOption = None,
+    replay_site: ReplaySiteOption = None,
+    frames: FramesOption = None,
+    frame_size: FrameSizeOption = "1280x720",
+    fps: FpsOption = 1.0,
+    image_format: ImageFormatOption = ImageFormat.RAW,
+    latency_s: LatencySOption = None,
+    feed: FeedOption = True,
+    altitude_bias_m: AltitudeBiasMOption = None,
+    endurance_min: EnduranceMinOption = 25.0,
+    fault: FaultOption = None,
+    seed: SeedOption = 0,
 ) -> None:
     """Run simulated companion apps that connect to a station, until Ctrl+C."""
     try:
