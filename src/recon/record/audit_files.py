@@ -14,7 +14,8 @@ from recon.record.errors import RecordError
 _NAME = re.compile(r"recon-audit-(\d{6})-\d{8}T\d{6}Z\.jsonl")
 MOST_RUNS = 999_999
 READ_TAIL_BYTES = 16 * 1024 * 1024
-"""What a start reads of the last run: 64 flying vehicles write this in some two hours."""
+"""What a start reads of the last run: 64 vehicles in the air write this in half an hour, and the
+last line of each holds all that is needed of it."""
 
 
 @dataclass(frozen=True, slots=True)
