@@ -4,14 +4,16 @@ from dataclasses import replace
 
 import pytest
 from tests.safety.cases import mission, waypoint
+from tests.station.audited import Audited
 from tests.station.commanded import PROFILES, Told
 from tests.station.flown import GPS, NORTHWARD, WAYPOINT, at, flies, hovering, row
 from tests.station.station_world import HOME, World, world
+from tests.station.test_restart import restart_world
 
 from recon.geo.distance import horizontal_distance_m
 from recon.model.authority import Leader
 from recon.model.command import FlyMission, Hover, LandNow, Phase, StopCamera
-from recon.model.event import AuthorityTaken
+from recon.model.event import AuthorityTaken, CommandSent
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
@@ -262,3 +264,20 @@ def test_a_link_that_breaks_in_the_second_part_ends_it_there_and_nothing_is_sent
     assert aircraft.motion.ground_speed_mps < 0.5
     rules = {alarm.condition.rule for alarm in w.driver.station.alarms.alarms.values()}
     assert BROKEN_OFF in rules
+
+
+def test_a_restart_in_flight_sends_no_next_part() -> None:
+    w = world(max_waypoints=15)
+    audited = Audited(w)
+    w.run_for(2.0)
+    order = w.order("SIM-1", lawn(40))
+    (queued, *_) = audited.of("order.queued")
+    assert queued.details["parts"] == 3
+    assert "flown in 3 parts" in queued.details["repairs"][0]
+    assert w.run_until(lambda: parts_flown(w.record(order)) == 1, 30.0)
+    w.run_for(5.0)
+    restart_world(w, audited)
+    w.run_for(60.0)
+    assert w.record(order).phase is Phase.FAILED
+    assert not any(isinstance(event, CommandSent) for event in w.driver.log)
+    assert w.app("SIM-1").aircraft.flight_mode is FlightMode.GPS_ATTI

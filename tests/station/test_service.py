@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from tests.link.approved import core, extended
 from tests.ready import ready_profile, ready_site
+from tests.safety.cases import mission, waypoint
 
 from recon import wire
 from recon.api.schema import StationState
@@ -86,6 +87,22 @@ class TestOrders:
         ]
         assert results[1].rule == "reachable"
         assert results[0].rule is None
+
+    def test_repairs_and_parts_of_a_mission_are_in_the_answer_refused_or_not(
+        self, bench: Bench
+    ) -> None:
+        bench.open(1, extended(b"A"), core())
+        body = mission(*(waypoint(10.0 * n, speed_mps=20.0) for n in range(120)))
+        (result,) = bench.service.order(["A"], body, takeoff=False, issued_by="t").results
+        assert (result.accepted, result.parts) == (False, 2)
+        assert [text.split(":")[0] for text in result.repairs] == [
+            "waypoints 1 to 120",
+            "flown in 2 parts (waypoints 1 to 99, 99 to 120), for 120 waypoints are more than the "
+            "99 its app takes; it hovers at the end of each part, and the next one is only flown "
+            "if link and authority were whole since the order",
+        ]
+        (landed,) = bench.service.order(["A"], LandNow(), takeoff=False, issued_by="t").results
+        assert (landed.repairs, landed.parts) == ([], 0)
 
     def test_numbers_are_never_given_twice(self, bench: Bench) -> None:
         ids = [
