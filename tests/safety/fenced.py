@@ -131,7 +131,9 @@ def asked(
     rule: Rule, body: Body, air: PreparedAirspace, state: VehicleState | None = None
 ) -> Refusal | None:
     """What one rule says to an order."""
-    return rule(command(body), here(air, state))
+    refusal = rule(command(body), here(air, state))
+    assert refusal is None or refusal.rule == rule.__name__
+    return refusal
 
 
 def reason(refusal: Refusal | None) -> str:

@@ -101,7 +101,12 @@ class FlownPath:
     @cached_property
     def here(self) -> Footprints:
         """The place where the vehicle is."""
-        return Footprints(np.broadcast_to(self.here_m[:2], (1, 3, 2)))
+        return Footprints(self.here_triangle_m)
+
+    @property
+    def here_triangle_m(self) -> FloatArray:
+        """The same as three times one point, (1, 3, 2)."""
+        return np.broadcast_to(self.here_m[:2], (1, 3, 2))
 
     def subject(self, index: int) -> str:
         """Return the vehicle's name and a piece's label, as a refusal begins."""

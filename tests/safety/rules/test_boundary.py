@@ -1,12 +1,16 @@
 """The boundary is kept along whole legs, corners, the way there and the way home."""
 
+from dataclasses import replace
+
 import pytest
-from tests.safety.cases import NOW
+from tests.safety.cases import NOW, command
 from tests.safety.fenced import (
+    WIDE,
     airspace,
     asked,
     flier,
     goto,
+    here,
     mission,
     reason,
     region,
@@ -17,6 +21,8 @@ from tests.safety.fenced import (
 from recon.model.command import Body, HoldPosition, Hover, LandNow, Nudge, ReturnHome
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath
 from recon.safety.rules.boundary import boundary
 
 L_SHAPE = region((-50, -50), (400, -50), (400, 50), (50, 50), (50, 400), (-50, 400))
@@ -178,6 +184,23 @@ class TestAlreadyOutside:
         near = flier(47.0, 300.0)
         assert is_allowed(stick(0.0, east_mps), near) is allowed
         assert allowed or "it is 3.00 m inside now" in told(stick(0.0, east_mps), near)
+
+    def test_close_to_the_edge_the_words_say_which_side(self) -> None:
+        assert "comes within 0.50 m of the site's boundary" in told(
+            mission((0.0, 300.0, 40.0), (49.5, 300.0, 40.0))
+        )
+        assert "it is 0.50 m inside now" in told(stick(0.0, 0.1), flier(49.5, 300.0))
+
+    def test_on_the_margin_itself_it_may_be_moved_inwards(self) -> None:
+        """The margin is counted as kept only beyond it: there, the way in must still be open."""
+        state = flier(45.0, 300.0)
+        fence = CORNERED.boundary
+        assert fence is not None
+        path = flown(command(stick(0.0, -1.0)), here(CORNERED, state))
+        assert isinstance(path, FlownPath)
+        margin_m = float(fence.room_m(path.here)[0])
+        exact = airspace(boundary=L_SHAPE, limits=replace(WIDE, boundary_margin_m=margin_m))
+        assert asked(boundary, stick(0.0, -1.0), exact, state) is None
 
     def test_a_stick_that_crosses_an_arm_may_not_leave_it_on_the_other_side(self) -> None:
         assert is_allowed(stick(0.0, -15.0, timeout_s=2.0), self.out)

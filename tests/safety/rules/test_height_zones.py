@@ -114,6 +114,32 @@ class TestCeiling:
         assert not is_allowed(Nudge(0.0, 0.0, 10.0), CEILING, high)
         assert "leg 1 to 2" in told(mission((150, 0, 60), (120, 0, 60)), CEILING, high)
 
+        level = Nudge(5.0, 0.0, 0.0)
+        assert is_allowed(level, CEILING, high)
+        assert is_allowed(mission((150.0, 0.0, 40.0), (120.0, 0.0, 40.0)), CEILING, high)
+
+    def test_in_the_zones_margin_it_is_as_in_the_zone(self) -> None:
+        high = flier(97.0, 0.0, 70.0, go_home_m=40.0)
+        assert is_allowed(Nudge(0.0, 0.0, -10.0), CEILING, high)
+        assert not is_allowed(Nudge(0.0, 0.0, 10.0), CEILING, high)
+
+    def test_above_a_ceiling_over_the_ellipsoid_too(self) -> None:
+        height_m = ORIGIN.ellipsoid_height_m + 50.0
+        zone = height_zone(FARM, ceiling_m=height_m, datum=HeightDatum.WGS84)
+        air = airspace(zone, elevation=hills([[30.0] * 10] * 10))
+        high = flier(150.0, 0.0, 40.0, go_home_m=10.0)
+        assert is_allowed(Nudge(0.0, 0.0, -10.0), air, high)
+        assert not is_allowed(Nudge(0.0, 0.0, 1.0), air, high)
+
+    def test_over_falling_ground_level_flight_is_higher(self) -> None:
+        falling = hills([[20.0] * 5 + [20.0, 20.0, 0.0, 0.0, 0.0]] * 10)
+        air = airspace(
+            height_zone(square(100.0, -50.0, 300.0, 50.0), ceiling_m=50.0), elevation=falling
+        )
+        high = flier(120.0, 0.0, 60.0, go_home_m=40.0)
+        assert is_allowed(stick(1.0, 0.0, 60.0), air, high)
+        assert not is_allowed(stick(0.0, 15.0, 60.0), air, high)
+
     def test_who_is_above_beside_the_zone_may_not_enter_it(self) -> None:
         high = flier(90.0, 0.0, 70.0, go_home_m=40.0)
         assert not is_allowed(Nudge(0.0, 40.0, -5.0), CEILING, high)
@@ -154,6 +180,7 @@ class TestDatum:
 class TestAsked:
     def test_zones_of_this_kind_and_moves_only(self) -> None:
         assert is_allowed(across(20.0), airspace())
+        assert is_allowed(across(20.0), airspace(), flier(position=Stamped()))
         assert is_allowed(across(20.0), airspace(keep_out_zone(FARM)))
         assert is_allowed(Hover(), FLOOR, flier(150.0, 0.0, 20.0))
 
@@ -180,6 +207,7 @@ class TestAsked:
         assert is_allowed(stick(0.0, 0.0, height_m), CEILING, state) is allowed
 
     def test_a_zero_beside_the_zone_is_not_in_it(self) -> None:
+        assert is_allowed(stick(0.0, 0.0, 20.0), FLOOR, flier(99.5, 0.0, 60.0))
         assert is_allowed(stick(0.0, 0.0, 20.0), FLOOR, flier(97.0, 0.0, 60.0))
         assert not is_allowed(stick(0.1, 0.0, 20.0), FLOOR, flier(97.0, 0.0, 60.0))
 

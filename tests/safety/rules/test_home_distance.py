@@ -2,13 +2,16 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from tests.safety.cases import command
 from tests.safety.fenced import (
     WIDE,
     airspace,
     asked,
     flier,
     goto,
+    here,
     mission,
     place,
     reason,
@@ -19,6 +22,8 @@ from recon.model.command import Body, HoldPosition, Hover
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE
+from recon.safety.flown import flown
+from recon.safety.flown_path import FlownPath
 from recon.safety.rules.home_distance import home_distance
 
 NEAR = airspace(limits=replace(WIDE, max_distance_from_home_m=300.0))
@@ -39,6 +44,16 @@ def test_every_waypoint_counts(east_m: float, allowed: bool) -> None:
     assert allowed or told(body) == (
         "A: leg 1 to 2 leads 300.1 m away from home, at most 300 m is allowed"
     )
+
+
+def test_the_limit_itself_is_allowed() -> None:
+    body = mission((250.0, 0.0, 40.0), (0.0, 0.0, 40.0))
+    path = flown(command(body), here(NEAR))
+    assert isinstance(path, FlownPath)
+    offsets_m = path.pieces.triangles_m - path.home_m[:2]
+    exact_m = float(np.linalg.norm(offsets_m, axis=-1).max())
+    limited = airspace(limits=replace(WIDE, max_distance_from_home_m=exact_m))
+    assert asked(home_distance, body, limited) is None
 
 
 def test_home_is_where_it_took_off() -> None:
@@ -70,6 +85,12 @@ class TestAlreadyTooFar:
         assert is_allowed(goto(100.0, 0.0), self.far)
         assert is_allowed(mission((100.0, 0.0, 40.0), (0.0, 0.0, 40.0)), self.far)
         assert is_allowed(HoldPosition(), self.far)
+
+    def test_it_counts_from_home_not_from_the_sites_origin(self) -> None:
+        state = flier(400.0, 0.0, takeoff_point=place(-100.0, 0.0))
+        assert is_allowed(stick(0.0, -5.0), state)
+        assert is_allowed(stick(0.5, 0.0), flier(-400.0, 0.0, takeoff_point=place(300.0, 0.0)))
+        assert not is_allowed(stick(0.0, -1.0), flier(-400.0, 0.0, takeoff_point=place(300.0, 0.0)))
 
     def test_no_farther_and_nothing_later(self) -> None:
         assert "leads 401.2 m" in told(stick(0.0, 1.0), self.far)

@@ -233,6 +233,7 @@ class TestSticks:
         assert is_allowed(stick(0.0, 0.0, 61.9), HIGH, over(59.5))
 
     def test_a_zero_beside_it_is_held_to_the_zone_alone(self) -> None:
+        assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(99.5, 0.0, 60.0))
         assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(97.0, 0.0, 60.0))
 
 
@@ -294,3 +295,35 @@ class TestAlreadyInside:
         assert is_allowed(Nudge(0.0, 0.0, 10.0), air, over(43.0))
         assert not is_allowed(Nudge(0.0, 0.0, -2.0), air, over(43.0))
         assert is_allowed(Nudge(0.0, 0.0, -2.0), air, over(35.0))
+
+    def test_below_a_floor_over_the_ellipsoid_it_may_not_climb_either(self) -> None:
+        height_m = ORIGIN.ellipsoid_height_m + 60.0
+        air = airspace(keep_out_zone(YARD, floor_m=height_m, datum=HeightDatum.WGS84))
+        assert is_allowed(Nudge(0.0, 0.0, -10.0), air, over(57.0))
+        assert not is_allowed(Nudge(0.0, 0.0, 2.0), air, over(57.0))
+        assert is_allowed(Nudge(0.0, 0.0, 2.0), air, over(65.0))
+
+    def test_at_the_very_height_of_an_end_it_may_not_cross_it(self) -> None:
+        assert not is_allowed(Nudge(0.0, 0.0, -2.0), LOW, over(40.0))
+        assert not is_allowed(Nudge(0.0, 0.0, 2.0), HIGH, over(60.0))
+
+    def test_close_above_or_below_it_may_go_no_farther_in(self) -> None:
+        assert not is_allowed(Nudge(0.0, 10.0, 0.0), LOW, flier(110.0, 0.0, 43.0))
+        assert is_allowed(Nudge(0.0, -10.0, 0.0), LOW, flier(110.0, 0.0, 43.0, go_home_m=43.0))
+        assert not is_allowed(Nudge(0.0, 10.0, 0.0), HIGH, flier(110.0, 0.0, 57.0))
+        assert is_allowed(stick(0.0, -1.0, 57.0), HIGH, flier(110.0, 0.0, 57.0))
+
+    def test_a_centimetre_is_rounding(self) -> None:
+        assert is_allowed(Nudge(0.0, 0.0, -0.01), LOW, over(43.0))
+        assert not is_allowed(Nudge(0.0, 0.0, -0.02), LOW, over(43.0))
+        assert is_allowed(stick(0.0, 0.0, 57.0), HIGH, over(57.0))
+        assert is_allowed(Nudge(0.0, 0.0, 0.01), HIGH, over(57.0))
+        assert not is_allowed(Nudge(0.0, 0.0, 0.02), HIGH, over(57.0))
+
+    def test_over_hills_the_ground_under_the_vehicle_tells_where_it_is(self) -> None:
+        """The yard lies on a plateau of 20 m: 62 m up is 42 m above it, too close above 40 m."""
+        plateau = hills([[0.0] * 6 + [20.0] * 4] * 10)
+        air = airspace(keep_out_zone(YARD, ceiling_m=40.0), elevation=plateau)
+        assert is_allowed(Nudge(0.0, 0.0, 1.0), air, over(62.0))
+        assert not is_allowed(Nudge(0.0, 0.0, -1.0), air, over(62.0))
+        assert is_allowed(Nudge(0.0, 0.0, -1.0), air, over(58.0))

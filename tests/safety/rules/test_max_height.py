@@ -117,6 +117,14 @@ class TestValleys:
         )
         assert is_allowed(beyond, over(PIT), flier(300.0, -60.0, 60.0, go_home_m=60.0))
 
+    def test_a_valley_under_a_corner_counts(self) -> None:
+        around = ((150.0, -20.0, 90.0), (360.0, -20.0, 90.0), (360.0, 160.0, 90.0))
+        state = flier(0.0, -300.0, 60.0, failsafe=Failsafe.HOVER)
+        assert is_allowed(mission(*around, curved=True), over(PIT), state)
+        assert "the corner at waypoint 2" in told(
+            mission(*around, curved=True, radius_m=100.0), over(PIT), state
+        )
+
     def test_ground_that_nobody_knows_is_refused(self) -> None:
         body = mission((100.0, 50.0, 20.0), (700.0, 50.0, 20.0))
         assert told(body, over(PIT)) == (
@@ -141,6 +149,8 @@ class TestAlreadyTooHigh:
     def test_over_lower_ground_it_would_be_higher(self) -> None:
         pit = over(PIT)
         assert is_allowed(stick(5.0, 0.0, 140.0), pit, flier(100.0, -100.0, 140.0))
+        assert is_allowed(stick(0.1, 0.0, 80.0), pit, flier(250.0, 50.0, 80.0))
+        assert not is_allowed(Nudge(0.0, 0.0, 5.0), pit, flier(250.0, 50.0, 80.0, go_home_m=60.0))
         over_the_rim = flier(160.0, 50.0, 110.0)
         assert not is_allowed(stick(0.0, 15.0, 110.0), pit, over_the_rim)
 
@@ -151,7 +161,9 @@ class TestAlreadyTooHigh:
 
 
 class TestZeroAndUnknown:
-    @pytest.mark.parametrize(("height_m", "allowed"), [(101.9, True), (102.1, False)])
+    @pytest.mark.parametrize(
+        ("height_m", "allowed"), [(102.0, True), (102.1, False)]
+    )
     def test_a_zero_has_two_metres_of_slack(self, height_m: float, allowed: bool) -> None:
         nowhere = flier(position=Stamped())
         for state in (flier(200.0, 0.0, 90.0), nowhere):

@@ -82,6 +82,15 @@ class TestHills:
             "takeoff and landing"
         )
 
+    def test_a_hill_under_a_corner_counts(self) -> None:
+        """The legs pass it on both sides; the corner between them is cut over its slope."""
+        around = ((150.0, -20.0, 22.0), (360.0, -20.0, 22.0), (360.0, 160.0, 22.0))
+        state = flier(0.0, -300.0, 30.0, failsafe=Failsafe.HOVER)
+        assert is_allowed(mission(*around, curved=True), over(HILL), state)
+        assert "the corner at waypoint 2" in told(
+            mission(*around, curved=True, radius_m=100.0), over(HILL), state
+        )
+
     def test_a_hill_beside_the_leg_does_not(self) -> None:
         body = mission((0.0, -60.0, 20.0), (300.0, -60.0, 20.0))
         assert is_allowed(body, over(HILL), flier(0.0, 0.0, 20.0, failsafe=Failsafe.HOVER))
@@ -151,6 +160,8 @@ class TestColumns:
         assert is_allowed(Nudge(0.0, 0.0, 20.0), state=low)
         assert is_allowed(stick(0.5, 0.0, 5.0), state=low)
         assert not is_allowed(Nudge(0.0, 30.0, 20.0), state=low)
+        assert told(Nudge(0.0, 30.0, 0.0), state=low).endswith("may be right above)")
+        assert told(Nudge(0.0, 0.0, -1.0), state=low).endswith("outside takeoff and landing")
         assert told(level(40.0), state=low).endswith(
             "(a mission's first waypoint may be right above)"
         )

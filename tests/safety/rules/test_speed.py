@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.safety.cases import waypoint
-from tests.safety.fenced import WIDE, airspace, asked, goto, reason, stick
+from tests.safety.cases import command, waypoint
+from tests.safety.fenced import WIDE, airspace, asked, goto, here, reason, stick
 
 from recon.model.command import Body, FlyMission, HoldPosition, Hover, Nudge
 from recon.model.mission import Mission
-from recon.safety import PreparedAirspace
+from recon.safety import PreparedAirspace, SafetySettings
 from recon.safety.rules.speed import speed
 
 
@@ -55,6 +55,13 @@ def test_too_fast(body: Body, words: str) -> None:
 )
 def test_not_too_fast(body: Body) -> None:
     assert asked(speed, body, SLOW) is None
+
+
+def test_the_limit_and_what_rounding_may_add() -> None:
+    fences = replace(SafetySettings().fences, speed_rounding_mps=0.0)
+    now = replace(here(limited(8.0)), settings=SafetySettings(fences=fences))
+    assert speed(command(flown_at(8.0, 1.0)), now) is None
+    assert speed(command(flown_at(8.000001, 1.0)), now) is not None
 
 
 @given(max_mps=st.floats(1.0, 15.0), share=st.floats(0.0, 1.0))

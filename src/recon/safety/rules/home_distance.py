@@ -15,9 +15,9 @@ RULE = "home_distance"
 def home_distance(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path of which any point is farther than `max_distance_from_home_m` from home.
 
-    The distance is horizontal. Flights and corners count (the way home is nowhere farther). A piece
-    that begins where the vehicle is may go as far as the vehicle is now. A stick without velocity
-    goes nowhere and is not asked.
+    The distance is horizontal. Flights count: a corner and the way home are nowhere farther than
+    the legs they begin on. A piece that begins where the vehicle is may go as far as the vehicle is
+    now. A stick without velocity goes nowhere and is not asked.
     """
     if is_zero_stick(command.body):
         return None
@@ -33,7 +33,7 @@ def home_distance(command: Command, situation: Situation) -> Refusal | None:
     here_m = float(np.linalg.norm(path.here_m[:2] - home_m))
     no_farther_m = here_m + situation.settings.fences.not_worse_m
     allowed_m = np.where(pieces.is_entry, max(limit_m, no_farther_m), limit_m)
-    judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER)
+    judged = path.of_kinds(Kind.FLIGHT)
     far = np.flatnonzero(judged & ~(far_m <= allowed_m))
     if len(far) == 0:
         return None

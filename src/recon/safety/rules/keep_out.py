@@ -76,29 +76,27 @@ class _Judged:
         entered = entered[is_met]
         if len(entered) == 0:
             return None
-        entries = entered[pieces.is_entry[entered]]
-        if len(entries) > 0 and self._is_in_it():
+        if self._is_in_it():
+            entries = entered[pieces.is_entry[entered]]
             entered = np.setdiff1d(entered, entries[self._is_no_deeper(entries)])
         return int(entered[0]) if len(entered) > 0 else None
 
     def _meets(self, triangles_m: FloatArray, low_m: FloatArray, high_m: FloatArray) -> BoolArray:
         """Which pieces have a height of the zone, or come too close to one."""
         zone, datum = self.zone, zone_datum(self.zone)
-        meets = np.ones(len(triangles_m), dtype=np.bool_)
+        is_over = is_under = np.zeros(len(triangles_m), dtype=np.bool_)
         if zone.ceiling_m is not None:
             over_m = low_m - self.vertical_m
-            meets &= ~stays_above(self.airspace, triangles_m, over_m, zone.ceiling_m, datum)
+            is_over = stays_above(self.airspace, triangles_m, over_m, zone.ceiling_m, datum)
         if zone.floor_m is not None:
             under_m = high_m + self.vertical_m
-            meets &= ~stays_below(self.airspace, triangles_m, under_m, zone.floor_m, datum)
-        return meets
+            is_under = stays_below(self.airspace, triangles_m, under_m, zone.floor_m, datum)
+        return ~(is_over | is_under)
 
     def _is_in_it(self) -> bool:
-        here_m, up_m = self.path.here_m, self.path.here_m[2:]
-        if self.polygon.is_clear_of(self.path.here, self.gap_m)[0]:
-            return False
-        place_m = np.broadcast_to(here_m[:2], (1, 3, 2))
-        return bool(self._meets(place_m, up_m, up_m)[0])
+        """Whether the vehicle's height is one of the zone's: who is beside it will be deeper."""
+        up_m = self.path.here_m[2:]
+        return bool(self._meets(self.path.here_triangle_m, up_m, up_m)[0])
 
     def _is_no_deeper(self, indices: IntArray) -> BoolArray:
         """Which pieces go no farther in, and no nearer to the zone's heights, than it is now."""
@@ -108,11 +106,11 @@ class _Judged:
         no_deeper = self.polygon.is_clear_of(
             self.path.footprints.only(indices), gap_m - self.rounding_m
         )
-        if zone.ceiling_m is not None and up_m > up_of(
+        if zone.ceiling_m is not None and up_m >= up_of(
             self.airspace, here_m, zone.ceiling_m, datum
         ):
             no_deeper &= pieces.low_m[indices] >= up_m - self.rounding_m
-        if zone.floor_m is not None and up_m < up_of(self.airspace, here_m, zone.floor_m, datum):
+        if zone.floor_m is not None and up_m <= up_of(self.airspace, here_m, zone.floor_m, datum):
             no_deeper &= pieces.high_m[indices] <= up_m + self.rounding_m
         return no_deeper
 

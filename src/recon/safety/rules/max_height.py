@@ -89,7 +89,7 @@ def _reason(path: FlownPath, index: int, situation: Situation) -> str:
             f'serial = "{vehicle.serial}"'
         )
     what = path.subject(index)
-    triangle_m = pieces.triangles_m[index : index + 1]
+    triangle_m = pieces.triangles_m[[index]]
     lowest_m = float(situation.airspace.ground_within_up_m(triangle_m)[0][0])
     if lowest_m == -inf:
         return f"{what} goes over ground whose height the site's elevation model does not tell"

@@ -41,8 +41,9 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
         situation.airspace, pieces.triangles_m[judged], pieces.low_m[judged], least_m
     )
     low = judged[~is_high_enough]
-    if len(low) > 0:
-        low = low[~columns(path, situation, is_stop)[low]]
+    if len(low) == 0:
+        return None
+    low = low[~columns(path, situation, is_stop)[low]]
     return None if len(low) == 0 else Refusal(RULE, _reason(path, int(low[0]), situation))
 
 
@@ -50,7 +51,7 @@ def _reason(path: FlownPath, index: int, situation: Situation) -> str:
     least_m = situation.airspace.airspace.limits.min_height_above_ground_m
     pieces = path.pieces
     what = path.subject(index)
-    triangle_m = pieces.triangles_m[index : index + 1]
+    triangle_m = pieces.triangles_m[[index]]
     highest_m = float(situation.airspace.ground_within_up_m(triangle_m)[1][0])
     if highest_m == np.inf:
         return f"{what} goes over ground whose height the site's elevation model does not tell"

@@ -33,5 +33,3 @@ def _speeds_mps(body: Body) -> Iterator[tuple[str, float]]:
         case VirtualStick():
             north_mps, east_mps = as_sent(body.velocity_x_mps), as_sent(body.velocity_y_mps)
             yield "the stick's horizontal speed", hypot(north_mps, east_mps)
-        case _:
-            return
