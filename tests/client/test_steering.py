@@ -71,6 +71,7 @@ def test_a_program_that_leaves_lets_the_vehicle_hold() -> None:
                     far.latitude_deg, far.longitude_deg, height_above_takeoff_m=40.0
                 )
                 await accepted(order).wait(Phase.STARTED)
+                await until_mode(vehicle, "joystick")
             await until_mode(vehicle, "gps_atti")
             newest = watching._stream.newest
             assert newest is not None
