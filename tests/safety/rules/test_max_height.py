@@ -161,9 +161,7 @@ class TestAlreadyTooHigh:
 
 
 class TestZeroAndUnknown:
-    @pytest.mark.parametrize(
-        ("height_m", "allowed"), [(102.0, True), (102.1, False)]
-    )
+    @pytest.mark.parametrize(("height_m", "allowed"), [(102.0, True), (102.1, False)])
     def test_a_zero_has_two_metres_of_slack(self, height_m: float, allowed: bool) -> None:
         nowhere = flier(position=Stamped())
         for state in (flier(200.0, 0.0, 90.0), nowhere):
