@@ -1,6 +1,6 @@
 """Missions cut into parts that an app and the SDK take."""
 
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from recon.vehicles.mission_repair.limits import DjiLimits
 from recon.vehicles.mission_repair.working import Numbered
@@ -11,41 +11,36 @@ def cut(points: list[Numbered], most: int, limits: DjiLimits) -> tuple[list[list
 
     Always as long a part as can be; a single leg always is one, so an end is always found.
     """
+    along_m = list(accumulate((a.distance_m(b) for a, b in pairwise(points)), initial=0.0))
     parts: list[list[Numbered]] = []
     start = 0
     while start < len(points) - 1:
-        end = _last_that_fits(points, start, most, limits)
+        end = _last_that_fits(points, along_m, start, most, limits)
         parts.append(points[start : end + 1])
         start = end
-    return parts, "" if len(parts) == 1 else _why(points, most, limits)
+    return parts, "" if len(parts) == 1 else _why(points, along_m[-1], most, limits)
 
 
-def _last_that_fits(points: list[Numbered], start: int, most: int, limits: DjiLimits) -> int:
-    """The farthest end of a part from `start`."""
-    reachable, path_m = start + 1, 0.0
-    is_whole = _path_m(points[start:]) <= limits.longest_path_m
+def _last_that_fits(
+    points: list[Numbered], along_m: list[float], start: int, most: int, limits: DjiLimits
+) -> int:
+    """The farthest end of a part from `start`; `along_m`: how far along each point is."""
+    is_whole = along_m[-1] - along_m[start] <= limits.longest_path_m
     longest_m = limits.longest_path_m if is_whole else limits.cut_path_m
-    for end in range(start + 1, min(start + most, len(points))):
-        path_m += points[end - 1].distance_m(points[end])
-        if path_m > longest_m:
-            break
-        if _may_span(points[start], points[end], limits):
-            reachable = end
-    return reachable
+    for end in range(min(start + most, len(points)) - 1, start + 1, -1):
+        is_short = along_m[end] - along_m[start] <= longest_m
+        if is_short and _may_span(points[start], points[end], limits):
+            return end
+    return start + 1
 
 
 def _may_span(first: Numbered, last: Numbered, limits: DjiLimits) -> bool:
     return limits.least_leg_m <= first.distance_m(last) <= limits.longest_leg_m
 
 
-def _path_m(points: list[Numbered]) -> float:
-    return sum(a.distance_m(b) for a, b in pairwise(points))
-
-
-def _why(points: list[Numbered], most: int, limits: DjiLimits) -> str:
+def _why(points: list[Numbered], path_m: float, most: int, limits: DjiLimits) -> str:
     if len(points) > most:
         return f"{len(points)} waypoints are more than the {most} its app takes"
-    path_m = _path_m(points)
     if path_m > limits.longest_path_m:
         most_km = limits.longest_path_m / 1000.0
         return f"its path is {path_m / 1000:.1f} km, more than the {most_km:g} km DJI takes"
