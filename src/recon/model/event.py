@@ -162,6 +162,14 @@ class AuditTroubled:
 
 
 @dataclass(frozen=True, slots=True)
+class StationFaulted:
+    """The station's own code failed: doing what, and what came of it, in words."""
+
+    where: str
+    what: str
+
+
+@dataclass(frozen=True, slots=True)
 class AlarmAcknowledged:
     """A person has seen an alarm."""
 
@@ -208,6 +216,7 @@ Event = (
     | FleetReturnOrdered
     | AlarmAcknowledged
     | AuditTroubled
+    | StationFaulted
     | WorkerResult
     | DeadlineMissed
 )

@@ -5,6 +5,7 @@ from typing import Final, NoReturn
 
 from recon.model.command import (
     CAMERA_BODIES,
+    EMERGENCY_BODIES,
     STEERED_BODIES,
     Command,
     FlyMission,
@@ -17,7 +18,7 @@ from recon.model.mission import Mission
 from recon.model.stamped import Stamped
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, VehicleProfile
-from recon.safety.rules import RULES
+from recon.safety.rules import RULES, Rule
 from recon.safety.rules.dji_limits import dji_limits
 from recon.safety.situation import Situation
 from recon.vehicles.mission_repair import joined
@@ -56,7 +57,7 @@ class ApprovedCommand:
 
 def judge(command: Command, situation: Situation) -> Refusal | None:
     """Return the first rule's refusal, or None: nothing speaks against the command. Pure."""
-    refusals = (rule(command, situation) for rule in RULES)
+    refusals = (_asked(rule, command, situation) for rule in RULES)
     return next((refusal for refusal in refusals if refusal is not None), None)
 
 
@@ -70,11 +71,27 @@ def judge_parts(
     whole = replace(command, body=FlyMission(joined(parts)))
     packets = [replace(command, body=FlyMission(part)) for part in parts]
     refusals = (
-        rule(asked, situation)
+        _asked(rule, asked, situation)
         for rule in RULES
         for asked in (packets if rule is dji_limits else (whole,))
     )
     return next((refusal for refusal in refusals if refusal is not None), None)
+
+
+def _asked(rule: Rule, command: Command, situation: Situation) -> Refusal | None:
+    """A rule's answer; one that fails refuses what moves, and never keeps a stop from going out."""
+    try:
+        return rule(command, situation)
+    except Exception as fault:
+        if isinstance(command.body, EMERGENCY_BODIES) and not command.takeoff:
+            return None
+        name = getattr(rule, "__name__", "?")
+        return Refusal(
+            "rule_fault",
+            f"the rule {name} could not be worked out, a fault in the station's own code "
+            f"({type(fault).__name__}: {fault}): nothing that moves a vehicle is sent unjudged; "
+            "fly it by its controller, and start the station again",
+        )
 
 
 def approve(command: Command, situation: Situation) -> ApprovedCommand | Refusal:

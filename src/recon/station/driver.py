@@ -3,13 +3,16 @@
 import asyncio
 import gc
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
-from recon.model.event import ClockRead, Event, SticksDue, Tick
+from recon.model.event import ClockRead, Event, StationFaulted, SticksDue, Tick
 from recon.model.units import NS_PER_S
+from recon.station.containment import after_fault
 from recon.station.event_queue import EventQueue
+from recon.station.faults import described
 from recon.station.outputs import Output, SendCommand, StartWork, WithdrawMotion
 from recon.station.state import Station
 from recon.station.step import step
@@ -90,12 +93,26 @@ class AsyncioDriver:
                 self.handle(ClockRead(time.time_ns()))
 
     def _step(self, event: Event) -> None:
-        before = self.station
-        self.station, outputs = step(before, event, self.now_ns())
-        if self._observe is not None:
-            self._observe(before, self.station, event)
+        before, now_ns = self.station, self.now_ns()
+        try:
+            self.station, outputs = step(before, event, now_ns)
+        except Exception as fault:
+            self.station, outputs = after_fault(before, event, fault, now_ns)
+        with self._contained("writing the audit", event):
+            if self._observe is not None:
+                self._observe(before, self.station, event)
         for output in outputs:
-            self._carry_out(output)
+            with self._contained(f"carrying out {type(output).__name__}", event):
+                self._carry_out(output)
+
+    @contextmanager
+    def _contained(self, where: str, event: Event) -> Iterator[None]:
+        """Make an alarm of a fault; but not of one that came of telling a fault."""
+        try:
+            yield
+        except Exception as fault:
+            if not isinstance(event, StationFaulted):
+                self._queue.put(StationFaulted(where, described(fault)))
 
     def _carry_out(self, output: Output) -> None:
         match output:

@@ -30,6 +30,7 @@ from recon.station.air import is_hazard_unseen
 from recon.station.audit_view import audit_page
 from recon.station.checking import CHECKED_ID, check
 from recon.station.driver import AsyncioDriver
+from recon.station.faults import TO_DO
 from recon.station.orders import OrderRecord
 from recon.station.readiness_view import preflight_view
 from recon.station.site_view import site_view
@@ -204,17 +205,19 @@ class Service:
     def _give_one(self, order: OperatorOrder) -> schema.OrderResult:
         """Give an order and read its record at once: of many, the first are soon forgotten."""
         self.driver.handle(order)
-        return self._outcome(order.command_id)
+        return self._outcome(order.command_id, order.serial)
 
     def _call_one(self, serial: str, issued_by: str) -> schema.OrderResult:
         """Let one more vehicle join the return; it is planned with the next tick."""
         command_id = self._ids()
         self.driver.handle(FleetReturnOrdered(command_id, (serial,), issued_by))
-        return self._outcome(command_id)
+        return self._outcome(command_id, serial)
 
-    def _outcome(self, command_id: int) -> schema.OrderResult:
+    def _outcome(self, command_id: int, serial: str | None) -> schema.OrderResult:
         station = self.driver.station
-        record = station.orders.records[command_id]
+        record = station.orders.records.get(command_id)
+        if record is None:
+            return _not_taken(command_id, serial)
         return _result(record, _is_simulated(station, record))
 
     def _within_reach(self) -> list[str]:
@@ -244,6 +247,22 @@ class Service:
             separation_hold_on=self.driver.station.watch.is_hold_on,
             connections_refused=0 if links is None else links.refused_connections,
         )
+
+
+def _not_taken(command_id: int, serial: str | None) -> schema.OrderResult:
+    """The answer to an order that a fault of the station kept from being judged."""
+    return schema.OrderResult(
+        serial=serial,
+        link_id=None,
+        vehicle_name=serial or "?",
+        is_simulated=False,
+        accepted=False,
+        command_id=command_id,
+        rule="station_fault",
+        reason=f"a fault in the station's own code, see the alarm; nothing was sent: {TO_DO}",
+        repairs=[],
+        parts=0,
+    )
 
 
 def _is_simulated(station: Station, record: OrderRecord) -> bool:

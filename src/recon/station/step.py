@@ -1,5 +1,6 @@
 """The station's step: one event in, the next state and what is to be done out. Pure."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from recon.fleet import step as fleet_step
@@ -23,6 +24,7 @@ from recon.model.event import (
     PacketReceived,
     PreflightOverridden,
     SeparationHoldSwitched,
+    StationFaulted,
     SticksDue,
     Tick,
     WorkerResult,
@@ -31,7 +33,17 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.station import air, alarms, authority, commanding, imaging, preflight, restart, watch
+from recon.station import (
+    air,
+    alarms,
+    authority,
+    commanding,
+    faults,
+    imaging,
+    preflight,
+    restart,
+    watch,
+)
 from recon.station.alarms import Condition, Severity
 from recon.station.commanding import Stepped
 from recon.station.conditions import conditions
@@ -87,6 +99,8 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return preflight.override(station, event, now_ns), ()
         case FleetReturnOrdered():
             return fleet_return_call(station, event, now_ns)
+        case StationFaulted():
+            return faults.note(station, event, now_ns), ()
         case AuditTroubled(problem):
             return replace(station, audit_problem=problem), ()
         case AlarmAcknowledged(alarm_id, by):
@@ -141,14 +155,32 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
 
 
 def _tick(station: Station, now_ns: int) -> Stepped:
-    station, closing = _fleet(station, Tick(), now_ns)
-    station, sticks = commanding.drive_streams(station, now_ns)
-    station, orders = commanding.watch(station, now_ns)
-    station, homewards = advance_fleet_return(station, now_ns)
-    station, holds = watch.look(station, now_ns)
+    outputs: tuple[Output, ...] = ()
+    for part in TICK_PARTS.values():
+        station, more = part(station, now_ns)
+        outputs += more
+    return station, outputs
+
+
+def _let_time_pass(station: Station, now_ns: int) -> Stepped:
+    return _fleet(station, Tick(), now_ns)
+
+
+def _raise_alarms(station: Station, now_ns: int) -> Stepped:
     kept = station.settings.alarms_kept
     book = alarms.update(station.alarms, conditions(station, now_ns), now_ns, kept)
-    return replace(station, alarms=book), (*closing, *sticks, *orders, *homewards, *holds)
+    return replace(station, alarms=book), ()
+
+
+TICK_PARTS: Mapping[str, Callable[[Station, int], Stepped]] = {
+    "counting the links' silence": _let_time_pass,
+    "driving the streams of sticks": commanding.drive_streams,
+    "watching the orders": commanding.watch,
+    "leading the fleet home": advance_fleet_return,
+    "looking with the watchdogs": watch.look,
+    "raising alarms": _raise_alarms,
+}
+"""What a tick does, in this order, and each in words."""
 
 
 def _is_eye(station: Station, vehicle: VehicleState) -> bool:

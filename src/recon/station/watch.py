@@ -19,6 +19,7 @@ from recon.safety.watchdogs import (
     Finding,
     Held,
     Picture,
+    Watchdog,
     Watched,
     take_picture,
 )
@@ -34,7 +35,7 @@ _NOBODY_YET = Lead()
 _TOLD_NOTHING = Intent()
 
 
-def look(station: Station, now_ns: int) -> Stepped:
+def look(station: Station, now_ns: int, watchdogs: Iterable[Watchdog] = WATCHDOGS) -> Stepped:
     """Return the station after the watchdogs looked, if it is time, and the holds they want."""
     looked_at_ns, settings = station.watch.looked_at_ns, station.settings.safety.watch
     if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
@@ -49,7 +50,7 @@ def look(station: Station, now_ns: int) -> Stepped:
         {key: one.since_ns for key, one in kept.items()},
         is_hold_on=station.watch.is_hold_on,
     )
-    findings = [finding for watchdog in WATCHDOGS for finding in watchdog(picture)]
+    findings = [finding for watchdog in watchdogs for finding in watchdog(picture)]
     watch = replace(
         station.watch,
         looked_at_ns=now_ns,
