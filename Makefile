@@ -57,7 +57,7 @@ test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
 
 test-python: setup ## Tests of everything in Python
-	$(RUN) python -m pytest
+	$(RUN) python -m pytest -n 2 --dist loadfile
 
 test-web: web/node_modules/.stamp ## Tests of the console
 	npm --prefix web test --silent

@@ -137,13 +137,13 @@ class TestInFlight:
     def test_a_whole_flight(self, here: Flown, mission: Path) -> None:
         """Take off, be held, be moved, go home; each done when telemetry says so."""
         flying = here.recon("fly", "SIM-1", mission, "--takeoff")
-        assert (flying.code, "confirmed" in flying.out) == (0, True), flying.out
+        assert (flying.code, "started" in flying.out) == (0, True), flying.out
         here.until(lambda told: (told[0]["height_above_takeoff_m"]["value"] or 0.0) > 25.0)
         # By the name the site gives it, in any case.
         held = here.recon("hold", "drone 1", "--json")
         assert held.code == 0
         assert held.json[0]["serial"] == "SIM-1"
-        assert held.json[0]["phase"] == "confirmed"
+        assert held.json[0]["phase"] == "done"
         nudged = here.recon("nudge", "SIM-1", "--up", "3")
         assert (nudged.code, "it is there" in nudged.out) == (0, True), nudged.out
         home = here.recon("return", "SIM-1")
