@@ -8,19 +8,16 @@ Prints for each rule how many were kept, broken, and too close to tell; ends wit
 disagree.
 """
 
-import argparse
 import sys
-import time
-from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.model.airspace import Airspace, ElevationModel, FlightLimits
 from recon.model.command import Body, Command, FlyMission, GoTo, StickFrame, VirtualStick
-from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
+from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
@@ -34,8 +31,8 @@ from recon.safety.rules.keep_out import keep_out
 from recon.safety.rules.max_height import max_height
 from recon.safety.rules.min_height import min_height
 from studies import sampled_fences as sampled
-
-FloatArray = npt.NDArray[np.float64]
+from studies.agreement import Agreement, over, run
+from studies.places import NOW_NS, ORIGIN, FloatArray, degrees, lat_lon
 
 RULES: dict[str, Rule] = {
     "boundary": boundary,
@@ -45,11 +42,6 @@ RULES: dict[str, Rule] = {
     "max_height": max_height,
     "home_distance": home_distance,
 }
-ORIGIN = GeoPoint(41.9, -93.6, 275.0)
-METRES_PER_LATITUDE = 111_076.2
-METRES_PER_LONGITUDE = 82_983.9
-"""At 41.9 degrees north, to a centimetre within the scene: the WGS84 radii of curvature there."""
-NOW_NS = 10**11
 GROUND_CELL_M = 25.0
 GROUND_HALF_M = 1500.0
 
@@ -65,41 +57,20 @@ class Scene:
     pieces: list[sampled.Piece]
 
 
-@dataclass(slots=True)
-class Agreement:
-    """What came of comparing."""
-
-    kept: Counter[str] = field(default_factory=Counter)
-    broken: Counter[str] = field(default_factory=Counter)
-    unsure: Counter[str] = field(default_factory=Counter)
-    disagreements: list[str] = field(default_factory=list)
-
-
 def compare(seeds: range, rules: Mapping[str, Rule] = RULES, progress: bool = False) -> Agreement:
     """Return how rules and the sampling agree on the scenes of these seeds."""
-    found = Agreement()
-    for seed in seeds:
-        _compare(seed, rules, found)
-        if progress and (seed + 1) % 1000 == 0:
-            print(f"  {seed + 1} scenes", file=sys.stderr, flush=True)
-    return found
+    return over(seeds, partial(_compare, rules), progress)
 
 
-def _compare(seed: int, rules: Mapping[str, Rule], found: Agreement) -> None:
+def _compare(rules: Mapping[str, Rule], seed: int, found: Agreement) -> None:
     scene = draw(seed)
     margins = sampled.margins(scene.place, scene.aircraft, scene.pieces)
     for name, rule in rules.items():
         if not margins.is_sure(name):
             found.unsure[name] += 1
             continue
-        is_kept = bool(margins.values_m[name] > 0.0)
-        (found.kept if is_kept else found.broken)[name] += 1
         refusal = rule(scene.command, scene.situation)
-        if (refusal is None) is not is_kept:
-            said = "approves" if refusal is None else f"refuses ({refusal.reason})"
-            found.disagreements.append(
-                f"scene {seed}: {name} {said}; the sampled margin is {margins.values_m[name]:.1f} m"
-            )
+        found.compare(f"scene {seed}", name, margins.values_m[name], refusal)
 
 
 def draw(seed: int) -> Scene:
@@ -194,7 +165,7 @@ def _order(
     kind = rng.random()
     if kind < 0.15:
         target_m = _somewhere(rng, aircraft)
-        body: Body = GoTo(_lat_lon(target_m), float(target_m[2] - takeoff_m), 5.0)
+        body: Body = GoTo(lat_lon(target_m), float(target_m[2] - takeoff_m), 5.0)
         return body, sampled.goto_pieces(aircraft, target_m)
     if kind < 0.3:
         velocity_mps, up_m = rng.uniform(-10.0, 10.0, 2), aircraft.here_m[2] + rng.uniform(-20, 20)
@@ -214,7 +185,7 @@ def _mission(
     radii_m = rng.uniform(0.2, 40.0, len(points_m))
     waypoints = tuple(
         Waypoint(
-            *_degrees(point),
+            *degrees(point),
             float(point[2] - aircraft.home_m[2]),
             5.0,
             corner_radius_m=float(radius),
@@ -275,39 +246,11 @@ def _vehicle(aircraft: sampled.Aircraft) -> VehicleState:
             failsafe=Failsafe(aircraft.failsafe),
         ),
         is_flying=Stamped(True, at_ns),
-        position=Stamped(_lat_lon(aircraft.here_m), at_ns),
+        position=Stamped(lat_lon(aircraft.here_m), at_ns),
         height_above_takeoff_m=Stamped(float(aircraft.here_m[2]) - takeoff_m, at_ns),
-        takeoff_point=_lat_lon(aircraft.home_m),
+        takeoff_point=lat_lon(aircraft.home_m),
     )
-
-
-def _lat_lon(point_m: FloatArray) -> LatLon:
-    return LatLon(*_degrees(point_m))
-
-
-def _degrees(point_m: FloatArray) -> tuple[float, float]:
-    return (
-        ORIGIN.latitude_deg + float(point_m[1]) / METRES_PER_LATITUDE,
-        ORIGIN.longitude_deg + float(point_m[0]) / METRES_PER_LONGITUDE,
-    )
-
-
-def main() -> int:
-    """Compare and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=10_000)
-    asked = parser.parse_args()
-    began_s = time.perf_counter()
-    found = compare(range(asked.scenes), RULES, progress=True)
-    print(f"{asked.scenes} scenes in {time.perf_counter() - began_s:.0f} s")
-    print(f"{'rule':<16}{'kept':>8}{'broken':>8}{'too close to tell':>20}")
-    for name in RULES:
-        print(f"{name:<16}{found.kept[name]:>8}{found.broken[name]:>8}{found.unsure[name]:>20}")
-    print(f"disagreements: {len(found.disagreements)}")
-    for said in found.disagreements[:20]:
-        print(f"  {said}")
-    return 1 if found.disagreements else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, list(RULES), partial(compare, progress=True)))
