@@ -9,7 +9,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-rust test-python test-web test-e2e check format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e check format bench fuzz study mutants docs web clean
 
 help: ## Show what can be made
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -17,7 +17,7 @@ help: ## Show what can be made
 demo: setup web ## Run the station, four simulated drones and the console at http://127.0.0.1:8080
 	$(RUN) recon demo
 
-test: test-rust test-python test-web test-e2e ## Set everything up and pass all tests
+test: test-rust test-safety test-python test-web test-e2e ## Set everything up and pass all tests
 
 check: setup web/node_modules/.stamp ## Formats, lint, types, import rules, stub and generated files
 	cargo fmt --all --check
@@ -56,8 +56,14 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
 
-test-python: setup ## Tests of everything in Python
-	$(RUN) python -m pytest -n 2 --dist loadfile
+PYTEST := $(RUN) python -m pytest -n 2 --dist loadfile
+
+test-safety: setup ## Tests of the gate and the watchdogs: every branch of theirs must be taken
+	$(PYTEST) tests/safety tests/architecture --cov=recon.safety --cov-branch \
+		--cov-report=term-missing:skip-covered --cov-fail-under=100
+
+test-python: setup ## Tests of everything else in Python
+	$(PYTEST) --ignore=tests/safety --ignore=tests/architecture
 
 test-web: web/node_modules/.stamp ## Tests of the console
 	npm --prefix web test --silent

@@ -55,6 +55,14 @@ def test_the_vehicles_own_profile_goes_with_it() -> None:
     assert approved(approve(command(LandNow()), situation(state))).profile is state.profile
 
 
+def test_a_steered_order_is_judged_and_never_approved_for_the_wire() -> None:
+    order = command(GoTo(PLACE, 30.0, 5.0))
+    assert judge(order, situation()) is None
+    answer = approve(order, situation())
+    assert isinstance(answer, Refusal)
+    assert answer.rule == "not_for_the_wire"
+
+
 class TestARuleThatFails:
     """A fault in a rule's code: nothing that moves goes out unjudged, and every stop goes out."""
 
