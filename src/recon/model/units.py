@@ -4,9 +4,6 @@ import math
 
 NS_PER_S = 1_000_000_000
 
-IN_SUN_TRANSMITTANCE = 0.5
-"""A point is "in sun" when at least this share of the clear-sky direct beam reaches it."""
-
 
 def seconds_to_ns(seconds: float) -> int:
     """Return a duration in whole nanoseconds."""
