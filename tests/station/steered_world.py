@@ -1,7 +1,7 @@
 """A world in virtual time in which vehicles are steered: every packet to an app is written down."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import hypot
 from typing import cast
 
@@ -93,6 +93,14 @@ class Steered:
     def run_until(self, is_reached: Callable[[], bool], at_most_s: float = 60.0) -> None:
         assert self.w.run_until(is_reached, at_most_s)
 
+    def gust(self, *, north_mps: float = 0.0, east_mps: float = 0.0) -> None:
+        """From now on wind carries it along, whatever the sticks say."""
+        self.tap.app.aircraft.settings = replace(
+            self.tap.app.aircraft.settings,
+            stick_drift_north_mps=north_mps,
+            stick_drift_east_mps=east_mps,
+        )
+
     def reconnects(self, seconds: float) -> None:
         """The app's connection ends and comes back, with a tap on it again."""
         self.w.driver.disconnect(self.w.connected[SERIAL].link_id)
@@ -148,16 +156,10 @@ def steered(
     w = world(faults=faults, make_link=make_link, seed=seed, keeps_log=False)
     tap = Tap(w.app(SERIAL))
     w.connected[SERIAL].peer.app = cast(SimulatedApp, tap)
-    settings = tap.app.aircraft.settings
-    tap.app.aircraft.settings = type(settings)(
-        limits=settings.limits,
-        go_home_height_m=settings.go_home_height_m,
-        endurance_s=settings.endurance_s,
-        stick_drift_north_mps=wind[0],
-        stick_drift_east_mps=wind[1],
-    )
+    s = Steered(w, tap)
+    s.gust(north_mps=wind[0], east_mps=wind[1])
     w.run_for(3.0)
-    return Steered(w, tap)
+    return s
 
 
 def _speed_mps(packet: wire.VirtualStickCommand) -> float:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from hypothesis import Phase as Phases
 from hypothesis import given, settings
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 from tests.station.steered_world import HEIGHT_M, HOLDER, SERIAL, Steered, steered
 
 from recon import wire
+from recon.geo import enu_from_point
 from recon.model.authority import Leader
 from recon.model.command import (
     FlyMission,
@@ -25,6 +27,8 @@ from recon.model.command import (
 from recon.model.event import AuthorityTaken, HolderCame
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
+from recon.model.zone import Region
+from recon.safety import PreparedAirspace
 from recon.station.virtual import FakeLink
 
 JITTERY = FakeLink(delay_s=0.05, jitter_s=0.25, seed=4)
@@ -159,6 +163,41 @@ class TestTelemetryLost:
         assert s.aircraft.motion.ground_speed_mps < 0.1
         assert s.distance_m(200.0) > 100.0
         assert any("connection was lost" in text for text in s.alarm_texts())
+
+
+class TestBlownAway:
+    def test_a_gust_towards_the_fence_ends_a_goto_in_time(self) -> None:
+        """Flown 45 m from the boundary, it is carried off sideways faster than sticks correct."""
+        s = steered()
+        station = s.w.driver.station
+        fence = station.airspace.airspace
+        assert fence.frame is not None
+        here = enu_from_point(fence.frame, s.tap.app.settings.home)
+        east_m, north_m = float(here[0]) + 45.0, float(here[1])
+        corners = [(-500.0, -500.0), (0.0, -500.0), (0.0, 500.0), (-500.0, 500.0)]
+        ring = np.array([(east_m + east, north_m + north) for east, north in corners])
+        air = PreparedAirspace(replace(fence, boundary=Region(ring)))
+        s.w.driver.station = replace(station, airspace=air)
+        order = s.goto(200.0)
+        s.run_for(5.0)
+        assert s.phase(order) is Phase.STARTED
+        s.gust(east_mps=14.0)
+        s.run_until(lambda: fence_alarms(s) != [], 20.0)
+        assert s.aircraft.motion.east_m < 45.0 - s.aircraft.motion.ground_speed_mps
+        assert "SIM-1" in fence_alarms(s)[0]
+        seen_s = s.now_s
+        s.run_for(8.0)
+        assert s.phase(order) in (Phase.FAILED, Phase.SUPERSEDED)
+        assert s.hovers(seen_s) != []
+        assert s.moving_sticks(seen_s + 1.0) == []
+        assert s.aircraft.motion.east_m < 45.0
+        assert s.aircraft.motion.ground_speed_mps < 0.1
+
+
+def fence_alarms(s: Steered) -> list[str]:
+    """Active alarms of the watch on fences."""
+    alarms = s.w.driver.station.alarms.alarms.values()
+    return [a.condition.text for a in alarms if a.is_active and "boundary" in a.condition.text]
 
 
 class TestEnds:

@@ -207,6 +207,22 @@ class TestLeadingApart:
     def test_nearer_is_refused_and_away_passes(self, body: object, passes: bool) -> None:
         assert (judged(body, self.own, self.near) is None) is passes  # type: ignore[arg-type]
 
+    @pytest.mark.parametrize("age_s", [0.0, 0.2, 1.0])
+    def test_one_that_is_leaving_already_may_go_on(self, age_s: float) -> None:
+        """Where it was last heard is nearer than where it is now; that is over."""
+        leaving = aircraft("A", velocity=(-5.0, 0.0, 0.0), age_s=age_s)
+        away = VirtualStick(StickFrame.GROUND, 0.0, -5.0, 0.0, 40.0, 1.0)
+        assert judged(away, leaving, self.near) is None
+        assert judged(GoTo(at(-50.0, 0.0), 40.0, 5.0), leaving, self.near) is None
+        refused(judged(GoTo(at(50.0, 0.0), 40.0, 5.0), leaving, self.near))
+
+    def test_how_far_a_turn_may_lead_makes_nobody_too_near_already(self) -> None:
+        """At 10 m/s towards B it comes 20 m nearer before it flies back, be the stick ever so."""
+        back = VirtualStick(StickFrame.GROUND, 0.0, -12.0, 0.0, 40.0, 1.0)
+        rushing = aircraft("A", velocity=(10.0, 0.0, 0.0))
+        refused(judged(back, rushing, aircraft("B", (32.0, 0.0))), "of B")
+        assert judged(back, rushing, aircraft("B", (65.0, 0.0))) is None
+
 
 class TestUnseen:
     def test_a_ghost_is_kept_clear_of_as_wide_as_it_may_grow(self) -> None:
@@ -256,6 +272,13 @@ class TestUnseen:
         own = aircraft("A", (0.0, 80.0))
         assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, ghost) is None
         refused(judged(GoTo(at(0.0, -200.0), 40.0, 10.0), own, ghost))
+
+    def test_one_may_be_led_away_from_where_a_ghost_will_have_grown_to(self) -> None:
+        """Unheard for 4 s it is within 8 m; 80 m away it may still come."""
+        ghost = aircraft("B", (0.0, 0.0), age_s=4.0, failsafe=Failsafe.HOVER)
+        own = aircraft("A", (0.0, 80.0))
+        assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, ghost) is None
+        refused(judged(GoTo(at(0.0, 60.0), 40.0, 10.0), own, ghost), "of where B may be")
 
     def test_a_vehicle_without_a_position_is_where_it_was_last_seen(self) -> None:
         last = at(100.0, 0.0)

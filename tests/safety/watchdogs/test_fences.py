@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.safety.traffic import FRAME, aircraft, flies, route
+from tests.safety.traffic import FRAME, aircraft, at, flies, route
 from tests.safety.watchdogs.looks import (
     NOW,
     Commanded,
@@ -101,6 +101,43 @@ class TestBoundary:
         to_the_edge = route((0.0, 0.0), (494.0, 0.0), (494.0, 50.0))
         assert looks(fences, told(flying, intent=flies(to_the_edge, 1)), airspace=SITE) == []
         assert len(looks(fences, flying, airspace=SITE)) == 1
+
+    @pytest.mark.parametrize(
+        ("velocity", "count"),
+        [
+            ((10.0, 0.0, 0.0), 0),  # along the row it comes from
+            ((7.0, 7.0, 0.0), 0),  # round the corner into the next
+            ((0.0, 10.0, 0.0), 0),  # along the next row
+            ((6.0, -9.0, 0.0), 1),  # carried off, 56 degrees aside
+            ((2.0, -10.0, 0.0), 1),
+            ((-10.0, 0.0, 0.0), 0),  # back, away from the fence
+        ],
+    )
+    def test_one_that_flies_aside_of_its_rows_is_not_believed_to_follow_them(
+        self, velocity: tuple[float, float, float], count: int
+    ) -> None:
+        flying = aircraft("A", (480.0, -480.0), velocity=velocity, mode=FlightMode.GPS_WAYPOINT)
+        rows = route((300.0, -481.0), (484.0, -476.0), (484.0, 300.0), (300.0, 300.0))
+        seen = looks(fences, told(flying, intent=flies(rows, 1)), airspace=SITE)
+        assert len(seen) == count
+
+    @pytest.mark.parametrize("commanded", [Commanded.STICK, Commanded.RETURN])
+    @pytest.mark.parametrize(("east_mps", "count"), [(9.0, 0), (13.0, 1)])
+    def test_one_that_the_wind_carries_off_its_straight_way_is_seen(
+        self, commanded: Commanded, east_mps: float, count: int
+    ) -> None:
+        """It is to fly north at 10 m/s, 30 m from the fence in the east."""
+        mode = FlightMode.JOYSTICK if commanded is Commanded.STICK else FlightMode.GO_HOME
+        home = (300.0, 470.0)
+        flying = aircraft("A", (0.0, 470.0), velocity=(10.0, east_mps, 0.0), mode=mode, home=home)
+        target = at(*home) if commanded is Commanded.STICK else None
+        watched = told(flying, intent=Intent(commanded, target=target))
+        assert len(looks(fences, watched, airspace=SITE)) == count
+
+    def test_over_its_target_any_direction_is_as_good(self) -> None:
+        flying = aircraft("A", (494.0, 0.0), velocity=(2.5, 0.0, 0.0), mode=FlightMode.JOYSTICK)
+        there = told(flying, intent=Intent(Commanded.STICK, target=at(494.0, 0.5)))
+        assert looks(fences, there, airspace=SITE) == []
 
     def test_without_a_site_or_a_boundary_nothing_is_asked(self) -> None:
         leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))

@@ -154,19 +154,28 @@ def _apart_m(mine: Tubes, theirs: Tubes, pairs: _Pairs) -> FloatArray:
 def _near_now_m(
     own: Course, others: Sequence[Course], theirs: Tubes, need: Separation
 ) -> FloatArray:
-    """How far each other is from here now if that is too near already; else infinite, (G,)."""
+    """How far each other is from here now if that is too near already; else infinite, (G,).
+
+    Here is all the way since it was last heard: one that is leaving was nearer then.
+    """
     here = sample([own.rows], [0.0])
     now = sample([course.rows for course in others], [0.0])
-    place_m = np.column_stack([here.east_m[:, 0], here.north_m[:, 0]])
+    heard_m, place_m = (
+        own.rows[:1, [EAST_0, NORTH_0]],
+        np.array([[here.east_m[0, 0], here.north_m[0, 0]]]),
+    )
     starts_m = np.column_stack([now.east_m[:, 0], now.north_m[:, 0]])
     ends_m = starts_m.copy()
-    # A way home that nobody sees is all of it now.
-    is_unseen = theirs.part[theirs.first[:-1]] == Part.UNSEEN
-    starts_m[is_unseen] = theirs.starts_m[theirs.first[:-1][is_unseen]]
-    ends_m[is_unseen] = theirs.ends_m[theirs.first[:-1][is_unseen]]
-    place_m = np.broadcast_to(place_m, starts_m.shape)
-    apart_m = segments_apart_m(place_m, place_m, starts_m, ends_m)
-    gap_m = apart_m - here.radius_m[0, 0] - now.radius_m[:, 0]
+    radius_m = now.radius_m[:, 0]
+    # What nobody sees is all of its way home now, and as wide as it is kept clear of.
+    whole = theirs.first[:-1]
+    is_unseen = theirs.part[whole] == Part.UNSEEN
+    starts_m[is_unseen] = theirs.starts_m[whole[is_unseen]]
+    ends_m[is_unseen] = theirs.ends_m[whole[is_unseen]]
+    radius_m = np.where(is_unseen, theirs.radius_m[whole], radius_m)
+    heard_m, place_m = (np.broadcast_to(each, starts_m.shape) for each in (heard_m, place_m))
+    apart_m = segments_apart_m(heard_m, place_m, starts_m, ends_m)
+    gap_m = apart_m - radius_m  # its own place is known now, how far a turn may lead is not counted
     is_near = (gap_m < need.horizontal_m) & (_vertical_now_m(here, now) < need.vertical_m)
     near_m: FloatArray = np.where(is_near, apart_m, np.inf)
     return near_m

@@ -1,7 +1,8 @@
 """The next seconds of every vehicle in the air: as it flies now, and as it would brake from now."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import hypot
 
 import numpy as np
@@ -11,17 +12,21 @@ from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
 from recon.safety.prediction import Flyer, Follower, PredictionSettings
 from recon.safety.prediction.course import FloatArray, Part, Row
-from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2
+from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
 from recon.safety.prediction.sampling import Samples, sample
 from recon.safety.watch_settings import WatchSettings
 
 FASTEST_TOLD_MPS = 15.0
 """Of a vehicle told to hold, when nobody has noted how fast it was: no order flies faster."""
 
-AGAINST_COSINE = -0.2
-"""A vehicle that flies faster than `AGAINST_MPS` at more than 100 degrees from where it was told
-to go, does something else: a pilot's stick reverses a mission without changing its mode."""
-AGAINST_MPS = 2.0
+ASIDE_COSINE = 0.64
+"""A vehicle that flies faster than `ASIDE_MPS` at more than 50 degrees from every way it was told
+to go, does something else: a pilot's stick turns a mission without changing its mode, and the wind
+carries off what cannot fly against it. A rounded right angle is never farther from both its legs
+than 45 degrees."""
+ASIDE_MPS = 2.0
+LEAST_WAY_M = 1.0
+"""A nearer place has no direction worth comparing."""
 
 _MODES = {
     Commanded.MISSION: frozenset({FlightMode.GPS_WAYPOINT}),
@@ -103,34 +108,47 @@ def _flies_as_told(
     mode = flyer.state.flight_mode.value
     if mode is not None and mode not in _MODES[told]:
         return False
-    return not _flies_against(flyer, intent)
+    return not _flies_aside(flyer, intent)
 
 
 def _brakes(flyer: Flyer, braking: Braking, prediction: PredictionSettings) -> bool:
     """Whether it is no faster than one that brakes as it should, with twice the reaction's time."""
     braked_s = max(0.0, braking.since_s - 2.0 * prediction.reaction_s)
     expected_mps = max(0.0, braking.speed_mps - prediction.braking_mps2 * braked_s)
-    return flyer.speed_mps <= expected_mps + AGAINST_MPS
+    return flyer.speed_mps <= expected_mps + ASIDE_MPS
 
 
-def _flies_against(flyer: Flyer, intent: Intent) -> bool:
-    if flyer.speed_mps < AGAINST_MPS:
+def _flies_aside(flyer: Flyer, intent: Intent) -> bool:
+    if flyer.speed_mps < ASIDE_MPS:
         return False
-    place = intent.target
-    if intent.mission is not None and intent.passed < len(intent.mission.waypoints):
-        place_m = flyer.plane.east_north_m(intent.mission.waypoints[intent.passed])
-    elif place is not None:
-        place_m = flyer.plane.east_north_m(place)
+    ways = [way for way in _ways_told(flyer, intent) if hypot(*way) >= LEAST_WAY_M]
+    least_mps = ASIDE_COSINE * flyer.speed_mps
+    return bool(ways) and all(_along_mps(flyer, way) < least_mps for way in ways)
+
+
+def _along_mps(flyer: Flyer, way_m: Point) -> float:
+    east_mps, north_mps, _up_mps = flyer.velocity_mps
+    return (way_m[0] * east_mps + way_m[1] * north_mps) / hypot(*way_m)
+
+
+def _ways_told(flyer: Flyer, intent: Intent) -> Iterator[Point]:
+    """The directions that it may be flying in: to where it was told, and at a mission's waypoint
+    along the legs before and after, whichever it has come to."""
+    here_m = flyer.east_m, flyer.north_m
+    if intent.mission is not None:
+        first = max(0, intent.passed - 2)
+        waypoints = intent.mission.waypoints[first : intent.passed + 2]
+        stops_m = [flyer.plane.east_north_m(waypoint) for waypoint in waypoints]
+        yield from (_way(here_m, stop_m) for stop_m in stops_m[intent.passed - first :][:1])
+        yield from (_way(a_m, b_m) for a_m, b_m in pairwise(stops_m))
+    elif intent.target is not None:
+        yield _way(here_m, flyer.plane.east_north_m(intent.target))
     elif intent.commanded is Commanded.RETURN and flyer.home_m is not None:
-        place_m = flyer.home_m
-    else:
-        return False
-    ahead_m = place_m[0] - flyer.east_m, place_m[1] - flyer.north_m
-    far_m = hypot(*ahead_m)
-    if far_m < 1.0:
-        return False
-    along_mps = (ahead_m[0] * flyer.velocity_mps[0] + ahead_m[1] * flyer.velocity_mps[1]) / far_m
-    return along_mps < AGAINST_COSINE * flyer.speed_mps
+        yield _way(here_m, flyer.home_m)
+
+
+def _way(from_m: Point, to_m: Point) -> Point:
+    return to_m[0] - from_m[0], to_m[1] - from_m[1]
 
 
 def _held(flies: Samples, times_s: FloatArray, prediction: PredictionSettings) -> Samples:
