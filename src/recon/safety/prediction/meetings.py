@@ -6,7 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from recon.safety.prediction.course import FOREVER_S, Course, FloatArray, Part
+from recon.safety.prediction.course import (
+    EAST_0,
+    FOREVER_S,
+    NORTH_0,
+    Course,
+    FloatArray,
+    Part,
+)
 from recon.safety.prediction.sampling import Samples, sample
 from recon.safety.prediction.settings import PredictionSettings
 from recon.safety.prediction.tubes import IntArray, Tubes, cut
@@ -160,10 +167,8 @@ def _near_now_m(
     """
     here = sample([own.rows], [0.0])
     now = sample([course.rows for course in others], [0.0])
-    heard_m, place_m = (
-        own.rows[:1, [EAST_0, NORTH_0]],
-        np.array([[here.east_m[0, 0], here.north_m[0, 0]]]),
-    )
+    heard_m = own.rows[:1, [EAST_0, NORTH_0]]
+    place_m = np.column_stack([here.east_m[:, 0], here.north_m[:, 0]])
     starts_m = np.column_stack([now.east_m[:, 0], now.north_m[:, 0]])
     ends_m = starts_m.copy()
     radius_m = now.radius_m[:, 0]
