@@ -1,0 +1,116 @@
+"""A survey's life: created, started, paused, aborted, done. Every step of it is pure.
+
+Pausing and aborting only end what the survey asks for; who does it also orders its vehicles
+(`flights` says which) to hover.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+from recon.guidance.survey.plan import RULE, SurveyPlan
+from recon.guidance.survey.planners import PLANNERS
+from recon.guidance.survey.progress import Seen, no_progress, settled, with_seen, with_shade
+from recon.guidance.survey.rounds import Step, ended
+from recon.guidance.survey.state import NO_ROUTES, Surveyor, SurveyState
+from recon.model.command import Refusal
+from recon.model.shade import ShadeMap
+from recon.model.survey import SurveyPhase
+
+
+def create(plan: SurveyPlan) -> SurveyState | Refusal:
+    """Return a survey that waits to be started, or why there is none."""
+    name = plan.survey.planner
+    if name not in PLANNERS:
+        known = " or ".join(PLANNERS)
+        return Refusal(RULE, f"there is no planner {name}: choose {known}")
+    return SurveyState(plan, no_progress(plan.cells))
+
+
+def start(state: SurveyState, serials: Sequence[str], now_ns: int) -> SurveyState | Refusal:
+    """Return the survey running, with these vehicles; also after a pause, with others if wanted."""
+    if state.phase not in (SurveyPhase.CREATED, SurveyPhase.PAUSED):
+        return _wrong_phase(state, "started")
+    if not serials:
+        return Refusal(RULE, f"the survey {state.plan.survey.name} needs at least one vehicle")
+    return replace(
+        state,
+        serials=tuple(dict.fromkeys(serials)),
+        phase=SurveyPhase.RUNNING,
+        reason="started",
+        started_at_ns=now_ns if state.started_at_ns is None else state.started_at_ns,
+        refusals=MappingProxyType({}),
+        missions_in_round=0,
+        round=state.round,
+    )
+
+
+def pause(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
+    """Return the survey paused; a round that was under way does not count, and is planned anew."""
+    if state.phase is not SurveyPhase.RUNNING:
+        return _wrong_phase(state, "paused")
+    was_flying = bool(state.flights or state.waiting)
+    paused = ended(state, SurveyPhase.PAUSED, "paused", now_ns)
+    return replace(paused, round=state.round - was_flying)
+
+
+def abort(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
+    """Return the survey aborted, for good; what was imaged stays known."""
+    if state.phase.is_final:
+        return _wrong_phase(state, "aborted")
+    return ended(state, SurveyPhase.ABORTED, "aborted", now_ns)
+
+
+def refused(state: SurveyState, serial: str, number: int, reason: str) -> SurveyState:
+    """Return the survey after a mission was refused: that vehicle rests until the next round."""
+    flight = state.flights.get(serial)
+    if flight is None or flight.number != number:
+        return state
+    flights = {key: each for key, each in state.flights.items() if key != serial}
+    waiting = {key: route for key, route in state.waiting.items() if key != serial}
+    return replace(
+        state,
+        flights=MappingProxyType(flights),
+        waiting=MappingProxyType(waiting) if waiting else NO_ROUTES,
+        refusals=MappingProxyType({**state.refusals, serial: reason}),
+        missions_in_round=state.missions_in_round - 1,
+        flown_m=state.flown_m - flight.length_m,
+    )
+
+
+def observe(state: SurveyState, serial: str, seen: Sequence[Seen]) -> SurveyState:
+    """Return the survey after positions of a vehicle; nothing changes for one that is not of it.
+
+    What is flown while it is paused counts as well; before the start and after the end nothing.
+    """
+    if serial not in state.serials or state.phase.is_final:
+        return state
+    return replace(state, progress=with_seen(state.progress, serial, seen, state.plan))
+
+
+def observe_shade(state: SurveyState, shade: ShadeMap) -> SurveyState:
+    """Return the survey after a shade map."""
+    if state.phase.is_final:
+        return state
+    return replace(state, progress=with_shade(state.progress, shade, state.plan))
+
+
+def step(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+    """Return the survey a moment later, and the missions to give; about once a second.
+
+    Positions of vehicles that are not of the survey are left out; vehicles without a position
+    count as dropped out.
+    """
+    if state.phase not in (SurveyPhase.RUNNING, SurveyPhase.PAUSED):
+        return state, ()
+    state = replace(state, progress=settled(state.progress, state.plan, now_ns))
+    if state.phase is SurveyPhase.PAUSED:
+        return state, ()
+    own = [each for each in positions if each.serial in state.serials]
+    return PLANNERS[state.plan.survey.planner](state, own, now_ns)
+
+
+def _wrong_phase(state: SurveyState, asked: str) -> Refusal:
+    return Refusal(
+        RULE, f"the survey {state.plan.survey.name} is {state.phase.value} and cannot be {asked}"
+    )

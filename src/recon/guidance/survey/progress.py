@@ -1,0 +1,232 @@
+"""What has been imaged, and in which light: worked out from where vehicles were seen to fly.
+
+A photo is taken every `interval_s`, but not at known moments. So a cell counts as imaged when it
+was in view, without a break, for at least that long: then a photo shows it, whatever the timer's
+phase. It counts as imaged in sun when it was so in view and sunlit for that long.
+
+Assumed: the timer runs, the camera looks straight down with its longer side across the course, and
+the vehicle flew straight between two positions a moment apart. What is flown across the rows, at
+another height, or faster than planned counts for nothing.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from types import MappingProxyType
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.guidance.survey.cells import BoolArray, IntArray, SurveyCells
+from recon.guidance.survey.crossing import Crossing, Window, crossing
+from recon.guidance.survey.plan import SurveyPlan
+from recon.guidance.survey.sun import nearest_map, sunlit_cells
+from recon.model.shade import ShadeMap
+from recon.model.survey import CellState
+from recon.model.units import ns_to_seconds, seconds_to_ns
+
+StateArray = npt.NDArray[np.uint8]
+NEVER = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """Where a vehicle was, in east-north metres of the site, and when; as received, so late."""
+
+    at_ns: int
+    east_m: float
+    north_m: float
+    height_above_takeoff_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InView:
+    """Cells of a window that are in view at the end of a way: since when, and since when sunlit.
+
+    `NEVER` where they are not.
+    """
+
+    window: Window
+    since_ns: IntArray
+    sunlit_since_ns: IntArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Progress:
+    """`state` (R, C) holds `CellState`s on the plan's cells; never written to once made.
+
+    `is_sun_known` (R, C): a shade map told of the cell when it was imaged. The two moments are when
+    95 % of the cells that rows reach were imaged, and imaged in sun.
+    """
+
+    state: StateArray
+    is_sun_known: BoolArray
+    shade: tuple[ShadeMap, ...] = ()
+    waiting: Mapping[str, tuple[Seen, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    """By serial: positions whose way from the first on does not count yet."""
+    in_view: Mapping[str, InView] = field(default_factory=lambda: MappingProxyType({}))
+    imaged_95_at_ns: int | None = None
+    in_sun_95_at_ns: int | None = None
+
+
+def no_progress(cells: SurveyCells) -> Progress:
+    """Return the progress of a survey that has not begun."""
+    shape = (cells.grid.rows, cells.grid.cols)
+    state = np.full(shape, CellState.NOT_YET, dtype=np.uint8)
+    return Progress(state, np.zeros(shape, dtype=np.bool_))
+
+
+def with_shade(progress: Progress, shade: ShadeMap, plan: SurveyPlan) -> Progress:
+    """Return the progress with one more shade map to look at; the oldest is dropped."""
+    kept = (*progress.shade, shade)[-plan.settings.shade_maps_kept :]
+    return replace(progress, shade=kept)
+
+
+def with_seen(progress: Progress, serial: str, seen: Sequence[Seen], plan: SurveyPlan) -> Progress:
+    """Return the progress with more of a vehicle's way, oldest first; it counts when settled.
+
+    Positions that are out of order, or too near in time to the one before, are left out; of a
+    burst the last one is kept, which is the freshest.
+    """
+    waiting = list(progress.waiting.get(serial, ()))
+    least_ns = seconds_to_ns(plan.settings.least_step_s)
+    burst_ns = seconds_to_ns(plan.settings.burst_s)
+    for each in seen:
+        after_ns = each.at_ns - waiting[-1].at_ns if waiting else least_ns
+        if 0 <= after_ns <= burst_ns:
+            waiting[-1] = replace(each, at_ns=waiting[-1].at_ns)
+        elif after_ns >= least_ns:
+            waiting.append(each)
+    kept = tuple(waiting[-plan.settings.positions_kept :])
+    return replace(progress, waiting=MappingProxyType({**progress.waiting, serial: kept}))
+
+
+def settled(progress: Progress, plan: SurveyPlan, now_ns: int) -> Progress:
+    """Return the progress with all that has waited long enough counted."""
+    until_ns = now_ns - seconds_to_ns(plan.settings.settle_s)
+    due = {
+        serial: count
+        for serial, seen in progress.waiting.items()
+        if (count := sum(each.at_ns <= until_ns for each in seen)) > 1
+    }
+    if not due:
+        return progress
+    counting = _Count(progress, plan)
+    waiting = dict(progress.waiting)
+    for serial, number in due.items():
+        for a, b in pairwise(waiting[serial][:number]):
+            counting.way(serial, a, b)
+        waiting[serial] = waiting[serial][number - 1 :]
+    return _timed(replace(counting.result(), waiting=MappingProxyType(waiting)), plan, until_ns)
+
+
+def _timed(progress: Progress, plan: SurveyPlan, at_ns: int) -> Progress:
+    reached = plan.cells.is_reached
+    states = progress.state[reached]
+    enough = 0.95 * max(1, len(states))
+    if progress.imaged_95_at_ns is None and (states >= CellState.IN_SHADE).sum() >= enough:
+        progress = replace(progress, imaged_95_at_ns=at_ns)
+    if progress.in_sun_95_at_ns is None and (states == CellState.IN_SUN).sum() >= enough:
+        progress = replace(progress, in_sun_95_at_ns=at_ns)
+    return progress
+
+
+class _Count:
+    """Counts ways on a copy of the progress."""
+
+    def __init__(self, progress: Progress, plan: SurveyPlan) -> None:
+        self._plan = plan
+        self._progress = progress
+        self._state = progress.state.copy()
+        self._is_sun_known = progress.is_sun_known.copy()
+        self._in_view = dict(progress.in_view)
+        self._interval_ns = seconds_to_ns(plan.survey.camera.interval_s)
+
+    def result(self) -> Progress:
+        """The progress with what was counted."""
+        return replace(
+            self._progress,
+            state=self._state,
+            is_sun_known=self._is_sun_known,
+            in_view=MappingProxyType(self._in_view),
+        )
+
+    def way(self, serial: str, a: Seen, b: Seen) -> None:
+        """Count a vehicle's way between two positions."""
+        plan = self._plan
+        before = self._in_view.pop(serial, None)
+        lying = plan.lattice.along_across_m([(a.east_m, a.north_m), (b.east_m, b.north_m)])
+        start, end = ((float(along), float(across)) for along, across in lying)
+        if not _is_photographed(plan, (a, b), (end[0] - start[0], end[1] - start[1])):
+            return
+        cross = crossing(plan.cells, plan.lattice, plan.swath, (start, end), (a.at_ns, b.at_ns))
+        middle_ns = (a.at_ns + b.at_ns) // 2
+        shade = nearest_map(self._progress.shade, middle_ns, plan.settings.shade_age_s)
+        sunlit, known = sunlit_cells(shade, plan.cells.grid, cross.window)
+        self._in_view[serial] = self._counted(cross, before, sunlit, known)
+
+    def _counted(
+        self, cross: Crossing, before: InView | None, sunlit: BoolArray, known: BoolArray
+    ) -> InView:
+        since_ns, lit_since_ns = _carried(before, cross.window)
+        since_ns = _since(cross, since_ns)
+        lit_since_ns = _since(cross, lit_since_ns)
+        inside = self._plan.cells.is_inside[cross.window.index] & cross.is_in_view
+        imaged = inside & (cross.leaves_ns - since_ns >= self._interval_ns)
+        in_sun = inside & sunlit & (cross.leaves_ns - lit_since_ns >= self._interval_ns)
+        state = self._state[cross.window.index]
+        np.maximum(state, np.where(imaged, CellState.IN_SHADE, 0), out=state, casting="unsafe")
+        np.maximum(state, np.where(in_sun, CellState.IN_SUN, 0), out=state, casting="unsafe")
+        self._is_sun_known[cross.window.index] |= imaged & known
+        stays = cross.stays_in_view
+        return InView(
+            cross.window,
+            np.where(stays, since_ns, NEVER),
+            np.where(stays & sunlit, lit_since_ns, NEVER),
+        )
+
+
+def _is_photographed(
+    plan: SurveyPlan, ends: tuple[Seen, Seen], moved_m: tuple[float, float]
+) -> bool:
+    """Whether a way is flown as the rows are: height, course, speed, and no gap in time."""
+    settings, survey = plan.settings, plan.survey
+    took_s = ns_to_seconds(ends[1].at_ns - ends[0].at_ns)
+    if not 0.0 < took_s <= settings.longest_gap_s:
+        return False
+    off_m = [abs(e.height_above_takeoff_m - survey.height_above_takeoff_m) for e in ends]
+    along_m, across_m = abs(moved_m[0]), abs(moved_m[1])
+    is_along = across_m <= settings.steepest_course * along_m + settings.course_slack_m
+    is_moving = settings.least_move_m <= along_m
+    is_slow = along_m <= survey.speed_mps * settings.fastest_share * took_s
+    return max(off_m) <= settings.height_slack_m and is_along and is_moving and is_slow
+
+
+def _carried(before: InView | None, window: Window) -> tuple[IntArray, IntArray]:
+    """What was in view at the end of the way before, in another window."""
+    carried = (np.full(window.shape, NEVER, np.int64), np.full(window.shape, NEVER, np.int64))
+    if before is None:
+        return carried
+    old = before.window
+    rows = max(old.first_row, window.first_row), min(old.last_row, window.last_row)
+    cols = max(old.first_col, window.first_col), min(old.last_col, window.last_col)
+    if rows[0] >= rows[1] or cols[0] >= cols[1]:
+        return carried
+    there = _within(window, rows, cols)
+    here = _within(old, rows, cols)
+    carried[0][there] = before.since_ns[here]
+    carried[1][there] = before.sunlit_since_ns[here]
+    return carried
+
+
+def _within(window: Window, rows: tuple[int, int], cols: tuple[int, int]) -> tuple[slice, slice]:
+    return (
+        slice(rows[0] - window.first_row, rows[1] - window.first_row),
+        slice(cols[0] - window.first_col, cols[1] - window.first_col),
+    )
+
+
+def _since(cross: Crossing, since_ns: IntArray) -> IntArray:
+    """Since when cells are in view: as before, or from entering on."""
+    goes_on = cross.was_in_view & (since_ns != NEVER)
+    return np.where(goes_on, since_ns, cross.enters_ns)

@@ -1,0 +1,131 @@
+"""In which order and direction one vehicle flies the pieces of its band: to and fro, row by row.
+
+Pieces of neighbouring rows that face one another, one to one, make a chain that is flown as a
+serpentine. Where a hole or a bay divides rows a chain ends and others begin; these are put in the
+order of the shortest tour among those that always go on to the nearest chain. Every chain is flown
+in the same sweep (rows rising or falling), so that vehicles in neighbouring bands keep their
+distance.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot
+
+from recon.guidance.survey.lattice import RowLattice
+from recon.guidance.survey.rows import Piece
+
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A piece and the direction it is flown in."""
+
+    piece: Piece
+    is_reversed: bool
+
+    def ends_m(self, lattice: RowLattice, lead_m: float) -> tuple[Place, Place]:
+        """Return where it begins and ends, in metres along and across, with its lead."""
+        across_m = lattice.row_across_m(self.piece.row)
+        low = (self.piece.start_m - lead_m, across_m)
+        high = (self.piece.end_m + lead_m, across_m)
+        return (high, low) if self.is_reversed else (low, high)
+
+
+Route = tuple[Leg, ...]
+Chain = tuple[Piece, ...]
+
+
+def route_of(
+    pieces: Sequence[Piece],
+    lattice: RowLattice,
+    start_m: Place | None,
+    is_rising: bool = True,
+) -> Route:
+    """Return the legs in the order they are flown, beginning near `start_m` (along, across)."""
+    entries = [_entries(chain, is_rising) for chain in chains(pieces)]
+    tours = _tours(entries, lattice, start_m)
+    return min(tours, key=lambda tour: between_m(tour, lattice, start_m), default=())
+
+
+def chains(pieces: Sequence[Piece]) -> list[Chain]:
+    """Return the pieces in chains of rising rows."""
+    by_row: dict[int, list[Piece]] = {}
+    for piece in sorted(pieces, key=lambda piece: (piece.row, piece.start_m)):
+        by_row.setdefault(piece.row, []).append(piece)
+    ahead: dict[Piece, Piece] = {}
+    for row, here in by_row.items():
+        ahead |= _facing(here, by_row.get(row + 1, []))
+    followers = set(ahead.values())
+    firsts = [piece for here in by_row.values() for piece in here if piece not in followers]
+    return [tuple(_followed(first, ahead)) for first in firsts]
+
+
+def between_m(route: Sequence[Leg], lattice: RowLattice, start_m: Place | None) -> float:
+    """Return how far it is from the start to the first piece, and from each to the next."""
+    ends = [leg.ends_m(lattice, 0.0) for leg in route]
+    first_m = _apart_m(start_m, ends[0][0]) if ends and start_m is not None else 0.0
+    return first_m + sum(_apart_m(a[1], b[0]) for a, b in pairwise(ends))
+
+
+def _facing(here: Sequence[Piece], there: Sequence[Piece]) -> dict[Piece, Piece]:
+    """Which pieces of two rows face one another and no other."""
+    facing = {a: [b for b in there if _overlap(a, b)] for a in here}
+    faced = {b: [a for a in here if _overlap(a, b)] for b in there}
+    return {
+        a: others[0]
+        for a, others in facing.items()
+        if len(others) == 1 and len(faced[others[0]]) == 1
+    }
+
+
+def _overlap(a: Piece, b: Piece) -> bool:
+    return min(a.end_m, b.end_m) > max(a.start_m, b.start_m)
+
+
+def _followed(first: Piece, ahead: dict[Piece, Piece]) -> Iterator[Piece]:
+    piece: Piece | None = first
+    while piece is not None:
+        yield piece
+        piece = ahead.get(piece)
+
+
+def _entries(chain: Chain, is_rising: bool) -> tuple[Route, Route]:
+    """The two serpentines of a chain: from either end of its first row."""
+    ordered = chain if is_rising else chain[::-1]
+    return (
+        tuple(Leg(piece, index % 2 == 1) for index, piece in enumerate(ordered)),
+        tuple(Leg(piece, index % 2 == 0) for index, piece in enumerate(ordered)),
+    )
+
+
+MOST_TOURS = 16
+
+
+def _tours(
+    entries: Sequence[tuple[Route, Route]], lattice: RowLattice, start_m: Place | None
+) -> Iterator[Route]:
+    """Tours that go on to the nearest chain, begun at each of the entries nearest to the start."""
+    firsts = [(index, side) for index in range(len(entries)) for side in (0, 1)]
+    firsts.sort(key=lambda first: between_m(entries[first[0]][first[1]][:1], lattice, start_m))
+    for index, side in firsts[:MOST_TOURS]:
+        others = [entry for other, entry in enumerate(entries) if other != index]
+        yield _nearest_on(entries[index][side], others, lattice)
+
+
+def _nearest_on(tour: Route, entries: list[tuple[Route, Route]], lattice: RowLattice) -> Route:
+    while entries:
+        here_m = tour[-1].ends_m(lattice, 0.0)[1]
+
+        def far_m(route: Route, here_m: Place = here_m) -> float:
+            return _apart_m(here_m, route[0].ends_m(lattice, 0.0)[0])
+
+        nearest = min(entries, key=lambda entry: min(far_m(route) for route in entry))
+        entries.remove(nearest)
+        tour += min(nearest, key=far_m)
+    return tour
+
+
+def _apart_m(a: Place, b: Place) -> float:
+    return hypot(a[0] - b[0], a[1] - b[1])
