@@ -10,6 +10,7 @@ from recon.model.vehicle import VehicleProfile
 from recon.model.zone import HeightDatum, Zone, ZoneKind
 from recon.site.elevation import ground_heights_m
 from recon.site.site import Site
+from recon.site.zone_heights import highest_ground_m
 
 SUNKEN_M = 5.0
 """Between a pad's altitude and the ground taken for true there: more is worth a look."""
@@ -26,6 +27,7 @@ def site_advice(site: Site) -> tuple[str, ...]:
         *_untold(site),
         *_close_ways_home(site),
         *_low_ways_home(site),
+        *_high_zones(site),
         *_close_pads(site),
         *_sunken_pads(site),
     )
@@ -100,6 +102,19 @@ def _low_ways_home(site: Site) -> Iterator[str]:
                     f"vehicle {profile.display_name} goes home at {height_m:g} m, lower than zone "
                     f"{zone.name} asks for"
                 )
+
+
+def _high_zones(site: Site) -> Iterator[str]:
+    """Name each keep-out zone that nothing may fly high enough to meet."""
+    for zone in site.layers.zones:
+        if zone.kind is not ZoneKind.KEEP_OUT or zone.floor_m is None or zone.datum is None:
+            continue
+        highest_m = highest_ground_m(site, zone) + site.limits.max_height_above_ground_m
+        if zone.floor_m > highest_m:
+            yield (
+                f"keep-out zone {zone.name} begins at {zone.floor_m:g} m ({zone.datum.value}), "
+                "above every height that flights may have there; is its datum right?"
+            )
 
 
 def _is_above(zone: Zone, height_m: float, site: Site) -> bool:

@@ -26,6 +26,7 @@ from recon.site.schema import (
     VehicleTable,
 )
 from recon.site.site import Layers, Site
+from recon.site.zone_heights import refuse_sunken_zones
 
 SITE_FILE = "site.toml"
 LARGEST_FILE_BYTES = 256 * 1024
@@ -62,12 +63,12 @@ def load_site(folder: Path) -> Site:
     site = Site(table.name, frame, grid, eye, profiles, layers, limits)
     refuse_high_ways_home(str(path), profiles, limits)
     refuse_misplaced_pads(path, site)
-    if table.elevation is None:
-        return site
-    elevation = convert(path, table.elevation, ElevationTable, "elevation")
-    model = read_elevation(path, elevation, site.airspace)
-    site = replace(site, elevation=model, elevation_file=elevation.file)
-    refuse_sunken_pads(path, site)
+    if table.elevation is not None:
+        elevation = convert(path, table.elevation, ElevationTable, "elevation")
+        model = read_elevation(path, elevation, site.airspace)
+        site = replace(site, elevation=model, elevation_file=elevation.file)
+        refuse_sunken_pads(path, site)
+    refuse_sunken_zones(path, site)
     return site
 
 
