@@ -6,18 +6,23 @@ from dataclasses import replace
 import pytest
 from tests.link.approved import core, extended
 from tests.station.commanded import Told, flying
+from tests.station.steered_world import steered
 from tests.station.test_service import Bench
 
-from recon.model.command import Hover
-from recon.model.event import AlarmAcknowledged, LinkOpened, StationFaulted, Tick
+from recon import wire
+from recon.model.command import Hover, Phase
+from recon.model.event import AlarmAcknowledged, Event, LinkOpened, StationFaulted, Tick
 from recon.model.units import NS_PER_S
 from recon.safety.rules import RULES
 from recon.safety.watchdogs import WATCHDOGS, Finding, Picture
-from recon.station import containment, step
+from recon.station import commanding, containment, step
 from recon.station.alarms import Alarm, Severity
+from recon.station.commanding import Stepped
 from recon.station.containment import after_fault, contained
-from recon.station.outputs import CloseLink, Output
+from recon.station.orders import OrderRecord
+from recon.station.outputs import CloseLink, Output, SendCommand
 from recon.station.state import Station
+from recon.vehicles.reports import to_report
 
 FAULT = ZeroDivisionError("division by zero")
 
@@ -27,7 +32,17 @@ def failing(*_: object, **__: object) -> None:
 
 
 def fault_alarms(station: Station) -> list[Alarm]:
+    """As the next tick tells them."""
+    station, _ = step.raise_alarms(station, NS_PER_S)
     return [a for a in station.alarms.alarms.values() if a.condition.rule == "station_fault"]
+
+
+def contained_step(station: Station, event: Event, now_ns: int) -> Stepped:
+    """As the driver of a real run steps."""
+    try:
+        return step.step(station, event, now_ns)
+    except Exception as fault:
+        return after_fault(station, event, fault, now_ns)
 
 
 @pytest.fixture
@@ -89,6 +104,79 @@ class TestATick:
         picture: Picture = None  # type: ignore[assignment]
         assert tuple(contained(sees)(picture)) == (finding,)
 
+    def test_alarms_that_cannot_be_worked_out_stay_and_the_fault_is_one(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        told = flying()
+        told.talk.clear()
+        told.passes(4.0)
+        before = told.alarms()
+        assert "link_lost" in before
+        monkeypatch.setattr("recon.station.step.conditions", failing)
+        told.station, _ = after_fault(told.station, Tick(), FAULT, told.now_ns)
+        assert told.alarms() == {*before, "station_fault"}
+
+    def test_orders_of_one_vehicle_that_fail_leave_the_others_watched(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The hold of B is repeated, though what has become of A's cannot be worked out."""
+        told = flying("A")
+        reports = (core(), extended(b"B"))
+        told.opens(2, *(to_report(wire.decode(packet)) for packet in reports))
+        told.order(Hover(), "A")
+        told.order(Hover(), "B")
+        sent = len(told.handed)
+        real = commanding._watch_order
+
+        def watch(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
+            if record.command.serial == "A":
+                raise FAULT
+            return real(station, record, now_ns)
+
+        monkeypatch.setattr(commanding, "_watch_order", watch)
+        told.now_ns += NS_PER_S
+        told.station, outputs = after_fault(told.station, Tick(), FAULT, told.now_ns)
+        assert len(told.handed) == sent
+        serials = [o.approved.command.serial for o in outputs if isinstance(o, SendCommand)]
+        assert serials == ["B"]
+        (alarm,) = fault_alarms(told.station)
+        assert "watching the orders of A" in alarm.condition.text
+
+
+class TestAStream:
+    """One vehicle's steering fails at every beat."""
+
+    def test_its_vehicle_is_stopped_and_the_beat_goes_on(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        s = steered()
+        order = s.goto(200.0)
+        s.run_for(4.0)
+        monkeypatch.setattr("recon.station.streams.steer", failing)
+        monkeypatch.setattr("recon.station.virtual.step", contained_step)
+        failed_s = s.now_s
+        s.run_for(5.0)
+        assert s.phase(order) is Phase.FAILED
+        assert s.moving_sticks(failed_s + 0.15) == []
+        assert s.zeros(failed_s) != []
+        assert s.hovers(failed_s) != []
+        assert s.aircraft.motion.ground_speed_mps < 0.5
+        assert "steering SIM-1" in fault_alarms(s.w.driver.station)[0].condition.text
+
+    def test_without_even_a_zero_it_is_held(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        s = steered()
+        s.goto(200.0)
+        s.run_for(4.0)
+        monkeypatch.setattr("recon.station.streams.steer", failing)
+        monkeypatch.setattr("recon.station.stream_ends.halted", failing)
+        monkeypatch.setattr("recon.station.virtual.step", contained_step)
+        failed_s = s.now_s
+        s.run_for(5.0)
+        assert s.sticks(failed_s + 0.15) == []
+        assert s.hovers(failed_s) != []
+        assert s.aircraft.motion.ground_speed_mps < 0.5
+        assert s.w.driver.station.streams == {}
+
 
 class TestAnEvent:
     def test_a_step_that_fails_costs_its_event_alone(
@@ -99,22 +187,29 @@ class TestAnEvent:
             patched.setattr("recon.station.step.fleet_step.step", failing)
             bench.driver.handle(LinkOpened(2, "10.0.0.2:5"))
         station = bench.driver.station
-        assert replace(station, alarms=before.alarms) == before
+        assert replace(station, faults={}) == before
         (alarm,) = fault_alarms(station)
         assert "taking in LinkOpened" in alarm.condition.text
         bench.driver.handle(LinkOpened(3, "10.0.0.3:5"))
         assert set(bench.driver.station.fleet.links) == {1, 3}
 
-    def test_it_is_raised_again_when_it_comes_again_after_a_person_saw_it(self) -> None:
+    def test_it_is_an_alarm_while_it_comes_again_and_until_somebody_has_seen_it(self) -> None:
         told = Told()
-        for _ in range(3):
-            told.happens(StationFaulted("thinking", "a fault"))
-        (first,) = fault_alarms(told.station)
-        told.happens(AlarmAcknowledged(first.id, "Ann"))
-        assert fault_alarms(told.station) == []
-        told.happens(StationFaulted("thinking", "a fault"))
-        (again,) = fault_alarms(told.station)
-        assert again.id != first.id
+        for _ in range(30):
+            told.happens(StationFaulted("thinking", "a fault")).passes(0.5)
+        assert told.alarms() == {"station_fault"}
+        (alarm,) = told.station.alarms.alarms.values()
+        told.happens(AlarmAcknowledged(alarm.id, "Ann")).passes(5.0)
+        assert told.alarms() == {"station_fault"}
+        told.passes(6.0)
+        assert told.alarms() == set()
+        assert told.station.alarms.alarms == {}
+
+    def test_no_more_different_ones_are_kept_than_a_person_reads(self) -> None:
+        told = Told()
+        for number in range(100):
+            told.happens(StationFaulted(f"thinking {number}", "a fault"))
+        assert list(told.station.faults) == [f"thinking {n}" for n in range(68, 100)]
 
     def test_an_order_that_was_never_judged_is_answered_as_refused(
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch

@@ -75,6 +75,27 @@ class TestAsyncioDriver:
 
         asyncio.run(main())
 
+    def test_what_nobody_catches_in_the_loop_is_an_alarm_and_time_goes_on(
+        self, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        async def main() -> None:
+            driver = AsyncioDriver(first_state(default_site()), station_clock())
+            running = asyncio.create_task(driver.run())
+            await asyncio.sleep(0)
+            loop = asyncio.get_running_loop()
+            loop.call_soon(lambda: [][0])
+            async with asyncio.timeout(PATIENCE_S):
+                while not driver.station.alarms.alarms:
+                    await asyncio.sleep(0)
+            (alarm,) = driver.station.alarms.alarms.values()
+            assert "in its event loop: IndexError: " in alarm.condition.text
+            running.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await running
+
+        asyncio.run(main())
+        assert "Traceback" not in "".join(capsys.readouterr())
+
     def test_the_clock_begins_at_utc_and_never_runs_back(self) -> None:
         now_ns = station_clock()
         times = [now_ns() for _ in range(1000)]

@@ -3,13 +3,15 @@
 import asyncio
 import socket
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any, cast
 
 from recon.link.capture import Capture, Direction
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
-from recon.model.event import Event, LinkClosed, LinkOpened
+from recon.model.errors import described
+from recon.model.event import Event, LinkClosed, LinkOpened, StationFaulted
 from recon.safety import ApprovedCommand
 
 HandleEvent = Callable[[Event], None]
@@ -148,6 +150,10 @@ class Connection(asyncio.BufferedProtocol):
 
     def buffer_updated(self, nbytes: int) -> None:
         """Take what came; many packets are handled in turns with the other links."""
+        with self._contained():
+            self._receive(nbytes)
+
+    def _receive(self, nbytes: int) -> None:
         if self.session is None:
             return
         data = bytes(memoryview(self._buffer)[:nbytes])
@@ -162,7 +168,8 @@ class Connection(asyncio.BufferedProtocol):
 
     def resume_writing(self) -> None:
         """Everything written has left: the next packet may go."""
-        self.pump()
+        with self._contained():
+            self.pump()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """End the session, with the reason."""
@@ -170,25 +177,34 @@ class Connection(asyncio.BufferedProtocol):
             return
         self.server.forget(self.session)
         reason = self._closing_reason or _reason(exc)
-        self._events.extend(self.session.finish(reason, self.server.now_ns()))
-        self._handle(len(self._events))
+        with self._contained():
+            self._events.extend(self.session.finish(reason, self.server.now_ns()))
+            self._handle(len(self._events))
         self.server.handle(LinkClosed(self.session.link_id, reason))
         if self.server.capture is not None:
             self.server.capture.end_link(self.session.link_id)
 
     def submit(self, approved: ApprovedCommand) -> None:
         """Queue a command and write it if it may go now."""
-        if self.session is not None:
+        if self.session is None:
+            return
+        with self._contained():
             self._take(self.session.submit(approved))
             self.pump()
 
     def withdraw_motion(self, reason: str) -> None:
         """Drop the order to move that waits unsent."""
-        if self.session is not None:
+        if self.session is None:
+            return
+        with self._contained():
             self._take(self.session.withdraw_motion(reason))
 
     def tick(self) -> None:
         """Let time pass."""
+        with self._contained():
+            self._tick()
+
+    def _tick(self) -> None:
         if self.session is None or self._transport is None:
             return
         now_ns = self.server.now_ns()
@@ -215,6 +231,16 @@ class Connection(asyncio.BufferedProtocol):
             self._closing_reason = reason
             self._transport.abort()
 
+    @contextmanager
+    def _contained(self) -> Iterator[None]:
+        """A fault in the station's own code costs this connection, is told, and nobody else's."""
+        try:
+            yield
+        except Exception as fault:
+            number = None if self.session is None else self.session.link_id
+            self.server.handle(StationFaulted(f"on link {number}", described(fault)))
+            self.close("a fault in the station's own code")
+
     def _is_clear(self) -> bool:
         return (
             self._transport is not None
@@ -230,6 +256,10 @@ class Connection(asyncio.BufferedProtocol):
 
     def _work(self) -> None:
         """Handle some events; with more left, stop reading and go on in the loop's next turn."""
+        with self._contained():
+            self._work_on()
+
+    def _work_on(self) -> None:
         self._handle(self.server.settings.events_per_turn)
         if self._transport is None or self._transport.is_closing():
             return

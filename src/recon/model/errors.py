@@ -14,5 +14,16 @@ commands are no errors: they are values (`recon.model.command.Refusal`).
 """
 
 
+import traceback
+from pathlib import Path
+
+
 class ReconError(Exception):
     """Something that Recon tells its user in one sentence."""
+
+
+def described(fault: BaseException) -> str:
+    """Return a fault of Recon's own code in one line: what, and the file and line it arose at."""
+    frames = traceback.extract_tb(fault.__traceback__)
+    place = f" ({Path(frames[-1].filename).name}:{frames[-1].lineno})" if frames else ""
+    return f"{type(fault).__name__}: {fault}{place}"

@@ -1,5 +1,6 @@
 """Orders carried out: judged by the gate, superseded, repeated, confirmed, timed out."""
 
+from collections.abc import Collection
 from dataclasses import replace
 
 from recon.fleet.confirmation import Progress, SentContext, progress, reading_of_sent
@@ -8,7 +9,6 @@ from recon.link.outbox import Lane, lane_of
 from recon.model.authority import Lead
 from recon.model.command import (
     CAMERA_BODIES,
-    MOVING_BODIES,
     STEERED_BODIES,
     Command,
     FlyMission,
@@ -89,9 +89,14 @@ def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int
     return drive_streams(station, now_ns)
 
 
-def drive_streams(station: Station, now_ns: int) -> Stepped:
-    """Send the sticks that are due, and end the streams that are over."""
-    return _after(streams.drive(station, now_ns, _ask(now_ns)), now_ns)
+def drive_streams(station: Station, now_ns: int, serials: Collection[str] | None = None) -> Stepped:
+    """Send the sticks that are due, and end the streams that are over; None: of all vehicles."""
+    return _after(streams.drive(station, now_ns, _ask(now_ns), serials), now_ns)
+
+
+def end_stream(station: Station, serial: str, why: str, now_ns: int) -> Stepped:
+    """End a vehicle's stream as a failure: zero, then hold."""
+    return _after(streams.end(station, serial, why, now_ns, _ask(now_ns)), now_ns)
 
 
 def _end_stream_for(station: Station, refused: Command, now_ns: int) -> Stepped:
@@ -99,7 +104,7 @@ def _end_stream_for(station: Station, refused: Command, now_ns: int) -> Stepped:
     if not refused.is_emergency:
         return station, ()
     why = f"{refused.name.replace('_', ' ')} was ordered, and refused"
-    return _after(streams.end(station, refused.serial, why, now_ns, _ask(now_ns)), now_ns)
+    return end_stream(station, refused.serial or "", why, now_ns)
 
 
 def holder_gone(station: Station, holder: str, now_ns: int) -> Stepped:
@@ -151,8 +156,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
     """
     target = station.target(command.serial, command.link_id)
     serial = "" if target is None or target.serial is None else target.serial
-    is_mission = isinstance(command.body, FlyMission)
-    moves = isinstance(command.body, MOVING_BODIES)
+    needs_checklist = isinstance(command.body, FlyMission) or command.takeoff
     return Situation(
         now_ns=now_ns,
         vehicle=target,
@@ -161,9 +165,9 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         airspace=station.airspace,
         lead=station.leads.get(serial, _NOBODY_YET),
         intent=station.intents.get(serial, _TOLD_NOTHING),
-        traffic=_traffic(station, command, serial, now_ns) if moves else (),
+        traffic=_traffic(station, command, serial, now_ns) if command.moves else (),
         preflight_override=station.preflight_overrides.get(serial),
-        facts=preflight.facts(station, target) if is_mission else NO_FACTS,
+        facts=preflight.facts(station, target) if needs_checklist else NO_FACTS,
     )
 
 

@@ -6,7 +6,7 @@ from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
-from recon.station import orders
+from recon.station import faults, orders
 from recon.station.alarms import Condition, Severity
 from recon.station.fleet_return import told as fleet_return
 from recon.station.orders import OrderRecord
@@ -30,6 +30,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     for record in station.orders.watched:
         yield from _waiting(record)
         yield from _of_order(record)
+    yield from faults.conditions(station, now_ns)
     yield from fleet_return.conditions(station)
     yield from _watch(station)
     yield from _imaging(station)

@@ -5,14 +5,15 @@ import gc
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
+from recon.model.errors import described
 from recon.model.event import ClockRead, Event, StationFaulted, SticksDue, Tick
 from recon.model.units import NS_PER_S
 from recon.station.containment import after_fault
 from recon.station.event_queue import EventQueue
-from recon.station.faults import described
 from recon.station.outputs import Output, SendCommand, StartWork, WithdrawMotion
 from recon.station.state import Station
 from recon.station.step import step
@@ -60,6 +61,7 @@ class AsyncioDriver:
         self.worker: Worker | None = None
         self._queue = EventQueue(self._step)
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._tick_ns = self._clock_ns = 0
 
     def handle(self, event: Event) -> None:
         """Take an event; what a step's outputs cause is queued behind it."""
@@ -73,24 +75,33 @@ class AsyncioDriver:
     async def run(self) -> None:
         """Let time pass until cancelled."""
         self._loop = asyncio.get_running_loop()
-        tick_ns = clock_ns = self.now_ns() + TICK_NS
+        self._loop.set_exception_handler(self._unhandled)
+        self._tick_ns = self._clock_ns = self.now_ns() + TICK_NS
         while True:
             due_ns = next_due_ns(self.station)
-            wake_ns = tick_ns if due_ns is None else min(tick_ns, due_ns)
+            wake_ns = self._tick_ns if due_ns is None else min(self._tick_ns, due_ns)
             await asyncio.sleep(max(0, wake_ns - self.now_ns()) / NS_PER_S)
-            now_ns = self.now_ns()
-            if due_ns is not None and now_ns >= due_ns:
-                # Sticks go first: what a tick has to do would shift their beat.
-                self.handle(SticksDue())
-            if now_ns >= tick_ns:
-                # What was slept through is not caught up with.
-                tick_ns = max(tick_ns + TICK_NS, now_ns)
-                if self.links is not None:
-                    self.links.tick()
-                self.handle(Tick())
-            if now_ns >= clock_ns:
-                clock_ns = now_ns + CLOCK_NS
-                self.handle(ClockRead(time.time_ns()))
+            self._let_time_pass(due_ns, self.now_ns())
+
+    def _let_time_pass(self, due_ns: int | None, now_ns: int) -> None:
+        if due_ns is not None and now_ns >= due_ns:
+            # Sticks go first: what a tick has to do would shift their beat.
+            self.handle(SticksDue())
+        if now_ns >= self._tick_ns:
+            # What was slept through is not caught up with.
+            self._tick_ns = max(self._tick_ns + TICK_NS, now_ns)
+            if self.links is not None:
+                self.links.tick()
+            self.handle(Tick())
+        if now_ns >= self._clock_ns:
+            self._clock_ns = now_ns + CLOCK_NS
+            self.handle(ClockRead(time.time_ns()))
+
+    def _unhandled(self, _loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Take what nobody else has caught in the loop: an alarm, not a traceback."""
+        fault = context.get("exception")
+        what = str(context.get("message")) if fault is None else described(fault)
+        self.handle(StationFaulted("in its event loop", what))
 
     def _step(self, event: Event) -> None:
         before, now_ns = self.station, self.now_ns()

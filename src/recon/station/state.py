@@ -46,6 +46,16 @@ class Clock:
 
 
 @dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault in the station's own code: doing what, what came of it, since when, and the last."""
+
+    where: str
+    what: str
+    since_ns: int
+    at_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class Station:
     """The state that `step` turns into the next one."""
 
@@ -84,6 +94,8 @@ class Station:
     """Sticks being held, by serial: each ends with a zero from the station."""
     watch: Watch = field(default_factory=Watch)
     """What the watchdogs found, held and were told."""
+    faults: Mapping[str, Fault] = field(default_factory=dict)
+    """Of the station's own code, lately, by what it was doing."""
 
     def target(self, serial: str | None, link_id: int | None) -> VehicleState | None:
         """Return the state an order's target has now: a vehicle, or a link without identity.

@@ -166,7 +166,8 @@ def _let_time_pass(station: Station, now_ns: int) -> Stepped:
     return _fleet(station, Tick(), now_ns)
 
 
-def _raise_alarms(station: Station, now_ns: int) -> Stepped:
+def raise_alarms(station: Station, now_ns: int) -> Stepped:
+    """Bring the book of alarms up to date with what is the case now."""
     kept = station.settings.alarms_kept
     book = alarms.update(station.alarms, conditions(station, now_ns), now_ns, kept)
     return replace(station, alarms=book), ()
@@ -178,7 +179,7 @@ TICK_PARTS: Mapping[str, Callable[[Station, int], Stepped]] = {
     "watching the orders": commanding.watch,
     "leading the fleet home": advance_fleet_return,
     "looking with the watchdogs": watch.look,
-    "raising alarms": _raise_alarms,
+    "raising alarms": raise_alarms,
 }
 """What a tick does, in this order, and each in words."""
 

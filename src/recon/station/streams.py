@@ -6,6 +6,7 @@ must give up (`stream_ends`), zero is sent at once and hold a beat later, both t
 Nothing resumes a lease that has ended: no reconnect, no restart.
 """
 
+from collections.abc import Collection
 from dataclasses import replace
 
 from recon.guidance.steering import Seen, begin, halted, has_arrived, steer
@@ -84,11 +85,13 @@ def next_due_ns(station: Station) -> int | None:
     return min((lease.next_due_ns for lease in station.streams.values()), default=None)
 
 
-def drive(station: Station, now_ns: int, ask: Ask) -> Driven:
-    """Carry on every lease that is due: its next stick, or its end."""
+def drive(
+    station: Station, now_ns: int, ask: Ask, serials: Collection[str] | None = None
+) -> Driven:
+    """Carry on every lease that is due, or of these vehicles: its next stick, or its end."""
     driven = Driven(station)
     for serial, lease in station.streams.items():
-        if now_ns >= lease.next_due_ns:
+        if now_ns >= lease.next_due_ns and (serials is None or serial in serials):
             driven = _drive(driven, serial, lease, now_ns, ask)
     return driven
 
@@ -154,7 +157,8 @@ def _demanded(station: Station, serial: str, lease: Lease, seen: Seen | None, no
     """Return the lease with its next demand, and the time of the one after. Unseen: zero."""
     settings = station.settings
     if seen is None:
-        steered = halted(lease.steered, now_ns)
+        height_m = station.fleet.vehicles[serial].height_above_takeoff_m.value
+        steered = halted(lease.steered, height_m, now_ns)
     else:
         steered = steer(lease.steered, lease.goal, seen, now_ns, settings.steering)
     if lease.last_stick_id == 0:
