@@ -12,7 +12,7 @@ from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.planners import PLANNERS
 from recon.guidance.survey.progress import Seen, no_progress, settled, with_seen, with_shade
 from recon.guidance.survey.rounds import Step, ended
-from recon.guidance.survey.state import NO_ROUTES, Surveyor, SurveyState
+from recon.guidance.survey.state import Refused, Surveyor, SurveyState
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
 from recon.model.survey import SurveyPhase
@@ -40,8 +40,7 @@ def start(state: SurveyState, serials: Sequence[str], now_ns: int) -> SurveyStat
         reason="started",
         started_at_ns=now_ns if state.started_at_ns is None else state.started_at_ns,
         refusals=MappingProxyType({}),
-        missions_in_round=0,
-        round=state.round,
+        barred=frozenset(),
     )
 
 
@@ -61,19 +60,23 @@ def abort(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
     return ended(state, SurveyPhase.ABORTED, "aborted", now_ns)
 
 
-def refused(state: SurveyState, serial: str, number: int, reason: str) -> SurveyState:
-    """Return the survey after a mission was refused: that vehicle rests until the next round."""
+def refused(state: SurveyState, serial: str, number: int, reason: str, now_ns: int) -> SurveyState:
+    """Return the survey after the gate refused a mission; its rows wait.
+
+    If others fly, it is asked for again a little later; if nobody does, that vehicle is barred and
+    its rows go to others. With nobody left to fly the survey pauses.
+    """
     flight = state.flights.get(serial)
     if flight is None or flight.number != number:
         return state
     flights = {key: each for key, each in state.flights.items() if key != serial}
-    waiting = {key: route for key, route in state.waiting.items() if key != serial}
+    route = (*flight.route, *state.waiting.get(serial, ()))
     return replace(
         state,
         flights=MappingProxyType(flights),
-        waiting=MappingProxyType(waiting) if waiting else NO_ROUTES,
-        refusals=MappingProxyType({**state.refusals, serial: reason}),
-        missions_in_round=state.missions_in_round - 1,
+        waiting=MappingProxyType({**state.waiting, serial: route}),
+        refusals=MappingProxyType({**state.refusals, serial: Refused(reason, now_ns)}),
+        barred=state.barred if flights else state.barred | {serial},
         flown_m=state.flown_m - flight.length_m,
     )
 

@@ -1,7 +1,8 @@
 """Rounds: what is missing is shared among all who can fly, and flown; then what is missing still.
 
-Within a round a vehicle goes on with its share for as many missions as its battery makes of it.
-When a vehicle drops out, what it has not imaged is missing, and so is part of the next round.
+Within a round a vehicle goes on with its share for as many missions as its batteries make of it;
+when nobody flies any more, what is left of the shares is shared anew. When a vehicle drops out of
+a mission, what it has not imaged is missing, and so is part of the next round.
 """
 
 from bisect import bisect_left
@@ -33,17 +34,27 @@ def fly_rounds(
     """
     able = {each.serial: each for each in positions if each.is_able}
     state = _without_ended(state, able, now_ns)
-    if state.flights or state.waiting:
-        state, missions = _given(state, able)
-        if missions or state.flights:
+    spent = _spent(state, now_ns)
+    if spent is None:
+        state, missions = _given(state, able, now_ns)
+        if missions:
             return state, missions
-        state = replace(state, waiting=NO_ROUTES)
+    if state.flights:
+        return state, ()
+    if spent is not None:
+        return ended(state, SurveyPhase.DONE, spent, now_ns), ()
+    free = {serial: each for serial, each in able.items() if serial not in state.barred}
+    if not free:
+        return _nobody(state, able, now_ns), ()
+    if state.waiting:
+        return _shared_anew(state, free, now_ns)
     if now_ns < state.quiet_since_ns + seconds_to_ns(state.plan.settings.settle_s):
         return state, ()
-    end = _end(state, now_ns, wanted)
+    end = _end(state, wanted)
     if end is not None:
-        return ended(state, *end, now_ns), ()
-    return _next_round(state, able, wanted)
+        return ended(state, SurveyPhase.DONE, end, now_ns), ()
+    pieces = state.plan.pieces_over(state.progress.state < wanted)
+    return _begun(state, pieces, free, now_ns)
 
 
 def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> SurveyState:
@@ -73,50 +84,70 @@ def _without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int
         for serial, flight in state.flights.items()
         if serial in able and able[serial].ended_mission < flight.number
     }
-    waiting = {serial: route for serial, route in state.waiting.items() if serial in able}
     quiet_ns = now_ns if state.flights and not flights else state.quiet_since_ns
-    return replace(
-        state,
-        flights=MappingProxyType(flights),
-        waiting=MappingProxyType(waiting),
-        quiet_since_ns=quiet_ns,
-    )
+    return replace(state, flights=MappingProxyType(flights), quiet_since_ns=quiet_ns)
 
 
-def _end(state: SurveyState, now_ns: int, wanted: CellState) -> tuple[SurveyPhase, str] | None:
-    """The phase that ends the running survey between two rounds, and why; None: it goes on."""
+def _nobody(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
+    """Nobody can fly now: wait for it, or pause when all who could were refused."""
+    if not able:
+        return replace(state, reason="waits: none of its vehicles can fly now")
+    serial = next(iter(able))
+    reason = f"every mission was refused; {serial}: {state.refusals[serial].reason}"
+    return ended(state, SurveyPhase.PAUSED, reason, now_ns)
+
+
+def _shared_anew(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) -> Step:
+    """Nobody flies and rows are left: who can fly now shares them; else they wait, as a battery is
+    changed or a refusal is a moment old."""
+    again_ns = now_ns - seconds_to_ns(state.plan.settings.retry_s)
+    if any(serial in free and state.refusals[serial].at_ns > again_ns for serial in state.refusals):
+        return state, ()
+    pieces = [leg.piece for route in state.waiting.values() for leg in route]
+    return _handed_out(state, pieces, free, now_ns)
+
+
+def _spent(state: SurveyState, now_ns: int) -> str | None:
+    """Which budget is spent, so that no more missions are given; None: none is."""
     budget = state.plan.survey.budget
-    if is_enough(state, wanted):
-        sun = " in sun" if wanted == CellState.IN_SUN else ""
-        return SurveyPhase.DONE, f"all that the rows reach is imaged{sun}"
-    if state.round and not state.missions_in_round and state.refusals:
-        serial, reason = next(iter(state.refusals.items()))
-        return SurveyPhase.PAUSED, f"every mission was refused; {serial}: {reason}"
-    if state.round >= budget.rounds:
-        return SurveyPhase.DONE, f"the {budget.rounds} rounds allowed are flown; some is missing"
-    flying_s = ns_to_seconds(now_ns - (state.started_at_ns or now_ns))
-    if budget.time_s is not None and flying_s >= budget.time_s:
-        return SurveyPhase.DONE, f"the {budget.time_s:g} s allowed are over; some is missing"
+    since_s = 0.0 if state.started_at_ns is None else ns_to_seconds(now_ns - state.started_at_ns)
+    if budget.time_s is not None and since_s >= budget.time_s:
+        return f"the {budget.time_s:g} s allowed are over; some is missing"
     if budget.flown_m is not None and state.flown_m >= budget.flown_m:
-        return SurveyPhase.DONE, f"the {budget.flown_m:g} m allowed are flown; some is missing"
+        return f"the {budget.flown_m:g} m allowed are flown; some is missing"
     return None
 
 
-def _next_round(state: SurveyState, able: Mapping[str, Surveyor], wanted: CellState) -> Step:
-    if not able:
-        return replace(state, reason="waits: none of its vehicles can fly now"), ()
-    pieces = state.plan.pieces_over(state.progress.state < wanted)
-    begun = replace(
-        state,
-        waiting=MappingProxyType(_shares(state.plan, pieces, list(able.values()))),
-        round=state.round + 1,
-        missions_in_round=0,
-        refusals=MappingProxyType({}),
-        reason=f"round {state.round + 1}",
+def _end(state: SurveyState, wanted: CellState) -> str | None:
+    """Why the running survey is done, between two rounds; None: it goes on."""
+    if is_enough(state, wanted):
+        sun = " in sun" if wanted == CellState.IN_SUN else ""
+        return f"all that the rows reach is imaged{sun}"
+    rounds = state.plan.survey.budget.rounds
+    return (
+        f"the {rounds} rounds allowed are flown; some is missing" if state.round >= rounds else None
     )
-    given, missions = _given(begun, able)
+
+
+def _begun(
+    state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
+) -> Step:
+    """The next round over these pieces; while nobody can fly one of them it has not begun."""
+    begun = replace(state, round=state.round + 1, reason=f"round {state.round + 1}")
+    after, missions = _handed_out(begun, pieces, free, now_ns)
     if missions:
-        return given, missions
+        return after, missions
+    return replace(state, reason=after.reason), ()
+
+
+def _handed_out(
+    state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
+) -> Step:
+    """Pieces shared and the first missions given; unchanged but for the reason when none can be."""
+    shares = MappingProxyType(_shares(state.plan, pieces, list(free.values())))
+    given, missions = _given(replace(state, waiting=shares), free, now_ns)
+    if missions:
+        return replace(given, reason=f"round {state.round}"), missions
     reason = "waits: no battery lasts for the next row, the way there and the way home"
     return replace(state, reason=reason), ()
 
@@ -146,24 +177,29 @@ def _shares(
     return {} if best is None else best[1]
 
 
-def _given(state: SurveyState, able: Mapping[str, Surveyor]) -> Step:
+def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Step:
     """Give each vehicle that flies no mission as much of what waits for it as it can fly."""
     missions: list[MissionFor] = []
     for serial, route in state.waiting.items():
-        if serial in state.flights:
+        if not _may_ask(state, serial, able, now_ns):
             continue
         track, count = _sortie(state.plan, route, able[serial])
         if track is None:
             continue
         number = state.missions + 1
-        state, mission = _flying(
-            state,
-            serial,
-            Flight(number, route[:count], track.corners_m, track.length_m),
-            route[count:],
-        )
+        flight = Flight(number, route[:count], track.corners_m, track.length_m)
+        state, mission = _flying(state, serial, flight, route[count:])
         missions.append(mission)
     return state, tuple(missions)
+
+
+def _may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_ns: int) -> bool:
+    """Whether a mission for a vehicle may be asked for now."""
+    if serial not in able or serial in state.flights or serial in state.barred:
+        return False
+    refused = state.refusals.get(serial)
+    retry_ns = seconds_to_ns(state.plan.settings.retry_s)
+    return refused is None or now_ns - refused.at_ns >= retry_ns
 
 
 def _flying(
@@ -181,7 +217,6 @@ def _flying(
         flights=MappingProxyType({**state.flights, serial: flight}),
         waiting=MappingProxyType(waiting),
         missions=flight.number,
-        missions_in_round=state.missions_in_round + 1,
         flown_m=state.flown_m + flight.length_m,
     )
     return state, MissionFor(serial, flight.number, mission, flight.length_m)

@@ -69,6 +69,10 @@ class SurveySettings:
     positions_kept: int = 1_000
     """Of each vehicle, waiting to count: at 10 Hz, far more than settling takes."""
 
+    retry_s: float = 15.0
+    """A mission refused while others flew is asked for again after this: by then they are
+    elsewhere."""
+
     enough_share: float = 0.99
     """Of the cells that rows reach: from here on a survey is done; a cell or two at an edge are not
     worth a flight."""

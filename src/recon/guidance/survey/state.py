@@ -44,12 +44,21 @@ class Flight:
     length_m: float
 
 
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """A mission that the gate refused."""
+
+    reason: str
+    at_ns: int
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyState:
     """One survey's state; by serial where it is a mapping.
 
-    `waiting` holds what is left of each vehicle's share of the round, `refusals` why the gate
-    refused a vehicle's mission in this round; who was refused flies again in the next one only.
+    `waiting` holds what is left of each vehicle's share of the round. `refusals` are the newest of
+    each vehicle. One refused while nobody else flew is `barred`: it is given nothing until the
+    survey is started anew, for the reason lies with itself or with the rows.
     """
 
     plan: SurveyPlan
@@ -61,8 +70,8 @@ class SurveyState:
     round: int = 0
     flights: Mapping[str, Flight] = field(default_factory=lambda: MappingProxyType({}))
     waiting: Routes = field(default_factory=lambda: NO_ROUTES)
-    refusals: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-    missions_in_round: int = 0
+    refusals: Mapping[str, Refused] = field(default_factory=lambda: MappingProxyType({}))
+    barred: frozenset[str] = frozenset()
     missions: int = 0
     flown_m: float = 0.0
     """Planned metres of all missions given and not refused."""
