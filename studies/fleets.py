@@ -16,7 +16,7 @@ from recon.safety.rules import Rule
 from recon.safety.rules.separation import separation
 from studies.agreement import Agreement, over, run
 from studies.drawn_fleets import ORDERS, TRAFFIC, draw
-from studies.sampled_fleets import START_DELAY_S, margin
+from studies.sampled_fleets import margin
 
 NAMES = (*TRAFFIC, *(f"order: {name}" for name in ORDERS))
 
@@ -28,8 +28,7 @@ def compare(seeds: range, rule: Rule = separation, progress: bool = False) -> Ag
 
 def _compare(rule: Rule, seed: int, found: Agreement) -> None:
     scene = draw(seed)
-    delay_s = START_DELAY_S if scene.order == "mission" else 0.0
-    margins = [margin(scene.own, other, scene.need, delay_s) for other in scene.others]
+    margins = [margin(scene.own, other, scene.need) for other in scene.others]
     worst = min(margins, key=lambda each: (not each.is_broken, each.possible_m))
     names = (worst.kind, f"order: {scene.order}")
     if not worst.is_broken and not worst.is_kept:

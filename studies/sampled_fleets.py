@@ -3,11 +3,11 @@
 The meaning, as SAFETY.md and the prediction's settings state it. An order to move is foreseen to
 its end, and so is everything that flies, from its state and what it was last told. Both may be
 anywhere on their ways a tenth of the time earlier or later, and some seconds (`sampled_flights`); a
-mission may also start 8 s late. At all times that two may be there together they must be apart by
-the one distance horizontally or the other vertically. Two that are too near already may be led
-apart: for 20 s only what is nearer than now counts (or than it was when last heard), half a metre
-of noise and what the present velocity carries aside. One that is not heard is as near as where it
-may be comes at its widest.
+mission that is not under way yet may also start 8 s late. At all times that two may be there
+together they must be apart by the one distance horizontally or the other vertically. Two that are
+too near already may be led apart: for 20 s only what is nearer than now counts (or than it was when
+last heard), half a metre of noise and what the present velocity carries aside. One that is not
+heard is as near as where it may be comes at its widest.
 
 The margin is the larger of both distances' room, at the worst pair of instants: positive, kept;
 negative, broken. Nothing of `recon.safety` or `recon.geo` is asked here.
@@ -34,7 +34,6 @@ from studies.sampled_flights import (
     FloatArray,
 )
 
-START_DELAY_S = 8.0
 ESCAPE_S = 20.0
 CLOSER_M = 0.5
 BETWEEN_SAMPLES_M = STEP_M + 0.3
@@ -71,7 +70,8 @@ class Course:
         certain = flight.certain
         now = _now(certain)
         lately = np.concatenate([certain[certain[:, AT_S] < 0.0], now])
-        return Course(kind, certain, flight.possible, now, lately)
+        late_s = flight.begins_late_s
+        return Course(kind, _later(certain, late_s), _later(flight.possible, late_s), now, lately)
 
     @staticmethod
     def around(kind: str, volume: FloatArray) -> "Course":
@@ -99,13 +99,13 @@ class Margin:
         return self.possible_m > BETWEEN_SAMPLES_M
 
 
-def margin(own: Course, other: Course, need: Need, delay_s: float) -> Margin:
+def margin(own: Course, other: Course, need: Need) -> Margin:
     """Return the margins of an order's course to another course."""
     near_m, doubt = _near_now_m(own, other, need)
-    certain_m = _worst_m(own.certain, other.certain, need, delay_s, near_m, ESCAPE_S + PIECE_S)
-    possible_m = _worst_m(own.possible, other.possible, need, delay_s, near_m, ESCAPE_S)
+    certain_m = _worst_m(own.certain, other.certain, need, near_m, ESCAPE_S + PIECE_S)
+    possible_m = _worst_m(own.possible, other.possible, need, near_m, ESCAPE_S)
     if doubt:  # whether only nearer counts is not known
-        strictest_m = _worst_m(own.possible, other.possible, need, delay_s, np.inf, 0.0)
+        strictest_m = _worst_m(own.possible, other.possible, need, np.inf, 0.0)
         return Margin(other.kind, max(certain_m, 0.0), min(possible_m, strictest_m))
     return Margin(other.kind, certain_m, possible_m)
 
@@ -124,16 +124,14 @@ def _worst_m(
     own: FloatArray,
     other: FloatArray,
     need: Need,
-    delay_s: float,
     near_now_m: float,
     leaving_s: float,
 ) -> float:
     own, other = _near(own, other, need), _near(other, own, need)
     if not len(own) or not len(other):
         return FAR_M
-    late_s = own[:, np.newaxis, LATE_S] + delay_s
     together = own[:, np.newaxis, EARLY_S] <= other[:, LATE_S]
-    together &= other[:, EARLY_S] <= late_s
+    together &= other[:, EARLY_S] <= own[:, np.newaxis, LATE_S]
     mine, theirs = np.nonzero(together)
     if not len(mine):
         return FAR_M
@@ -161,6 +159,12 @@ def _now(samples: FloatArray) -> FloatArray:
     share = np.clip(-in_order[before, AT_S] / spans_s, 0.0, 1.0)
     between: FloatArray = in_order[before] + share * (in_order[after] - in_order[before])
     return between[np.newaxis]
+
+
+def _later(samples: FloatArray, seconds: float) -> FloatArray:
+    """The samples as they are when all may also be flown so much later."""
+    samples[:, LATE_S] += seconds
+    return samples
 
 
 def _near(samples: FloatArray, others: FloatArray, need: Need) -> FloatArray:

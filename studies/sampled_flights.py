@@ -35,6 +35,7 @@ SINK_MPS = 4.0
 STANDING_MPS = 0.5
 TIME_UNCERTAINTY = 0.1
 PIECE_S = 3.0
+START_DELAY_S = 8.0
 
 (EARLY_S, LATE_S, EAST, NORTH, LOW, HIGH, RADIUS, AT_S, CARRIED_M) = range(9)
 """Each sample's columns. CARRIED_M: how far its present velocity carries a vehicle off the way it
@@ -66,6 +67,8 @@ class Flight:
         self.place_m: FloatArray = aircraft.here_m[:2].copy()
         self.low_m = self.high_m = float(aircraft.here_m[2])
         self.time_s = -aircraft.age_s
+        self.begins_late_s = 0.0
+        """How much later all of it may be flown."""
         self._certain: list[FloatArray] = []
         self._possible: list[FloatArray] = []
 

@@ -11,6 +11,7 @@ from studies.sampled_flights import (
     CLIMB_MPS,
     REACTION_S,
     STANDING_MPS,
+    START_DELAY_S,
     STEP_M,
     Aircraft,
     Flight,
@@ -39,8 +40,9 @@ class Route:
 
 
 def ordered_mission(aircraft: Aircraft, route: Route) -> Flight:
-    """It stops first, and begins with its first waypoint."""
+    """It stops first, and begins with its first waypoint, at once or some seconds late."""
     flight = Flight(aircraft)
+    flight.begins_late_s = START_DELAY_S
     start_mps = None
     if hypot(*aircraft.velocity_mps[:2]) >= STANDING_MPS:
         flight.brakes(REACTION_S)
@@ -49,8 +51,11 @@ def ordered_mission(aircraft: Aircraft, route: Route) -> Flight:
 
 
 def on_mission(aircraft: Aircraft, route: Route, passed: int) -> Flight:
-    """It is under way to a waypoint."""
-    return _fly(Flight(aircraft), route, passed, None)
+    """It is under way to a waypoint; one that stands before the first may begin late."""
+    flight = Flight(aircraft)
+    if passed == 0 and np.abs(aircraft.velocity_mps).max() < STANDING_MPS:
+        flight.begins_late_s = START_DELAY_S
+    return _fly(flight, route, passed, None)
 
 
 def ordered_goto(aircraft: Aircraft, target_m: FloatArray, speed_mps: float) -> Flight:

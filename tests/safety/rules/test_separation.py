@@ -117,6 +117,26 @@ class TestTime:
         assert (judged(there, own, other) is None) is bool(missions)
         assert (judged(GoTo(at(100.0, 0.0), 40.0, 5.0), own, other) is None) is bool(orders)
 
+    @pytest.mark.parametrize(
+        ("velocity", "passed", "passes"),
+        [
+            ((0.0, 0.0, 0.0), 0, False),
+            (None, 0, False),
+            ((0.0, 5.0, 0.0), 0, True),
+            ((0.0, 0.0, 2.0), 0, True),
+            ((0.0, 0.0, 0.0), 1, True),
+        ],
+    )
+    def test_so_may_anothers_that_has_not_begun(
+        self, velocity: tuple[float, float, float] | None, passed: int, passes: bool
+    ) -> None:
+        """What A crosses when B is past passes, unless B may still set out 8 s from now."""
+        told = flies(route((20.0, -60.0), (20.0, 600.0)), passed)
+        other = Traffic(aircraft("B", (20.0, -60.0), velocity=velocity), told)
+        there = GoTo(at(200.0, 0.0), 40.0, 5.0)
+        assert (judged(there, aircraft("A", (-165.0, 0.0)), other) is None) is passes
+        assert judged(there, aircraft("A", (-250.0, 0.0)), other) is None
+
     def test_layers_and_areas_pass_however_long(self) -> None:
         def survey(north_m: float, height_m: float) -> Mission:
             lines = [

@@ -67,11 +67,13 @@ def part_words(part: int) -> str:
 @dataclass(frozen=True, slots=True, eq=False)
 class Course:
     """A vehicle's course. `rows` is (N, 14), in order of time and without gaps, times in seconds
-    from now, east and north in the plane, heights as up metres of the site's frame."""
+    from now, east and north in the plane, heights as up metres of the site's frame. All of it may
+    be flown later by `delay_s`: a mission that has not begun."""
 
     name: str
     serial: str | None
     rows: FloatArray
+    delay_s: float = 0.0
 
 
 class CourseWriter:

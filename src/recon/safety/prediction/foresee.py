@@ -1,11 +1,11 @@
 """Courses of a whole situation: the order's own, and the traffic's."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
 
-from recon.model.command import Body
+from recon.model.command import Body, FlyMission
 from recon.model.intent import Commanded, Intent
 from recon.safety.prediction.course import (
     ALL_HEIGHTS_M,
@@ -25,7 +25,7 @@ from recon.safety.prediction.course import (
 from recon.safety.prediction.flyer import Flyer
 from recon.safety.prediction.ghost import ghost_courses, ghost_of
 from recon.safety.prediction.intents import UNHOMED_RADIUS_M, Follower
-from recon.safety.prediction.legs import stopping_distance_m
+from recon.safety.prediction.legs import STANDING_MPS, stopping_distance_m
 from recon.safety.prediction.meetings import Separation
 from recon.safety.prediction.orders import write_order
 from recon.safety.prediction.settings import PredictionSettings
@@ -35,7 +35,9 @@ def foresee_order(flyer: Flyer, body: Body, settings: PredictionSettings) -> Cou
     """Return the course an order to move would send its vehicle on."""
     follower = Follower(flyer, settings)
     write_order(follower, body)
-    return follower.writer.course(flyer.name, flyer.state.serial)
+    course = follower.writer.course(flyer.name, flyer.state.serial)
+    may_wait = isinstance(body, FlyMission)
+    return replace(course, delay_s=settings.start_delay_s) if may_wait else course
 
 
 def foresee_traffic(
@@ -43,7 +45,8 @@ def foresee_traffic(
 ) -> tuple[Course, ...]:
     """Return what others must keep clear of: a vehicle's course; of a stale one, its ghost too.
 
-    The ghost does not replace the course: an app that loses the station flies its mission on.
+    The ghost does not replace the course: an app that loses the station flies its mission on. A
+    mission that has not begun may begin late, as one under judgement may.
     """
     ghost = ghost_of(flyer, intent, settings)
     volumes = () if ghost is None else ghost_courses(ghost)
@@ -51,7 +54,16 @@ def foresee_traffic(
         return volumes
     follower = Follower(flyer, settings, until_s=until_s)
     follower.follow(intent)
-    return (follower.writer.course(flyer.name, flyer.state.serial), *volumes)
+    course = follower.writer.course(flyer.name, flyer.state.serial)
+    if _has_not_begun(flyer, intent):
+        course = replace(course, delay_s=settings.start_delay_s)
+    return (course, *volumes)
+
+
+def _has_not_begun(flyer: Flyer, intent: Intent) -> bool:
+    east_mps, north_mps, up_mps = flyer.velocity_mps
+    stands = max(hypot(east_mps, north_mps), abs(up_mps)) < STANDING_MPS
+    return intent.commanded is Commanded.MISSION and intent.passed == 0 and stands
 
 
 @dataclass(frozen=True, slots=True)

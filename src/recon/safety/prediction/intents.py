@@ -57,6 +57,8 @@ class Follower:
                 self.go_to(intent.target, height_m, speed_mps)
                 self.writer.stays(Part.HOVERING)
             case Commanded.STICK:
+                if intent.target_height_above_takeoff_m is not None:
+                    self.writer.widens(*self.flyer.up_m(intent.target_height_above_takeoff_m))
                 self.go_straight_on(self.settings.stick_horizon_s)
                 self.hold()
             case Commanded.HOLD:

@@ -53,7 +53,6 @@ def first_meeting(
     others: Sequence[Course],
     need: Separation,
     settings: PredictionSettings,
-    start_delay_s: float,
 ) -> Meeting | None:
     """Return where `own` first comes nearer than `need` to any other course; None if it does not.
 
@@ -61,8 +60,7 @@ def first_meeting(
     """
     if not others:
         return None
-    mine = cut([own], settings, start_delay_s)
-    theirs = cut(others, settings, 0.0)
+    mine, theirs = cut([own], settings), cut(others, settings)
     pairs = _pairs(mine, theirs)
     vertical_m = _vertical_gap_m(mine, theirs, pairs)
     pairs = _kept(pairs, (vertical_m < need.vertical_m) & _may_be_near(mine, theirs, pairs, need))

@@ -3,7 +3,7 @@
 from math import cos, hypot, radians, sin
 
 from recon.geo.distance import moved_m
-from recon.model.command import Body, FlyMission, GoTo, Nudge, StickFrame, VirtualStick
+from recon.model.command import Body, FlyMission, GoTo, Hover, Nudge, StickFrame, VirtualStick
 from recon.model.geo import LatLon
 from recon.model.units import wrap_degrees
 from recon.safety.prediction.course import Part
@@ -32,6 +32,9 @@ def write_order(follower: Follower, body: Body) -> None:
             writer.waits(settings.stands_s, Part.HOVERING)
         case VirtualStick():
             _stick(follower, body)
+        case Hover():  # judged only as a takeoff: straight up, and it stays there
+            writer.widens(writer.low_m, writer.high_m + settings.takeoff_height_m)
+            writer.waits(settings.stands_s, Part.HOVERING)
         case _:
             stop(writer, flyer.velocity_mps, settings, reaction_s=settings.reaction_s)
             writer.waits(settings.stands_s, Part.HOVERING)

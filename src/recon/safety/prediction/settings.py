@@ -21,7 +21,8 @@ class PredictionSettings:
     """Beyond that: gaining speed and stopping are counted in whole legs."""
 
     start_delay_s: float = 8.0
-    """A mission under judgement starts at once or as late as this; later it counts as ignored."""
+    """A mission under judgement, or another's that has not begun, starts at once or as late as
+    this; later it counts as ignored."""
 
     piece_s: float = 3.0
     """Paths are compared in pieces of this time, or of their own uncertainty when that is more."""
@@ -40,6 +41,9 @@ class PredictionSettings:
     climb_mps: float = 3.0
     sink_mps: float = 4.0
     """What aircraft of all sizes do at most by themselves on the way home and down."""
+
+    takeoff_height_m: float = 3.0
+    """A hover that takes off ends so high at most: DJI's own takeoff ends at 1.2 m, and bounces."""
 
     landing_mps: float = 1.0
     landing_wait_s: float = 30.0

@@ -55,10 +55,11 @@ class Tubes:
     first: IntArray
 
 
-def cut(courses: Sequence[Course], settings: PredictionSettings, start_delay_s: float) -> Tubes:
+def cut(courses: Sequence[Course], settings: PredictionSettings) -> Tubes:
     """Return the courses in pieces, each with the time it may be flown in."""
     rows = np.concatenate([course.rows for course in courses])
     counts = np.array([len(course.rows) for course in courses])
+    delays_s = np.repeat([course.delay_s for course in courses], counts)
     pieces = _pieces(rows, settings)
     index = np.repeat(np.arange(len(rows)), pieces)
     number = np.arange(len(index)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
@@ -71,7 +72,7 @@ def cut(courses: Sequence[Course], settings: PredictionSettings, start_delay_s: 
     row_first = np.concatenate([[0], np.cumsum(pieces)])
     return Tubes(
         early_s=_earlier(enters_s, settings),
-        late_s=_later(leaves_s, settings) + start_delay_s,
+        late_s=_later(leaves_s, settings) + delays_s[index],
         at_s=enters_s,
         starts_m=_place(found, share_0),
         ends_m=_place(found, share_1),
