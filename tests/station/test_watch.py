@@ -35,6 +35,8 @@ class Two:
 
     def says(self) -> None:
         for link_id, serial in ((1, "A"), (2, "B")):
+            if link_id not in self.north_m:
+                continue
             reports = (
                 core(
                     flying=self.flying[link_id],
@@ -53,6 +55,11 @@ class Two:
             self.told.now_ns += S // 10
             self.says()
             self.told.happens(Tick())
+        return self
+
+    def closes(self, link_id: int) -> "Two":
+        self.told.closes(link_id)
+        del self.north_m[link_id]
         return self
 
     def holds(self) -> list[tuple[str | None, str]]:
@@ -86,6 +93,9 @@ class TestSeparation:
         assert record.command.id < 0
         assert record.command.issued_by == "station: separation"
         assert record.phase is Phase.SENT
+        assert two.alarm("separation").condition.text.endswith("; B has been told to hold")
+        two.passes(6.0)
+        assert two.alarm("separation").condition.text.count("B has been told to hold") == 1
 
     def test_one_that_obeys_ends_the_conflict_and_the_other_flies_on(self) -> None:
         two = Two(120.0, a_mps=2.0, b_mps=-8.0)
@@ -148,6 +158,18 @@ class TestSeparation:
         two.flying = {1: False, 2: False}
         two.passes(0.2)
         assert two.told.station.watch.held == {}
+
+    def test_one_whose_hold_cannot_be_given_is_not_taken_for_held(self) -> None:
+        two = Two(110.0).passes(1.5)
+        assert two.holds() == []
+        two.closes(2).passes(1.5)
+        assert set(two.told.station.watch.held) == {"A"}
+        assert two.holds() == [("A", "station: separation")]
+        text = two.alarm("separation").condition.text
+        assert "B could not be told to hold (waits until it is heard again" in text
+        assert text.endswith("; A has been told to hold")
+        asked = [r for r in two.told.station.orders.records.values() if r.command.serial == "B"]
+        assert 1 <= len(asked) <= 2
 
     def test_it_looks_ten_times_a_second_however_often_time_is_told(self) -> None:
         two = Two(300.0).passes(1.0)

@@ -37,6 +37,10 @@ class WatchSettings:
     hold_again_s: float = 5.0
     """A vehicle that was held and is in conflict again is held again, not more often than this."""
 
+    hold_retry_s: float = 1.0
+    """A hold that could not be given is tried again after this, and the other one is held
+    meanwhile: a link comes back within seconds, and each try is on record."""
+
     ignored_speed_mps: float = 2.0
     """Faster than a braking vehicle should be by this: it is not braking."""
 

@@ -21,15 +21,16 @@ from recon.safety.watchdogs import (
     Picture,
     Watchdog,
     Watched,
+    hold_words,
     take_picture,
 )
 from recon.station import commanding
 from recon.station.air import in_the_air
 from recon.station.commanding import Stepped
-from recon.station.outputs import Output
+from recon.station.outputs import Output, SendCommand
 from recon.station.own_ids import take_id
 from recon.station.state import Station
-from recon.station.watch_state import Kept, StickCount
+from recon.station.watch_state import HoldRefused, Kept, StickCount
 
 _NOBODY_YET = Lead()
 _TOLD_NOTHING = Intent()
@@ -41,6 +42,8 @@ def look(station: Station, now_ns: int, watchdogs: Iterable[Watchdog] = WATCHDOG
     if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
         return station, ()
     station = _with_stick_counts(station, now_ns)
+    refused = _lately_refused(station, now_ns)
+    station = replace(station, watch=replace(station.watch, holds_refused=refused))
     kept = station.watch.findings
     picture = take_picture(
         _watched(station, now_ns),
@@ -74,6 +77,7 @@ def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
             continue  # a link in conflict: most likely it tells of the same aircraft
         serial = vehicle.serial or ""
         count = watch.sticks.get(serial)
+        refused = watch.holds_refused.get(serial)
         quiet_s = None if count is None else (now_ns - count.changed_at_ns) / NS_PER_S
         yield Watched(
             vehicle,
@@ -83,6 +87,7 @@ def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
             before=watch.before.get(serial),
             is_eye=vehicle.serial is not None and vehicle.serial == eye,
             stick_quiet_s=quiet_s,
+            hold_refused="" if refused is None else refused.why,
         )
 
 
@@ -138,12 +143,23 @@ def _still_held(station: Station) -> dict[str, Held]:
     }
 
 
+def _lately_refused(station: Station, now_ns: int) -> dict[str, HoldRefused]:
+    """The holds that could not be given, until they are to be tried again."""
+    retry_ns = seconds_to_ns(station.settings.safety.watch.hold_retry_s)
+    refused = station.watch.holds_refused.items()
+    return {serial: one for serial, one in refused if now_ns - one.at_ns < retry_ns}
+
+
 def _may_fly(vehicle: VehicleState | None) -> bool:
     return vehicle is not None and vehicle.is_flying.value is not False
 
 
 def _hold(station: Station, findings: Iterable[Finding], picture: Picture, now_ns: int) -> Stepped:
-    """Order a hold for each vehicle that a finding wants held, once."""
+    """Order a hold for each vehicle that a finding wants held, once.
+
+    One is held only when the hold went to its link: one that was refused, or waits for the vehicle
+    to be heard, holds nobody.
+    """
     wanted = {finding.holds: finding for finding in findings if finding.holds is not None}
     speeds_mps = {
         one.state.serial: one.flyer.speed_mps for one in picture.flying if one.flyer is not None
@@ -155,7 +171,35 @@ def _hold(station: Station, findings: Iterable[Finding], picture: Picture, now_n
         station, number = take_id(station)
         order = OperatorOrder(number, Hover(), f"station: {finding.rule}", serial)
         station, sent = commanding.place(station, order, now_ns)
-        held = {**station.watch.held, serial: Held(now_ns, speeds_mps.get(serial, 0.0))}
-        station = replace(station, watch=replace(station.watch, held=held))
         outputs += sent
+        if any(isinstance(output, SendCommand) for output in sent):
+            held = Held(now_ns, speeds_mps.get(serial, 0.0))
+            station = _with_held(station, serial, held)
+        else:
+            refused = HoldRefused(now_ns, station.orders.records[number].note)
+            station = _with_refused(station, serial, refused)
+        station = _said(station, finding, serial)
     return station, outputs
+
+
+def _with_held(station: Station, serial: str, held: Held) -> Station:
+    known = {**station.watch.held, serial: held}
+    return replace(station, watch=replace(station.watch, held=known))
+
+
+def _with_refused(station: Station, serial: str, refused: HoldRefused) -> Station:
+    known = {**station.watch.holds_refused, serial: refused}
+    return replace(station, watch=replace(station.watch, holds_refused=known))
+
+
+def _said(station: Station, finding: Finding, serial: str) -> Station:
+    """The finding says what became of the hold that it wanted, also when it is not made again."""
+    watch, vehicle = station.watch, station.fleet.vehicles[serial]
+    refused = watch.holds_refused.get(serial)
+    words = hold_words(watch.held.get(serial), "" if refused is None else refused.why)
+    outcome = f"; {vehicle.display_name} {words}"
+    if outcome in finding.text:
+        return station  # it was held before, and is held again
+    told = replace(finding, text=f"{finding.text}{outcome}")
+    kept = replace(watch.findings[finding.key], finding=told)
+    return replace(station, watch=replace(watch, findings={**watch.findings, finding.key: kept}))

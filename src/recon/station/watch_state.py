@@ -17,6 +17,14 @@ class Kept:
 
 
 @dataclass(frozen=True, slots=True)
+class HoldRefused:
+    """A hold that the watchdogs wanted and that did not go to its vehicle: when, and why."""
+
+    at_ns: int
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class StickCount:
     """How many sticks a lease has sent, and when that number last changed."""
 
@@ -37,6 +45,7 @@ class Watch:
     looked_at_ns: int | None = None
     findings: Mapping[str, Kept] = field(default_factory=dict)
     held: Mapping[str, Held] = field(default_factory=dict)
+    holds_refused: Mapping[str, HoldRefused] = field(default_factory=dict)
     before: Mapping[str, Before] = field(default_factory=dict)
     sticks: Mapping[str, StickCount] = field(default_factory=dict)
     dismissed: Mapping[str, int | None] = field(default_factory=dict)

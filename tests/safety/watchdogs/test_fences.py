@@ -64,7 +64,12 @@ class TestBoundary:
         leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
         found = only(looks(fences, leaving, airspace=SITE))
         assert (found.rule, found.severity, found.holds) == ("fence_ahead", Severity.ERROR, "A")
-        assert found.text == "A: is about to leave the site's boundary; it is told to hold"
+        assert found.text == "A: is about to leave the site's boundary"
+        ordered = only(looks(fences, told(leaving, held=held(0.1, 10.0)), airspace=SITE))
+        assert ordered.text.endswith("boundary; A has been told to hold")
+        refused = only(looks(fences, told(leaving, hold_refused="no link"), airspace=SITE))
+        assert refused.text.endswith("boundary; A could not be told to hold (no link)")
+        assert refused.holds is None
 
     def test_the_alarm_is_first(self) -> None:
         leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
@@ -153,7 +158,7 @@ class TestKeepOut:
     def test_one_about_to_enter_is_held(self) -> None:
         coming = aircraft("A", (260.0, 0.0), velocity=(8.0, 0.0, 0.0))
         found = only(looks(fences, coming, airspace=site(WALL)))
-        assert found.text == "A: is about to enter the keep-out zone 'wall'; it is told to hold"
+        assert found.text == "A: is about to enter the keep-out zone 'wall'"
         assert (found.rule, found.severity, found.holds) == ("zone_ahead", Severity.ERROR, "A")
         assert looks(fences, aircraft("A", (260.0, 0.0)), airspace=site(WALL)) == []
 

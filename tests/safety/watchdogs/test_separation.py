@@ -45,8 +45,21 @@ class TestAlarms:
         found = only(looks(separation, *head_on(150.0)))
         assert found.severity is Severity.ERROR
         apart = "0 m, and 0 m in height"
-        assert found.text == f"B: comes too near in 7 s to A: {apart}; B is told to hold"
+        assert found.text == f"B: comes too near in 7 s to A: {apart}"
         assert (found.serial, found.vehicle_name) == ("B", "B")
+
+    def test_it_tells_of_a_hold_once_it_is_given_and_of_one_that_could_not_be(self) -> None:
+        a, b = head_on(80.0)
+        apart = "0 m, and 0 m in height"
+        assert only(looks(separation, a, b)).holds == "B"
+        given = only(looks(separation, a, told(b, held=held(0.5, 10.0))))
+        assert given.text.endswith("; B has been told to hold")
+        other = only(looks(separation, a, told(b, hold_refused="no link")))
+        assert (
+            other.text
+            == f"B: comes too near in 3 s to A: {apart}; B could not be told to hold (no link)"
+        )
+        assert other.holds == "A"
 
     def test_beyond_ten_seconds_it_is_none(self) -> None:
         assert looks(separation, *head_on(230.0)) == []

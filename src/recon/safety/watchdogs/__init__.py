@@ -9,7 +9,7 @@ from recon.safety.watchdogs.finding import Finding
 from recon.safety.watchdogs.heights import heights
 from recon.safety.watchdogs.jumps import jumps
 from recon.safety.watchdogs.link import link
-from recon.safety.watchdogs.picture import Before, Held, Picture, Watched
+from recon.safety.watchdogs.picture import Before, Held, Picture, Watched, hold_words
 from recon.safety.watchdogs.separation import separation
 from recon.safety.watchdogs.sticks import sticks
 from recon.safety.watchdogs.take import plane_of, take_picture
@@ -35,6 +35,7 @@ __all__ = [
     "WatchSettings",
     "Watchdog",
     "Watched",
+    "hold_words",
     "plane_of",
     "take_picture",
 ]

@@ -141,11 +141,12 @@ def _found(
 ) -> Finding:
     watched = picture.flying[index]
     severity = Severity.CRITICAL if is_bad else Severity.ERROR
+    if stops and watched.hold_words:
+        text = f"{text}; {watched.name} {watched.hold_words}"
     finding = watched.finding(rule, severity, text, about=f":{about}" if about else "")
     is_due = picture.lasted_s(finding.key) >= picture.settings.confirm_s
     if not (stops and is_due and watched.may_be_held) or watched.is_coming_down:
         return finding
     if watched.was_held_within_s(picture.now_ns, picture.settings.hold_again_s):
         return finding
-    held = replace(finding, holds=watched.state.serial)
-    return replace(held, text=f"{finding.text}; it is told to hold")
+    return replace(finding, holds=watched.state.serial)

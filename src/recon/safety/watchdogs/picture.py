@@ -33,6 +33,13 @@ class Held:
         return intent.since_ns <= self.since_ns or intent.commanded is Commanded.HOLD
 
 
+def hold_words(held: Held | None, refused: str) -> str:
+    """Return what became of a hold, to follow the vehicle's name; empty when none was given."""
+    if refused:
+        return f"could not be told to hold ({refused})"
+    return "" if held is None else "has been told to hold"
+
+
 @dataclass(frozen=True, slots=True)
 class Before:
     """A vehicle's telemetry before the newest: where it was, how fast, and when."""
@@ -48,6 +55,7 @@ class Watched:
 
     `flyer` is None while it has never told where it is; `ghost` is set while it is not heard.
     `stick_quiet_s` is set while sticks are streamed to it: how long none was sent.
+    `hold_refused` tells why a hold could not be given to it just now.
     """
 
     state: VehicleState
@@ -59,6 +67,7 @@ class Watched:
     before: Before | None = None
     is_eye: bool = False
     stick_quiet_s: float | None = None
+    hold_refused: str = ""
 
     @property
     def key(self) -> str:
@@ -95,7 +104,13 @@ class Watched:
             self.is_heard_flying
             and self.state.serial is not None
             and self.leader is not Leader.PILOT
+            and not self.hold_refused
         )
+
+    @property
+    def hold_words(self) -> str:
+        """What became of a hold for it, to follow its name; empty when none was given."""
+        return hold_words(self.held, self.hold_refused)
 
     def was_held_within_s(self, now_ns: int, seconds: float) -> bool:
         """Return whether the station has held it so lately."""

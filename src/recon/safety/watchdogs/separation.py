@@ -92,7 +92,7 @@ def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separat
             if _can_be_held(picture, candidate) and _helps(picture, pair, found, need):
                 held = candidate
                 break
-    text = f"{_words(found, second.name + _unheard(second))}{_outcome(picture, held)}"
+    text = f"{_words(found, second.name + _unheard(second))}{_outcome(picture, *both)}"
     return _finding(picture, key, yielding, text, found, held)
 
 
@@ -112,7 +112,7 @@ def _ghost(picture: Picture, ghost: Ghost, need: Separation) -> Iterator[Finding
         can = is_due and _can_be_held(picture, watched) and _is_better(picture, found, instead)
         held = watched if can else None
         where = f"where {ghost.name} may be, which has not been heard for {ghost.age_s:.0f} s"
-        text = f"{_words(found, where)}{_outcome(picture, held)}"
+        text = f"{_words(found, where)}{_outcome(picture, watched)}"
         yield _finding(picture, key, watched, text, found, held)
 
 
@@ -182,10 +182,11 @@ def _unheard(watched: Watched) -> str:
     return f" (not heard for {watched.ghost.age_s:.0f} s, if it flies its mission on)"
 
 
-def _outcome(picture: Picture, held: Watched | None) -> str:
+def _outcome(picture: Picture, *both: Watched) -> str:
+    """What has been done: what the station did, never what it is about to try."""
     if not picture.is_hold_on:
         return f"; {SWITCHED_OFF}: act now"
-    return "" if held is None else f"; {held.name} is told to hold"
+    return "".join(f"; {one.name} {one.hold_words}" for one in both if one.hold_words)
 
 
 def _finding(

@@ -82,6 +82,7 @@ def _placed(
         one.before,
         one.is_eye,
         one.stick_quiet_s,
+        one.hold_refused,
     )
 
 
