@@ -192,11 +192,14 @@ PICTURE = np.zeros((3, 160, 160), np.uint8)
 @pytest.mark.parametrize(
     ("tiff", "message"),
     [
-        (b"", "expected a GeoTIFF, got: "),
-        (b"not a picture", "expected a GeoTIFF, got: "),
-        (b"II*\x00", "expected a GeoTIFF, got: "),
-        (b"<VRTDataset rasterXSize='1' rasterYSize='1'/>", "expected a GeoTIFF, got: "),
-        (flat()[:2_000], "expected a whole GeoTIFF, got one cut short or damaged: "),
+        (b"", "expected a GeoTIFF, got an empty file; export"),
+        (b"not a picture", "expected a GeoTIFF, got a file of another kind; "),
+        (b"II*\x00", "expected a whole GeoTIFF, got one cut short or damaged; export it again"),
+        (
+            b"<VRTDataset rasterXSize='1' rasterYSize='1'/>",
+            "expected a GeoTIFF, got a file of another kind; ",
+        ),
+        (flat()[:2_000], "expected a whole GeoTIFF, got one cut short or damaged; export it again"),
         (flat()[:200], "expected a GeoTIFF"),
         (bytes(64 * 1024 * 1024 + 1), "expected at most 67108864 bytes, got more"),
         (flat(bands=PICTURE), "got 3 of uint8; is it a picture?"),
@@ -290,17 +293,23 @@ def sparse(side: int, **profile: Any) -> bytes:
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ("", "/site.toml: elevation: Object missing required field 'datum'"),
-        ('datum = "msl"', "elevation.datum: Invalid enum value 'msl', expected 'geoid' or 'wgs84'"),
+        ("", "/site.toml: elevation.datum: expected 'geoid' or 'wgs84', got nothing"),
+        ('datum = "msl"', "elevation.datum: expected 'geoid' or 'wgs84', got 'msl'"),
         (
             'datum = "geoid"',
             "elevation.geoid_height_m: expected one with datum = 'geoid' and none "
             "with 'wgs84', got none with 'geoid'",
         ),
         ('datum = "wgs84"\ngeoid_height_m = -31.5', "got one with 'wgs84'"),
-        ('datum = "geoid"\ngeoid_height_m = 400', "geoid_height_m: Expected 'float' <= 100.0"),
+        (
+            'datum = "geoid"\ngeoid_height_m = 400',
+            "geoid_height_m: expected a number of -120 to 100, got 400",
+        ),
         ('datum = "geoid"\ngeoid_height_m = nan', "geoid_height_m: expected a finite number"),
-        ('datum = "wgs84"\nunit = "ft"', "elevation: Object contains unknown field 'unit'"),
+        (
+            'datum = "wgs84"\nunit = "ft"',
+            "elevation: expected only the keys file, datum, geoid_height_m, got 'unit'",
+        ),
     ],
 )
 def test_the_datum_is_never_guessed(tmp_path: Path, table: str, message: str) -> None:

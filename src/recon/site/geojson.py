@@ -4,6 +4,7 @@ Edges are straight in the local frame, where RFC 7946 has them straight in degre
 latitude the two differ by 2 cm in the middle of an edge of 1 km, by 2 m in one of 10 km.
 """
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,12 +13,14 @@ from typing import Annotated, Any
 import msgspec
 import numpy as np
 import numpy.typing as npt
+from msgspec import Meta
 
 from recon.geo import enu_from_geo, region_fault
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.zone import Region
+from recon.site.complaints import said_value
 from recon.site.errors import SiteError
-from recon.site.reading import convert, read_bounded
+from recon.site.reading import convert, read_bounded, refuse_non_finite
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,10 +41,13 @@ ACCEPTED_CRS = frozenset(
 )
 """Names of WGS84 that programs write; the coordinates are longitude, latitude under each."""
 
-Position = Annotated[list[float], msgspec.Meta(min_length=2, max_length=3)]
-Ring = Annotated[list[Position], msgspec.Meta(min_length=4)]
-Rings = Annotated[list[Ring], msgspec.Meta(min_length=1)]
-Polygons = Annotated[list[Rings], msgspec.Meta(min_length=1)]
+Position = Annotated[
+    list[float],
+    Meta(min_length=2, max_length=3, description="a position: longitude, latitude, maybe a height"),
+]
+Ring = Annotated[list[Position], Meta(min_length=4, description="a ring of at least 4 positions")]
+Rings = Annotated[list[Ring], Meta(min_length=1, description="a polygon's list of rings")]
+Polygons = Annotated[list[Rings], Meta(min_length=1, description="a list of polygons")]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +65,7 @@ def read_features(path: Path) -> tuple[Feature, ...]:
     collection = _object(str(path), _read_json(path), "FeatureCollection")
     features = collection.get("features")
     if not isinstance(features, list):
-        raise SiteError(f"{path}: expected a list of features, got {_said(features)}")
+        raise SiteError(f"{path}: expected a list of features, got {said_value(features)}")
     if len(features) > MOST_FEATURES:
         raise SiteError(f"{path}: expected at most {MOST_FEATURES} features, got {len(features)}")
     return tuple(_feature(path, number, data) for number, data in enumerate(features, start=1))
@@ -74,7 +80,9 @@ def regions_of(feature: Feature, frame: LocalFrame) -> tuple[Region, ...]:
     elif kind == "MultiPolygon":
         polygons = convert(feature.place, coordinates, Polygons, "coordinates")
     else:
-        raise SiteError(f"{feature.place}: expected a Polygon or MultiPolygon, got {_said(kind)}")
+        raise SiteError(
+            f"{feature.place}: expected a Polygon or MultiPolygon, got {said_value(kind)}"
+        )
     corners = sum(len(ring) for rings in polygons for ring in rings)
     if corners > MOST_CORNERS:
         raise SiteError(f"{feature.place}: expected at most {MOST_CORNERS} corners, got {corners}")
@@ -85,7 +93,7 @@ def point_of(feature: Feature, frame: LocalFrame) -> LatLon:
     """Return where a Point is; its height, if it has one, is not read. Raises `SiteError`."""
     kind = feature.geometry.get("type")
     if kind != "Point":
-        raise SiteError(f"{feature.place}: expected a Point, got {_said(kind)}")
+        raise SiteError(f"{feature.place}: expected a Point, got {said_value(kind)}")
     position = convert(feature.place, feature.geometry.get("coordinates"), Position, "coordinates")
     _local_m(feature.place, [position], frame)
     return LatLon(latitude_deg=position[1], longitude_deg=position[0])
@@ -96,16 +104,39 @@ def _read_json(path: Path) -> object:
     try:
         return msgspec.json.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError) as problem:
-        raise SiteError(f"{path}: expected a GeoJSON file, got: {problem}") from problem
+        raise SiteError(_no_json(path, data)) from problem
     except RecursionError as problem:
         raise SiteError(f"{path}: expected a GeoJSON file, got one nested too deeply") from problem
+
+
+def _no_json(path: Path, data: bytes) -> str:
+    """Return what is wrong with a file that is no JSON; numbers that JSON has not are named."""
+    expected = f"{path}: expected a GeoJSON file, got"
+    try:
+        _refuse_non_finite_features(path, json.loads(data.decode("utf-8")))
+    except SiteError as problem:
+        return str(problem)
+    except json.JSONDecodeError as problem:
+        return f"{expected} no JSON at line {problem.lineno}, column {problem.colno}"
+    except UnicodeDecodeError:
+        return f"{expected} bytes that are no UTF-8 text"
+    except (ValueError, RecursionError):
+        pass  # A number of too many digits, or lists in lists without end.
+    return f"{expected} what cannot be read as JSON"
+
+
+def _refuse_non_finite_features(path: Path, read: object) -> None:
+    features = read.get("features") if isinstance(read, dict) else None
+    for number, feature in enumerate(features if isinstance(features, list) else [], start=1):
+        refuse_non_finite(_feature_place(path, number, feature), feature, "")
+    refuse_non_finite(path, read, "")
 
 
 def _object(place: str, data: object, kind: str | None) -> dict[str, Any]:
     """Return a JSON object of a GeoJSON type, any type for None, in an accepted CRS."""
     if not isinstance(data, dict) or (kind is not None and data.get("type") != kind):
         got = data.get("type") if isinstance(data, dict) else data
-        raise SiteError(f"{place}: expected a GeoJSON {kind or 'geometry'}, got {_said(got)}")
+        raise SiteError(f"{place}: expected a GeoJSON {kind or 'geometry'}, got {said_value(got)}")
     if "crs" in data:
         crs = data["crs"]
         properties = crs.get("properties") if isinstance(crs, dict) else None
@@ -113,25 +144,29 @@ def _object(place: str, data: object, kind: str | None) -> dict[str, Any]:
         if not isinstance(name, str) or name not in ACCEPTED_CRS:
             raise SiteError(
                 f"{place}: expected coordinates in WGS84 (CRS84 or EPSG:4326), got the CRS "
-                f"{_said(name)}; export the layer as EPSG:4326"
+                f"{said_value(name)}; export the layer as EPSG:4326"
             )
     return data
 
 
 def _feature(path: Path, number: int, data: object) -> Feature:
-    place = f"{path}: feature {number}"
+    place = _feature_place(path, number, data)
     feature = _object(place, data, "Feature")
     properties = feature.get("properties")
     if properties is None:
         properties = {}
     if not isinstance(properties, dict):
-        raise SiteError(f"{place}: expected properties, got {_said(properties)}")
+        raise SiteError(f"{place}: expected properties, got {said_value(properties)}")
     # An attribute left empty in QGIS is written as null.
     properties = {key: value for key, value in properties.items() if value is not None}
-    name = properties.get("name")
-    if isinstance(name, str):
-        place += f" ({_said(name)})"
     return Feature(place, number, properties, _object(place, feature.get("geometry"), None))
+
+
+def _feature_place(path: Path, number: int, feature: object) -> str:
+    """Return what names a feature in complaints: file, number and, if it has one, its name."""
+    properties = feature.get("properties") if isinstance(feature, dict) else None
+    name = properties.get("name") if isinstance(properties, dict) else None
+    return f"{path}: feature {number}" + (f" ({said_value(name)})" if isinstance(name, str) else "")
 
 
 def _region(place: str, rings: list[list[list[float]]], frame: LocalFrame) -> Region:
@@ -186,13 +221,3 @@ def _far_away(place: str, degrees: FloatArray, enu_m: FloatArray, looks_swapped:
         f"{place}: expected corners within {FARTHEST_M / 1_000.0:g} km of the site's origin, got "
         f"{got}, {distance_km:.0f} km away; {advice}"
     )
-
-
-def _said(value: object) -> str:
-    """Return a value of the file in printable characters, not too many of them."""
-    if isinstance(value, dict):
-        return "an object"
-    if isinstance(value, list):
-        return "a list"
-    text = "nothing" if value is None else ascii(value)
-    return text if len(text) <= 80 else text[:77] + "..."

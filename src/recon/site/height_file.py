@@ -36,6 +36,8 @@ MOST_PIXELS = 16_000_000
 LARGEST_BLOCK_BYTES = 128 * 1024 * 1024
 """A strip or tile is unpacked whole, whatever is asked of it."""
 HEIGHT_TYPES = frozenset({"int16", "uint16", "int32", "uint32", "float32", "float64"})
+TIFF_STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
+"""Of either byte order, plain and large."""
 METRES = frozenset({None, "", "m", "metre", "meter", "metres", "meters"})
 LOWEST_M, HIGHEST_M = -1_000.0, 10_000.0
 """What an altitude in site.toml may be."""
@@ -81,10 +83,7 @@ class HeightFile:
         try:
             raw = self.dataset.read(1, window=window, masked=True)
         except (RasterioError, ValueError, MemoryError) as problem:
-            raise SiteError(
-                f"{self.place}: expected a whole GeoTIFF, got one cut short or "
-                f"damaged: {said(problem)}"
-            ) from problem
+            raise SiteError(_damaged(self.place)) from problem
         scale, offset = self.dataset.scales[0], self.dataset.offsets[0]
         with np.errstate(all="ignore"):
             heights: FloatArray = raw.astype(np.float64).filled(np.nan) * scale + offset
@@ -96,8 +95,9 @@ class HeightFile:
 def opened(path: Path) -> Iterator[HeightFile]:
     """Open a file of heights; raises `SiteError` for anything else."""
     data = read_bounded(path, LARGEST_FILE_BYTES, "a GeoTIFF with heights")
-    if not data:
-        raise SiteError(f"{path}: expected a GeoTIFF, got: an empty file")
+    if data[:4] not in TIFF_STARTS:
+        got = "a file of another kind" if data else "an empty file"
+        raise SiteError(f"{path}: expected a GeoTIFF, got {got}; export the heights as GeoTIFF")
     # No datum shift is fetched: what PROJ has at hand is good to a metre or two.
     set_network_enabled(False)
     place = str(path)
@@ -128,7 +128,12 @@ def _dataset(place: str, memory: MemoryFile) -> DatasetReader:
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             return memory.open(driver="GTiff")
     except (RasterioError, ValueError, MemoryError) as problem:
-        raise SiteError(f"{place}: expected a GeoTIFF, got: {said(problem)}") from problem
+        raise SiteError(_damaged(place)) from problem
+
+
+def _damaged(place: str) -> str:
+    """GDAL's own words name a file in memory and a directory of tags: nothing to act on."""
+    return f"{place}: expected a whole GeoTIFF, got one cut short or damaged; export it again"
 
 
 def _refuse_other_rasters(place: str, dataset: DatasetReader) -> None:

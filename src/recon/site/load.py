@@ -16,7 +16,7 @@ from recon.site.eye import eye_from_table
 from recon.site.layers import read_layers
 from recon.site.limits import LimitsTable, limits_from_table
 from recon.site.profiles import profile_from_table
-from recon.site.reading import convert, read_bounded
+from recon.site.reading import convert, read_bounded, refuse_non_finite
 from recon.site.schema import (
     EyeTable,
     GroundImageTable,
@@ -42,7 +42,7 @@ def load_site(folder: Path) -> Site:
     """
     path = folder / SITE_FILE
     data = _read_toml(path)
-    _refuse_non_finite(path, data, "")
+    refuse_non_finite(path, data, "")
     table = convert(path, data, SiteTable, "")
     origin = convert(path, table.origin, OriginTable, "origin")
     frame = LocalFrame(
@@ -81,22 +81,11 @@ def _read_toml(path: Path) -> dict[str, Any]:
     )
     try:
         return tomllib.loads(data.decode("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
+    except ValueError as problem:
+        # No TOML, no UTF-8, or a number of more digits than Python reads.
         raise SiteError(f"{path}: expected a TOML file, got: {problem}") from problem
     except RecursionError as problem:
         raise SiteError(f"{path}: expected a TOML file, got one nested too deeply") from problem
-
-
-def _refuse_non_finite(path: Path, value: object, key: str) -> None:
-    """TOML knows nan and inf; no key here does."""
-    if isinstance(value, float) and not math.isfinite(value):
-        raise SiteError(f"{path}: {key}: expected a finite number, got {value}")
-    if isinstance(value, Mapping):
-        for name, item in value.items():
-            _refuse_non_finite(path, item, f"{key}.{name}" if key else str(name))
-    elif isinstance(value, list):
-        for index, item in enumerate(value):
-            _refuse_non_finite(path, item, f"{key}[{index}]")
 
 
 def _ground_grid(path: Path, table: GroundImageTable, frame: LocalFrame) -> GroundGrid:
@@ -134,7 +123,21 @@ def _profiles(path: Path, tables: list[dict[str, Any]]) -> dict[str, VehicleProf
                 f"{path}: {key}.serial: expected each serial once, got {profile.serial!r} again"
             )
         profiles[profile.serial] = profile
+    _refuse_shared_names(path, profiles)
     return profiles
+
+
+def _refuse_shared_names(path: Path, profiles: Mapping[str, VehicleProfile]) -> None:
+    """Who reads or types a name must mean one vehicle: no two share one, nor a serial."""
+    names = set(profiles)
+    for number, profile in enumerate(profiles.values(), start=1):
+        name = profile.display_name
+        if name != profile.serial and name in names:
+            raise SiteError(
+                f"{path}: vehicles (entry {number}).name: expected a name that no other vehicle "
+                f"has as its name or serial, got {name!a} again"
+            )
+        names.add(name)
 
 
 def _give_pads(path: Path, layers: Layers, profiles: dict[str, VehicleProfile]) -> None:

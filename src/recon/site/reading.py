@@ -1,16 +1,17 @@
 """Reading a site's files: bounded, inside the folder, and with complaints that name the place."""
 
-import re
+import math
+import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TypeVar
 
 import msgspec
-from msgspec import inspect
 
+from recon.site.complaints import complaint, said_value
 from recon.site.errors import SiteError
 
 T = TypeVar("T")
-K = TypeVar("K", bound=inspect.Type)
 
 
 def file_inside(site_file: Path, name: str, key: str) -> Path:
@@ -57,27 +58,20 @@ def convert(place: object, data: object, kind: type[T], key: str) -> T:
     try:
         return msgspec.convert(data, kind, strict=True)
     except msgspec.ValidationError as problem:
-        what, _, where = str(problem).partition(" - at `$")
-        inner = where.rstrip("`").lstrip(".")
-        joint = "." if key and inner and not inner.startswith("[") else ""
-        full_key = key + joint + inner
-        # An unknown key's name is the file's own text: repr keeps control characters out.
-        said = ascii(what)[1:-1].replace("`", "'")
-        if what.startswith("Invalid enum value"):
-            said += f", expected {' or '.join(_words(inspect.type_info(kind), where))}"
-        raise SiteError(f"{place}: {full_key + ': ' if full_key else ''}{said}") from problem
+        raise SiteError(f"{place}: {complaint(problem, data, kind, key)}") from problem
 
 
-def _words(kind: inspect.Type, where: str) -> list[str]:
-    """Return the words allowed at a place like `.pad.datum` of a type."""
-    for name in re.findall(r"\.(\w+)", where):
-        (struct,) = _choices(kind, inspect.StructType)
-        kind = next(field.type for field in struct.fields if field.encode_name == name)
-    words = [word for literal in _choices(kind, inspect.LiteralType) for word in literal.values]
-    return [repr(word) for word in words]
-
-
-def _choices(kind: inspect.Type, wanted: type[K]) -> list[K]:
-    """Return the types of one sort that a type allows: itself, or members of a union."""
-    members = kind.types if isinstance(kind, inspect.UnionType) else (kind,)
-    return [member for member in members if isinstance(member, wanted)]
+def refuse_non_finite(place: object, value: object, key: str) -> None:
+    """Raise `SiteError` for nan, inf or what is beyond any float: no key has a use for it."""
+    if isinstance(value, float) and not math.isfinite(value):
+        raise SiteError(f"{place}: {key}: expected a finite number, got {value}")
+    if isinstance(value, int) and abs(value) > sys.float_info.max:
+        raise SiteError(f"{place}: {key}: expected a finite number, got {said_value(value)}")
+    if isinstance(value, Mapping):
+        for name, item in value.items():
+            # A key is the file's own text: ascii keeps control characters out.
+            inner = ascii(str(name))[1:-1]
+            refuse_non_finite(place, item, f"{key}.{inner}" if key else inner)
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            refuse_non_finite(place, item, f"{key}[{index}]")

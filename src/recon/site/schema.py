@@ -11,10 +11,34 @@ from msgspec import Meta, Struct
 Latitude = Annotated[float, Meta(ge=-90.0, le=90.0)]
 Longitude = Annotated[float, Meta(ge=-180.0, le=180.0)]
 Altitude = Annotated[float, Meta(ge=-1_000.0, le=10_000.0)]
-Serial = Annotated[str, Meta(min_length=1, max_length=256, pattern=r"^[!-~]+$")]
-"""Printable ASCII without spaces, as DJI's serials are; the wire's limit is 256 bytes."""
-Text = Annotated[str, Meta(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
-FileName = Annotated[str, Meta(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
+Serial = Annotated[
+    str,
+    Meta(
+        min_length=1,
+        max_length=256,
+        pattern=r"^[!-~]+$",
+        description="a text of 1 to 256 printable ASCII characters without spaces",
+    ),
+]
+"""As DJI's serials are; the wire's limit is 256 bytes."""
+Text = Annotated[
+    str,
+    Meta(
+        min_length=1,
+        max_length=64,
+        pattern=r"^[^\x00-\x1f\x7f-\x9f]*$",
+        description="a text of 1 to 64 characters without control characters",
+    ),
+]
+FileName = Annotated[
+    str,
+    Meta(
+        min_length=1,
+        max_length=200,
+        pattern=r"^[^\x00-\x1f\x7f-\x9f]*$",
+        description="a file's name of 1 to 200 characters without control characters",
+    ),
+]
 Seconds = Annotated[float, Meta(ge=0.0, le=10.0)]
 Pixels = Annotated[int, Meta(ge=2, le=16_384)]
 

@@ -1,0 +1,154 @@
+"""What a value of the site's files should have been, and what came, in words of the house.
+
+The words come from the schema: its ranges, choices and keys, and where a pattern says little to a
+person, the description beside it. Of msgspec's own text only the place of the fault is read.
+"""
+
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from typing import TypeVar
+
+import msgspec
+from msgspec import inspect
+
+K = TypeVar("K", bound=inspect.Type)
+
+LONGEST_SAID = 80
+_STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
+
+
+def complaint(problem: msgspec.ValidationError, data: object, kind: object, key: str) -> str:
+    """Return "key: expected this, got that" for data that is not of its type; `key` is its own."""
+    what, _, where = str(problem).rpartition(" - at `$")
+    steps = [name or int(index) for name, index in _STEP.findall(where.rstrip("`"))]
+    holders, kinds = [data], [inspect.type_info(kind)]
+    try:
+        for step in steps:
+            holders.append(holders[-1][step])  # type: ignore[index]
+            kinds.append(_inner(kinds[-1], step))
+    except (LookupError, TypeError, StopIteration):
+        # The place was part of a key that the file's author made up: the fault is at the top.
+        what, steps, holders, kinds = str(problem), [], holders[:1], kinds[:1]
+    what = what or str(problem)
+    if what.startswith("Object contains unknown field"):
+        return _unknown_key(_path(key, steps), holders[-1], kinds[-1])
+    if what.startswith("Object missing required field"):
+        missing = _missing(holders[-1], kinds[-1])
+        words = in_words(_inner(kinds[-1], missing))
+        return f"{_path(key, [*steps, missing])}: expected {words}, got nothing"
+    hint = _swapped(holders, steps)
+    place = _path(key, steps)
+    lead = f"{place}: " if place else ""
+    return f"{lead}expected {in_words(kinds[-1])}, got {said_value(holders[-1])}{hint}"
+
+
+def in_words(kind: inspect.Type) -> str:
+    """Return what a type allows: `a number of -90 to 90`, `'ground' or 'wgs84'`."""
+    if isinstance(kind, inspect.Metadata):
+        description = (kind.extra_json_schema or {}).get("description")
+        return str(description) if description else in_words(kind.type)
+    if isinstance(kind, inspect.UnionType):
+        told = [one for one in kind.types if not isinstance(one, inspect.NoneType)]
+        return " or ".join(in_words(one) for one in told)
+    if isinstance(kind, inspect.LiteralType):
+        return " or ".join(repr(value) for value in kind.values)
+    if isinstance(kind, inspect.FloatType):
+        return "a number" + _range(kind)
+    if isinstance(kind, inspect.IntType):
+        return "a whole number" + _range(kind)
+    if isinstance(kind, inspect.TupleType):
+        return f"a list of {len(kind.item_types)}, each {in_words(kind.item_types[0])}"
+    if isinstance(kind, inspect.ListType):
+        return "a list"
+    return "a text" if isinstance(kind, inspect.StrType) else "a table"
+
+
+def said_value(value: object) -> str:
+    """Return a value of a file in printable characters, not too many of them."""
+    if isinstance(value, Mapping):
+        return "an object"
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    if value is None or isinstance(value, bool):
+        return "nothing" if value is None else str(value).lower()
+    if isinstance(value, int) and abs(value) > sys.float_info.max:
+        return "a number with very many digits"
+    text = ascii(value) if isinstance(value, str) else ascii(str(value))[1:-1]
+    return text if len(text) <= LONGEST_SAID else text[: LONGEST_SAID - 3] + "..."
+
+
+def _unknown_key(place: str, holder: object, kind: inspect.Type) -> str:
+    known = [field.encode_name for field in _struct(kind).fields]
+    unknown = next(str(name) for name in _keys(holder) if name not in known)
+    near = get_close_matches(unknown, known, n=1)
+    advice = f"; did you mean {near[0]!r}?" if near else ""
+    lead = f"{place}: " if place else ""
+    return f"{lead}expected only the keys {', '.join(known)}, got {said_value(unknown)}{advice}"
+
+
+def _missing(holder: object, kind: inspect.Type) -> str:
+    there = set(_keys(holder))
+    fields = _struct(kind).fields
+    return next(f.encode_name for f in fields if f.required and f.encode_name not in there)
+
+
+def _keys(holder: object) -> Sequence[object]:
+    return list(holder) if isinstance(holder, Mapping) else []
+
+
+def _swapped(holders: Sequence[object], steps: Sequence[str | int]) -> str:
+    """Whether a latitude that is none would be a longitude, and the other way round."""
+    if not steps or steps[-1] != "latitude_deg" or not isinstance(holders[-2], Mapping):
+        return ""
+    latitude, longitude = holders[-1], holders[-2].get("longitude_deg")
+    if not (_is_degrees(latitude, 180.0) and _is_degrees(longitude, 90.0)):
+        return ""
+    return "; latitude and longitude look swapped"
+
+
+def _is_degrees(value: object, most: float) -> bool:
+    return isinstance(value, int | float) and abs(value) <= most
+
+
+def _inner(kind: inspect.Type, step: str | int) -> inspect.Type:
+    """Return the type of what a type holds at a key or an index."""
+    if isinstance(step, str):
+        fields = _struct(kind).fields
+        return next(field.type for field in fields if field.encode_name == step)
+    for lists in _choices(kind, inspect.ListType):
+        return lists.item_type
+    (several,) = _choices(kind, inspect.TupleType)
+    return several.item_types[step]
+
+
+def _struct(kind: inspect.Type) -> inspect.StructType:
+    return _choices(kind, inspect.StructType)[0]
+
+
+def _choices(kind: inspect.Type, wanted: type[K]) -> list[K]:
+    """Return the types of one sort that a type allows: itself, or members of a union."""
+    if isinstance(kind, inspect.Metadata):
+        return _choices(kind.type, wanted)
+    members = kind.types if isinstance(kind, inspect.UnionType) else (kind,)
+    return [member for member in members if isinstance(member, wanted)]
+
+
+def _range(kind: inspect.FloatType | inspect.IntType) -> str:
+    if kind.le is None:
+        return ""
+    if kind.gt is not None:
+        return f" above {kind.gt:g}, {kind.le:g} at most"
+    return f" of {kind.ge:g} to {kind.le:g}"
+
+
+def _path(key: str, steps: Sequence[str | int]) -> str:
+    """Return `pad.latitude_deg` or `coordinates[0][1]` under a key."""
+    path = key
+    for step in steps:
+        if isinstance(step, int):
+            path += f"[{step}]"
+        else:
+            path += f".{step}" if path else step
+    return path
