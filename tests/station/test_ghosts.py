@@ -4,7 +4,7 @@ from tests.fleet.said import PLACE, core, extended
 from tests.station.commanded import Told
 
 from recon.geo.distance import moved_m
-from recon.model.event import GhostDismissed
+from recon.model.event import AlarmAcknowledged, GhostDismissed
 from recon.station.air import ghost, in_the_air, is_hazard_unseen
 from recon.station.ghost_view import ghost_view
 
@@ -63,6 +63,14 @@ class TestDismissal:
         told.says(1, core())
         assert in_air(told) == ["A"]
 
+    def test_its_alarm_ends_with_it_and_comes_back_only_after_it_was_heard_again(self) -> None:
+        told = stale()
+        assert told.alarms() == {"link_lost"}
+        told.happens(GhostDismissed("A", "Ann")).passes(60.0)
+        assert told.alarms() == set()
+        told.says(1, core()).passes(4.0)
+        assert "link_lost" in told.alarms()
+
     def test_nothing_else_does(self) -> None:
         told = stale().closes(1).passes(600.0)
         assert in_air(told) == ["A"]
@@ -99,6 +107,16 @@ class TestWithoutASerial:
         assert in_air(told) == []
         again = self.lost().happens(GhostDismissed("unidentified link 7", "Ann"))
         assert in_air(again) == []
+
+    def test_its_alarm_stays_until_then_whoever_has_seen_it(self) -> None:
+        told = self.lost()
+        (alarm,) = (a for a in told.station.alarms.alarms.values() if a.is_active)
+        assert alarm.condition.rule == "unidentified_lost"
+        assert "dismiss link-7" in alarm.condition.text
+        told.happens(AlarmAcknowledged(alarm.id, "Ann")).passes(60.0)
+        assert told.alarms() == {"unidentified_lost"}
+        told.happens(GhostDismissed("link-7", "Ann")).passes(0.1)
+        assert told.alarms() == set()
 
     def test_one_on_the_ground_is_gone(self) -> None:
         told = Told().opens(7, core(flying=False), extended(None)).passes(1.0).closes(7)

@@ -82,7 +82,7 @@ def test_the_eyes_telemetry_is_kept_for_its_frames() -> None:
 class TestWhatMustNotGoUnseen:
     def test_a_vehicle_without_a_serial_that_flew_when_its_link_ended_is_an_alarm(self) -> None:
         told = Told().opens(1, core()).passes(0.5).closes(1).passes(1.0)
-        assert "unidentified_lost" in told.alarms(active=False)
+        assert "unidentified_lost" in told.alarms()
 
     def test_one_that_stood_on_the_ground_is_none(self) -> None:
         told = Told().opens(1, core(flying=False)).passes(0.5).closes(1).passes(1.0)

@@ -25,7 +25,7 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
     ghost that somebody has dismissed is not among them until it is heard again.
     """
     for serial, vehicle in station.fleet.vehicles.items():
-        if vehicle.is_flying.value is not False and not _is_dismissed(station, serial, vehicle):
+        if vehicle.is_flying.value is not False and not is_dismissed(station, vehicle):
             yield vehicle, serial
     for link in station.fleet.unbound_links():
         if link.own_state.is_flying.value is True:
@@ -60,13 +60,19 @@ def ghost(station: Station, vehicle: VehicleState, now_ns: int) -> Ghost | None:
     """Return where a vehicle may be that is not heard; None for one on the ground or dismissed."""
     if vehicle.is_flying.value is False or vehicle.core_received_at_ns is None:
         return None
-    if _is_dismissed(station, vehicle.serial or "", vehicle):
+    if is_dismissed(station, vehicle):
         return None
     prediction = station.settings.safety.prediction
     plane = plane_of(station.airspace, (vehicle,))
     seen = flyer(vehicle, station.airspace, plane, now_ns, prediction)
     intent = station.intents.get(vehicle.serial or "", _TOLD_NOTHING)
     return None if seen is None else ghost_of(seen, intent, prediction)
+
+
+def is_dismissed(station: Station, vehicle: VehicleState) -> bool:
+    """Return whether somebody has taken a vehicle out of the air, and it was not heard since."""
+    dismissed, serial = station.watch.dismissed, vehicle.serial or ""
+    return serial in dismissed and dismissed[serial] == vehicle.core_received_at_ns
 
 
 def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
@@ -78,7 +84,7 @@ def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
         return False
     is_placeless = vehicle.position.value is None and not vehicle.track
     may_fly = vehicle.is_flying.value is not False
-    is_out = _is_dismissed(station, name, vehicle)
+    is_out = is_dismissed(station, vehicle)
     return ghost(station, vehicle, now_ns) is not None or (is_placeless and may_fly and not is_out)
 
 
@@ -112,9 +118,3 @@ def _lost_as(station: Station, name: str) -> str | None:
     """Which of the lost is meant: by what it is dismissed by, or as its alarm names it."""
     lost = station.watch.lost
     return next((key for key, s in lost.items() if name in (key, s.display_name)), None)
-
-
-def _is_dismissed(station: Station, serial: str, vehicle: VehicleState) -> bool:
-    """Until it is heard again; nothing but telemetry brings it back."""
-    dismissed = station.watch.dismissed
-    return serial in dismissed and dismissed[serial] == vehicle.core_received_at_ns

@@ -6,7 +6,7 @@ from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
-from recon.station import faults, orders
+from recon.station import air, faults, orders
 from recon.station.alarms import Condition, Severity
 from recon.station.fleet_return import told as fleet_return
 from recon.station.orders import OrderRecord
@@ -18,7 +18,8 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     """Yield every condition that holds now."""
     for vehicle in station.fleet.vehicles.values():
         yield from _identity(vehicle)
-        yield from _silence(vehicle, now_ns)
+        if not air.is_dismissed(station, vehicle):
+            yield from _silence(vehicle, now_ns)
         yield from _never_heard(vehicle, station.settings.first_telemetry_s)
         yield from _battery(vehicle, station.settings)
         yield from _landing(vehicle, station.settings.landing_wait_s)
@@ -27,6 +28,8 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _unidentified(link)
         if link.own_state.is_flying.value is not False:
             yield from _silence(link.own_state, now_ns)
+    for name, state in station.watch.lost.items():
+        yield _lost_unidentified(name, state)
     for record in station.orders.watched:
         yield from _waiting(record)
         yield from _of_order(record)
@@ -111,6 +114,22 @@ def _unidentified(link: LinkRecord) -> Iterator[Condition]:
     if link.claimed_serial is None and link.own_state.is_flying.value is True:
         text = f"a vehicle without a serial is flying ({link.remote_address})"
         yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s=2.0)
+
+
+def _lost_unidentified(name: str, state: VehicleState) -> Condition:
+    """It ends with a person's word alone: nobody would know the vehicle if it were heard again."""
+    text = (
+        "a vehicle without a serial was flying when its link ended; it may be anywhere near its "
+        f"last place: dismiss {name} when you have seen where it is"
+    )
+    return Condition(
+        key=f"unidentified_lost:{name}",
+        severity=Severity.CRITICAL,
+        rule="unidentified_lost",
+        vehicle_name=state.display_name,
+        text=f"{state.display_name}: {text}",
+        link_id=state.link_id,
+    )
 
 
 def _waiting(record: OrderRecord) -> Iterator[Condition]:

@@ -65,9 +65,8 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return commanding.follow(station, event, now_ns), ()
         case LinkOpened():
             return _fleet(station, event, now_ns)
-        case LinkClosed(link_id, reason):
-            station = _lost_unidentified(station, link_id, reason, now_ns)
-            return _fleet(station, event, now_ns)
+        case LinkClosed(link_id):
+            return _fleet(_lost_unidentified(station, link_id), event, now_ns)
         case PacketReceived():
             return _packet(station, event, now_ns)
         case Tick():
@@ -112,22 +111,12 @@ def _fleet(station: Station, event: Event, now_ns: int) -> Stepped:
     return replace(station, fleet=fleet), closing
 
 
-def _lost_unidentified(station: Station, link_id: int, reason: str, now_ns: int) -> Station:
+def _lost_unidentified(station: Station, link_id: int) -> Station:
     """What flew without ever saying its serial is gone from the fleet, not from the air."""
     link = station.fleet.links.get(link_id)
     if link is None or link.claimed_serial is not None or not link.own_state.is_flying.value:
         return station
-    name = link.own_state.display_name
-    condition = Condition(
-        key=f"unidentified_lost:{link_id}",
-        severity=Severity.CRITICAL,
-        rule="unidentified_lost",
-        vehicle_name=name,
-        text=f"{name}: a vehicle without a serial was flying when its link ended ({reason})",
-        link_id=link_id,
-    )
-    book = alarms.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return air.keep_lost(replace(station, alarms=book), link_id)
+    return air.keep_lost(station, link_id)
 
 
 def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
