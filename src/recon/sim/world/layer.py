@@ -1,0 +1,94 @@
+"""One layer of clouds: where it is, what it lets through."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, radians, sin
+from statistics import NormalDist
+
+import numpy as np
+
+from recon.sim.noise import FloatImage
+from recon.sim.world.drift import drift_m
+from recon.sim.world.fractal_field import ROW_POINTS, FractalField
+from recon.sim.world.keyframes import FloatArray, gaussian, generator
+from recon.sim.world.penumbra import Penumbra, extinction_table, look_up, spread
+from recon.sim.world.settings import LayerSettings
+
+OCTAVES, MODULATION, AXES = 0, 1, 2
+"""Streams of a layer's random numbers."""
+
+
+@dataclass(frozen=True)
+class CloudLayer:
+    """A layer; `stream` makes its clouds, everything else is in the settings."""
+
+    stream: tuple[int, ...]
+    settings: LayerSettings
+
+    @cached_property
+    def field(self) -> FractalField:
+        """The field that is cloud where it exceeds the threshold."""
+        at = self.settings
+        return FractalField(
+            (*self.stream, OCTAVES),
+            at.spectral_slope,
+            at.outer_scale_m,
+            at.finest_scale_m,
+            at.lifetime_s,
+            at.lifetime_exponent,
+        )
+
+    def transmittance(
+        self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray, edge: Penumbra
+    ) -> FloatImage:
+        """Return the direct beam's share (N,) at N ground points.
+
+        Times and penumbrae (those of this layer's height at these times) are (N,) or (1,).
+        """
+        if self.settings.cover in (0.0, 1.0):
+            return np.full(east_m.size, self._even_share, dtype=np.float32)
+        x_m, y_m = self._field_place(east_m, north_m, time_s, edge)
+        found = self.field.sample(x_m, y_m, time_s, edge.across_m * edge.along_m)
+        per_softness = np.float32(1.0 / self.settings.softness)
+        excess = (found.value - self._threshold(time_s).astype(np.float32)) * per_softness
+        spreads = spread(edge, self._axes_rad, found) * per_softness
+        return _by_rows(self._table, excess, spreads)
+
+    @property
+    def _even_share(self) -> float:
+        """What a layer without edges lets through: all, or what its thickest cloud does."""
+        return 1.0 if self.settings.cover == 0.0 else float(self._table[-1, 0])
+
+    def _field_place(
+        self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray, edge: Penumbra
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return where in the field the sun's ray to each point passes; its axes are turned."""
+        drift_east_m, drift_north_m = drift_m(self.settings, time_s)
+        east = east_m + edge.offset_m * edge.toward_east - drift_east_m
+        north = north_m + edge.offset_m * edge.toward_north - drift_north_m
+        to_x, to_y = cos(self._axes_rad), sin(self._axes_rad)
+        return east * to_x - north * to_y, east * to_y + north * to_x
+
+    def _threshold(self, time_s: FloatArray) -> FloatArray:
+        """Return the field's value at the clouds' edges, which wanders slowly."""
+        at = self.settings
+        middle = NormalDist().inv_cdf(1.0 - at.cover) * (1.0 + at.modulation**2) ** 0.5
+        wandering = gaussian((*self.stream, MODULATION), time_s, at.modulation_s)
+        threshold: FloatArray = middle - at.modulation * wandering
+        return threshold
+
+    @cached_property
+    def _axes_rad(self) -> float:
+        return radians(float(generator((*self.stream, AXES), 0).uniform(0.0, 360.0)))
+
+    @cached_property
+    def _table(self) -> FloatImage:
+        return extinction_table(self.settings.largest_optical_depth)
+
+
+def _by_rows(table: FloatImage, excess: FloatImage, spreads: FloatImage) -> FloatImage:
+    """Look up N points in rows of a fixed length, as all sampling here is done."""
+    full = np.zeros((2, -(-excess.size // ROW_POINTS) * ROW_POINTS), dtype=np.float32)
+    full[0, : excess.size], full[1, : excess.size] = excess, spreads
+    found = look_up(table, full[0].reshape(-1, ROW_POINTS), full[1].reshape(-1, ROW_POINTS))
+    return found.ravel()[: excess.size]

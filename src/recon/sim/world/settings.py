@@ -1,0 +1,164 @@
+"""What the made-up sky, wind and light are like; a reason stands beside each number."""
+
+from dataclasses import dataclass
+from math import inf, isfinite
+
+from recon.model.geo import LatLon
+from recon.sim.errors import SimulationError
+
+DEMO_FIELD = LatLon(41.9012, -93.6034)
+LOW_SPEED_MPS = (5.0, 11.0)
+"""Fair-weather cumulus, 1 to 2 km up, over land by day."""
+HIGH_SPEED_MPS = (10.0, 18.0)
+"""Clouds 3 to 6 km up."""
+BETWEEN_LAYERS_DEG = (25.0, 70.0)
+"""Wind turns with height; two layers that move alike are one to a forecaster."""
+
+
+def _expect(name: str, value: float, lowest: float, highest: float) -> None:
+    """Refuse what is not a number within the bounds (infinity only where it is a bound)."""
+    if not lowest <= value <= highest:
+        raise SimulationError(f"{name}: expected {lowest:g} to {highest:g}, got {value:g}")
+
+
+@dataclass(frozen=True, slots=True)
+class SunSettings:
+    """Where and when the scenario plays."""
+
+    place: LatLon = DEMO_FIELD
+    start_utc_s: float = 1_750_435_200.0
+    """2025-06-20 16:00 UTC, seconds after 1970: a summer's morning there, the sun 55 degrees up."""
+
+    def __post_init__(self) -> None:
+        if not (self.place.is_valid() and isfinite(self.start_utc_s)):
+            raise SimulationError(
+                f"sun: expected a place on the globe and a time, got {self.place}"
+                f" at {self.start_utc_s}"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class WindShift:
+    """The clouds' velocity turns evenly into another one."""
+
+    start_s: float
+    duration_s: float
+    speed_mps: float
+    heading_deg: float
+
+    def __post_init__(self) -> None:
+        _expect("wind shift: start_s", self.start_s, 0.0, inf)
+        _expect("wind shift: duration_s", self.duration_s, 1.0, inf)
+        _expect("wind shift: speed_mps", self.speed_mps, 0.0, 60.0)
+        _expect("wind shift: heading_deg", self.heading_deg, -360.0, 360.0)
+
+
+@dataclass(frozen=True, slots=True)
+class LayerSettings:
+    """One layer of clouds."""
+
+    base_height_m: float = 1_400.0
+    """Above the ground; fair-weather cumulus at noon."""
+    speed_mps: float = 7.5
+    """In the middle of `LOW_SPEED_MPS`."""
+    heading_deg: float = 70.0
+    """Where the clouds go, clockwise from north."""
+    cover: float = 0.4
+    """Share of the ground in the layer's shade (less than half of the beam), over long times."""
+    spectral_slope: float = 3.4
+    """Power of the field falls with wave number to this power; 3.0 gives more ragged clouds."""
+    outer_scale_m: float = 12_000.0
+    """The largest structures: with them an hour's cover differs from the next hour's."""
+    finest_scale_m: float = 40.0
+    """Details below are lost in the penumbra of a cloud 1.4 km up."""
+    softness: float = 0.22
+    """Optical depth grows e-fold over this part of the field's deviation: edges of some 80 m."""
+    largest_optical_depth: float = 20.0
+    """Of thick cumulus, along the beam; below 0.7 (thin cirrus) the layer never makes shade."""
+    lifetime_s: float = 900.0
+    """After which a structure of 1 km has changed to 1/e; inf: frozen."""
+    lifetime_exponent: float = 2.0 / 3.0
+    """Lifetime grows with scale to this power, as eddies' turnover does."""
+    modulation: float = 0.35
+    """How far the threshold wanders, in deviations of the field: the day's ups and downs."""
+    modulation_s: float = 2_400.0
+    """After which the wandering has changed to 1/e."""
+    shifts: tuple[WindShift, ...] = ()
+    """In order, each after the end of the one before."""
+
+    def __post_init__(self) -> None:
+        _expect("base_height_m", self.base_height_m, 50.0, 15_000.0)
+        _expect("speed_mps", self.speed_mps, 0.0, 60.0)
+        _expect("heading_deg", self.heading_deg, -360.0, 360.0)
+        _expect("cover", self.cover, 0.0, 1.0)
+        _expect("spectral_slope", self.spectral_slope, 2.1, 5.0)
+        _expect("outer_scale_m", self.outer_scale_m, 200.0, 100_000.0)
+        _expect("finest_scale_m", self.finest_scale_m, 10.0, self.outer_scale_m)
+        _expect("softness", self.softness, 0.01, 5.0)
+        _expect("largest_optical_depth", self.largest_optical_depth, 0.01, 200.0)
+        _expect("lifetime_s", self.lifetime_s, 1.0, inf)
+        _expect("lifetime_exponent", self.lifetime_exponent, 0.0, 2.0)
+        _expect("modulation", self.modulation, 0.0, 3.0)
+        _expect("modulation_s", self.modulation_s, 1.0, inf)
+        ends = [0.0, *(shift.start_s + shift.duration_s for shift in self.shifts)]
+        if any(shift.start_s < end for shift, end in zip(self.shifts, ends, strict=False)):
+            raise SimulationError("wind shifts: expected each after the end of the one before")
+
+
+@dataclass(frozen=True, slots=True)
+class SkySettings:
+    """Sun and clouds; no layers: a clear sky."""
+
+    seed: int = 0
+    sun: SunSettings = SunSettings()
+    layers: tuple[LayerSettings, ...] = (LayerSettings(),)
+    """One or two, the lower first."""
+
+    def __post_init__(self) -> None:
+        if self.seed < 0:
+            raise SimulationError(f"sky: expected a seed from 0 upwards, got {self.seed}")
+        if len(self.layers) > 2:
+            raise SimulationError(f"sky: expected at most two layers, got {len(self.layers)}")
+
+
+@dataclass(frozen=True, slots=True)
+class WindSettings:
+    """Wind near the ground."""
+
+    seed: int = 0
+    speed_10m_mps: float = 3.5
+    """Ten metres up; a light breeze, as with fair-weather cumulus."""
+    heading_deg: float = 50.0
+    """Where the air goes, clockwise from north: left of the clouds, as friction turns it."""
+    shear_exponent: float = 0.16
+    """Power law over crops by day."""
+    veer_deg_per_100m: float = 3.0
+    """The wind turns to the right with height (northern hemisphere)."""
+    gust_intensity: float = 0.2
+    """Standard deviation over mean speed at 10 m, along the wind, over open farmland by day."""
+    gust_scale_m: float = 150.0
+    """Length of the largest gusts that fly by with the mean wind."""
+
+    def __post_init__(self) -> None:
+        if self.seed < 0:
+            raise SimulationError(f"wind: expected a seed from 0 upwards, got {self.seed}")
+        _expect("wind: speed_10m_mps", self.speed_10m_mps, 0.0, 40.0)
+        _expect("wind: heading_deg", self.heading_deg, -360.0, 360.0)
+        _expect("wind: shear_exponent", self.shear_exponent, 0.0, 1.0)
+        _expect("wind: veer_deg_per_100m", self.veer_deg_per_100m, -45.0, 45.0)
+        _expect("wind: gust_intensity", self.gust_intensity, 0.0, 1.0)
+        _expect("wind: gust_scale_m", self.gust_scale_m, 10.0, 1_000.0)
+
+
+@dataclass(frozen=True, slots=True)
+class LightSettings:
+    """The air the light comes through."""
+
+    linke_turbidity: float = 3.5
+    """How many clean dry atmospheres dim as much; summer farmland in the middle latitudes."""
+    altitude_m: float = 250.0
+    """Above the sea: thinner air dims less."""
+
+    def __post_init__(self) -> None:
+        _expect("light: linke_turbidity", self.linke_turbidity, 1.0, 10.0)
+        _expect("light: altitude_m", self.altitude_m, -500.0, 6_000.0)

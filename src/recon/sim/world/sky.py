@@ -1,0 +1,76 @@
+"""The sky: how much of the sun's direct beam reaches the ground, anywhere, at any time.
+
+A pure function of its settings (seed, place, time, layers): the same point at the same time has
+the same value to the bit, whatever was asked before or is asked with it.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.geo import GroundGrid
+from recon.sim.noise import FloatImage
+from recon.sim.world.keyframes import FloatArray
+from recon.sim.world.layer import CloudLayer
+from recon.sim.world.penumbra import penumbra
+from recon.sim.world.settings import SkySettings
+from recon.sim.world.sun import SunPosition, sun_position
+
+POINTS_AT_ONCE = 65_536
+"""What is worked on at once stays in the processor's cache."""
+
+
+@dataclass(frozen=True)
+class Sky:
+    """Sun and clouds over a site; ground points are east and north metres of the site's frame."""
+
+    settings: SkySettings
+
+    @cached_property
+    def layers(self) -> tuple[CloudLayer, ...]:
+        """The clouds, the lower layer first."""
+        return tuple(
+            CloudLayer((self.settings.seed, number), layer)
+            for number, layer in enumerate(self.settings.layers)
+        )
+
+    def sun_at(self, time_s: float) -> SunPosition:
+        """Return where the sun stands, `time_s` after the scenario's start."""
+        sun = self.settings.sun
+        return sun_position(sun.place, sun.start_utc_s + time_s)
+
+    def transmittance(
+        self, east_m: npt.ArrayLike, north_m: npt.ArrayLike, time_s: npt.ArrayLike
+    ) -> FloatImage:
+        """Return the direct beam's share, 0 to 1, at ground points and times, broadcast together.
+
+        Where there is one time for all points, give a number: that is fastest.
+        """
+        east, north, time = (np.asarray(v, dtype=np.float64) for v in (east_m, north_m, time_s))
+        shape = np.broadcast_shapes(east.shape, north.shape, time.shape)
+        flat = [np.broadcast_to(v, shape).ravel() for v in (east, north)]
+        times = time.reshape(1) if time.size == 1 else np.broadcast_to(time, shape).ravel()
+        found = np.ones(flat[0].size, dtype=np.float32)
+        for start in range(0, found.size, POINTS_AT_ONCE):
+            part = slice(start, start + POINTS_AT_ONCE)
+            part_times = times if times.size == 1 else times[part]
+            found[part] = self._piece(flat[0][part], flat[1][part], part_times)
+        return found.reshape(shape)
+
+    def _piece(self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray) -> FloatImage:
+        """Return the direct beam's share (N,) at N points; times are (N,) or (1,)."""
+        moments, numbers = np.unique(time_s, return_inverse=True)
+        suns = [self.sun_at(float(moment)) for moment in moments]
+        share = np.ones(east_m.size, dtype=np.float32)
+        for layer in self.layers:
+            edge = penumbra(suns, layer.settings.base_height_m).at(numbers)
+            share *= layer.transmittance(east_m, north_m, time_s, edge)
+        return share
+
+    def on_grid(self, grid: GroundGrid, time_s: float) -> FloatImage:
+        """Return the direct beam's share at the centres of a raster's cells, (rows, cols)."""
+        east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
+        north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
+        return self.transmittance(east_m[np.newaxis, :], north_m[:, np.newaxis], time_s)

@@ -1,0 +1,101 @@
+"""The wind a vehicle flies in: a mean that grows and turns with height, and gusts.
+
+Gusts are octaves of noise that fly by with the mean wind (frozen turbulence): who is farther
+downwind has them later. A pure function of seed, place and time.
+"""
+
+from dataclasses import dataclass
+from math import cos, floor, radians, sin, sqrt
+
+from recon.sim.world.drift import velocity
+from recon.sim.world.keyframes import PERIODS_PER_LIFETIME, number
+from recon.sim.world.settings import WindSettings
+
+REFERENCE_M = 10.0
+LOWEST_M = 1.0
+"""Below, in the crop, the profile no longer holds."""
+HIGHEST_M = 600.0
+"""Above, the power law would let the wind grow for ever."""
+OCTAVES = 6
+"""From the largest gusts to those of a second or two: a drone answers nothing faster."""
+OCTAVE_RATIO = 0.5
+KOLMOGOROV = 2.0 / 3.0
+"""Power of velocity at a scale grows with the scale to this power."""
+ACROSS_SHARE = 0.8
+UP_SHARE = 0.5
+"""Deviations across the wind and upwards over that along it, in the lowest hundred metres."""
+STREAM = 1_000
+"""Random numbers of the wind: none of the sky's, which count layers from 0."""
+SLOWEST_MPS = 1.0
+"""In calm air gusts come by with the draught of the thermals."""
+
+Velocity = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Wind:
+    """Wind velocity (east, north, up) in m/s: where the air goes."""
+
+    settings: WindSettings
+
+    def mean_mps(self, height_m: float) -> Velocity:
+        """Return the mean wind at a height above the ground."""
+        east_mps, north_mps = velocity(self._speed_mps(height_m), self._heading_deg(height_m))
+        return east_mps, north_mps, 0.0
+
+    def at(self, east_m: float, north_m: float, height_m: float, time_s: float) -> Velocity:
+        """Return the wind with its gusts at a place of the site's frame."""
+        speed_mps = self._speed_mps(height_m)
+        heading = radians(self._heading_deg(height_m))
+        passing_mps = max(self._speed_mps(REFERENCE_M), SLOWEST_MPS)
+        downwind_m = self._downwind_m(east_m, north_m)
+        along, across, up = self._gust(time_s - downwind_m / passing_mps, passing_mps)
+        along_mps = speed_mps + along
+        return (
+            along_mps * sin(heading) + across * cos(heading),
+            along_mps * cos(heading) - across * sin(heading),
+            up,
+        )
+
+    def _gust(self, passing_s: float, passing_mps: float) -> Velocity:
+        """Return gusts along, to the right of and above the mean wind."""
+        scale_s = self.settings.gust_scale_m / passing_mps
+        deviation_mps = self.settings.gust_intensity * self.settings.speed_10m_mps
+        parts = (
+            deviation_mps * share * _noise(self.settings.seed, axis, passing_s, scale_s)
+            for axis, share in enumerate((1.0, ACROSS_SHARE, UP_SHARE))
+        )
+        along, across, up = parts
+        return along, across, up
+
+    def _speed_mps(self, height_m: float) -> float:
+        share = min(max(height_m, LOWEST_M), HIGHEST_M) / REFERENCE_M
+        return self.settings.speed_10m_mps * float(share**self.settings.shear_exponent)
+
+    def _heading_deg(self, height_m: float) -> float:
+        height_m = min(max(height_m, 0.0), HIGHEST_M)
+        return self.settings.heading_deg + self.settings.veer_deg_per_100m * height_m / 100.0
+
+    def _downwind_m(self, east_m: float, north_m: float) -> float:
+        heading = radians(self.settings.heading_deg)
+        return east_m * sin(heading) + north_m * cos(heading)
+
+
+def _noise(seed: int, axis: int, time_s: float, scale_s: float) -> float:
+    """Return a value of mean 0 and deviation 1 that changes on scales from `scale_s` down."""
+    powers = [OCTAVE_RATIO ** (k * KOLMOGOROV) for k in range(OCTAVES)]
+    value = 0.0
+    for k, power in enumerate(powers):
+        period_s = scale_s * OCTAVE_RATIO**k * PERIODS_PER_LIFETIME
+        value += sqrt(power / sum(powers)) * _between_keys(
+            (seed, STREAM + axis, k), time_s / period_s
+        )
+    return value
+
+
+def _between_keys(stream: tuple[int, ...], position: float) -> float:
+    """Blend a stream's two neighbouring numbers so that the variance stays one."""
+    key = floor(position)
+    along = position - key
+    norm = sqrt((1.0 - along) ** 2 + along**2)
+    return ((1.0 - along) * number(stream, key) + along * number(stream, key + 1)) / norm
