@@ -95,7 +95,7 @@ def _grid(area: shapely.Geometry, frame: LocalFrame, cell_m: float) -> GroundGri
 def _stretches(pieces: Sequence[Piece], lattice: RowLattice) -> Iterator[Stretch]:
     for index, piece in enumerate(pieces):
         marks_m = lattice.marks_between_m(piece.start_m, piece.end_m)
-        ends_m = [piece.start_m, *marks_m.tolist(), piece.end_m]
+        ends_m = [piece.start_m, *marks_m, piece.end_m]
         for start_m, end_m in pairwise(ends_m):
             yield Stretch(index, start_m, end_m)
 

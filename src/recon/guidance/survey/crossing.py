@@ -1,6 +1,7 @@
 """Which cells are in view while a vehicle flies a straight way, from when to when."""
 
 from dataclasses import dataclass
+from math import ceil, cos, floor, radians, sin
 
 import numpy as np
 
@@ -102,18 +103,23 @@ def _window(
     grid: GroundGrid, lattice: RowLattice, swath: Swath, way: tuple[Place, Place]
 ) -> Window:
     """The cells round all that the footprint passes over."""
-    places = np.array(way)
-    least, most = places.min(axis=0), places.max(axis=0)
-    half = np.array([swath.half_along_m, swath.half_across_m])
-    (west, south), (east, north) = least - half, most + half
-    corners = lattice.east_north_m([(west, south), (west, north), (east, south), (east, north)])
-    cols = (corners[:, 0] - grid.west_m) / grid.cell_m
-    rows = (grid.north_m - corners[:, 1]) / grid.cell_m
-    first_row, last_row = _clipped(rows, grid.rows)
-    first_col, last_col = _clipped(cols, grid.cols)
+    (one_along, one_across), (other_along, other_across) = way
+    middle_m = ((one_along + other_along) / 2.0, (one_across + other_across) / 2.0)
+    half_along_m = abs(other_along - one_along) / 2.0 + swath.half_along_m
+    half_across_m = abs(other_across - one_across) / 2.0 + swath.half_across_m
+    # The box round a turned rectangle reaches as far as its half axes do together.
+    bearing = radians(lattice.bearing_deg)
+    sine, cosine = abs(sin(bearing)), abs(cos(bearing))
+    half_east_m = half_along_m * sine + half_across_m * cosine
+    half_north_m = half_along_m * cosine + half_across_m * sine
+    ((east_m, north_m),) = lattice.east_north_m([middle_m]).tolist()
+    first_row, last_row = _clipped(grid.north_m - north_m, half_north_m, grid.cell_m, grid.rows)
+    first_col, last_col = _clipped(east_m - grid.west_m, half_east_m, grid.cell_m, grid.cols)
     return Window(first_row, last_row, first_col, last_col)
 
 
-def _clipped(at: FloatArray, count: int) -> tuple[int, int]:
-    first = int(np.clip(np.floor(at.min()), 0, count))
-    return first, max(first, int(np.clip(np.ceil(at.max()), 0, count)))
+def _clipped(middle_m: float, half_m: float, cell_m: float, count: int) -> tuple[int, int]:
+    """From which to which cell a span reaches, on one axis of a grid."""
+    first = min(max(floor((middle_m - half_m) / cell_m), 0), count)
+    last = min(max(ceil((middle_m + half_m) / cell_m), first), count)
+    return first, last

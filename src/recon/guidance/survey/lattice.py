@@ -6,13 +6,16 @@ exactly. (When a camera fires between the marks nobody can say: its timer runs a
 """
 
 from dataclasses import dataclass
-from math import cos, radians, sin
+from math import ceil, cos, floor, radians, sin
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+
+ROUNDING = 1e-6
+"""Of a mark's distance: a place this near to a mark is on it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,18 +56,22 @@ class RowLattice:
         row = np.floor((across_m - self.first_row_m) / self.spacing_m + 0.5).astype(np.int64)
         return np.clip(row, 0, self.rows - 1)
 
-    def nearest_mark_m(self, along_m: float) -> float:
-        """Return the mark nearest to a place along."""
-        return self.first_mark_m + round((along_m - self.first_mark_m) / self.mark_m) * self.mark_m
+    def mark_at_or_before_m(self, along_m: float) -> float:
+        """Return the last mark that is no farther along than a place."""
+        return self._mark_m(floor((along_m - self.first_mark_m) / self.mark_m + ROUNDING))
 
-    def marks_between_m(self, start_m: float, end_m: float) -> FloatArray:
+    def mark_at_or_after_m(self, along_m: float) -> float:
+        """Return the first mark that is at least as far along as a place."""
+        return self._mark_m(ceil((along_m - self.first_mark_m) / self.mark_m - ROUNDING))
+
+    def marks_between_m(self, start_m: float, end_m: float) -> tuple[float, ...]:
         """Return the marks strictly between two places along."""
-        first = int(np.floor((start_m - self.first_mark_m) / self.mark_m + 1e-6)) + 1
-        last = int(np.ceil((end_m - self.first_mark_m) / self.mark_m - 1e-6)) - 1
-        marks: FloatArray = self.first_mark_m + np.arange(first, last + 1, dtype=np.float64) * (
-            self.mark_m
-        )
-        return marks
+        first = floor((start_m - self.first_mark_m) / self.mark_m + ROUNDING) + 1
+        last = ceil((end_m - self.first_mark_m) / self.mark_m - ROUNDING) - 1
+        return tuple(self._mark_m(number) for number in range(first, last + 1))
+
+    def _mark_m(self, number: int) -> float:
+        return self.first_mark_m + number * self.mark_m
 
 
 def axes(bearing_deg: float) -> FloatArray:

@@ -155,26 +155,20 @@ def _handed_out(
 def _shares(
     plan: SurveyPlan, pieces: Sequence[Piece], surveyors: Sequence[Surveyor]
 ) -> dict[str, Route]:
-    """Each vehicle's share of the pieces: the way of sweeping, and who gets what, by the shortest
-    ways to where the shares begin."""
+    """Each vehicle's share of the pieces; who gets which by the shortest ways to where they begin.
+
+    All shares are of one route, so vehicles in neighbouring rows sweep the field the same way.
+    """
     survey, settings = plan.survey, plan.settings
     cost = Cost(survey.speed_mps**2 / settings.turning_mps2, settings.least_cut_m)
-    lying = plan.lattice.along_across_m([each.place_m for each in surveyors]).tolist()
-    places: list[Place] = [(along, across) for along, across in lying]
-    best: tuple[float, dict[str, Route]] | None = None
-    for is_rising in (True, False):
-        start_m = places[0] if len(places) == 1 else None
-        route = route_of(pieces, plan.lattice, start_m, is_rising)
-        runs = [run for run in shared(route, len(places), plan.lattice, cost) if run]
-        far_m = np.array([[between_m(run[:1], plan.lattice, at) for run in runs] for at in places])
-        who, which = linear_sum_assignment(far_m)
-        total_m = float(far_m[who, which].sum()) + between_m(route, plan.lattice, None)
-        if best is None or total_m < best[0]:
-            given = {
-                surveyors[int(i)].serial: runs[int(j)] for i, j in zip(who, which, strict=True)
-            }
-            best = (total_m, given)
-    return {} if best is None else best[1]
+    lying = plan.lattice.along_across_m([each.place_m for each in surveyors])
+    middle_along_m, middle_across_m = lying.mean(axis=0).tolist()
+    route = route_of(pieces, plan.lattice, (middle_along_m, middle_across_m))
+    runs = shared(route, len(surveyors), plan.lattice, cost)
+    places: list[Place] = [(along_m, across_m) for along_m, across_m in lying.tolist()]
+    far_m = np.array([[between_m(run[:1], plan.lattice, at) for run in runs] for at in places])
+    who, which = linear_sum_assignment(far_m)
+    return {surveyors[int(i)].serial: runs[int(j)] for i, j in zip(who, which, strict=True)}
 
 
 def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Step:

@@ -1,10 +1,8 @@
-"""In which order and direction one vehicle flies the pieces of its band: to and fro, row by row.
+"""In which order and direction pieces of rows are flown: to and fro, row by row.
 
 Pieces of neighbouring rows that face one another, one to one, make a chain that is flown as a
 serpentine. Where a hole or a bay divides rows a chain ends and others begin; these are put in the
-order of the shortest tour among those that always go on to the nearest chain. Every chain is flown
-in the same sweep (rows rising or falling), so that vehicles in neighbouring bands keep their
-distance.
+order of the shortest tour among those that always go on to the nearest end of a chain.
 """
 
 from collections.abc import Iterator, Sequence
@@ -37,14 +35,9 @@ Route = tuple[Leg, ...]
 Chain = tuple[Piece, ...]
 
 
-def route_of(
-    pieces: Sequence[Piece],
-    lattice: RowLattice,
-    start_m: Place | None,
-    is_rising: bool = True,
-) -> Route:
+def route_of(pieces: Sequence[Piece], lattice: RowLattice, start_m: Place | None) -> Route:
     """Return the legs in the order they are flown, beginning near `start_m` (along, across)."""
-    entries = [_entries(chain, is_rising) for chain in chains(pieces)]
+    entries = [_entries(chain) for chain in chains(pieces)]
     tours = _tours(entries, lattice, start_m)
     return min(tours, key=lambda tour: between_m(tour, lattice, start_m), default=())
 
@@ -91,12 +84,12 @@ def _followed(first: Piece, ahead: dict[Piece, Piece]) -> Iterator[Piece]:
         piece = ahead.get(piece)
 
 
-def _entries(chain: Chain, is_rising: bool) -> tuple[Route, Route]:
-    """The two serpentines of a chain: from either end of its first row."""
-    ordered = chain if is_rising else chain[::-1]
-    return (
-        tuple(Leg(piece, index % 2 == 1) for index, piece in enumerate(ordered)),
-        tuple(Leg(piece, index % 2 == 0) for index, piece in enumerate(ordered)),
+def _entries(chain: Chain) -> tuple[Route, ...]:
+    """The four serpentines of a chain: from either end of its first row, and of its last."""
+    return tuple(
+        tuple(Leg(piece, index % 2 == side) for index, piece in enumerate(ordered))
+        for ordered in (chain, chain[::-1])
+        for side in (0, 1)
     )
 
 
@@ -104,17 +97,17 @@ MOST_TOURS = 16
 
 
 def _tours(
-    entries: Sequence[tuple[Route, Route]], lattice: RowLattice, start_m: Place | None
+    entries: Sequence[tuple[Route, ...]], lattice: RowLattice, start_m: Place | None
 ) -> Iterator[Route]:
     """Tours that go on to the nearest chain, begun at each of the entries nearest to the start."""
-    firsts = [(index, side) for index in range(len(entries)) for side in (0, 1)]
-    firsts.sort(key=lambda first: between_m(entries[first[0]][first[1]][:1], lattice, start_m))
-    for index, side in firsts[:MOST_TOURS]:
+    firsts = [(index, first) for index, entry in enumerate(entries) for first in entry]
+    firsts.sort(key=lambda first: between_m(first[1][:1], lattice, start_m))
+    for index, first in firsts[:MOST_TOURS]:
         others = [entry for other, entry in enumerate(entries) if other != index]
-        yield _nearest_on(entries[index][side], others, lattice)
+        yield _nearest_on(first, others, lattice)
 
 
-def _nearest_on(tour: Route, entries: list[tuple[Route, Route]], lattice: RowLattice) -> Route:
+def _nearest_on(tour: Route, entries: list[tuple[Route, ...]], lattice: RowLattice) -> Route:
     while entries:
         here_m = tour[-1].ends_m(lattice, 0.0)[1]
 
