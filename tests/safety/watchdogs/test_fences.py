@@ -40,6 +40,7 @@ def site(*zones: Zone, **changes: object) -> PreparedAirspace:
 
 
 SITE = site()
+FAR_HOME = (-400.0, 0.0)
 TREES = Zone("trees", ZoneKind.KEEP_OUT, square(0.0, 300.0, 20.0), None, 30.0, HeightDatum.GROUND)
 CLOUD = Zone("cloud", ZoneKind.KEEP_OUT, square(0.0, 300.0, 20.0), 50.0, None, HeightDatum.GROUND)
 WALL = Zone("wall", ZoneKind.KEEP_OUT, square(0.0, 300.0, 20.0))
@@ -230,8 +231,47 @@ class TestHeights:
             found = looks(fences, aircraft("A", (0.0, 0.0), height_m), airspace=airspace)
             assert len(found) == count
 
-    def test_a_height_nobody_knows_is_not_called_too_high(self) -> None:
+    def test_a_height_nobody_knows_is_not_called_too_high_or_too_low(self) -> None:
         assert looks(fences, aircraft("A", (0.0, 0.0), None), airspace=SITE) == []
+
+    @pytest.mark.parametrize(("height_m", "count"), [(5.5, 0), (4.5, 1)])
+    def test_the_sites_least_height_counts_above_ground(self, height_m: float, count: int) -> None:
+        found = looks(fences, aircraft("A", (0.0, 0.0), height_m, home=FAR_HOME), airspace=SITE)
+        text = "A: is lower above ground than 5 m, or soon will be"
+        assert [(f.rule, f.text, f.holds) for f in found] == count * [("height_limit", text, None)]
+
+    def test_over_higher_ground_it_is_lower(self) -> None:
+        """A hill 40 m above the origin, and home at its foot."""
+        grid = GroundGrid(FRAME, -600.0, 600.0, 100.0, 12, 12)
+        heights_m = np.full((12, 12), 275.0)
+        heights_m[:, 8:] = 315.0
+        airspace = site(elevation=ElevationModel(grid, heights_m))
+        for east_m, height_m, count in ((-100.0, 44.0, 0), (300.0, 46.0, 0), (300.0, 44.0, 1)):
+            low = aircraft("A", (0.0, east_m), height_m, home=(0.0, -400.0))
+            found = looks(fences, low, airspace=airspace)
+            assert ["lower" in f.text for f in found] == count * [True]
+
+    def test_one_that_sinks_is_found_before_it_is_too_low(self) -> None:
+        sinking = aircraft("A", (0.0, 0.0), 8.0, (0.0, 0.0, -3.0), home=FAR_HOME)
+        assert "is lower above ground than 5 m" in only(looks(fences, sinking, airspace=SITE)).text
+
+    def test_near_home_and_on_its_way_down_it_may_be_lower(self) -> None:
+        low = aircraft("A", (0.0, 0.0), 3.0, home=FAR_HOME)
+        for one in (
+            aircraft("A", (0.0, 0.0), 3.0, home=(10.0, 0.0)),
+            told(low, intent=Intent(Commanded.LAND, NOW)),
+            told(low, intent=Intent(Commanded.RETURN, NOW)),
+        ):
+            assert looks(fences, one, airspace=SITE) == []
+
+    def test_over_ground_that_nobody_knows_one_alarm_is_enough(self) -> None:
+        grid = GroundGrid(FRAME, -600.0, 600.0, 100.0, 12, 12)
+        unknown = np.full((12, 12), 275.0)
+        unknown[:, 6:] = np.nan
+        airspace = site(elevation=ElevationModel(grid, unknown))
+        over_it = aircraft("A", (0.0, 300.0), 50.0, home=(0.0, -300.0))
+        found = only(looks(fences, over_it, airspace=airspace))
+        assert "is higher above ground than 120 m" in found.text
 
 
 def test_one_that_may_fly_its_mission_on_unheard_is_not_asked_and_others_are() -> None:

@@ -40,7 +40,7 @@ def fences(picture: Picture) -> Iterator[Finding]:
         yield from _keep_out(picture, way, zone)
     for zone in picture.airspace.zones_near(ZoneKind.HEIGHT, way.ahead, 0.0):
         yield from _heights(picture, way, zone)
-    yield from _ceiling(picture, way)
+    yield from _limits(picture, way)
 
 
 def _boundary(picture: Picture, way: Way, fence: Polygon) -> Iterator[Finding]:
@@ -90,11 +90,18 @@ def _heights(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding
             yield _found(picture, int(index), HEIGHT, text, about=name)
 
 
-def _ceiling(picture: Picture, way: Way) -> Iterator[Finding]:
-    most_m = picture.airspace.airspace.limits.max_height_above_ground_m
-    is_over = ~stays_below(picture.airspace, way.triangles_m, way.high_m, most_m)
-    for index in np.flatnonzero(is_over & _is_height_known(way)):
+def _limits(picture: Picture, way: Way) -> Iterator[Finding]:
+    """The site's own least and greatest height; over ground that nobody knows it is too high."""
+    airspace, limits = picture.airspace, picture.airspace.airspace.limits
+    most_m, least_m = limits.max_height_above_ground_m, limits.min_height_above_ground_m
+    is_known = _is_height_known(way)
+    is_over = is_known & ~stays_below(airspace, way.triangles_m, way.high_m, most_m)
+    for index in np.flatnonzero(is_over):
         text = f"is higher above ground than {most_m:g} m, or soon will be"
+        yield _found(picture, int(index), HEIGHT, text)
+    is_under = ~stays_above(airspace, way.triangles_m, way.low_m, least_m)
+    for index in np.flatnonzero(is_under & ~is_over & is_known & ~_may_be_low(picture, way)):
+        text = f"is lower above ground than {least_m:g} m, or soon will be"
         yield _found(picture, int(index), HEIGHT, text)
 
 
