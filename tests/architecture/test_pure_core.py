@@ -32,7 +32,8 @@ CORE_FILES = files(*CORE, *STATION_STEP)
 
 
 def test_the_rooms_of_the_core_are_all_there() -> None:
-    assert {"model", "geo", "camera", "wire", "vehicles", "fleet", "safety"} <= set(CORE)
+    rooms = {"model", "geo", "camera", "wire", "vehicles", "fleet", "safety"}
+    assert rooms | {"detection", "forecast", "guidance"} <= set(CORE)
     assert len(CORE_FILES) > 40
 
 

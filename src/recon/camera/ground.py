@@ -78,6 +78,7 @@ class GroundProjector:
             valid=valid,
             pose=pose,
             registration=Registration.UNREGISTERED,
+            serial=frame.serial,
         )
 
     def lay_pixels(self, rgb: RgbImage, pose: CameraPose) -> tuple[RgbImage, npt.NDArray[np.bool_]]:

@@ -60,3 +60,5 @@ class GroundImage:
     valid: npt.NDArray[np.bool_]
     pose: CameraPose
     registration: Registration = Registration.UNREGISTERED
+    serial: str = ""
+    """The vehicle whose camera saw it; empty when unknown."""

@@ -1,0 +1,84 @@
+"""The light that reaches the camera from each cell of the field's grid."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import ceil
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from recon.detection.settings import DetectionSettings
+from recon.model.geo import GroundGrid
+from recon.model.imagery import GroundImage
+from recon.model.shade import FloatMap, MaskMap
+
+GREEN = 1
+"""White balance moves red and blue against green, and shade is bluer than sun: green is taken."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CellLight:
+    """One frame on the field's grid: `light` (R, C) in (0, 1], NaN where not `seen`."""
+
+    light: FloatMap
+    seen: MaskMap
+
+
+def field_grid(image_grid: GroundGrid, settings: DetectionSettings) -> GroundGrid:
+    """Return the grid that all shade maps are on."""
+    if settings.grid is not None:
+        return settings.grid
+    cell_m = max(settings.cell_m, image_grid.cell_m)
+    rows, cols = (
+        ceil(cells * image_grid.cell_m / cell_m - 1e-6)
+        for cells in (image_grid.rows, image_grid.cols)
+    )
+    return GroundGrid(image_grid.frame, image_grid.west_m, image_grid.north_m, cell_m, rows, cols)
+
+
+def cell_light(image: GroundImage, grid: GroundGrid, settings: DetectionSettings) -> CellLight:
+    """Return a frame's light averaged over each cell of `grid`, wherever the frame is laid.
+
+    Both grids are of one local frame. Light is linear; pixels that show nothing do not count.
+    """
+    levels = np.ascontiguousarray(image.rgb[..., GREEN])
+    shown = image.valid.astype(np.float32)
+    light = cv2.LUT(levels, _light_of_levels(settings.gamma)) * shown
+    both = _box_means(np.dstack([light, shown]), image.grid, grid)
+    seen = both[..., 1] >= settings.least_seen
+    mean = np.where(seen, both[..., 0] / np.maximum(both[..., 1], 1e-6), np.nan)
+    return CellLight(mean.astype(np.float32), seen)
+
+
+def _box_means(
+    values: npt.NDArray[np.float32], laid: GroundGrid, grid: GroundGrid
+) -> npt.NDArray[np.float32]:
+    """Return (R, C, K) means of (r, c, K) values over boxes as large as a cell of `grid`.
+
+    Exact where the cells' edges meet; else interpolated between boxes. What lies outside counts 0.
+    """
+    ratio = grid.cell_m / laid.cell_m
+    box = max(1, round(ratio))
+    means = cv2.blur(values, (box, box), borderType=cv2.BORDER_CONSTANT)
+    # An even box's middle lies half a pixel before the pixel that OpenCV writes it to.
+    middle = -0.5 + (0.5 if box % 2 == 0 else 0.0)
+    first_col = (grid.west_m - laid.west_m) / laid.cell_m + ratio / 2.0 + middle
+    first_row = (laid.north_m - grid.north_m) / laid.cell_m + ratio / 2.0 + middle
+    to_laid = np.array([[ratio, 0.0, first_col], [0.0, ratio, first_row]])
+    sampled = cv2.warpAffine(
+        means,
+        to_laid,
+        (grid.cols, grid.rows),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_CONSTANT,
+    )
+    return sampled.astype(np.float32, copy=False)
+
+
+@lru_cache(maxsize=4)
+def _light_of_levels(gamma: float) -> npt.NDArray[np.float32]:
+    """The light of each level; level 0 counts as a half, for ratios."""
+    levels = np.maximum(np.arange(256), 0.5) / 255.0
+    light: npt.NDArray[np.float32] = (levels**gamma).astype(np.float32)
+    return light
