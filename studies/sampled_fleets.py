@@ -81,8 +81,8 @@ class Course:
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """By how much the worst pair of one other's instants and the order's keeps apart, by the two
-    readings; None: the certain reading does not tell."""
+    """By how much an order keeps apart from one other, at their worst pair of instants, by the two
+    readings of `sampled_flights`."""
 
     kind: str
     certain_m: float
