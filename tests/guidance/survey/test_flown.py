@@ -268,7 +268,7 @@ class TestLife:
         end = flights.run()
         assert (end.phase, end.round) == (SurveyPhase.DONE, 1)
         first, second = flights.given
-        assert second.length_m < 0.7 * first.length_m
+        assert second.length_m < 0.75 * first.length_m
 
     def test_an_aborted_one_never_flies_again(self) -> None:
         flyers = fleet(1)

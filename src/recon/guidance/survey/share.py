@@ -33,7 +33,7 @@ def shared(route: Route, count: int, lattice: RowLattice, cost: Cost) -> tuple[R
     The longest run is as short as cutting at marks allows; so all but the last are about as long.
     """
     shortest_m, longest_m = 0.0, _length_m(route, lattice, cost)
-    best = _cut_up(route, longest_m, lattice, cost)
+    best: tuple[Route, ...] = (route,) if route else ()
     while longest_m - shortest_m > CLOSE_M:
         share_m = (shortest_m + longest_m) / 2.0
         runs = _cut_up(route, share_m, lattice, cost)

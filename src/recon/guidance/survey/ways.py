@@ -17,6 +17,9 @@ CLEARANCE_M = 0.25
 MOST_CORNERS = 400
 """Of the area; from there on it is taken a little smaller, with fewer corners."""
 
+COARSEST_M = 50.0
+"""A region that has more corners even so has no room to spare."""
+
 
 class Ways:
     """Shortest ways in one area; what it has worked out it keeps."""
@@ -85,14 +88,14 @@ class Ways:
 
 
 def _corners(area: shapely.Geometry) -> FloatArray:
-    """Corners to turn at, a little inside the area."""
+    """Corners to turn at, a little inside the area; of a round edge only some."""
     inner = shapely.buffer(area, -CLEARANCE_M, join_style="mitre")
-    tolerance_m = CLEARANCE_M / 2.0
-    while shapely.get_num_coordinates(inner) > MOST_CORNERS:
-        inner = shapely.intersection(shapely.simplify(inner, tolerance_m), inner)
+    tolerance_m = CLEARANCE_M
+    while shapely.get_num_coordinates(inner) > MOST_CORNERS and tolerance_m < COARSEST_M:
+        # What is left out lies farther in than the clearance by as much as it may be off.
+        farther_in = shapely.buffer(area, -CLEARANCE_M - tolerance_m, join_style="mitre")
+        inner = shapely.simplify(farther_in, tolerance_m)
         tolerance_m *= 2.0
-        if tolerance_m > 100.0:
-            break
     corners: FloatArray = np.unique(shapely.get_coordinates(inner), axis=0)
     return corners
 
