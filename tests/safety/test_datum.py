@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.safety.cases import PLACE, TAKEOFF, vehicle
-from tests.safety.fenced import ORIGIN, airspace, flier, hills, mission, place, square
+from tests.safety.fenced import ORIGIN, airspace, flier, hills, place, square
 
 from recon.model.airspace import Airspace
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
@@ -19,7 +19,6 @@ from recon.safety.datum import (
     is_ground_assumed_flat,
     takeoff_up_m,
     vehicle_enu_m,
-    waypoints_enu_m,
 )
 
 FLAT = airspace()
@@ -93,13 +92,9 @@ class TestPlaces:
             [30.0, -20.0, 43.0], abs=1e-3
         )
 
-    def test_home_and_waypoints_too(self) -> None:
+    def test_home_too(self) -> None:
         air = airspace(pads=[pad(0.0, 0.0, 3.0)])
         assert home_enu_m(air, flier(30.0)) == pytest.approx([0.0, 0.0, 3.0], abs=1e-6)
-        waypoints = mission((10.0, 20.0, 30.0), (-900.0, 0.0, -5.0)).mission
-        assert waypoints_enu_m(air, flier(), waypoints) == pytest.approx(
-            np.array([[10.0, 20.0, 33.0], [-900.0, 0.0, -2.0]]), abs=1e-3
-        )
 
     def test_the_earths_curve_changes_no_height(self) -> None:
         """3 km away the globe is 0.7 m below the frame's plane: heights do not care."""
@@ -127,18 +122,14 @@ class TestPlaces:
 
     def test_nothing_is_anywhere_without_a_takeoff_point(self) -> None:
         state = flier(takeoff_point=None)
-        waypoints = mission((10.0, 20.0, 30.0), (0.0, 0.0, 30.0)).mission
         assert vehicle_enu_m(FLAT, state) is None
         assert home_enu_m(FLAT, state) is None
-        assert waypoints_enu_m(FLAT, state, waypoints) is None
         assert home_enu_m(OPEN_AIRSPACE, state) is None
 
     def test_without_a_site_and_a_position_there_is_no_frame(self) -> None:
         state = flier(position=Stamped())
-        waypoints = mission((10.0, 20.0, 30.0), (0.0, 0.0, 30.0)).mission
         assert frame_for(OPEN_AIRSPACE, state) is None
         assert home_enu_m(OPEN_AIRSPACE, state) is None
-        assert waypoints_enu_m(OPEN_AIRSPACE, state, waypoints) is None
 
 
 def test_fences_without_a_frame_are_no_airspace() -> None:

@@ -331,7 +331,7 @@ class TestFlyers:
         on_ground = seen(aircraft(home=None, height_m=0.0, flying=False))
         assert on_ground.low_m == 0.0
 
-    def test_many_vehicles_takeoff_heights_are_remembered_and_forgotten(self) -> None:
+    def test_many_vehicles_and_airspaces_have_their_own_takeoff_heights(self) -> None:
         heights = {seen(aircraft(f"V{n}")).takeoff_up_m for n in range(600)}
         assert heights == {0.0}
         other = PreparedAirspace(Airspace())

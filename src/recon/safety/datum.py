@@ -18,7 +18,6 @@ import numpy.typing as npt
 from recon.geo import OnGlobe, enu_from_geo
 from recon.geo.distance import horizontal_distance_m
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
-from recon.model.mission import Mission
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace
 
@@ -29,7 +28,7 @@ NEAR_PAD_M = 10.0
 pilot steps aside."""
 
 TAKEOFF_POINTS_KEPT = 256
-"""Their ground's heights, more than vehicles fly: they are asked for with every stick."""
+"""Their heights, more than vehicles fly: they are asked for with every stick and every look."""
 
 
 def frame_for(airspace: PreparedAirspace, vehicle: VehicleState) -> LocalFrame | None:
@@ -76,10 +75,8 @@ def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | N
     point = home(vehicle)
     if point is None:
         return None
-    pad = _pad_at(airspace, vehicle, point)
-    if pad is not None:
-        return pad.ellipsoid_height_m - frame.origin.ellipsoid_height_m
-    return 0.0 if is_ground_assumed_flat(airspace) else _ground_at_m(airspace, frame, point)
+    own = None if vehicle.profile is None else vehicle.profile.pad
+    return _takeoff_up_m(airspace, frame, point, own, vehicle.serial)
 
 
 def is_ground_assumed_flat(airspace: PreparedAirspace) -> bool:
@@ -115,34 +112,31 @@ def home_enu_m(
     return enu_m
 
 
-def waypoints_enu_m(
-    airspace: PreparedAirspace,
-    vehicle: VehicleState,
-    mission: Mission,
-    frame: LocalFrame | None = None,
-) -> FloatArray | None:
-    """Return where the mission's N waypoints are for this vehicle, (N, 3)."""
-    frame = frame or frame_for(airspace, vehicle)
-    takeoff_m = takeoff_up_m(airspace, vehicle)
-    if frame is None or takeoff_m is None:
-        return None
-    heights_m = [takeoff_m + waypoint.height_above_takeoff_m for waypoint in mission.waypoints]
-    return _raised(places_m(frame, mission.waypoints), heights_m)
-
-
 @lru_cache(maxsize=TAKEOFF_POINTS_KEPT)
-def _ground_at_m(airspace: PreparedAirspace, frame: LocalFrame, point: LatLon) -> float | None:
+def _takeoff_up_m(
+    airspace: PreparedAirspace,
+    frame: LocalFrame,
+    point: LatLon,
+    own_pad: GeoPoint | None,
+    serial: str | None,
+) -> float | None:
+    pad = _pad_at(airspace, point, own_pad, serial)
+    if pad is not None:
+        return pad.ellipsoid_height_m - frame.origin.ellipsoid_height_m
+    if is_ground_assumed_flat(airspace):
+        return 0.0
     ground_m = float(airspace.ground_up_m(places_m(frame, [point]))[0])
     return None if np.isnan(ground_m) else ground_m
 
 
-def _pad_at(airspace: PreparedAirspace, vehicle: VehicleState, point: LatLon) -> GeoPoint | None:
+def _pad_at(
+    airspace: PreparedAirspace, point: LatLon, own_pad: GeoPoint | None, serial: str | None
+) -> GeoPoint | None:
     """The pad that a takeoff here was from: the vehicle's own when it is near, else the nearest."""
-    own = [] if vehicle.profile is None else [vehicle.profile.pad]
     pads = airspace.airspace.landing_pads
-    own += [pad.place for pad in pads if pad.serial is not None and pad.serial == vehicle.serial]
-    mine = [pad for pad in own if pad is not None]
-    return _nearest(mine, point) or _nearest([pad.place for pad in pads], point)
+    own = [] if own_pad is None else [own_pad]
+    own += [pad.place for pad in pads if pad.serial is not None and pad.serial == serial]
+    return _nearest(own, point) or _nearest([pad.place for pad in pads], point)
 
 
 def _nearest(pads: Sequence[GeoPoint], point: LatLon) -> GeoPoint | None:

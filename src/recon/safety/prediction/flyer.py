@@ -5,16 +5,12 @@ from typing import NamedTuple
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
 from recon.model.units import NS_PER_S
-from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
+from recon.model.vehicle import Failsafe, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, takeoff_up_m
 from recon.safety.prediction.course import ALL_HEIGHTS_M
 from recon.safety.prediction.plane import Plane
 from recon.safety.prediction.settings import PredictionSettings
-
-REMEMBERED = 256
-_Key = tuple[PreparedAirspace, VehicleProfile | None, LatLon | None, float | None]
-_remembered: dict[str | None, _Key] = {}
 
 
 class Flyer(NamedTuple):
@@ -67,7 +63,7 @@ def flyer(
     place, at_ns = last_place(state)
     if place is None:
         return None
-    base_m = takeoff_height_m(airspace, state)
+    base_m = takeoff_up_m(airspace, state)
     height_m = state.height_above_takeoff_m.value
     known = base_m is not None and height_m is not None
     up_m = base_m + height_m if base_m is not None and height_m is not None else 0.0
@@ -90,27 +86,6 @@ def flyer(
         go_home_up_m=None if go_home_m is None or base_m is None else base_m + go_home_m,
         goes_home=profile is None or profile.failsafe in (None, Failsafe.GO_HOME),
     )
-
-
-def takeoff_height_m(airspace: PreparedAirspace, state: VehicleState) -> float | None:
-    """Return the datum's height of the vehicle's takeoff point, remembered while it stays.
-
-    It depends on the airspace, the profile and the takeoff point alone, and is asked for each
-    vehicle ten times a second. On the ground it may change with each packet.
-    """
-    if state.is_flying.value is False:
-        return takeoff_up_m(airspace, state)
-    key = state.serial
-    known = _remembered.get(key)
-    if known is not None and (
-        known[0] is airspace and known[1] is state.profile and known[2] is state.takeoff_point
-    ):
-        return known[3]
-    if len(_remembered) >= REMEMBERED:
-        _remembered.clear()
-    up_m = takeoff_up_m(airspace, state)
-    _remembered[key] = airspace, state.profile, state.takeoff_point, up_m
-    return up_m
 
 
 def last_place(state: VehicleState) -> tuple[LatLon | None, int]:
