@@ -128,6 +128,8 @@ def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: 
     assert interrupted["phase"] == "failed"
     assert "restarted" in interrupted["note"]
     assert any(a["rule"] == "restarted" and a["serial"] == "SIM-3" for a in state["alarms"])
+    # That each came near where it itself might have been, before it was heard, is no alarm.
+    assert not {"separation", "unidentified", "link_lost"} & {a["rule"] for a in state["alarms"]}
 
     verdict = again.recon("audit", "verify", field.audit)
     assert verdict.code == 0, verdict.out

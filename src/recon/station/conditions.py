@@ -6,26 +6,32 @@ from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
-from recon.station import air, faults, orders
+from recon.station import air, faults, newcomers, orders
 from recon.station.alarms import Condition, Severity
 from recon.station.fleet_return import told as fleet_return
 from recon.station.orders import OrderRecord
 from recon.station.settings import StationSettings
 from recon.station.state import Station
 
+NAMES_TOLD = 8
+"""Of many vehicles an alarm names this many and counts the rest."""
+
 
 def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     """Yield every condition that holds now."""
+    awaited = newcomers.awaited(station, now_ns)
+    yield from _awaited(awaited, station.settings)
+    names = {vehicle.serial for vehicle in awaited}
     for vehicle in station.fleet.vehicles.values():
         yield from _identity(vehicle)
-        if not air.is_dismissed(station, vehicle):
+        if vehicle.serial not in names and not air.is_dismissed(station, vehicle):
             yield from _silence(vehicle, now_ns)
         yield from _never_heard(vehicle, station.settings.first_telemetry_s)
         yield from _battery(vehicle, station.settings)
         yield from _landing(vehicle, station.settings.landing_wait_s)
         yield from _by_itself(station, vehicle)
     for link in station.fleet.unbound_links():
-        yield from _unidentified(link)
+        yield from _unidentified(link, station.settings.serial_wait_s)
         if link.own_state.is_flying.value is not False:
             yield from _silence(link.own_state, now_ns)
     for name, state in station.watch.lost.items():
@@ -73,6 +79,20 @@ def _silence(vehicle: VehicleState, now_ns: int) -> Iterator[Condition]:
         yield _about(vehicle, "link_lost", Severity.CRITICAL, text)
 
 
+def _awaited(awaited: tuple[VehicleState, ...], settings: StationSettings) -> Iterator[Condition]:
+    """One alarm for all: each gets its own if it does not come back."""
+    if not awaited:
+        return
+    names = ", ".join(vehicle.display_name for vehicle in awaited[:NAMES_TOLD])
+    others = len(awaited) - NAMES_TOLD
+    more = f" and {others} more" if others > 0 else ""
+    text = (
+        f"the station was restarted and waits to hear {names}{more}, which flew when it ended; "
+        f"for {settings.restart.settle_s:g} s nobody is held because of where they may be"
+    )
+    yield Condition("restart_waits", Severity.WARNING, "restart_waits", "", text)
+
+
 def _never_heard(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
     if vehicle.core_received_at_ns is None and vehicle.link_id is not None:
         text = "its app has said its serial but never where it is or whether it flies"
@@ -110,10 +130,10 @@ def _by_itself(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
         yield _about(vehicle, "failsafe", Severity.ERROR, follows.failsafe)
 
 
-def _unidentified(link: LinkRecord) -> Iterator[Condition]:
+def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:
     if link.claimed_serial is None and link.own_state.is_flying.value is True:
         text = f"a vehicle without a serial is flying ({link.remote_address})"
-        yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s=2.0)
+        yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s)
 
 
 def _lost_unidentified(name: str, state: VehicleState) -> Condition:

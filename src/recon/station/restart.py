@@ -60,7 +60,11 @@ def restored(station: Station, last: LastRun, now_ns: int) -> Station:
     fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, **seen})
     leads = {serial: _lead(*lead, now_ns) for serial, lead in last.leads.items()}
     station = replace(
-        station, fleet=fleet, leads={**station.leads, **leads}, restored_flights=flights
+        station,
+        fleet=fleet,
+        leads={**station.leads, **leads},
+        restored_flights=flights,
+        restored_at_ns=now_ns,
     )
     return _with_interrupted(station, last, now_ns)
 

@@ -11,6 +11,12 @@ class RestartSettings:
     """Nothing that the aircraft of this size can carry keeps them in the air for an hour; half an
     hour more for a clock that was set."""
 
+    settle_s: float = 10.0
+    """After a start, where vehicles may be that the last run saw flying is no alarm and no reason
+    to hold others for this long: apps connect again within seconds, and each vehicle that is heard
+    already flies near the ghosts of those that are about to be. The gate counts them from the
+    first moment on."""
+
     fastest_mps: float = 25.0
     """Over the ground, with the wind, faster than any of these aircraft flies."""
     fastest_climb_mps: float = 10.0

@@ -74,6 +74,10 @@ class StationSettings:
     serious_battery_fraction: float = 0.10
     """In flight; the aircraft's own warnings count as well, whichever says it first."""
 
+    serial_wait_s: float = 2.0
+    """Extended telemetry, which tells the serial, comes at 1 to 2 Hz: a link that flies longer
+    without one is a vehicle that nobody can name."""
+
     first_telemetry_s: float = 3.0
     """A vehicle known by its serial alone, without core telemetry this long, is unseen."""
 

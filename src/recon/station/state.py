@@ -80,6 +80,8 @@ class Station:
     """The computer's clock; None until it was first read."""
     restored_flights: Mapping[str, Sighting] = field(default_factory=dict)
     """Vehicles that flew when the last run saw them last, by serial, until each is heard."""
+    restored_at_ns: int | None = None
+    """When this run took up what the last one knew; None when there was nothing."""
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
     next_own_id: int = -1

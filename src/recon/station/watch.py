@@ -24,7 +24,7 @@ from recon.safety.watchdogs import (
     hold_words,
     take_picture,
 )
-from recon.station import commanding
+from recon.station import commanding, newcomers
 from recon.station.air import in_the_air
 from recon.station.commanding import Stepped
 from recon.station.outputs import Output, SendCommand
@@ -41,7 +41,7 @@ def look(station: Station, now_ns: int, watchdogs: Iterable[Watchdog] = WATCHDOG
     looked_at_ns, settings = station.watch.looked_at_ns, station.settings.safety.watch
     if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
         return station, ()
-    station = _with_stick_counts(station, now_ns)
+    station = newcomers.with_nameless(_with_stick_counts(station, now_ns), now_ns)
     refused = _lately_refused(station, now_ns)
     station = replace(station, watch=replace(station.watch, holds_refused=refused))
     kept = station.watch.findings
@@ -72,9 +72,14 @@ def switch_hold(station: Station, event: SeparationHoldSwitched) -> Station:
 
 def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
     watch, eye = station.watch, station.imaging.eye_serial
+    awaited = {vehicle.serial for vehicle in newcomers.awaited(station, now_ns)}
     for vehicle, claimed in in_the_air(station):
         if vehicle.serial != claimed:
             continue  # a link in conflict: most likely it tells of the same aircraft
+        if claimed is None and newcomers.may_yet_say_its_serial(station, vehicle, now_ns):
+            continue
+        if claimed is not None and claimed in awaited:
+            continue
         serial = vehicle.serial or ""
         count = watch.sticks.get(serial)
         refused = watch.holds_refused.get(serial)

@@ -49,6 +49,8 @@ class Watch:
     before: Mapping[str, Before] = field(default_factory=dict)
     sticks: Mapping[str, StickCount] = field(default_factory=dict)
     dismissed: Mapping[str, int | None] = field(default_factory=dict)
+    nameless_since_ns: Mapping[int, int] = field(default_factory=dict)
+    """Since when each link has flown without a serial, by link id."""
     lost: Mapping[str, VehicleState] = field(default_factory=dict)
     is_hold_on: bool = True
     """Whether the watchdogs' findings hold vehicles; switched by a person."""

@@ -1,0 +1,47 @@
+"""Who has only just come: most likely it is a vehicle that is known already.
+
+An app says its serial a second after its first telemetry. Until then its vehicle is two things
+here: a link without a serial, and the ghost of a vehicle that is not heard. After a restart every
+vehicle in the air is. Nothing would be found but that each is near itself.
+"""
+
+from dataclasses import replace
+
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import VehicleState
+from recon.station.state import Station
+
+
+def is_settling(station: Station, now_ns: int) -> bool:
+    """Return whether the station was restarted so lately that apps are still coming back."""
+    restored_at_ns = station.restored_at_ns
+    settle_ns = seconds_to_ns(station.settings.restart.settle_s)
+    return restored_at_ns is not None and now_ns - restored_at_ns < settle_ns
+
+
+def awaited(station: Station, now_ns: int) -> tuple[VehicleState, ...]:
+    """Return the vehicles that flew before a restart a moment ago, and are not heard yet."""
+    if not station.restored_flights or not is_settling(station, now_ns):
+        return ()
+    vehicles = station.fleet.vehicles
+    return tuple(vehicles[serial] for serial in station.restored_flights if serial in vehicles)
+
+
+def with_nameless(station: Station, now_ns: int) -> Station:
+    """Return the station that knows since when each link has flown without a serial."""
+    before = station.watch.nameless_since_ns
+    since_ns = {
+        link.id: before.get(link.id, now_ns)
+        for link in station.fleet.unbound_links()
+        if link.claimed_serial is None and link.own_state.is_flying.value is True
+    }
+    if since_ns == before:
+        return station
+    return replace(station, watch=replace(station.watch, nameless_since_ns=since_ns))
+
+
+def may_yet_say_its_serial(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
+    """Return whether a vehicle has no serial and has not had the time to say it."""
+    since_ns = station.watch.nameless_since_ns.get(vehicle.link_id or -1)
+    wait_ns = seconds_to_ns(station.settings.serial_wait_s)
+    return vehicle.serial is None and since_ns is not None and now_ns - since_ns < wait_ns
