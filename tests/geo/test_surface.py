@@ -1,6 +1,7 @@
 """The bilinear ground against dense sampling and shapes whose extremes are known."""
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -28,14 +29,19 @@ def test_heights_between_the_middles() -> None:
     assert ground.heights_m(points) == pytest.approx(expected, nan_ok=True)
 
 
+def thin(starts: npt.ArrayLike, ends: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Return the triangles (N, 3, 2) without area that straight legs are."""
+    return np.stack([np.asarray(starts), np.asarray(ends), np.asarray(ends)], axis=1)
+
+
 def test_a_saddle_has_its_top_between_the_ends_of_a_leg() -> None:
     """From corner to corner of a cell the height is 16 s (1 - s): 4 in the middle."""
     leg = ([[0.0, 0.0]], [[10.0, -10.0]])
-    assert SADDLE.highest_along_m(*leg) == pytest.approx([4.0])
-    assert SADDLE.lowest_along_m(*leg) == pytest.approx([0.0])
+    assert SADDLE.highest_within_m(thin(*leg)) == pytest.approx([4.0])
+    assert SADDLE.lowest_within_m(thin(*leg)) == pytest.approx([0.0])
     across = ([[10.0, 0.0]], [[0.0, -10.0]])
-    assert SADDLE.highest_along_m(*across) == pytest.approx([8.0])
-    assert SADDLE.lowest_along_m(*across) == pytest.approx([4.0])
+    assert SADDLE.highest_within_m(thin(*across)) == pytest.approx([8.0])
+    assert SADDLE.lowest_within_m(thin(*across)) == pytest.approx([4.0])
 
 
 def test_a_peak_inside_a_triangle_counts_and_one_beside_a_leg_does_not() -> None:
@@ -97,9 +103,8 @@ def test_extremes_are_those_of_dense_samples(seed: int) -> None:
         assert samples.min() - low < 25.0
     legs = triangles[:, 0], triangles[:, 1]
     along = np.linspace(0.0, 1.0, 5_001)[:, np.newaxis]
-    for start, end, high, low in zip(
-        *legs, ground.highest_along_m(*legs), ground.lowest_along_m(*legs), strict=True
-    ):
+    highest, lowest = ground.highest_within_m(thin(*legs)), ground.lowest_within_m(thin(*legs))
+    for start, end, high, low in zip(*legs, highest, lowest, strict=True):
         samples = ground.heights_m(start + along * (end - start))
         assert samples.max() <= high + 1e-9
         assert samples.min() >= low - 1e-9

@@ -68,8 +68,7 @@ def test_the_eye_uses_the_usual_file_names_and_says_what_stands_for_the_marked_f
 def test_without_a_folder_nothing_is_known() -> None:
     site = default_site()
     assert (site.frame, site.ground_grid, site.eye) == (None, None, None)
-    assert site.profile_of("ANY") == VehicleProfile("ANY")
-    assert site.profile_of("ANY").waypoint_altitude is AltitudeReference.UNSET
+    assert dict(site.profiles) == {}
 
 
 def test_a_vehicles_keys_reach_its_profile(folder: Path) -> None:

@@ -44,16 +44,8 @@ class Surface:
         places = np.where(known[:, np.newaxis], nodes, 0.0)
         return np.where(known, self._bilinear(places, self._cells(places)), np.nan)
 
-    def highest_along_m(self, starts_m: npt.ArrayLike, ends_m: npt.ArrayLike) -> FloatArray:
-        """Return the highest ground (N,) under straight legs from (N, 2) to (N, 2)."""
-        return self._top.along(self._nodes(starts_m), self._nodes(ends_m))
-
-    def lowest_along_m(self, starts_m: npt.ArrayLike, ends_m: npt.ArrayLike) -> FloatArray:
-        """Return the lowest ground (N,) under straight legs from (N, 2) to (N, 2)."""
-        return -self._bottom.along(self._nodes(starts_m), self._nodes(ends_m))
-
     def highest_within_m(self, triangles_m: npt.ArrayLike) -> FloatArray:
-        """Return the highest ground (N,) under (N, 3, 2) triangles."""
+        """Return the highest ground (N,) under (N, 3, 2) triangles; one may be as thin as a leg."""
         return self._top.within(self._triangle_nodes(triangles_m))
 
     def lowest_within_m(self, triangles_m: npt.ArrayLike) -> FloatArray:

@@ -26,11 +26,6 @@ class RawLine:
     data: bytes
     is_torn: bool = False
 
-    @property
-    def is_too_long(self) -> bool:
-        """Whether no audit writes such a line."""
-        return len(self.data) > LONGEST_LINE_BYTES
-
 
 @dataclass(frozen=True, slots=True)
 class RunEnd:
@@ -42,7 +37,6 @@ class RunEnd:
     last_hash: str | None
     bad_lines: int
     torn_bytes: int
-    is_beginning_left_out: bool
 
 
 def audit_files(folder: Path) -> list[Path]:
@@ -93,7 +87,7 @@ def read_run_end(
     last, last_hash, bad_lines, torn_bytes = None, None, 0, 0
     try:
         with path.open("rb") as file:
-            is_cut = _go_to_tail(file, at_most_bytes)
+            _go_to_tail(file, at_most_bytes)
             for raw in raw_lines(file):
                 if raw.is_torn:
                     torn_bytes = len(raw.data)
@@ -107,17 +101,15 @@ def read_run_end(
                 take(last)
     except OSError as problem:
         raise RecordError(f"cannot read the audit {path}: {problem}") from problem
-    return RunEnd(path, last, last_hash, bad_lines, torn_bytes, is_cut)
+    return RunEnd(path, last, last_hash, bad_lines, torn_bytes)
 
 
-def _go_to_tail(file: BinaryIO, at_most_bytes: int) -> bool:
-    """Go to the first whole line of the last bytes; return whether something lies before."""
+def _go_to_tail(file: BinaryIO, at_most_bytes: int) -> None:
+    """Go to the first whole line of the last bytes."""
     size = file.seek(0, 2)
     file.seek(max(0, size - at_most_bytes))
-    if size <= at_most_bytes:
-        return False
-    _skip_line(file)
-    return True
+    if size > at_most_bytes:
+        _skip_line(file)
 
 
 def _skip_line(file: BinaryIO) -> None:

@@ -41,9 +41,6 @@ class WatchSettings:
     """A hold that could not be given is tried again after this, and the other one is held
     meanwhile: a link comes back within seconds, and each try is on record."""
 
-    ignored_speed_mps: float = 2.0
-    """Faster than a braking vehicle should be by this: it is not braking."""
-
     helps_s: float = 0.25
     """A hold helps if it puts the conflict off by this, or away..."""
     helps_share: float = 0.05
@@ -77,6 +74,3 @@ class WatchSettings:
     stick_quiet_s: float = 0.5
     """A stream with no stick sent for this long: below 5 Hz aircraft may hover, and at 1 s the
     app's own timeout ends it."""
-
-    battery_margin_fraction: float = 0.05
-    """Less than this above what the way home needs is worth a warning."""

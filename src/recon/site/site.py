@@ -90,10 +90,6 @@ class Site:
             elevation=self.elevation,
         )
 
-    def profile_of(self, serial: str) -> VehicleProfile:
-        """Return a vehicle's profile; one that the site does not know gets the defaults."""
-        return self.profiles.get(serial) or VehicleProfile(serial)
-
 
 def default_site() -> Site:
     """Return the site of a station that was started without one."""

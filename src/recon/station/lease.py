@@ -75,11 +75,6 @@ class Lease:
     arrived_at_ns: int | None = None
     closing: str | None = None
 
-    @property
-    def is_moving(self) -> bool:
-        """Whether the last demand had any velocity."""
-        return self.steered.velocity_north_mps != 0.0 or self.steered.velocity_east_mps != 0.0
-
 
 def following_due_ns(due_ns: int, now_ns: int, settings: StreamSettings) -> int:
     """Return the next time of a cadence after `now_ns`: late steps do not shift it."""
