@@ -36,11 +36,14 @@ class ClearSkyLight:
         """Part of the light that shade leaves; all of it when the sun is down."""
         return self.diffuse_w_m2 / self.global_w_m2 if self.direct_w_m2 > 0.0 else 1.0
 
-    def index(self, transmittance: FloatImage) -> FloatImage:
-        """Return the clear-sky index: light on the ground over what a clear sky would give."""
+    def index(self, transmittance: FloatImage, brightening: float = 1.0) -> FloatImage:
+        """Return the clear-sky index: light on the ground over what a clear sky would give.
+
+        `brightening` is what clouds around make of the diffuse light.
+        """
         diffuse = self.diffuse_share
-        index: FloatImage = (diffuse + (1.0 - diffuse) * transmittance).astype(np.float32)
-        return index
+        index = brightening * diffuse + (1.0 - diffuse) * transmittance
+        return index.astype(np.float32)
 
 
 def clear_sky_light(sun: SunPosition, settings: LightSettings) -> ClearSkyLight:

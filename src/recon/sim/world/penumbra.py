@@ -22,7 +22,7 @@ SUN_DIAMETER_RAD = 0.0093
 LOWEST_ELEVATION_DEG = 5.0
 """Below, shadows would reach to the horizon: the sun counts as standing here."""
 
-MOST_EXCESS = 12.0
+MOST_EXCESS = 18.0
 EXCESS_STEP = 0.05
 MOST_SPREAD = 12.0
 SPREAD_STEP = 0.1

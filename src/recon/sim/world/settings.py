@@ -71,15 +71,16 @@ class LayerSettings:
     """The largest structures: with them an hour's cover differs from the next hour's."""
     finest_scale_m: float = 40.0
     """Details below are lost in the penumbra of a cloud 1.4 km up."""
-    softness: float = 0.22
-    """Optical depth grows e-fold over this part of the field's deviation: edges of some 80 m."""
+    softness: float = 0.28
+    """Optical depth grows e-fold over this part of the field's deviation: the middle of the days
+    that docs/world.md compares with measurements."""
     largest_optical_depth: float = 20.0
     """Of thick cumulus, along the beam; below 0.7 (thin cirrus) the layer never makes shade."""
     lifetime_s: float = 900.0
     """After which a structure of 1 km has changed to 1/e; inf: frozen."""
     lifetime_exponent: float = 2.0 / 3.0
     """Lifetime grows with scale to this power, as eddies' turnover does."""
-    modulation: float = 0.35
+    modulation: float = 0.5
     """How far the threshold wanders, in deviations of the field: the day's ups and downs."""
     modulation_s: float = 2_400.0
     """After which the wandering has changed to 1/e."""
@@ -158,7 +159,10 @@ class LightSettings:
     """How many clean dry atmospheres dim as much; summer farmland in the middle latitudes."""
     altitude_m: float = 250.0
     """Above the sea: thinner air dims less."""
+    cloud_brightening: float = 1.7
+    """Diffuse light between broken clouds over that of a clear sky: their sides are bright."""
 
     def __post_init__(self) -> None:
         _expect("light: linke_turbidity", self.linke_turbidity, 1.0, 10.0)
         _expect("light: altitude_m", self.altitude_m, -500.0, 6_000.0)
+        _expect("light: cloud_brightening", self.cloud_brightening, 1.0, 4.0)
