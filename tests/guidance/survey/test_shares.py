@@ -18,7 +18,9 @@ from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.share import Cost, shared
 from recon.model.geo import LatLon
 from recon.model.survey import MissionFor
+from recon.model.vehicle import VehicleProfile
 from recon.model.zone import Region
+from recon.vehicles.mission_repair import Repaired, repair
 
 COST = Cost(stop_m=25.6, least_cut_m=25.0)
 
@@ -128,6 +130,13 @@ class TestShares:
             runs = shared(route_of(plan.pieces, plan.lattice, None), count, plan.lattice, COST)
             assert min(leg.piece.length_m for run in runs for leg in run) >= COST.least_cut_m
 
+    def test_four_short_rows_are_cut_for_nine_vehicles(self) -> None:
+        plan = planned(survey_of(rectangle(160.0, 120.0), bearing_deg=90.0))
+        runs = shared(route_of(plan.pieces, plan.lattice, None), 9, plan.lattice, COST)
+        assert len(plan.pieces) == 4
+        assert len(runs) > 4
+        assert max(cost_m(plan, run) for run in runs) < 160.0
+
     def test_one_short_row_is_one_share(self) -> None:
         plan = planned(survey_of(rectangle()))
         row = (Leg(Piece(0, 0.0, 40.0), False),)
@@ -163,6 +172,14 @@ class TestMissions:
             places = [LatLon(w.latitude_deg, w.longitude_deg) for w in each.mission.waypoints]
             way_m = sum(horizontal_distance_m(a, b) for a, b in pairwise(places))
             assert way_m == pytest.approx(each.length_m, rel=1e-3)
+
+    @pytest.mark.parametrize("field", [l_shape(), holed(), rectangle()], ids="LHR")
+    def test_dji_takes_them_as_they_are(self, field: Region) -> None:
+        profile = VehicleProfile("S-0")
+        for count in (1, 3, 8):
+            _state, given = missions(planned(survey_of(field)), count)
+            for each in given:
+                assert repair(each.mission, profile) == Repaired((each.mission,))
 
     def test_each_vehicle_gets_one_and_numbers_rise(self) -> None:
         _state, given = missions(planned(survey_of(rectangle())), 3)

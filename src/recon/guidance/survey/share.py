@@ -32,15 +32,18 @@ def shared(route: Route, count: int, lattice: RowLattice, cost: Cost) -> tuple[R
 
     The longest run is as short as cutting at marks allows; so all but the last are about as long.
     """
-    shortest_m, longest_m = 0.0, _length_m(route, lattice, cost)
     best: tuple[Route, ...] = (route,) if route else ()
-    while longest_m - shortest_m > CLOSE_M:
-        share_m = (shortest_m + longest_m) / 2.0
+    least_m, most_m = 0.0, _length_m(route, lattice, cost)
+    longest_m = most_m
+    while most_m - least_m > CLOSE_M:
+        share_m = (least_m + most_m) / 2.0
         runs = _cut_up(route, share_m, lattice, cost)
-        if len(runs) <= count:
-            longest_m, best = share_m, runs
+        of_them_m = max(_length_m(run, lattice, cost) for run in runs)
+        # Shares shorter than rows can be cut make few runs again, but long ones.
+        if len(runs) <= count and of_them_m <= longest_m:
+            best, longest_m, most_m = runs, of_them_m, share_m
         else:
-            shortest_m = share_m
+            least_m = share_m
     return best
 
 
