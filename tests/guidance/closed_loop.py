@@ -140,7 +140,7 @@ class Loop:
         if self.steered is None:
             self.steered = begin(seen, self.now_ns)
         if is_blind:
-            self.steered = halted(self.steered, self.now_ns)
+            self.steered = halted(self.steered, None, self.now_ns)
         else:
             self.steered = steer(self.steered, goal, seen, self.now_ns, SETTINGS)
         self.demands.append(self.steered)

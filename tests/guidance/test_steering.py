@@ -140,13 +140,17 @@ class TestParts:
         assert (first.height_above_takeoff_m, first.yaw_deg) == (25.0, 80.0)
 
     def test_a_halt_is_zero_at_once_and_keeps_height_and_heading(self) -> None:
-        stopped = halted(begin(Seen(START, 3.0, -1.0, 25.0, 80.0, 0.2), S), 2 * S)
+        stopped = halted(begin(Seen(START, 3.0, -1.0, 25.0, 80.0, 0.2), S), None, 2 * S)
         assert (stopped.velocity_north_mps, stopped.velocity_east_mps) == (0.0, 0.0)
         assert (stopped.height_above_takeoff_m, stopped.yaw_deg, stopped.at_ns) == (
             25.0,
             80.0,
             2 * S,
         )
+
+    def test_a_halt_in_a_climb_asks_for_the_height_last_heard(self) -> None:
+        climbing = begin(Seen(START, 0.0, 0.0, 25.0, 80.0, 0.2), S)
+        assert halted(climbing, 23.5, 2 * S).height_above_takeoff_m == 23.5
 
     def test_a_late_step_changes_no_more_than_a_bounded_time_allows(self) -> None:
         late = steer(begin(seen(), 0), goal(100.0, 0.0), seen(), 60 * S, SETTINGS)

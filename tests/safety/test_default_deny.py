@@ -51,6 +51,27 @@ def test_what_nobody_told_refuses_missions(name: str) -> None:
     assert isinstance(judge(command(mission()), situation(vehicle(profile))), Refusal)
 
 
+ON_GROUND = [name for name in UNKNOWN if name not in ("takeoff_point", "height_above_takeoff_m")]
+"""On the ground home is where it stands; whether the height is known, is asked of sticks alone."""
+
+
+@pytest.mark.parametrize("name", ON_GROUND)
+@pytest.mark.parametrize("body", [mission(), STICK, Hover()])
+def test_one_unknown_is_enough_to_refuse_a_takeoff(body: Body, name: str) -> None:
+    ready = vehicle(flying=False)
+    state = replace(ready, **{name: UNKNOWN[name]})  # type: ignore[arg-type]
+    assert judge(command(body, takeoff=True), situation(ready)) is None
+    assert isinstance(judge(command(body, takeoff=True), situation(state)), Refusal)
+
+
+@pytest.mark.parametrize("name", TOLD)
+@pytest.mark.parametrize("body", [STICK, Hover()])
+def test_what_nobody_told_refuses_takeoffs(body: Body, name: str) -> None:
+    profile = replace(TAKEOFF, **{name: TOLD[name]})  # type: ignore[arg-type]
+    grounded = situation(vehicle(profile, flying=False))
+    assert isinstance(judge(command(body, takeoff=True), grounded), Refusal)
+
+
 @given(st.sets(st.sampled_from(sorted(UNKNOWN))), st.sampled_from([*AWAY, HoldPosition()]))
 def test_any_unknowns_are_a_refusal_and_no_error(names: set[str], body: Body) -> None:
     lost = {name: UNKNOWN[name] for name in names}

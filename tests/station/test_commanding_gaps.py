@@ -81,10 +81,7 @@ class TestTheZeroOfAStick:
         told.passes(0.3)
         first, zero = self.sticks(told)
         assert (zero.velocity_x_mps, zero.velocity_y_mps) == (0.0, 0.0)
-        assert (zero.yaw_deg, zero.height_above_takeoff_m) == (
-            first.yaw_deg,
-            first.height_above_takeoff_m,
-        )
+        assert (zero.yaw_deg, zero.height_above_takeoff_m) == (first.yaw_deg, 40.0)
         told.passes(10.0)
         assert len(self.sticks(told)) == 2
 
@@ -105,6 +102,31 @@ class TestTheZeroOfAStick:
 
     def test_a_standing_stick_needs_none(self) -> None:
         told = flying()
-        told.order(replace(HELD, velocity_x_mps=0.0))
+        told.order(replace(HELD, velocity_x_mps=0.0, height_above_takeoff_m=40.5))
         told.keeps_saying(1, *JOYSTICK).passes(10.0)
         assert len(self.sticks(told)) == 1
+
+    def test_a_climb_ends_where_it_has_come_to(self) -> None:
+        told = flying()
+        told.order(replace(HELD, velocity_x_mps=0.0, height_above_takeoff_m=60.0))
+        climbing = (core(height_m=43.0, velocity=(0.0, 0.0, -3.0)), JOYSTICK[1])
+        told.keeps_saying(1, *climbing).passes(3.0)
+        assert [stick.height_above_takeoff_m for stick in self.sticks(told)] == [60.0, 43.0]
+
+    def test_telemetry_that_stops_in_a_climb_holds_no_zero_back(self) -> None:
+        told = flying()
+        told.order(replace(HELD, height_above_takeoff_m=60.0))
+        climbing = (core(height_m=43.0, velocity=(5.0, 0.0, -3.0)), JOYSTICK[1])
+        told.keeps_saying(1, *climbing).passes(0.2)
+        told.talk.clear()
+        told.passes(2.0)
+        _, zero = self.sticks(told)
+        assert (zero.velocity_x_mps, zero.height_above_takeoff_m) == (0.0, 43.0)
+
+    def test_a_height_that_is_lost_in_a_climb_holds_no_zero_back(self) -> None:
+        told = flying()
+        told.order(replace(HELD, height_above_takeoff_m=60.0))
+        lost = (core(height_m=None, velocity=(5.0, 0.0, -3.0)), JOYSTICK[1])
+        told.keeps_saying(1, *lost).passes(2.0)
+        _, zero = self.sticks(told)
+        assert (zero.velocity_x_mps, zero.height_above_takeoff_m) == (0.0, 60.0)

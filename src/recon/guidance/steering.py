@@ -152,9 +152,18 @@ def steer(
     )
 
 
-def halted(before: Steered, now_ns: int) -> Steered:
-    """Return the demand to stand still at once, with height and heading kept."""
-    return replace(before, at_ns=now_ns, velocity_north_mps=0.0, velocity_east_mps=0.0, recent=())
+def halted(before: Steered, height_above_takeoff_m: float | None, now_ns: int) -> Steered:
+    """Return the demand to stand still at once: heading kept, and the height last heard; while that
+    is unknown, the height last demanded."""
+    kept_m = before.height_above_takeoff_m
+    return replace(
+        before,
+        at_ns=now_ns,
+        velocity_north_mps=0.0,
+        velocity_east_mps=0.0,
+        height_above_takeoff_m=kept_m if height_above_takeoff_m is None else height_above_takeoff_m,
+        recent=(),
+    )
 
 
 def has_arrived(goal: Goal, seen: Seen, settings: SteeringSettings) -> bool:

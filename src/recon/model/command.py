@@ -105,6 +105,8 @@ CAMERA_BODIES = (StartCamera, StopCamera)
 STEERED_BODIES = (GoTo, Nudge, HoldPosition)
 MOVING_BODIES = (FlyMission, VirtualStick, *STEERED_BODIES)
 """What sets a vehicle on a path of the station's choosing."""
+TAKEOFF_BODIES = (Hover, FlyMission, VirtualStick)
+"""What apps in the field answer with a takeoff, and may be asked for as one."""
 
 BODY_NAMES: dict[type, str] = {
     Hover: "hover",
@@ -142,6 +144,14 @@ class Command:
     def name(self) -> str:
         """The body's name as the API and the audit write it."""
         return BODY_NAMES[type(self.body)]
+
+    @property
+    def moves(self) -> bool:
+        """Whether this sets its vehicle in motion: it leads somewhere, or may leave the ground.
+
+        A stick counts whatever it asks for; whether it only stops, `safety.standstill` tells.
+        """
+        return self.takeoff or isinstance(self.body, MOVING_BODIES)
 
     @property
     def is_emergency(self) -> bool:

@@ -33,5 +33,9 @@ class FenceSettings:
     """A stick without velocity is refused for its height only beyond this: its height was judged a
     moment ago where the vehicle was then, and to stop is better than not to stop."""
 
+    same_height_m: float = 1.0
+    """A stick without velocity only stops while it asks for the present height within this, which
+    is how well a barometer tells one and a hovering aircraft keeps it: any more is a climb."""
+
     speed_rounding_mps: float = 1e-5
     """What the wire's 32-bit floats may add to a speed of 15 m/s, and to the norm of two."""

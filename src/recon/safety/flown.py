@@ -6,29 +6,30 @@ The height it sets out from counts as up to 1 m nearer to where it goes (`height
 """
 
 from recon.model.command import (
-    MOVING_BODIES,
     Command,
     FlyMission,
     GoTo,
+    HoldPosition,
     Nudge,
     VirtualStick,
 )
 from recon.safety.departure import Departure, Unknown, departure
-from recon.safety.fence_settings import FenceSettings
 from recon.safety.flown_bodies import (
     goto_pieces,
     hold_pieces,
     mission_pieces,
     nudge_pieces,
     stick_pieces,
+    takeoff_pieces,
 )
 from recon.safety.flown_path import FlownPath, Pieces
+from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation
 
 
 def flown(command: Command, situation: Situation) -> FlownPath | Unknown | None:
     """Return where the order may take its vehicle, or why nobody can say; None for no motion."""
-    if not isinstance(command.body, MOVING_BODIES) or situation.vehicle is None:
+    if not command.moves or situation.vehicle is None:
         return None
     return situation.once(flown, command, _flown)
 
@@ -38,10 +39,11 @@ def _flown(command: Command, situation: Situation) -> FlownPath | Unknown:
     begin = departure(situation, situation.vehicle)
     if isinstance(begin, Unknown):
         return begin
-    return FlownPath(_pieces(command, begin, situation.settings.fences), begin)
+    return FlownPath(_pieces(command, begin, situation.settings), begin)
 
 
-def _pieces(command: Command, begin: Departure, settings: FenceSettings) -> Pieces:
+def _pieces(command: Command, begin: Departure, limits: SafetySettings) -> Pieces:
+    settings = limits.fences
     match command.body:
         case FlyMission(mission):
             return mission_pieces(mission, begin, settings)
@@ -51,5 +53,7 @@ def _pieces(command: Command, begin: Departure, settings: FenceSettings) -> Piec
             return nudge_pieces(nudge, begin, settings)
         case VirtualStick() as stick:
             return stick_pieces(stick, begin, settings)
-        case _:
+        case HoldPosition():
             return hold_pieces(begin, settings)
+        case _:
+            return takeoff_pieces(begin, limits.prediction.takeoff_height_m, settings)

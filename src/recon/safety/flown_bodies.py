@@ -83,6 +83,13 @@ def hold_pieces(departure: Departure, settings: FenceSettings) -> Pieces:
     return _from_here(departure, departure.here_m, "the place to hold", settings)
 
 
+def takeoff_pieces(departure: Departure, height_m: float, settings: FenceSettings) -> Pieces:
+    """Straight up to the height that a takeoff by hover ends at, and the ways home from there."""
+    top_m = departure.here_m + np.array([0.0, 0.0, height_m])
+    flown = _from_here(departure, top_m, "the takeoff", settings)
+    return joined(flown, ways_home(flown, departure))
+
+
 def stick_pieces(body: VirtualStick, departure: Departure, settings: FenceSettings) -> Pieces:
     """What the velocity reaches in the stick's time and its braking, from where the vehicle is.
 

@@ -47,7 +47,8 @@ class Situation:
 
     `vehicle` is the state of the command's vehicle, or of the unidentified link it names; None when
     there is neither. `claimants` are its open links, its own first; more than one while its
-    identity is unsettled. `traffic` are the other vehicles in the air, those not heard included.
+    identity is unsettled. `stick_height_above_takeoff_m` is what its newest stick asked for.
+    `traffic` are the other vehicles in the air, those not heard included.
     """
 
     now_ns: int
@@ -57,6 +58,7 @@ class Situation:
     airspace: PreparedAirspace = OPEN_AIRSPACE
     lead: Lead = Lead()
     intent: Intent = Intent()
+    stick_height_above_takeoff_m: float | None = None
     traffic: tuple[Traffic, ...] = ()
     preflight_override: Override | None = None
     facts: StationFacts = NO_FACTS

@@ -1,14 +1,25 @@
 """Which orders only stop: what is asked of motion is not asked of them."""
 
-from recon.model.command import Body, VirtualStick
+from recon.model.command import Command, VirtualStick
+from recon.safety.as_sent import as_sent
+from recon.safety.situation import Situation
 
 
-def is_zero_stick(body: Body) -> bool:
-    """Return whether a body is a stick without velocity.
+def is_stop(command: Command, situation: Situation) -> bool:
+    """Return whether an order is a stick that only stops its vehicle, in height too.
 
-    It ends a stick before it: it stops the aircraft over the ground, and its height was judged
-    when that stick was.
+    It has no velocity, and asks for the height that the vehicle was last heard at, within
+    `same_height_m`; while its height is not known, for the height that its stick before asked for.
+    Any other height is a climb or a descent, and judged as motion. So is what may take off.
     """
-    if not isinstance(body, VirtualStick):
+    body, vehicle = command.body, situation.vehicle
+    if not isinstance(body, VirtualStick) or command.takeoff or vehicle is None:
         return False
-    return body.velocity_x_mps == 0.0 and body.velocity_y_mps == 0.0
+    if body.velocity_x_mps != 0.0 or body.velocity_y_mps != 0.0:
+        return False
+    height_m = vehicle.height_above_takeoff_m.value
+    height_m = situation.stick_height_above_takeoff_m if height_m is None else height_m
+    if height_m is None:
+        return False
+    off_m = abs(as_sent(body.height_above_takeoff_m) - height_m)
+    return off_m <= situation.settings.fences.same_height_m

@@ -165,10 +165,22 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         airspace=station.airspace,
         lead=station.leads.get(serial, _NOBODY_YET),
         intent=station.intents.get(serial, _TOLD_NOTHING),
+        stick_height_above_takeoff_m=_stick_height_m(station, serial),
         traffic=_traffic(station, command, serial, now_ns) if command.moves else (),
         preflight_override=station.preflight_overrides.get(serial),
         facts=preflight.facts(station, target) if needs_checklist else NO_FACTS,
     )
+
+
+def _stick_height_m(station: Station, serial: str) -> float | None:
+    """The height above takeoff that a vehicle's newest stick asked for."""
+    lease = station.streams.get(serial)
+    if lease is not None:
+        return lease.steered.height_above_takeoff_m
+    pending = station.sticks.get(serial)
+    if pending is not None:
+        return pending.body.height_above_takeoff_m
+    return station.intents.get(serial, _TOLD_NOTHING).target_height_above_takeoff_m
 
 
 def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tuple[Traffic, ...]:
@@ -237,6 +249,7 @@ def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None)
     station, zeros = stick_zero.due(station, now_ns)
     for order in zeros:
         station, sent = place(station, order, now_ns)
+        station = stick_zero.forget(station, order)
         outputs += sent
     return stick_zero.give_up(station, now_ns), outputs
 

@@ -58,6 +58,9 @@ def on_sent(
         context.sent_at_ns,
         command_id,
         mission=body.mission if isinstance(body, FlyMission) else None,
+        target_height_above_takeoff_m=(
+            body.height_above_takeoff_m if isinstance(body, VirtualStick) else None
+        ),
     )
     return _put(station, serial, intent, context.mode_when_sent)
 

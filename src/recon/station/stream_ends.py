@@ -192,7 +192,9 @@ def hold(driven: Driven, serial: str, now_ns: int) -> Driven:
 
 def _close(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask: Ask) -> Driven:
     """Send zero now and hold a little later; hold at once if the gate refuses even the zero."""
-    lease = replace(lease, steered=halted(lease.steered, now_ns))
+    vehicle = driven.station.fleet.vehicles.get(serial)
+    height_m = None if vehicle is None else vehicle.height_above_takeoff_m.value
+    lease = replace(lease, steered=halted(lease.steered, height_m, now_ns))
     station, answer, lease = judged(driven.station, lease, now_ns, ask)
     driven = replace(driven, station=station)
     if isinstance(answer, Refusal):

@@ -16,7 +16,7 @@ from recon.safety.rules.battery import battery
 from recon.safety.situation import Situation
 from recon.safety.way_ahead import need_of
 
-ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0)
+ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=40.0)
 OUT = LatLon(waypoint(200.0).latitude_deg, -93.6)
 FAR = GoTo(LatLon(waypoint(400.0).latitude_deg, -93.6), 40.0, 5.0)
 NEARER = GoTo(LatLon(waypoint(100.0).latitude_deg, -93.6), 40.0, 5.0)

@@ -1,5 +1,7 @@
 """Nothing leaves the ground unless the order says takeoff (decisions on the ICD, 16 and 17)."""
 
+from dataclasses import replace
+
 import pytest
 from tests.safety.cases import (
     NOW,
@@ -63,15 +65,25 @@ class TestWithTakeoff:
         judged = approve(command(body, takeoff=True), situation(vehicle(flying=False)))
         assert approved(judged).link_ids == (1,)
 
-    def test_a_return_is_never_a_takeoff(self) -> None:
-        judged = approve(command(ReturnHome(), takeoff=True), situation(vehicle(flying=False)))
-        assert refused_by(judged) == "flying"
+    @pytest.mark.parametrize("is_flying", [True, False])
+    @pytest.mark.parametrize("body", [ReturnHome(), LandNow(), StopCamera(), *STEERED])
+    def test_no_other_order_takes_the_word(self, body: Body, is_flying: bool) -> None:
+        judged = flying(command(body, takeoff=True), situation(vehicle(flying=is_flying)))
+        assert judged is not None
+        assert judged.reason.startswith(f"takeoff was said with {command(body).name}, which never")
+
+    @pytest.mark.parametrize("body", [Hover(), mission(), STICK])
+    def test_an_app_that_does_not_say_whether_it_flies_takes_off_for_nobody(
+        self, body: Body
+    ) -> None:
+        asked = command(body, takeoff=True)
+        assert refused_by(flying(asked, situation(vehicle(flying=None)))) == "flying"
+        assert flying(asked, replace(situation(), vehicle=None)) is None
 
 
 @pytest.mark.parametrize("body", STEERED)
-@pytest.mark.parametrize("takeoff", [False, True])
-def test_a_steered_order_never_leaves_the_ground(body: Body, takeoff: bool) -> None:
-    asked = command(body, takeoff=takeoff)
+def test_a_steered_order_never_leaves_the_ground(body: Body) -> None:
+    asked = command(body)
     assert flying(asked, situation(vehicle())) is None
     assert refused_by(flying(asked, situation(vehicle(flying=False)))) == "flying"
 

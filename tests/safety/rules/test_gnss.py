@@ -19,7 +19,7 @@ MOVES: list[Body] = [
     Nudge(1.0, 0.0, 0.0),
     HoldPosition(),
 ]
-ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0)
+ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=40.0)
 WITHOUT = {FlightMode.MANUAL, FlightMode.ATTI, FlightMode.ATTI_COURSE_LOCK, FlightMode.UNKNOWN}
 
 

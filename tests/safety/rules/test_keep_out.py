@@ -221,20 +221,22 @@ class TestSticks:
         assert is_allowed(stick(0.0, speed_mps), state=flier(65.0, 0.0)) is allowed
 
     def test_a_zero_over_the_yard_may_not_sink_into_it(self) -> None:
-        assert is_allowed(stick(0.0, 0.0, 41.0), LOW, over(60.0))
+        assert is_allowed(stick(0.0, 0.0, 41.0), LOW, over(42.0))
+        assert is_allowed(stick(0.0, 0.0, 45.1), LOW, over(60.0))
+        assert not is_allowed(stick(0.0, 0.0, 44.9), LOW, over(60.0))
         assert "the stick's way goes through" in told(stick(0.0, 0.0, 37.9), LOW, over(60.0))
-        assert is_allowed(stick(0.0, 0.0, 59.0), HIGH, over(50.0))
+        assert is_allowed(stick(0.0, 0.0, 59.0), HIGH, over(58.0))
         assert not is_allowed(stick(0.0, 0.0, 62.1), HIGH, over(50.0))
 
     def test_a_zero_inside_is_allowed(self) -> None:
         assert is_allowed(stick(0.0, 0.0, 40.0), state=over(40.0))
-        assert is_allowed(stick(0.0, 0.0, 30.0), LOW, over(31.9))
-        assert is_allowed(stick(0.0, 0.0, 38.1), LOW, over(40.5))
-        assert is_allowed(stick(0.0, 0.0, 61.9), HIGH, over(59.5))
+        assert is_allowed(stick(0.0, 0.0, 31.0), LOW, over(31.9))
+        assert is_allowed(stick(0.0, 0.0, 38.1), LOW, over(39.0))
+        assert is_allowed(stick(0.0, 0.0, 61.9), HIGH, over(61.0))
 
     def test_a_zero_beside_it_is_held_to_the_zone_alone(self) -> None:
-        assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(99.5, 0.0, 60.0))
-        assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(97.0, 0.0, 60.0))
+        assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(99.5, 0.0, 20.0))
+        assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(97.0, 0.0, 20.0))
 
 
 class TestAlreadyInside:

@@ -9,7 +9,7 @@ from recon.model.command import Body, GoTo, HoldPosition, Hover, Nudge, Refusal,
 from recon.model.geo import LatLon
 from recon.safety.rules.link_age import link_age
 
-ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0)
+ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=40.0)
 MOVES: list[Body] = [
     mission(),
     STICK,

@@ -163,13 +163,22 @@ class TestAlreadyTooHigh:
 class TestZeroAndUnknown:
     @pytest.mark.parametrize(("height_m", "allowed"), [(102.0, True), (102.1, False)])
     def test_a_zero_has_two_metres_of_slack(self, height_m: float, allowed: bool) -> None:
-        nowhere = flier(position=Stamped())
-        for state in (flier(200.0, 0.0, 90.0), nowhere):
+        nowhere = flier(200.0, 0.0, 101.5, position=Stamped())
+        for state in (flier(200.0, 0.0, 101.5), nowhere):
             body = stick(0.0, 0.0, height_m)
             assert is_allowed(body, state=state) is allowed
         assert allowed or told(stick(0.0, 0.0, height_m), state=nowhere) == (
             "102.1 m above takeoff: at most 100 m is allowed here"
         )
+
+    def test_a_zero_where_it_is_stays_however_high_that_is(self) -> None:
+        for state in (flier(200.0, 0.0, 130.0), flier(200.0, 0.0, 130.0, position=Stamped())):
+            assert is_allowed(stick(0.0, 0.0, 130.0), state=state)
+            assert not is_allowed(stick(0.0, 0.0, 130.5), state=state)
+
+    def test_a_climb_without_velocity_has_no_slack(self) -> None:
+        assert is_allowed(stick(0.0, 0.0, 100.0), state=flier(200.0, 0.0, 90.0))
+        assert not is_allowed(stick(0.0, 0.0, 100.1), state=flier(200.0, 0.0, 90.0))
 
     def test_a_vehicle_that_is_nowhere_known(self) -> None:
         nowhere = flier(position=Stamped())

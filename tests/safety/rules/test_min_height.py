@@ -174,13 +174,16 @@ class TestColumns:
 
 
 class TestZeroAndUnknown:
-    @pytest.mark.parametrize(("height_m", "allowed"), [(8.1, True), (7.9, False)])
-    def test_a_zero_has_two_metres_of_slack(self, height_m: float, allowed: bool) -> None:
+    @pytest.mark.parametrize(("height_m", "allowed"), [(10.0, True), (9.9, False)])
+    def test_a_descent_without_velocity_has_no_slack(self, height_m: float, allowed: bool) -> None:
         state = flier(200.0, 0.0, 20.0)
         assert is_allowed(stick(0.0, 0.0, height_m), state=state) is allowed
 
+    def test_a_zero_has_slack(self) -> None:
+        assert is_allowed(stick(0.0, 0.0, 9.5), state=flier(200.0, 0.0, 10.4))
+
     def test_a_zero_that_holds_a_low_place_stays(self) -> None:
-        assert is_allowed(stick(0.0, 0.0, 2.0), state=flier(200.0, 0.0, 3.5))
+        assert is_allowed(stick(0.0, 0.0, 2.6), state=flier(200.0, 0.0, 3.5))
 
     def test_a_vehicle_that_is_nowhere_known(self) -> None:
         nowhere = flier(position=Stamped())

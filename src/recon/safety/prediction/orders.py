@@ -9,7 +9,7 @@ from recon.model.units import wrap_degrees
 from recon.safety.prediction.course import Part
 from recon.safety.prediction.flyer import Flyer
 from recon.safety.prediction.intents import Follower
-from recon.safety.prediction.legs import STANDING_MPS, stop, stopping_distance_m
+from recon.safety.prediction.legs import LEAST_S, STANDING_MPS, stop, stopping_distance_m
 from recon.safety.prediction.settings import PredictionSettings
 
 SWEEPING_DEG = 15.0
@@ -33,7 +33,7 @@ def write_order(follower: Follower, body: Body) -> None:
         case VirtualStick():
             _stick(follower, body)
         case Hover():  # judged only as a takeoff: straight up, and it stays there
-            writer.widens(writer.low_m, writer.high_m + settings.takeoff_height_m)
+            _climbs(follower, (writer.low_m, writer.high_m + settings.takeoff_height_m))
             writer.waits(settings.stands_s, Part.HOVERING)
         case _:
             stop(writer, flyer.velocity_mps, settings, reaction_s=settings.reaction_s)
@@ -53,8 +53,7 @@ def _nudge(follower: Follower, body: Nudge) -> None:
 def _stick(follower: Follower, body: VirtualStick) -> None:
     """The velocity is taken up, kept for the stick's time and the reaction, and braked."""
     writer, settings = follower.writer, follower.settings
-    band_m = follower.flyer.up_m(body.height_above_takeoff_m)
-    writer.widens(*band_m)
+    _climbs(follower, follower.flyer.up_m(body.height_above_takeoff_m))
     velocity = _east_north_mps(follower.flyer, body)
     if velocity is None:
         _sweep(follower, hypot(body.velocity_x_mps, body.velocity_y_mps), body.timeout_s)
@@ -74,6 +73,22 @@ def _stick(follower: Follower, body: VirtualStick) -> None:
         reaction_s=settings.reaction_s,
         part=Part.STEERED,
     )
+
+
+def _climbs(follower: Follower, band_m: tuple[float, float]) -> None:
+    """From now on at any height up or down to these; until now at its own, at its own velocity.
+
+    So the climb itself is no way out for two that are too near already.
+    """
+    writer, (east_mps, north_mps, _up_mps) = follower.writer, follower.flyer.velocity_mps
+    until_now_s = max(0.0, -writer.time_s) + LEAST_S
+    writer.moves(
+        writer.east_m + east_mps * until_now_s,
+        writer.north_m + north_mps * until_now_s,
+        until_now_s,
+        Part.STEERED,
+    )
+    writer.widens(*band_m)
 
 
 def _take_up(follower: Follower, velocity: tuple[float, float]) -> None:

@@ -2,11 +2,11 @@
 
 from math import ceil, floor, isfinite
 
-from recon.model.command import BODY_NAMES, MOVING_BODIES, Body, Command, FlyMission, Refusal
+from recon.model.command import BODY_NAMES, Body, Command, FlyMission, Refusal
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.energy import Need, consumption
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 from recon.safety.way_ahead import leads_away, need_of
 
 RULE = "battery"
@@ -17,13 +17,13 @@ ROUNDING = 1e-9
 def battery(command: Command, situation: Situation) -> Refusal | None:
     """Refuse motion after which home is not reached with the site's reserve.
 
-    What does not lead away from home is held to a landing's least instead of the reserve. A stick
-    without velocity stops the vehicle, and needs nothing.
+    What does not lead away from home is held to a landing's least instead of the reserve; a takeoff
+    leads away. A stick that only stops the vehicle needs nothing.
     """
     vehicle, body = situation.vehicle, command.body
-    if vehicle is None or not isinstance(body, MOVING_BODIES) or is_zero_stick(body):
+    if vehicle is None or not command.moves or is_stop(command, situation):
         return None
-    is_away = leads_away(body, vehicle, situation)
+    is_away = command.takeoff or leads_away(body, vehicle, situation)
     reason = _warned(vehicle, is_away) or _short(vehicle, body, is_away, situation)
     return None if reason is None else Refusal(RULE, f"{vehicle.display_name}: {reason}")
 

@@ -9,7 +9,7 @@ from recon.safety.departure import Unknown
 from recon.safety.flown import flown
 from recon.safety.flown_path import FlownPath, Kind
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "boundary"
 
@@ -24,7 +24,7 @@ def boundary(command: Command, situation: Situation) -> Refusal | None:
     A stick without velocity goes nowhere and is not asked. Without a boundary nothing is refused.
     """
     fence = situation.airspace.boundary
-    if fence is None or is_zero_stick(command.body):
+    if fence is None or is_stop(command, situation):
         return None
     path = flown(command, situation)
     if path is None:

@@ -4,7 +4,9 @@ Apps in the field answer hover, return and missions on the ground with a takeoff
 """
 
 from recon.model.command import (
+    BODY_NAMES,
     STEERED_BODIES,
+    TAKEOFF_BODIES,
     Command,
     FlyMission,
     Hover,
@@ -17,20 +19,37 @@ from recon.safety.situation import Claimant, Situation
 
 RULE = "flying"
 _NEEDS_FLIGHT = (Hover, ReturnHome, FlyMission, VirtualStick, *STEERED_BODIES)
-_MAY_TAKE_OFF = (Hover, FlyMission, VirtualStick)
 
 
 def flying(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse a moving order unless fresh telemetry says flying, or the order says takeoff."""
+    """Refuse a moving order unless fresh telemetry says flying, or the order says takeoff.
+
+    Takeoff is a word for hover, mission and stick alone, and for a vehicle whose app says whether
+    it flies: else it is refused.
+    """
     vehicle = situation.vehicle
+    if command.takeoff:
+        return _no_takeoff(command, vehicle)
     if vehicle is None or not isinstance(command.body, _NEEDS_FLIGHT):
-        return None
-    if command.takeoff and isinstance(command.body, _MAY_TAKE_OFF):
         return None
     if any(_says_flying(claimant, situation) for claimant in situation.claimants):
         return None
     reason = f"{vehicle.display_name}: {_why(vehicle, situation)}"
     return Refusal(RULE, reason, is_unheard=_is_unheard(vehicle, situation))
+
+
+def _no_takeoff(command: Command, vehicle: VehicleState | None) -> Refusal | None:
+    if isinstance(command.body, TAKEOFF_BODIES):
+        if vehicle is None or vehicle.is_flying.value is not None:
+            return None
+        reason = "its app does not say whether it flies, so not whether it would take off"
+        return Refusal(RULE, f"{vehicle.display_name}: {reason}: look at the app")
+    can = ", ".join(BODY_NAMES[body] for body in TAKEOFF_BODIES)
+    return Refusal(
+        RULE,
+        f"takeoff was said with {command.name}, which never takes off; it goes with {can} only. "
+        "Give the order again without it",
+    )
 
 
 def _says_flying(claimant: Claimant, situation: Situation) -> bool:

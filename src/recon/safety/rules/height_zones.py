@@ -11,7 +11,7 @@ from recon.safety.flown import flown
 from recon.safety.flown_path import FlownPath
 from recon.safety.heights import height_words, stays_above, stays_below, up_of, zone_datum
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "height_zones"
 
@@ -32,21 +32,21 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
     path = flown(command, situation) if airspace.zones_of(ZoneKind.HEIGHT) else None
     if path is None:
         return None
-    is_stop = is_zero_stick(command.body)
+    stops = is_stop(command, situation)
     if isinstance(path, Unknown):
-        return None if is_stop else Refusal(RULE, path.reason)
+        return None if stops else Refusal(RULE, path.reason)
     margin_m = airspace.airspace.limits.boundary_margin_m
     for zone in airspace.zones_near(ZoneKind.HEIGHT, path.footprints, margin_m):
-        reason = _fault(zone, path, situation, is_stop)
+        reason = _fault(zone, path, situation, stops)
         if reason is not None:
             return Refusal(RULE, reason)
     return None
 
 
-def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, is_stop: bool) -> str | None:
+def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, stops: bool) -> str | None:
     airspace, settings, pieces = situation.airspace, situation.settings.fences, path.pieces
-    margin_m = 0.0 if is_stop else airspace.airspace.limits.boundary_margin_m
-    slack_m = settings.stop_slack_m if is_stop else 0.0
+    margin_m = 0.0 if stops else airspace.airspace.limits.boundary_margin_m
+    slack_m = settings.stop_slack_m if stops else 0.0
     near = np.flatnonzero(~zone.polygon.is_clear_of(path.footprints, margin_m))
     triangles_m, datum = pieces.triangles_m[near], zone_datum(zone.zone)
     floor_m, ceiling_m = zone.zone.floor_m, zone.zone.ceiling_m
@@ -54,7 +54,7 @@ def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, is_stop: b
         low_m = pieces.low_m[near] + slack_m
         is_low = ~stays_above(airspace, triangles_m, low_m, floor_m, datum)
         if is_low.any():
-            is_low &= ~columns(path, situation, is_stop)[near]
+            is_low &= ~columns(path, situation, stops)[near]
         if is_low.any():
             limit = f"fly no lower than {height_words(floor_m, datum)} there"
             return _reason(zone, path, int(near[is_low][0]), limit)

@@ -7,7 +7,7 @@ from recon.safety.departure import Unknown
 from recon.safety.flown import flown
 from recon.safety.flown_path import Kind
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "home_distance"
 
@@ -19,7 +19,7 @@ def home_distance(command: Command, situation: Situation) -> Refusal | None:
     the legs they begin on. A piece that begins where the vehicle is may go as far as the vehicle is
     now. A stick without velocity goes nowhere and is not asked.
     """
-    if is_zero_stick(command.body):
+    if is_stop(command, situation):
         return None
     path = flown(command, situation)
     if path is None:

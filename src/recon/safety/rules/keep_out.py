@@ -17,7 +17,7 @@ from recon.safety.heights import (
     zone_datum,
 )
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "keep_out"
 FloatArray = npt.NDArray[np.float64]
@@ -41,12 +41,12 @@ def keep_out(command: Command, situation: Situation) -> Refusal | None:
     path = flown(command, situation) if airspace.zones_of(ZoneKind.KEEP_OUT) else None
     if path is None:
         return None
-    is_stop = is_zero_stick(command.body)
+    stops = is_stop(command, situation)
     if isinstance(path, Unknown):
-        return None if is_stop else Refusal(RULE, path.reason)
+        return None if stops else Refusal(RULE, path.reason)
     margin_m = airspace.airspace.limits.boundary_margin_m
     for zone in airspace.zones_near(ZoneKind.KEEP_OUT, path.footprints, margin_m):
-        entered = _Judged(zone, path, situation, is_stop).worse()
+        entered = _Judged(zone, path, situation, stops).worse()
         if entered is not None:
             return Refusal(RULE, _reason(zone, path, entered, situation))
     return None
@@ -56,14 +56,14 @@ class _Judged:
     """One zone and one path."""
 
     def __init__(
-        self, zone: PreparedZone, path: FlownPath, situation: Situation, is_stop: bool
+        self, zone: PreparedZone, path: FlownPath, situation: Situation, stops: bool
     ) -> None:
         settings = situation.settings.fences
         self.polygon, self.zone, self.path = zone.polygon, zone.zone, path
         self.airspace = situation.airspace
         margin_m = self.airspace.airspace.limits.boundary_margin_m
-        self.gap_m = 0.0 if is_stop else margin_m
-        self.vertical_m = -settings.stop_slack_m if is_stop else settings.zone_vertical_margin_m
+        self.gap_m = 0.0 if stops else margin_m
+        self.vertical_m = -settings.stop_slack_m if stops else settings.zone_vertical_margin_m
         self.rounding_m = settings.not_worse_m
 
     def worse(self) -> int | None:

@@ -1,7 +1,7 @@
 """Who leads a vehicle sets it in motion; hold, land and return come from anybody."""
 
 from recon.model.authority import Leader
-from recon.model.command import MOVING_BODIES, Command, Refusal
+from recon.model.command import Command, Refusal
 from recon.safety.situation import Situation
 
 RULE = "leader"
@@ -19,7 +19,7 @@ def leader(command: Command, situation: Situation) -> Refusal | None:
     The station's own zero at the end of a stick is asked as the stick was, so it passes with it.
     """
     lead, vehicle = situation.lead, situation.vehicle
-    if vehicle is None or not isinstance(command.body, MOVING_BODIES):
+    if vehicle is None or not command.moves:
         return None
     if command.asked_as is lead.leader:
         return None

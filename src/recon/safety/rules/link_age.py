@@ -1,9 +1,9 @@
 """What sets a vehicle in motion needs to know where it is now, not where it was."""
 
-from recon.model.command import MOVING_BODIES, Command, Refusal
+from recon.model.command import Command, Refusal
 from recon.model.units import ns_to_seconds
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "link_age"
 
@@ -11,16 +11,16 @@ RULE = "link_age"
 def link_age(command: Command, situation: Situation) -> Refusal | None:
     """Refuse motion on core telemetry older than 1 s, or extended telemetry older than 3 s.
 
-    A stick without velocity stops the vehicle: it may go as long as telemetry still tells whether
+    A stick that only stops the vehicle may go as long as telemetry still tells whether
     it flies, whatever the extended telemetry's age.
     """
     vehicle, limits = situation.vehicle, situation.settings
-    if vehicle is None or not isinstance(command.body, MOVING_BODIES):
+    if vehicle is None or not command.moves:
         return None
-    is_stop = is_zero_stick(command.body)
-    core_s = limits.fresh_telemetry_s if is_stop else limits.motion_telemetry_s
+    stops = is_stop(command, situation)
+    core_s = limits.fresh_telemetry_s if stops else limits.motion_telemetry_s
     fault = _fault("core", vehicle.core_received_at_ns, core_s, situation)
-    if fault is None and not is_stop:
+    if fault is None and not stops:
         heard_at_ns = vehicle.extended_received_at_ns
         fault = _fault("extended", heard_at_ns, limits.motion_extended_s, situation)
     return None if fault is None else Refusal(RULE, f"{vehicle.display_name}: {fault}")

@@ -13,7 +13,7 @@ from recon.safety.flown import flown
 from recon.safety.flown_path import FlownPath, Kind
 from recon.safety.heights import stays_below
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "max_height"
 IntArray = npt.NDArray[np.int64]
@@ -34,10 +34,10 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
         return None
     if isinstance(path, Unknown):
         return _blind(command, situation, path)
-    is_stop = is_zero_stick(command.body)
+    stops = is_stop(command, situation)
     settings = situation.settings.fences
     limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
-    most_m = limit_m + (settings.stop_slack_m if is_stop else 0.0)
+    most_m = limit_m + (settings.stop_slack_m if stops else 0.0)
     judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME)
     high = _higher(path, np.flatnonzero(judged), situation, most_m)
     high = _worse(path, high, situation, settings.not_worse_m)
@@ -69,11 +69,14 @@ def _worse(path: FlownPath, high: IntArray, situation: Situation, rounding_m: fl
 def _blind(command: Command, situation: Situation, unknown: Unknown) -> Refusal | None:
     """A stop of a vehicle that is nowhere known still asks for a height."""
     body = command.body
-    if not isinstance(body, VirtualStick) or not is_zero_stick(body):
+    if not isinstance(body, VirtualStick) or not is_stop(command, situation):
         return Refusal(RULE, unknown.reason)
+    vehicle, settings = situation.vehicle, situation.settings.fences
     limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
     height_m = as_sent(body.height_above_takeoff_m)
-    if height_m <= limit_m + situation.settings.fences.stop_slack_m:
+    here_m = None if vehicle is None else vehicle.height_above_takeoff_m.value
+    no_higher_m = -inf if here_m is None else here_m + settings.not_worse_m
+    if height_m <= max(limit_m + settings.stop_slack_m, no_higher_m):
         return None
     return Refusal(RULE, f"{height_m:.1f} m above takeoff: at most {limit_m:g} m is allowed here")
 

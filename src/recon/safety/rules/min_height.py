@@ -10,7 +10,7 @@ from recon.safety.flown import flown
 from recon.safety.flown_path import FlownPath, Kind
 from recon.safety.heights import stays_above
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "min_height"
 _CLIMB_FIRST = (
@@ -30,10 +30,10 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
     path = flown(command, situation)
     if path is None:
         return None
-    is_stop = is_zero_stick(command.body)
+    stops = is_stop(command, situation)
     if isinstance(path, Unknown):
-        return None if is_stop else Refusal(RULE, path.reason)
-    slack_m = situation.settings.fences.stop_slack_m if is_stop else 0.0
+        return None if stops else Refusal(RULE, path.reason)
+    slack_m = situation.settings.fences.stop_slack_m if stops else 0.0
     least_m = situation.airspace.airspace.limits.min_height_above_ground_m - slack_m
     pieces = path.pieces
     judged = np.flatnonzero(path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME))
@@ -43,7 +43,7 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
     low = judged[~is_high_enough]
     if len(low) == 0:
         return None
-    low = low[~columns(path, situation, is_stop)[low]]
+    low = low[~columns(path, situation, stops)[low]]
     return None if len(low) == 0 else Refusal(RULE, _reason(path, int(low[0]), situation))
 
 

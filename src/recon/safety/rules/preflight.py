@@ -1,4 +1,4 @@
-"""A mission is flown by a vehicle whose checklist is passed, or overridden in so many words."""
+"""Missions and takeoffs ask for a checklist that is passed, or overridden in so many words."""
 
 from recon.model.command import Command, FlyMission, Refusal
 from recon.safety.homewards import leads_home
@@ -9,16 +9,17 @@ RULE = "preflight"
 
 
 def preflight(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse a mission while a point of the checklist fails or is unknown.
+    """Refuse a mission, or any takeoff, while a point of the checklist fails or is unknown.
 
-    A mission that only brings a vehicle down ends a flight, and is not held back.
+    A mission that only brings a vehicle down ends a flight, and is not held back: what the list
+    asks for makes a flight safe to begin, and a refusal would only leave the vehicle in the air.
     """
     vehicle, body = situation.vehicle, command.body
-    if vehicle is None or not isinstance(body, FlyMission):
+    if vehicle is None or not (isinstance(body, FlyMission) or command.takeoff):
         return None
     if situation.preflight_override is not None:
         return None
-    if leads_home(body.mission, vehicle, situation.airspace):
+    if isinstance(body, FlyMission) and leads_home(body.mission, vehicle, situation.airspace):
         return None
     unmet = [check for check in checklist(vehicle, situation) if check.holds_back]
     if not unmet:

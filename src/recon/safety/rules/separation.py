@@ -8,7 +8,7 @@ A vehicle that is not heard any more is a hazard about its last place and along 
 
 from math import ceil
 
-from recon.model.command import MOVING_BODIES, Command, Refusal
+from recon.model.command import Command, Refusal
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import frame_for
 from recon.safety.prediction import (
@@ -26,7 +26,7 @@ from recon.safety.prediction import (
 )
 from recon.safety.prediction.foresee import may_enter, surroundings
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_zero_stick
+from recon.safety.standstill import is_stop
 
 RULE = "separation"
 NOWHERE = "it does not tell where it is, and others are in the air"
@@ -35,7 +35,7 @@ NOWHERE = "it does not tell where it is, and others are in the air"
 def separation(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path that comes too near to another vehicle's, or to where one may be unseen."""
     body, vehicle = command.body, situation.vehicle
-    if not isinstance(body, MOVING_BODIES) or is_zero_stick(body) or not situation.traffic:
+    if not command.moves or is_stop(command, situation) or not situation.traffic:
         return None
     if vehicle is None:
         return None

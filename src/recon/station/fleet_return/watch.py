@@ -7,7 +7,7 @@ from recon.model.authority import Leader
 from recon.model.command import Hover, Phase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
-from recon.safety.standstill import is_zero_stick
+from recon.station import stick_zero
 from recon.station.fleet_return.record import ENDED, UNDER_WAY, Member, Stage
 from recon.station.fleet_return.settings import ReturnSettings
 from recon.station.orders import OrderRecord
@@ -52,13 +52,13 @@ def seen(station: Station, member: Member, settings: ReturnSettings, now_ns: int
 def newest_motion(station: Station, serial: str) -> OrderRecord | None:
     """Return the newest accepted order to move or stop that a vehicle was given.
 
-    A stick without velocity only ends an older one, and counts for none.
+    The station's own zero at a stick's end counts for none.
     """
     for record in reversed(tuple(station.orders.records.values())):
         command = record.command
         if command.serial != serial or record.phase is Phase.REFUSED_BY_STATION:
             continue
-        if lane_of(command) is not Lane.CAMERA and not is_zero_stick(command.body):
+        if lane_of(command) is not Lane.CAMERA and command.issued_by != stick_zero.ISSUER:
             return record
     return None
 
