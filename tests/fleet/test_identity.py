@@ -167,6 +167,48 @@ class TestHistory:
         assert len(story.fleet.vehicles) == 4
         assert story.vehicle("GONE").is_flying.value is True
 
+    def full(self) -> Story:
+        """Four vehicles that flew when their links ended."""
+        story = Story(Fleet(settings=FleetSettings(vehicles_kept=4)))
+        for n, flying in enumerate((True, True, None, True), start=10):
+            story.at(n).opens(n).says(n, core(flying=flying), extended(f"G{n}")).closes(n)
+        return story
+
+    def test_what_may_fly_is_never_forgotten_and_nobody_new_is_taken_instead(self) -> None:
+        story = self.full().at(30.0).opens(1)
+        for number in range(50):
+            story.says(1, core(), extended(f"S{number}"))
+        assert sorted(story.fleet.vehicles) == ["G10", "G11", "G12", "G13"]
+        link = story.fleet.links[1]
+        assert (link.claimed_serial, link.serial_not_taken) == (None, "S49")
+        assert story.fleet.unbound_links() == (link,)
+        assert link.own_state.is_flying.value is True
+
+    def test_one_that_is_known_finds_its_place_and_makes_room(self) -> None:
+        story = self.full().at(30.0).opens(1).opens(2).says(1, core(), extended("NEW"))
+        story.says(2, extended("G10")).says(1, extended("NEW"))
+        assert story.vehicle("G10").link_id == 2
+        assert story.vehicle("NEW").link_id == 1
+        assert story.vehicle("NEW").is_flying.value is True
+        assert story.fleet.links[1].serial_not_taken is None
+
+    def test_a_link_that_names_another_then_is_neither(self) -> None:
+        story = self.full().at(30.0).opens(2).says(2, extended("G10"), core())
+        story.opens(3).says(3, core(), extended("LAST")).closes(3)
+        story.says(2, extended("OTHER"), core(height_m=7.0))
+        assert "OTHER" not in story.fleet.vehicles
+        assert story.vehicle("G10").link_id is None
+        assert story.vehicle("G10").height_above_takeoff_m.value == 40.0
+        link = story.fleet.links[2]
+        assert (link.claimed_serial, link.serial_not_taken) == (None, "OTHER")
+        assert link.own_state.height_above_takeoff_m.value == 7.0
+
+    def test_sixty_four_that_are_heard_take_no_room_from_another(self) -> None:
+        story = Story()
+        for n in range(1, 66):
+            story.opens(n).says(n, core(), extended(f"S{n}"))
+        assert len(story.fleet.vehicles) == 65
+
     def test_closed_links_are_kept_up_to_a_limit(self) -> None:
         story = Story(Fleet(settings=FleetSettings(closed_links_kept=3)))
         for link_id in range(1, 11):

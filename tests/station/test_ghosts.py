@@ -1,9 +1,13 @@
 """What is not heard stays in the air, until telemetry or a person takes it out."""
 
+from dataclasses import replace
+
 from tests.fleet.said import PLACE, core, extended
 from tests.station.commanded import Told
 
+from recon.fleet.settings import FleetSettings
 from recon.geo.distance import moved_m
+from recon.model.command import Hover, Phase
 from recon.model.event import AlarmAcknowledged, GhostDismissed
 from recon.station.air import ghost, in_the_air, is_hazard_unseen
 from recon.station.ghost_view import ghost_view
@@ -133,3 +137,42 @@ class TestWithoutASerial:
         assert in_air(told) == ["unidentified link 7"]
         told.says(7, core(flying=False))
         assert in_air(told) == []
+
+
+class TestNoRoom:
+    def full(self) -> Told:
+        """As many ghosts as are kept, and one more that comes."""
+        told = Told()
+        fleet = replace(told.station.fleet, settings=FleetSettings(vehicles_kept=3))
+        settings = replace(told.station.settings, fleet=fleet.settings)
+        told.station = replace(told.station, fleet=fleet, settings=settings)
+        for n, serial in enumerate(("X", "Y", "Z"), start=1):
+            told.opens(n, core(), extended(serial)).closes(n)
+        told.passes(5.0)
+        return told.opens(9, core(), extended("NEW")).passes(0.2)
+
+    def test_a_newcomer_is_a_hazard_without_a_name_and_an_alarm(self) -> None:
+        told = self.full()
+        assert in_air(told) == ["X", "Y", "Z", "unidentified link 9"]
+        (alarm,) = (
+            a.condition
+            for a in told.station.alarms.alarms.values()
+            if a.condition.rule == "no_room"
+        )
+        assert "says it is NEW, but 3 vehicles that may fly are not heard" in alarm.text
+        told.says(9, extended("NEWER"), extended("NEWEST")).passes(0.2)
+        assert told.alarms() >= {"no_room", "link_lost"}
+        assert sum(a.condition.rule == "no_room" for a in told.station.alarms.alarms.values()) == 1
+
+    def test_it_can_be_stopped_and_stays_in_the_air_when_its_link_ends(self) -> None:
+        told = self.full()
+        assert told.phase(told.order(Hover(), None, link=9)) is Phase.SENT
+        told.closes(9)
+        assert in_air(told) == ["X", "Y", "Z", "unidentified link 9"]
+
+    def test_a_persons_word_makes_room(self) -> None:
+        told = self.full().happens(GhostDismissed("Y", "Ann"))
+        told.says(9, core(), extended("NEW")).passes(0.2)
+        assert in_air(told) == ["X", "Z", "NEW"]
+        assert "no_room" not in told.alarms()
+        assert told.station.watch.dismissed == {}

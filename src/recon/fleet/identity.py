@@ -18,7 +18,11 @@ SIMULATED_PREFIX = "SIM-"
 
 
 def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
-    """Return the fleet after a link said its serial."""
+    """Return the fleet after a link said its serial.
+
+    A new one is not taken while there is no room for it: its link stays without identity, and what
+    it flies a hazard without a name.
+    """
     link = fleet.links[link_id]
     if link.claimed_serial == serial:
         return fleet
@@ -26,12 +30,16 @@ def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
         # What was heard under the old serial belongs to the old vehicle.
         fleet = release(fleet, replace(link, own_state=_blank(link)), now_ns)
     holder = fleet.vehicles.get(serial)
+    if holder is None and has_no_room(fleet):
+        unknown = replace(fleet.links[link_id], claimed_serial=None, serial_not_taken=serial)
+        return _put_link(fleet, unknown)
     has_holder = holder is not None and holder.link_id is not None
     fleet = _put_link(
         fleet,
         replace(
             fleet.links[link_id],
             claimed_serial=serial,
+            serial_not_taken=None,
             rival_since_ns=now_ns if has_holder else None,
             in_conflict=False,
         ),
@@ -87,22 +95,35 @@ def settle(fleet: Fleet, now_ns: int) -> tuple[Fleet, tuple[tuple[int, str], ...
 def forget_vehicles(fleet: Fleet) -> Fleet:
     """Return the fleet without the vehicles beyond its limit that have no link, silent longest.
 
-    Those last known to fly go last: they are hazards still.
+    Never one that may fly: it is a hazard until it is heard or a person says where it is.
     """
     excess = len(fleet.vehicles) - fleet.settings.vehicles_kept
     if excess <= 0:
         return fleet
     absent = sorted(
-        (v for v in fleet.vehicles.values() if v.link_id is None),
-        key=lambda v: (
-            v.is_flying.value is True,
-            v.serial in fleet.profiles,
-            v.core_received_at_ns or 0,
-        ),
+        (v for v in fleet.vehicles.values() if v.link_id is None and not may_fly(v)),
+        key=lambda v: (v.serial in fleet.profiles, v.core_received_at_ns or 0),
     )
-    forgotten = {vehicle.serial for vehicle in absent[:excess]}
+    return without(fleet, (vehicle.serial for vehicle in absent[:excess]))
+
+
+def without(fleet: Fleet, serials: Iterable[str | None]) -> Fleet:
+    """Return the fleet that has forgotten some of its vehicles."""
+    forgotten = set(serials)
     kept = {key: v for key, v in fleet.vehicles.items() if key not in forgotten}
     return replace(fleet, vehicles=kept)
+
+
+def may_fly(vehicle: VehicleState) -> bool:
+    """Return whether a vehicle has told that it flies, or of itself but not whether it does."""
+    is_flying = vehicle.is_flying.value
+    return is_flying is True or (is_flying is None and vehicle.core_received_at_ns is not None)
+
+
+def has_no_room(fleet: Fleet) -> bool:
+    """Return whether so many vehicles that may fly are without a link that no new one is taken."""
+    ghosts = sum(v.link_id is None and may_fly(v) for v in fleet.vehicles.values())
+    return ghosts >= fleet.settings.vehicles_kept
 
 
 def _heir(fleet: Fleet, vehicle: VehicleState, now_ns: int) -> LinkRecord | None:

@@ -23,7 +23,8 @@ class FleetSettings:
 
     vehicles_kept: int = 64
     """An app that names a new serial again and again must not fill the memory: beyond this, the
-    vehicles without a link that were silent longest are forgotten."""
+    vehicles on the ground that have no link and were silent longest are forgotten; while this many
+    without a link may fly, nobody new is taken."""
 
     closed_links_kept: int = 32
     """Closed links that stay visible, so that a person can read why they closed."""

@@ -18,6 +18,8 @@ class LinkRecord:
     closed_at_ns: int | None = None
     closed_reason: str | None = None
     claimed_serial: str | None = None
+    serial_not_taken: str | None = None
+    """The serial it says, while there is no room for another vehicle."""
     last_packet_at_ns: int | None = None
     rival_since_ns: int | None = None
     """When it brought a serial that another open link holds."""
@@ -35,7 +37,10 @@ class LinkRecord:
 
 @dataclass(frozen=True, slots=True)
 class Fleet:
-    """All links (open and lately closed) and all vehicles ever identified in this run."""
+    """All links (open and lately closed) and all vehicles identified in this run.
+
+    Of those without a link, the ones on the ground are forgotten beyond a limit.
+    """
 
     settings: FleetSettings = FleetSettings()
     profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from recon.fleet.identity import has_no_room, without
 from recon.model.command import FlyMission, Phase
 from recon.model.event import GhostDismissed
 from recon.model.intent import Commanded, Intent
@@ -98,7 +99,20 @@ def dismiss(station: Station, event: GhostDismissed, now_ns: int) -> Station:
         return replace(station, watch=replace(watch, lost=lost))
     heard_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
     dismissed = {**watch.dismissed, event.serial: heard_at_ns}
-    return replace(station, watch=replace(watch, dismissed=dismissed))
+    station = replace(station, watch=replace(watch, dismissed=dismissed))
+    return _with_room(station) if has_no_room(station.fleet) else station
+
+
+def _with_room(station: Station) -> Station:
+    """What a person has taken out of the air, and has no link, makes room for others."""
+    gone = {
+        serial
+        for serial, vehicle in station.fleet.vehicles.items()
+        if vehicle.link_id is None and is_dismissed(station, vehicle)
+    }
+    dismissed = {key: at for key, at in station.watch.dismissed.items() if key not in gone}
+    watch = replace(station.watch, dismissed=dismissed)
+    return replace(station, fleet=without(station.fleet, gone), watch=watch)
 
 
 def keep_lost(station: Station, link_id: int) -> Station:

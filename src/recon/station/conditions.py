@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from recon.fleet.settings import FleetSettings
 from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
 from recon.model.units import ns_to_seconds
@@ -31,6 +32,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _landing(vehicle, station.settings.landing_wait_s)
         yield from _by_itself(station, vehicle)
     for link in station.fleet.unbound_links():
+        yield from _not_taken(link, station.settings.fleet)
         yield from _unidentified(link, station.settings.serial_wait_s)
         if link.own_state.is_flying.value is not False:
             yield from _silence(link.own_state, now_ns)
@@ -134,6 +136,17 @@ def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:
     if link.claimed_serial is None and link.own_state.is_flying.value is True:
         text = f"a vehicle without a serial is flying ({link.remote_address})"
         yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s)
+
+
+def _not_taken(link: LinkRecord, settings: FleetSettings) -> Iterator[Condition]:
+    if link.serial_not_taken is None:
+        return
+    text = (
+        f"its app says it is {link.serial_not_taken}, but {settings.vehicles_kept} vehicles that "
+        "may fly are not heard, and no other is taken in: dismiss those whose place you know; "
+        "until then it can only be told to hold, land or return"
+    )
+    yield _about(link.own_state, "no_room", Severity.ERROR, text)
 
 
 def _lost_unidentified(name: str, state: VehicleState) -> Condition:
