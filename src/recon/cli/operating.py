@@ -8,6 +8,7 @@ import typer
 from recon.cli.flying import camera_command, fly_command
 from recon.cli.hazards import dismiss_command, separation_hold_command
 from recon.cli.leading import preflight_command, release_command, take_command
+from recon.cli.negative_numbers import TakesNegativeNumbers
 from recon.cli.returning import fleet_return_command
 from recon.cli.steering import goto_command, nudge_command
 from recon.cli.stopping import all_stop_command, hold_command, land_command, return_command
@@ -33,6 +34,9 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "commands": commands_command,
 }
 
+WITH_COORDINATES = frozenset({"goto"})
+"""Commands whose arguments may be negative."""
+
 
 def operating_app() -> typer.Typer:
     """Return an application of these commands alone."""
@@ -55,7 +59,8 @@ def new_app() -> typer.Typer:
 def add_commands(app: typer.Typer) -> None:
     """Register these commands."""
     for name, command in COMMANDS.items():
-        app.command(name)(command)
+        takes_negative = name in WITH_COORDINATES
+        app.command(name, cls=TakesNegativeNumbers if takes_negative else None)(command)
 
     @app.callback()
     def group() -> None:

@@ -40,10 +40,7 @@ def goto_command(
     station: StationOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Fly a vehicle straight to a place, until it is there. Ctrl+C stops it.
-
-    Write `--` before LAT when it, or LON, is negative: `recon goto SIM-1 --height 40 -- 41.9 -93.6`
-    """
+    """Fly a vehicle straight to a place, until it is there. Ctrl+C stops it."""
 
     async def give(flown: Vehicle) -> Order | Refusal:
         return await flown.goto(latitude, longitude, height_above_takeoff_m=height, speed_mps=speed)

@@ -1,0 +1,54 @@
+"""Coordinates south and west are numbers, not options."""
+
+from typing import Annotated
+
+import pytest
+import typer
+from hypothesis import given
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from recon.cli.negative_numbers import TakesNegativeNumbers
+
+app = typer.Typer()
+
+
+@app.command(cls=TakesNegativeNumbers)
+def go(
+    latitude: float,
+    longitude: float,
+    height: Annotated[float, typer.Option("--height")] = 0.0,
+    is_json: Annotated[bool, typer.Option("--json")] = False,
+) -> None:
+    typer.echo(f"{latitude!r} {longitude!r} {height!r} {is_json}")
+
+
+def said(*words: str) -> tuple[int, str]:
+    result = CliRunner().invoke(app, words)
+    return result.exit_code, result.output
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--height", "-5", "41.9", "-93.6"),
+        ("41.9", "-93.6", "--height=-5"),
+        ("41.9", "--height", "-5", "-93.6"),
+        ("--height", "-5", "--", "41.9", "-93.6"),
+    ],
+)
+def test_they_stand_anywhere_and_need_nothing_before_them(words: tuple[str, ...]) -> None:
+    assert said(*words) == (0, "41.9 -93.6 -5.0 False\n")
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False), st.floats(-180.0, 180.0))
+def test_every_number_comes_as_it_was_written(latitude: float, longitude: float) -> None:
+    code, output = said(repr(latitude), repr(longitude), "--json")
+    assert (code, output) == (0, f"{latitude!r} {longitude!r} 0.0 True\n")
+
+
+@pytest.mark.parametrize("odd", ["--heigth", "-h", "-9x", "--9", "-", "-inf"])
+def test_what_is_no_number_is_refused_as_ever(odd: str) -> None:
+    code, output = said("41.9", "-93.6", odd)
+    assert code == 2
+    assert "Usage" in output
