@@ -159,3 +159,46 @@ def test_a_fault_belongs_to_a_serial_a_number_or_all() -> None:
     assert Fault(FaultKind.NO_ACK, "3").is_for("SIM-2", 3)
     assert Fault(FaultKind.NO_ACK).is_for("SIM-2", 3)
     assert not Fault(FaultKind.NO_ACK, "2").is_for("SIM-2", 3)
+
+
+def extended(packets: list) -> list[wire.ExtendedTelemetry]:
+    return [packet for packet in packets if isinstance(packet, wire.ExtendedTelemetry)]
+
+
+def test_a_pilot_takes_the_sticks_and_gives_them_back(app_bench) -> None:
+    bench = faulty(app_bench, FaultKind.PILOT_TAKES, start_s=2.0, duration_s=3.0)
+    bench.run(1.5)
+    assert bench.mode == FlightMode.GPS_ATTI
+    bench.run(1.0)
+    assert bench.mode == FlightMode.GPS_SPORT
+    assert bench.app.aircraft.is_pilots
+    assert "fault pilot-takes" in bench.app.take_lines()
+    bench.run(3.0)
+    assert bench.mode == FlightMode.GPS_ATTI
+    assert not bench.app.aircraft.is_pilots
+
+
+def test_a_pilot_who_lands_is_not_stopped_by_giving_the_sticks_back(app_bench) -> None:
+    bench = faulty(app_bench, FaultKind.PILOT_TAKES, start_s=1.0, duration_s=3.0)
+    bench.run(2.0)
+    bench.app.aircraft.land()
+    bench.run(3.0)
+    assert bench.mode == FlightMode.AUTO_LANDING
+
+
+def test_the_receiver_loses_its_satellites_and_finds_them_again(app_bench) -> None:
+    bench = faulty(app_bench, FaultKind.GNSS_LOSS, start_s=2.0, duration_s=3.0)
+    assert {t.gnss_signal_level for t in extended(bench.run(1.9))} == {5}
+    lost = extended(bench.run(3.0))
+    assert lost
+    assert {(t.gnss_satellite_count, t.gnss_signal_level) for t in lost} == {(3, 0)}
+    assert {t.gnss_signal_level for t in extended(bench.run(2.0))} == {5}
+
+
+def test_a_failed_cell_leaves_a_fifth_at_most(app_bench) -> None:
+    bench = faulty(app_bench, FaultKind.LOW_BATTERY, start_s=1.0)
+    assert min(t.battery_percent for t in extended(bench.run(0.9))) > 20
+    assert max(t.battery_percent for t in extended(bench.run(3.0))[1:]) <= 20
+    bench.app.aircraft.battery.fraction = 0.1
+    bench.app.aircraft.battery.lose_a_cell(0.2)
+    assert bench.app.aircraft.battery.percent == 10

@@ -139,6 +139,12 @@ class Aircraft:
         if not self.is_on_ground:
             self.manoeuvre = Hold(mode)
 
+    def pilot_gives_back(self) -> None:
+        """The pilot flips the mode switch back; the aircraft holds until it is told something."""
+        self.is_pilots = False
+        if isinstance(self.manoeuvre, Hold):
+            self.manoeuvre = Hold()
+
     def _set_home(self) -> None:
         self.home_north_m, self.home_east_m = self.motion.north_m, self.motion.east_m
 

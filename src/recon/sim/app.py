@@ -6,10 +6,11 @@ own clock runs in exact steps, so the same seed and orders give the same bytes.
 """
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
+from math import isfinite
 from random import Random
 
 from recon import wire
@@ -20,7 +21,14 @@ from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.aircraft import Aircraft
 from recon.sim.camera_feed import CameraFeed, Shot
 from recon.sim.commands import AppHabits, CommandReader, Reaction
-from recon.sim.faults import LINK_FAULTS, PLACEHOLDER_SERIAL, Fault, FaultKind
+from recon.sim.faults import (
+    AIRCRAFT_FAULTS,
+    FAILED_CELL_FRACTION,
+    LINK_FAULTS,
+    PLACEHOLDER_SERIAL,
+    Fault,
+    FaultKind,
+)
 from recon.sim.rig import EyeRig
 from recon.sim.telemetry import Sensors, SensorSettings, position_deg
 
@@ -104,9 +112,7 @@ class SimulatedApp:
         self._links: dict[int, _Link] = {}
         self._acts: deque[tuple[int, Reaction]] = deque()
         self._link_orders: deque[LinkOrder] = deque()
-        self._pending_link_faults = sorted(
-            (f for f in settings.faults if f.kind in LINK_FAULTS), key=lambda f: f.start_s
-        )
+        self._fault_moments = sorted(self._moments_of_faults(), key=lambda moment: moment[0])
         self._lines: deque[str] = deque(maxlen=64)
         # Apps do not speak in step: each starts at its own part of the first period.
         phase_ns = random.randrange(CORE_PERIOD_NS)
@@ -192,9 +198,8 @@ class SimulatedApp:
         rows: list[tuple[int, Callable[[int], None]]] = []
         if self._acts:
             rows.append((self._acts[0][0], self._act))
-        if self._pending_link_faults:
-            start_s = self._pending_link_faults[0].start_s
-            rows.append((self._start_ns + seconds_to_ns(start_s), self._begin_link_fault))
+        if self._fault_moments:
+            rows.append((self._fault_moments[0][0], self._happen))
         rows.append((self._next_core_ns, self._say_core))
         rows.append((self._next_extended_ns, self._say_extended))
         feed = self.feed
@@ -250,7 +255,9 @@ class SimulatedApp:
         self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
         is_placeholder = self._has(FaultKind.PLACEHOLDER_SERIAL, now_ns)
         serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
-        self._broadcast(self._sensors.extended(self.aircraft, self.feed, serial), now_ns)
+        has_gnss = not self._has(FaultKind.GNSS_LOSS, now_ns)
+        packet = self._sensors.extended(self.aircraft, self.feed, serial, has_gnss)
+        self._broadcast(packet, now_ns)
 
     def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
         feed.take(self._camera_pose())
@@ -266,8 +273,30 @@ class SimulatedApp:
         if MAIN_LINK in self._links and not self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
             self._links[MAIN_LINK].outbox.extend(packets)
 
-    def _begin_link_fault(self, now_ns: int) -> None:
-        fault = self._pending_link_faults.pop(0)
+    def _moments_of_faults(self) -> Iterator[tuple[int, Callable[[], None]]]:
+        """Return when faults that happen once do so, and what they then do."""
+        for fault in self.settings.faults:
+            begin_ns = self._start_ns + seconds_to_ns(fault.start_s)
+            if fault.kind in LINK_FAULTS:
+                yield begin_ns, partial(self._begin_link_fault, fault)
+            elif fault.kind in AIRCRAFT_FAULTS:
+                yield begin_ns, partial(self._begin_aircraft_fault, fault)
+            if fault.kind is FaultKind.PILOT_TAKES and isfinite(fault.duration_s):
+                end_ns = begin_ns + seconds_to_ns(fault.duration_s)
+                yield end_ns, self.aircraft.pilot_gives_back
+
+    def _happen(self, now_ns: int) -> None:
+        _due_ns, happen = self._fault_moments.pop(0)
+        happen()
+
+    def _begin_aircraft_fault(self, fault: Fault) -> None:
+        self._lines.append(f"fault {fault.kind.value}")
+        if fault.kind is FaultKind.PILOT_TAKES:
+            self.aircraft.pilot_takes()
+        else:
+            self.aircraft.battery.lose_a_cell(FAILED_CELL_FRACTION)
+
+    def _begin_link_fault(self, fault: Fault) -> None:
         self._lines.append(f"fault {fault.kind.value}")
         self._link_orders.append(LinkOrder(_LINK_ORDERS[fault.kind], fault.duration_s))
         if fault.kind is FaultKind.SECOND_LINK:

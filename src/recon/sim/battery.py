@@ -23,6 +23,10 @@ class Battery:
         load = (1.0 + 0.25 * min(1.0, speed_mps / 15.0)) if is_flying else GROUND_SHARE
         self.fraction = max(0.0, self.fraction - load * seconds / self.endurance_s)
 
+    def lose_a_cell(self, left_fraction: float) -> None:
+        """Keep so much at most."""
+        self.fraction = min(self.fraction, left_fraction)
+
     @property
     def percent(self) -> int:
         """Whole percent, rounded down."""

@@ -34,8 +34,18 @@ class FaultKind(Enum):
     PLACEHOLDER_SERIAL = "placeholder-serial"
     """The serial is `00000`, as apps send it before they know, as long as the fault lasts."""
 
+    PILOT_TAKES = "pilot-takes"
+    """The pilot flips the mode switch to sport and holds; missions and sticks of the app do nothing
+    until he flips it back, after the duration."""
+    GNSS_LOSS = "gnss-loss"
+    """The receiver has 3 satellites and no signal worth the name, as long as the fault lasts."""
+    LOW_BATTERY = "low-battery"
+    """A cell fails: from the start on a fifth of the charge is left at most. It does not end."""
+
 
 PLACEHOLDER_SERIAL = b"00000"
+FAILED_CELL_FRACTION = 0.2
+"""What a battery has left at most when a cell fails: under every reserve worth the name."""
 
 _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
     FaultKind.ACK_THEN_NOTHING: (0.0, inf),
@@ -46,11 +56,16 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
     FaultKind.SECOND_LINK: (5.0, 10.0),
     FaultKind.RESTART: (5.0, 2.0),
     FaultKind.PLACEHOLDER_SERIAL: (0.0, inf),
+    FaultKind.PILOT_TAKES: (5.0, inf),
+    FaultKind.GNSS_LOSS: (5.0, inf),
+    FaultKind.LOW_BATTERY: (5.0, inf),
 }
 """Start and duration when the description leaves them out."""
 
 LINK_FAULTS = (FaultKind.HALF_OPEN, FaultKind.SECOND_LINK, FaultKind.RESTART)
 """Faults that happen once, to the connection."""
+AIRCRAFT_FAULTS = (FaultKind.PILOT_TAKES, FaultKind.LOW_BATTERY)
+"""Faults that happen once, to the aircraft."""
 
 ALL_VEHICLES = "*"
 

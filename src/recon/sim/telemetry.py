@@ -11,6 +11,9 @@ from recon.model.vehicle import CameraState
 from recon.sim.aircraft import Aircraft
 from recon.sim.camera_feed import CameraFeed
 
+FEW_SATELLITES = 3
+"""One fewer than a position takes."""
+
 
 @dataclass(frozen=True, slots=True)
 class SensorSettings:
@@ -81,12 +84,12 @@ class Sensors:
         )
 
     def extended(
-        self, aircraft: Aircraft, feed: CameraFeed | None, serial: bytes
+        self, aircraft: Aircraft, feed: CameraFeed | None, serial: bytes, has_gnss: bool = True
     ) -> wire.ExtendedTelemetry:
         """Return extended telemetry."""
         return wire.ExtendedTelemetry(
-            gnss_satellite_count=self._satellites,
-            gnss_signal_level=5,
+            gnss_satellite_count=self._satellites if has_gnss else FEW_SATELLITES,
+            gnss_signal_level=5 if has_gnss else 0,
             max_height_reached=0,
             max_distance_reached=0,
             battery_percent=aircraft.battery.percent,
