@@ -29,8 +29,8 @@ from studies.places import FloatArray
 
 FRAME = LocalFrame(GeoPoint(44.99, -93.2, 250.0))
 COUNTS = (1, 3, 8)
-SIDE_PX = 620
-EDGE_PX = 40
+SIDE_PX = 400
+EDGE_PX = 28
 PAPER, FIELD, OUTLINE = (255, 255, 255), (222, 236, 222), (110, 130, 110)
 COLOURS = (
     (180, 110, 30),
