@@ -7,7 +7,7 @@ from tests.station.commanded import Told
 
 from recon.fleet.settings import FleetSettings
 from recon.geo.distance import moved_m
-from recon.model.command import Hover, Phase
+from recon.model.command import GoTo, Hover, Phase
 from recon.model.event import AlarmAcknowledged, GhostDismissed
 from recon.station.air import ghost, in_the_air, is_hazard_unseen
 from recon.station.ghost_view import ghost_view
@@ -126,11 +126,22 @@ class TestWithoutASerial:
         told = Told().opens(7, core(flying=False), extended(None)).passes(1.0).closes(7)
         assert in_air(told) == []
 
-    def test_the_newest_are_kept(self) -> None:
-        told = Told()
+    def test_of_too_many_none_is_forgotten_and_nothing_moves_until_a_person_knows(self) -> None:
+        told = Told().opens(99, core(), extended("A")).keeps_saying(99, core(), extended("A"))
         for link_id in range(1, 30):
-            told.opens(link_id, core(), extended(None)).closes(link_id)
-        assert list(told.station.watch.lost) == [f"link-{i}" for i in range(14, 30)]
+            told.opens(link_id, core(position=moved_m(PLACE, 5_000.0, 0.0)), extended(None)).closes(
+                link_id
+            )
+        told.passes(0.5)
+        assert [*told.station.watch.lost] == [*(f"link-{i}" for i in range(1, 17)), "many-lost"]
+        texts = [a.condition.text for a in told.station.alarms.alarms.values()]
+        assert sum("dismiss many-lost" in text for text in texts) == 1
+        refused = told.record(told.order(GoTo(moved_m(PLACE, 30.0, 0.0), 40.0, 5.0)))
+        assert refused.phase is Phase.REFUSED_BY_STATION
+        assert "one of many lost vehicles may be in the air" in refused.note
+        assert told.phase(told.order(Hover())) is Phase.SENT
+        told.happens(GhostDismissed("many-lost", "Ann")).passes(0.1)
+        assert told.phase(told.order(GoTo(moved_m(PLACE, 30.0, 0.0), 40.0, 5.0))) is Phase.SENT
 
     def test_while_its_link_is_open_it_is_in_the_air_by_its_own_word(self) -> None:
         told = Told().opens(7, core(), extended(None)).passes(1.0)

@@ -1,6 +1,6 @@
 """What may be in the air: heard or not, identified or not; and ghosts taken out of it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from recon.fleet.identity import has_no_room, without
@@ -8,15 +8,17 @@ from recon.model.command import FlyMission, Phase
 from recon.model.event import GhostDismissed
 from recon.model.intent import Commanded, Intent
 from recon.model.units import seconds_to_ns
-from recon.model.vehicle import VehicleState
+from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety.prediction import Ghost, flyer, ghost_of
 from recon.safety.watchdogs import plane_of
 from recon.station.state import Station
 
 _TOLD_NOTHING = Intent()
 LOST_KEPT = 16
-"""Vehicles that flew without a serial and were lost: beyond this the oldest are forgotten, for an
-app that connects again and again must not fill the air."""
+"""Vehicles that flew without a serial and were lost: an app that connects again and again must not
+fill the air. The rest are one hazard that is nowhere known to be, and so everywhere."""
+MANY_LOST = "many-lost"
+"""What that one is dismissed by."""
 
 
 def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
@@ -117,10 +119,27 @@ def _with_room(station: Station) -> Station:
 
 def keep_lost(station: Station, link_id: int) -> Station:
     """Return the station that remembers what flew on a link that ends without a serial."""
-    link = station.fleet.links[link_id]
-    lost = {**station.watch.lost, lost_name(link_id): link.own_state}
-    newest = dict(list(lost.items())[-LOST_KEPT:])
-    return replace(station, watch=replace(station.watch, lost=newest))
+    state = station.fleet.links[link_id].own_state
+    lost = with_lost(station.watch.lost, lost_name(link_id), state)
+    return replace(station, watch=replace(station.watch, lost=lost))
+
+
+def with_lost(
+    lost: Mapping[str, VehicleState], name: str, state: VehicleState
+) -> Mapping[str, VehicleState]:
+    """Return the lost with one more; when there are too many, with one that stands for the rest.
+
+    It has no place, and the gate lets nothing set out while such a one may be in the air.
+    """
+    if name != MANY_LOST and sum(key != MANY_LOST for key in lost) < LOST_KEPT:
+        return {**lost, name: state}
+    somewhere = VehicleState(
+        serial=None,
+        profile=VehicleProfile(serial="", name="one of many lost vehicles"),
+        is_flying=state.is_flying,
+        core_received_at_ns=state.core_received_at_ns,
+    )
+    return {**lost, MANY_LOST: somewhere}
 
 
 def lost_name(link_id: int) -> str:

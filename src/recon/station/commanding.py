@@ -195,7 +195,7 @@ def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tu
         for state, claimed in in_the_air(station)
         if state.serial is None or state.serial != serial
         if claimed is None or claimed != command.serial
-        if state.serial is not None or state.link_id != command.link_id
+        if state.serial is not None or state.link_id is None or state.link_id != command.link_id
     )
 
 

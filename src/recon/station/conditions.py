@@ -151,10 +151,16 @@ def _not_taken(link: LinkRecord, settings: FleetSettings) -> Iterator[Condition]
 
 def _lost_unidentified(name: str, state: VehicleState) -> Condition:
     """It ends with a person's word alone: nobody would know the vehicle if it were heard again."""
-    text = (
-        "a vehicle without a serial was flying when its link ended; it may be anywhere near its "
-        f"last place: dismiss {name} when you have seen where it is"
-    )
+    if name == air.MANY_LOST:
+        text = (
+            f"more than {air.LOST_KEPT} vehicles without a serial flew when their links ended; "
+            f"nothing is set in motion until you know where all of them are and dismiss {name}"
+        )
+    else:
+        text = (
+            "a vehicle without a serial was flying when it was last heard; it may be anywhere near "
+            f"its last place: dismiss {name} when you have seen where it is"
+        )
     return Condition(
         key=f"unidentified_lost:{name}",
         severity=Severity.CRITICAL,
