@@ -1,5 +1,7 @@
 """The made-up land: drawn the same at every resolution, seen as the lens sees it."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -9,11 +11,11 @@ from recon.camera.image_circle import ImageCircle
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.sim import field
 from recon.sim.camera_feed import View
-from recon.sim.cloud_shadows import CloudShadows
 from recon.sim.errors import FrameSourceError
 from recon.sim.farmland import lay_out
 from recon.sim.farmland_raster import draw
 from recon.sim.noise import tileable_noise
+from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.site import demo_site_folder
 
 SEED = 5
@@ -113,23 +115,24 @@ def test_noise_is_seamless_and_of_unit_strength() -> None:
     assert np.abs(noise[:, 0] - noise[:, -1]).mean() < 2.0 * inner
 
 
-def test_shadows_drift_with_the_wind() -> None:
-    shadows = CloudShadows(seed=2, wind_mps=5.0, heading_deg=90.0)
-    east, north = np.meshgrid(
-        np.arange(0.0, 800.0, 4.0, dtype=np.float32), np.arange(0.0, 800.0, 4.0, dtype=np.float32)
-    )
-    now = shadows.transmittance(east, north, 100.0)
-    later = shadows.transmittance(east + np.float32(50.0), north, 110.0)
-    assert np.abs(now - later).max() < 0.01
-    assert 1.0 - shadows.depth - 1e-6 <= now.min() < 0.7
-    assert now.max() == pytest.approx(1.0)
+def test_clouds_shade_the_land_and_leave_skylight(frames, camera) -> None:
+    """Where nothing of the beam comes through, a picture is half as bright and a little bluer."""
+    overcast = Sky(SkySettings(layers=(LayerSettings(cover=1.0),)))
+    shaded = replace(frames, sky=overcast).render(View(0.0, 0, pose())).astype(float)
+    lit = frames.render(View(0.0, 0, pose())).astype(float)
+    near = slice(camera.rows // 2 - 60, camera.rows // 2 + 60)
+    red, _green, blue = (shaded[near, near] / np.maximum(lit[near, near], 1.0)).mean(axis=(0, 1))
+    assert 0.4 < red < blue < 0.65
 
 
-def test_about_the_asked_share_is_in_shadow() -> None:
-    shadows = CloudShadows(seed=9, cover=0.3)
-    east, north = np.meshgrid(
-        np.linspace(0.0, 1_500.0, 300, dtype=np.float32),
-        np.linspace(0.0, 1_500.0, 300, dtype=np.float32),
-    )
-    light = shadows.transmittance(east, north, 0.0)
-    assert (light < 1.0 - shadows.depth / 2.0).mean() == pytest.approx(0.3, abs=0.03)
+def test_pictures_show_the_shadows_where_the_sky_has_them(frames, camera) -> None:
+    sky = Sky(SkySettings(3, layers=(LayerSettings(cover=0.5, outer_scale_m=500.0),)))
+    there = pose()
+    shaded = replace(frames, sky=sky).render(View(40.0, 0, there)).astype(float).sum(axis=2)
+    lit = frames.render(View(40.0, 0, there)).astype(float).sum(axis=2)
+    grid = GroundGrid(LocalFrame(GeoPoint(0.0, 0.0, 0.0)), -150, 150, 2.0, 150, 150)
+    cols, rows = maps(grid, camera, there)
+    seen = cv2.remap((shaded / np.maximum(lit, 1.0)).astype(np.float32), cols, rows, 1)
+    truth = sky.on_grid(grid, 40.0)
+    assert 0.1 < (truth < 0.5).mean() < 0.9
+    assert correlation(seen, truth) > 0.95

@@ -33,10 +33,9 @@ from recon.cli.sim_options import (
     WaypointAltitude,
 )
 from recon.model.errors import ReconError
-from recon.model.geo import GeoPoint
+from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.sim.camera_feed import FeedSettings, FrameSource, ImageFormat
-from recon.sim.cloud_shadows import CloudShadows
 from recon.sim.commands import HoverOnGround
 from recon.sim.errors import SimulationError
 from recon.sim.faults import parse_fault
@@ -46,6 +45,7 @@ from recon.sim.frame_files import folder_frames
 from recon.sim.replay import load_replay, rig_over
 from recon.sim.rig import EyeRig
 from recon.sim.run import run_fleet
+from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Eye, Site, SiteError, demo_site_folder, load_site
 
 LONGEST_LATENCY_S = 60.0
@@ -193,8 +193,15 @@ def _eye_world(
         return EyeWorld(rig, folder_frames(frames, rows, cols))
     if rig is None or place.eye is None:
         raise SimulationError("expected a site with an [eye], or --frames, or --no-eye, got none")
-    land = FieldFrames(rig.camera, place.eye.image_circle, seed, CloudShadows(seed))
+    land = FieldFrames(rig.camera, place.eye.image_circle, seed, _sky(rig.frame.origin, seed))
     return EyeWorld(rig, land)
+
+
+def _sky(origin: GeoPoint, seed: int) -> Sky:
+    """Return fair weather over a place: many small clouds, so that shadows come and go."""
+    sun = SunSettings(LatLon(origin.latitude_deg, origin.longitude_deg))
+    clouds = LayerSettings(cover=0.35, outer_scale_m=2_500.0, softness=0.15)
+    return Sky(SkySettings(seed, sun, (clouds,)))
 
 
 def _site_rig(place: Site, eye: Eye) -> EyeRig:

@@ -15,17 +15,20 @@ import numpy as np
 from recon.camera import ImageCircle, OmnidirectionalCamera
 from recon.model.imagery import CameraPose, RgbImage
 from recon.sim.camera_feed import View
-from recon.sim.cloud_shadows import CloudShadows
 from recon.sim.errors import FrameSourceError
 from recon.sim.farmland import lay_out
 from recon.sim.farmland_raster import Raster, draw
 from recon.sim.noise import FloatImage
+from recon.sim.world import LightSettings, Sky
+from recon.sim.world.light import clear_sky_light
 
 LATTICE_PX = 4
 LEVELS = ((2048, 0.5), (2048, 2.0), (1536, 8.0))
 """Sizes and cells: the finest serves the middle of the picture, the coarsest the horizon."""
 HAZE = (186.0, 196.0, 202.0)
 HAZE_M = 7_000.0
+DISPLAY_GAMMA = 2.2
+"""The land's colours are a screen's, not light's: a quarter of the light is half as bright."""
 STEEPEST_TANGENT = 60.0
 """Rays flatter than 1 in 60 count as horizon."""
 
@@ -43,7 +46,7 @@ class FieldFrames:
     camera: OmnidirectionalCamera
     image_circle: ImageCircle | None = None
     seed: int = 0
-    shadows: CloudShadows | None = None
+    sky: Sky | None = None
     _lens: "_Lens | None" = field(default=None, init=False)
     _preparing: Lock = field(default_factory=Lock, init=False)
 
@@ -55,12 +58,14 @@ class FieldFrames:
         look = _look(lens, view.pose)
         picture = _with_haze(lens, look, _ground_picture(lens, look, rasters))
         frame = np.zeros((self.camera.rows, self.camera.cols, 3), dtype=np.uint8)
-        frame[lens.window] = _lit(lens, look, picture, self.shadows, view.elapsed_s)
+        frame[lens.window] = _lit(lens, look, picture, self.sky, view.elapsed_s)
         return frame
 
     def prepare(self) -> None:
-        """Draw the land."""
+        """Draw the land, and the clouds of the first moment."""
         self._scene()
+        if self.sky is not None:
+            self.sky.transmittance(0.0, 0.0, 0.0)
 
     def _scene(self) -> "tuple[_Lens, tuple[Raster, ...]]":
         """Return lens and land, made at the first call; several threads may call this at once."""
@@ -189,14 +194,24 @@ def _with_haze(lens: _Lens, look: _Look, picture: RgbImage) -> RgbImage:
     return cv2.blendLinear(picture, haze, 1.0 - share, share).astype(np.uint8, copy=False)
 
 
-def _lit(
-    lens: _Lens, look: _Look, picture: RgbImage, shadows: CloudShadows | None, time_s: float
-) -> RgbImage:
+def _lit(lens: _Lens, look: _Look, picture: RgbImage, sky: Sky | None, time_s: float) -> RgbImage:
     """Apply the lens's light and the clouds' shadows; skylight keeps shadows a little blue."""
-    if shadows is None:
+    if sky is None:
         light = [lens.vignette] * 3
     else:
-        direct = lens.full(shadows.transmittance(look.east_m, look.north_m, time_s))
-        light = [lens.vignette * (1.0 - (1.0 - direct) * part) for part in (1.0, 0.97, 0.88)]
+        shade = lens.full(_brightness(sky, look, time_s))
+        light = [lens.vignette * (1.0 - (1.0 - shade) * part) for part in (1.0, 0.97, 0.88)]
     scale = cv2.merge([(255.0 * channel).astype(np.uint8) for channel in light])
     return cv2.multiply(picture, scale, scale=1.0 / 255.0).astype(np.uint8, copy=False)
+
+
+def _brightness(sky: Sky, look: _Look, time_s: float) -> FloatImage:
+    """Return pixel values over those in full sun, for the lattice's points."""
+    settings = LightSettings()
+    light = clear_sky_light(sky.sun_at(time_s), settings)
+    index = light.index(
+        sky.transmittance(look.east_m, look.north_m, time_s), settings.cloud_brightening
+    )
+    in_sun = light.index(np.ones(1, dtype=np.float32), settings.cloud_brightening)
+    brightness: FloatImage = np.power(index / in_sun, np.float32(1.0 / DISPLAY_GAMMA))
+    return brightness
