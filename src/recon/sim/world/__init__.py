@@ -10,6 +10,7 @@ from recon.sim.world.settings import (
 )
 from recon.sim.world.sky import Sky
 from recon.sim.world.sun import SunPosition, sun_position
+from recon.sim.world.wind import Wind
 
 __all__ = [
     "LayerSettings",
@@ -18,6 +19,7 @@ __all__ = [
     "SkySettings",
     "SunPosition",
     "SunSettings",
+    "Wind",
     "WindSettings",
     "WindShift",
     "sun_position",

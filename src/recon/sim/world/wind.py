@@ -21,6 +21,8 @@ OCTAVES = 6
 OCTAVE_RATIO = 0.5
 KOLMOGOROV = 2.0 / 3.0
 """Power of velocity at a scale grows with the scale to this power."""
+POWERS = tuple(OCTAVE_RATIO ** (k * KOLMOGOROV) for k in range(OCTAVES))
+WEIGHTS = tuple(sqrt(power / sum(POWERS)) for power in POWERS)
 ACROSS_SHARE = 0.8
 UP_SHARE = 0.5
 """Deviations across the wind and upwards over that along it, in the lowest hundred metres."""
@@ -83,13 +85,11 @@ class Wind:
 
 def _noise(seed: int, axis: int, time_s: float, scale_s: float) -> float:
     """Return a value of mean 0 and deviation 1 that changes on scales from `scale_s` down."""
-    powers = [OCTAVE_RATIO ** (k * KOLMOGOROV) for k in range(OCTAVES)]
     value = 0.0
-    for k, power in enumerate(powers):
-        period_s = scale_s * OCTAVE_RATIO**k * PERIODS_PER_LIFETIME
-        value += sqrt(power / sum(powers)) * _between_keys(
-            (seed, STREAM + axis, k), time_s / period_s
-        )
+    position = time_s / (scale_s * PERIODS_PER_LIFETIME)
+    for k, weight in enumerate(WEIGHTS):
+        value += weight * _between_keys((seed, STREAM + axis, k), position)
+        position /= OCTAVE_RATIO
     return value
 
 
@@ -97,5 +97,6 @@ def _between_keys(stream: tuple[int, ...], position: float) -> float:
     """Blend a stream's two neighbouring numbers so that the variance stays one."""
     key = floor(position)
     along = position - key
-    norm = sqrt((1.0 - along) ** 2 + along**2)
-    return ((1.0 - along) * number(stream, key) + along * number(stream, key + 1)) / norm
+    rest = 1.0 - along
+    norm = sqrt(rest * rest + along * along)
+    return (rest * number(stream, key) + along * number(stream, key + 1)) / norm
