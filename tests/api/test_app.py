@@ -97,6 +97,17 @@ class TestOrders:
         assert response.status_code == 200
         assert [r["serial"] for r in response.json()["results"]] == serials
 
+    @pytest.mark.parametrize("kind", ["land", "return_home", "camera_stop"])
+    def test_takeoff_is_no_word_for_an_order_that_never_takes_off(
+        self, client: Client, station: FakeStation, kind: str
+    ) -> None:
+        for path in ("/api/orders", "/api/orders/check"):
+            asked = {"serials": ["A"], "order": {"kind": kind}, "takeoff": True}
+            response = client.post(path, json=asked)
+            assert response.status_code == 422
+            assert f"takeoff was said with {kind}" in response.text
+        assert station.asked == []
+
     def test_the_order_reaches_the_station_as_asked(
         self, client: Client, station: FakeStation
     ) -> None:

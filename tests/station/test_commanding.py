@@ -37,6 +37,17 @@ def test_takeoff_is_always_explicit(body: Body) -> None:
     assert len(told.sent) == 1
 
 
+class TestStickUnconfirmed:
+    def test_one_that_telemetry_does_not_show_is_an_alarm_until_it_does(self) -> None:
+        told = hovering()
+        order = told.order(replace(STICK, timeout_s=5.0))
+        told.passes(told.station.settings.stick_confirm_s + 0.2)
+        assert told.phase(order) is Phase.TIMED_OUT
+        assert told.alarms() == {"order_not_confirmed"}
+        told.order(Hover())
+        assert told.passes(0.2).alarms() == set()
+
+
 class TestMission:
     def test_it_has_started_when_the_mode_becomes_10(self) -> None:
         told = hovering()
@@ -128,15 +139,20 @@ class TestCameraAndStick:
         told.passes(0.1).says(1, ImageReport(target_fps_hz=1.0, jpeg=b"x")).passes(0.1)
         assert told.phase(order) is Phase.DONE
 
-    @pytest.mark.parametrize(("body", "limit_s"), [(StartCamera(1.0), 8.0), (STICK, 2.0)])
-    def test_without_confirmation_it_times_out_quietly(self, body: Body, limit_s: float) -> None:
+    @pytest.mark.parametrize(
+        ("body", "limit_s", "alarms"),
+        [(StartCamera(1.0), 8.0, set()), (STICK, 2.0, {"order_not_confirmed"})],
+    )
+    def test_without_confirmation_it_times_out_and_what_moves_is_an_alarm(
+        self, body: Body, limit_s: float, alarms: set[str]
+    ) -> None:
         told = flying()
         order = told.order(body)
         told.passes(limit_s - 0.1)
         assert told.phase(order) is Phase.SENT
         told.passes(0.2)
         assert told.phase(order) is Phase.TIMED_OUT
-        assert told.alarms() == set()
+        assert told.alarms() == alarms
 
     def test_in_a_conflict_neither_is_sent(self) -> None:
         told = hovering().opens(2, *HOVERING)

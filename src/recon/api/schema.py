@@ -560,6 +560,15 @@ class OrderRequest(Asked):
     holder: Annotated[str, Field(max_length=64)] | None = None
 
     @model_validator(mode="after")
+    def _takes_off_with_what_can(self) -> Self:
+        if self.takeoff and not isinstance(self.order, HoverOrder | MissionOrder | StickOrder):
+            raise ValueError(
+                f"takeoff was said with {self.order.kind}, which never takes off; it goes with "
+                "hover, mission and stick only: give the order again without it"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _names_its_holder(self) -> Self:
         if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.holder:
             raise ValueError(

@@ -26,7 +26,8 @@ class Intent:
 
     `mission` is set for MISSION: the part it was last sent, of which it has passed the first
     `passed` waypoints (0: on its way to the first). `target`, `target_height_above_takeoff_m` and
-    `speed_mps` are set for STICK (of a single stick the height alone). `command_id` is the order behind it.
+    `speed_mps` are set for STICK (of a single stick the height alone). `command_id` is the order
+    behind it.
     """
 
     commanded: Commanded = Commanded.NOTHING

@@ -193,7 +193,7 @@ def timed_out(record: OrderRecord, at_ns: int, limit_s: float) -> OrderRecord:
         )
     note = _of_part(record, f"telemetry has not confirmed it within {limit_s:g} s")
     alarm = MISSION_IGNORED if isinstance(record.command.body, FlyMission) else None
-    if record.command.is_emergency:
+    if record.command.is_emergency or isinstance(record.command.body, VirtualStick):
         alarm = UNCONFIRMED
     return ended(record, Phase.TIMED_OUT, at_ns, note, alarm=alarm)
 

@@ -42,7 +42,7 @@ def forget(station: Station, newer: Command | OperatorOrder) -> Station:
 
 
 def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ...]]:
-    """Return the zeros that must go now, as orders for the gate; `forget` each when it is placed."""
+    """Return the zeros that must go now, as orders for the gate; `forget` each once placed."""
     orders: list[OperatorOrder] = []
     for serial, pending in station.sticks.items():
         if now_ns >= pending.due_at_ns and _is_flown_by_sticks(station, pending, now_ns):
