@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.guidance.survey.fields import holed, l_shape, planned, rectangle, survey_of
+from tests.guidance.survey.fields import FRAME, holed, l_shape, planned, rectangle, survey_of
 from tests.guidance.survey.flyers import (
     BoolArray,
     Flights,
@@ -15,7 +15,18 @@ from tests.guidance.survey.flyers import (
     serials,
 )
 
-from recon.guidance.survey import SurveyState, abort, create, figures, pause, refused, start
+from recon.guidance.survey import (
+    Surroundings,
+    SurveyPlan,
+    SurveyState,
+    abort,
+    create,
+    figures,
+    pause,
+    plan_survey,
+    refused,
+    start,
+)
 from recon.model.command import Refusal
 from recon.model.survey import CellState, Survey, SurveyBudget, SurveyPhase
 from recon.model.units import seconds_to_ns
@@ -251,6 +262,21 @@ class TestTroubles:
         asked = [m.length_m for m in flights.given if m.serial == "S-1"]
         assert len(asked) == 3
         assert asked[0] == asked[1] == asked[2]
+
+    def test_a_field_in_two_parts_is_flown_in_two_missions(self) -> None:
+        across = Region(np.array([(130.0, -50.0), (160.0, -50.0), (160.0, 250.0), (130.0, 250.0)]))
+        plan = plan_survey(survey_of(rectangle()), FRAME, Surroundings(keep_out=(across,)))
+        assert isinstance(plan, SurveyPlan)
+        created = create(plan)
+        assert isinstance(created, SurveyState)
+        state = start(created, ["S-1"], 0)
+        assert isinstance(state, SurveyState)
+        flights = Flights(state, fleet(1))
+        end = flights.run()
+        assert (end.phase, end.round, len(flights.given)) == (SurveyPhase.DONE, 1, 2)
+        found = figures(end)
+        assert 0.75 * found.region_m2 < found.reached_m2 < 0.95 * found.region_m2
+        assert found.not_yet_m2 < found.region_m2 - found.reached_m2 + 500.0
 
 
 class TestLife:

@@ -199,6 +199,15 @@ class TestLattice:
         for a, b in pairwise(plan.pieces):
             assert b.row > a.row or b.start_m > a.end_m
 
+    def test_rows_to_show_are_those_that_are_flown(self) -> None:
+        plan = planned(survey_of(l_shape(), front=0.4, speed_mps=15.0))
+        assert plan.swath.lead_m > 0.0
+        for (start_m, end_m), (shown_start_m, shown_end_m) in zip(
+            flown_m(plan), plan.rows_m, strict=True
+        ):
+            assert np.allclose(start_m, shown_start_m)
+            assert np.allclose(end_m, shown_end_m)
+
 
 class TestDirection:
     def test_a_long_field_is_flown_lengthwise(self) -> None:

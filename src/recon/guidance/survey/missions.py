@@ -33,13 +33,16 @@ class Track:
         return sum(apart_m(a, b) for a, b in pairwise(self.corners_m))
 
 
-def track_of(route: Route, lattice: RowLattice, lead_m: float, ways: Ways) -> Track:
-    """Return where a route leads; between rows inside the ways' area if there is a way."""
+def track_of(route: Route, lattice: RowLattice, lead_m: float, ways: Ways) -> Track | None:
+    """Return where a route leads; between rows inside the ways' area, None where it has no way."""
     corners: list[Place] = []
     for leg in route:
         start_m, end_m = _east_north(leg.ends_m(lattice, lead_m), lattice)
         if corners:
-            corners += ways.between(corners[-1], start_m)
+            between = ways.between(corners[-1], start_m)
+            if between is None:
+                return None
+            corners += between
         corners += [start_m, end_m]
     return Track(_thinned(corners))
 

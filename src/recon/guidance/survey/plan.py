@@ -10,6 +10,7 @@ from recon.guidance.survey.cells import BoolArray, SurveyCells, cells_over
 from recon.guidance.survey.check import survey_fault
 from recon.guidance.survey.direction import best_bearing_deg
 from recon.guidance.survey.lattice import RowLattice
+from recon.guidance.survey.route import Leg, Place
 from recon.guidance.survey.rows import Piece, lattice_over, row_pieces
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
 from recon.guidance.survey.swath import Swath, swath_of
@@ -46,6 +47,14 @@ class SurveyPlan:
     pieces: tuple[Piece, ...]
     ways: Ways
     cells: SurveyCells
+
+    @property
+    def rows_m(self) -> tuple[tuple[Place, Place], ...]:
+        """From where to where each row is flown, lead and all, in east-north metres; to show."""
+        lattice, lead_m = self.lattice, self.swath.lead_m
+        legs = [Leg(piece, False).ends_m(lattice, lead_m) for piece in self.pieces]
+        ends = lattice.east_north_m(np.array(legs).reshape(-1, 2)).reshape(-1, 2, 2).tolist()
+        return tuple(((a[0], a[1]), (b[0], b[1])) for a, b in ends)
 
     def pieces_over(self, is_wanted: BoolArray) -> tuple[Piece, ...]:
         """Return what of the pieces must be flown for these cells (R, C), cut at marks.

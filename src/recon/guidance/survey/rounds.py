@@ -217,20 +217,25 @@ def _flying(
 
 
 def _sortie(plan: SurveyPlan, route: Route, surveyor: Surveyor) -> tuple[Track | None, int]:
-    """The longest beginning of a route that the battery lasts for, and how many legs it has."""
+    """The longest beginning of a route that the battery lasts for, and how many legs it has.
 
-    def track(count: int) -> Track:
+    It ends where there is no way on to the next row: what comes then is a mission of its own, and
+    the gate judges the way there.
+    """
+
+    def track(count: int) -> Track | None:
         return track_of(route[:count], plan.lattice, plan.swath.lead_m, plan.ways)
 
-    if surveyor.time_left_s is None:
-        return track(len(route)), len(route)
-    too_long = range(1, len(route) + 1)
-    count = bisect_left(too_long, True, key=lambda n: not _lasts(plan, track(n), surveyor))
+    too_many = range(1, len(route) + 1)
+    count = bisect_left(too_many, True, key=lambda n: not _lasts(plan, track(n), surveyor))
     return (track(count) if count else None), count
 
 
-def _lasts(plan: SurveyPlan, track: Track, surveyor: Surveyor) -> bool:
+def _lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
+    """Whether there is a track and the battery lasts for it, and for the ways there and home."""
+    if track is None or surveyor.time_left_s is None:
+        return track is not None
     home_m = surveyor.home_m or surveyor.place_m
     speed_mps = plan.survey.speed_mps
     needed_s = flight_time_s(track, speed_mps, surveyor.place_m, home_m, plan.settings)
-    return needed_s <= (surveyor.time_left_s or 0.0) * plan.settings.flight_time_share
+    return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share

@@ -30,16 +30,13 @@ class Ways:
         self._seen: dict[int, list[tuple[int, float]]] = {}
         shapely.prepare(area)
 
-    def between(self, start_m: Place, end_m: Place) -> tuple[Place, ...]:
-        """Return the corners on the way, none where it is straight.
-
-        None either where there is no way at all inside: whoever judges the flight refuses it.
-        """
+    def between(self, start_m: Place, end_m: Place) -> tuple[Place, ...] | None:
+        """Return the corners on the way, none where it is straight; None where there is no way."""
         if self._is_open(np.array([start_m]), end_m)[0]:
             return ()
         return self._around(start_m, end_m)
 
-    def _around(self, start_m: Place, end_m: Place) -> tuple[Place, ...]:
+    def _around(self, start_m: Place, end_m: Place) -> tuple[Place, ...] | None:
         """Dijkstra's search over the corners, from the start to the first that sees the end."""
         sees_end = self._is_open(self._corners, end_m)
         waiting = [(far_m, corner, -1) for corner, far_m in self._visible_from(start_m)]
@@ -59,7 +56,7 @@ class Ways:
             for neighbour, leg_m in self._neighbours(corner):
                 if neighbour not in before:
                     heappush(waiting, (far_m + leg_m, neighbour, corner))
-        return () if best is None else self._back(best[1], before)
+        return None if best is None else self._back(best[1], before)
 
     def _back(self, corner: int, before: dict[int, int]) -> tuple[Place, ...]:
         way: list[Place] = []
