@@ -19,7 +19,7 @@ from recon.cli.at_station import (
 )
 from recon.cli.naming import serials_of
 from recon.cli.telling import Outcome, say, tell
-from recon.client import Order, Refusal, Station, Vehicle
+from recon.client import Order, Phase, Refusal, Station, Vehicle
 
 ARRIVED_WITHIN_S = 600.0
 SpeedOption = Annotated[float, typer.Option("--speed", help="Metres per second.")]
@@ -85,11 +85,15 @@ def _steer(
             )
         if not as_json:
             say(f"{called}: on its way; Ctrl+C stops it")
+        is_anothers = False
         try:
             outcome = await _there(order, called, within_s)
+            is_anothers = outcome.phase == Phase.SUPERSEDED.value
         finally:
-            # Its end stops the vehicle too, as a connection that is lost, with an alarm.
-            await flown.hold()
+            # Its end stops the vehicle too, as a connection that is lost, with an alarm. Not when
+            # somebody else flies it by now: a pilot who took the sticks is not fought.
+            if not is_anothers:
+                await flown.hold()
         return tell([outcome], as_json)
 
     at_station(address, token_file, work)
