@@ -28,11 +28,11 @@ def at_moment(told: SunForecast, row: int, col: int, at_s: float) -> float:
     return float(np.interp(at_s, told.lead_s, told.sun_probability[:, row, col] / 255.0))
 
 
-moments = st.floats(-50.0, 900.0)
+moments = st.integers(-50_000, 900_000).map(lambda ms: ms / 1000.0)
 
 
 @given(
-    st.lists(st.floats(0.0, 600.0), min_size=1, max_size=8, unique_by=lambda s: round(s)),
+    st.lists(st.integers(0, 600).map(float), min_size=1, max_size=8, unique=True),
     st.integers(0, 99),
     st.tuples(moments, moments).map(sorted),
 )
@@ -45,11 +45,11 @@ def test_a_span_gives_the_mean_over_its_moments(
     got = told.probability_sunlit(
         cells, ISSUED_NS + round(from_s * NS_PER_S), ISSUED_NS + round(to_s * NS_PER_S)
     )
-    middles_s = from_s + (np.arange(2_000) + 0.5) / 2_000 * (to_s - from_s)
+    middles_s = from_s + (np.arange(500) + 0.5) / 500 * (to_s - from_s)
     for (row, col), value in zip(cells, got, strict=True):
         slow = np.mean([at_moment(told, row, col, s) for s in middles_s])
-        # A jump to the prior within the span falls into one of the 2000 slices.
-        assert value == pytest.approx(slow, abs=2e-3)
+        # A jump to the prior within the span falls into one of the 500 slices.
+        assert value == pytest.approx(slow, abs=3e-3)
         assert 0.0 <= value <= 1.0
 
 

@@ -1,0 +1,102 @@
+"""What is in sun now moves on as one, with one velocity.
+
+A cell will be as the place is now that lies upwind of it, as long as that place is seen: that is
+its horizon. What is told blurs as the velocity's error grows with the lead, and pales towards the
+mean as clouds change. Without a clear motion it is persistence, and says so.
+"""
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from recon.forecast.cover import prior_sunlit, sunlit_now, with_map
+from recon.forecast.motion import Motion, motion_of, with_pairs
+from recon.forecast.persistence import persisting
+from recon.forecast.settings import ForecastSettings
+from recon.forecast.state import ForecastState
+from recon.model.geo import GroundGrid
+from recon.model.shade import SURE, FloatMap, MaskMap, ShadeMap, SunForecast
+
+BOX_OVER_SIGMA = float(np.sqrt(12.0))
+"""A box this many standard deviations wide has that standard deviation."""
+
+
+def global_shift(
+    state: ForecastState, shade: ShadeMap, settings: ForecastSettings
+) -> tuple[ForecastState, SunForecast]:
+    """Return the state after a map, and the forecast; see `recon.forecast.Forecaster`."""
+    state = with_pairs(with_map(state, shade, settings), shade, settings)
+    prior = prior_sunlit(state, settings)
+    motion = motion_of(state, settings)
+    if motion is None:
+        return state, persisting(shade, prior, settings)
+    return state, _moving_on(shade, motion, prior, settings)
+
+
+def _moving_on(
+    shade: ShadeMap, motion: Motion, prior: float, settings: ForecastSettings
+) -> SunForecast:
+    lead_s = np.array(settings.lead_s, dtype=np.float64)
+    horizon_s = seen_upwind_s(shade.valid, shade.grid, motion, settings)
+    now = sunlit_now(shade, prior, settings)
+    shape = (len(lead_s), *now.shape)
+    probability = np.full(shape, round(prior * SURE), dtype=np.uint8)
+    for i, lead in enumerate(settings.lead_s):
+        known = shade.valid & (horizon_s >= lead)
+        if known.any():
+            later = _after(now, shade.grid, motion, lead)
+            later = prior + np.exp(-lead / settings.shape_memory_s) * (later - prior)
+            probability[i][known] = np.rint(later[known] * SURE).astype(np.uint8)
+    return SunForecast(
+        grid=shade.grid,
+        issued_at_ns=shade.captured_at_ns,
+        lead_s=lead_s,
+        sun_probability=probability,
+        horizon_s=horizon_s,
+        prior_sunlit=prior,
+        method="global_shift",
+        velocity_mps=(motion.east_mps, motion.north_mps),
+    )
+
+
+def seen_upwind_s(
+    seen: MaskMap, grid: GroundGrid, motion: Motion, settings: ForecastSettings
+) -> FloatMap:
+    """Return (R, C): how long what reaches each cell comes from a seen one, without a break.
+
+    0 where the cell itself is not seen; at most the last lead.
+    """
+    horizon_s = np.zeros(seen.shape, dtype=np.float32)
+    alive = seen.copy()
+    lead_s = 0.0
+    while lead_s < settings.lead_s[-1] and alive.any():
+        lead_s = min(lead_s + settings.horizon_step_s, settings.lead_s[-1])
+        alive &= _is_seen_upwind(seen, grid, motion, lead_s)
+        horizon_s[alive] = lead_s
+    return horizon_s
+
+
+def _after(now: FloatMap, grid: GroundGrid, motion: Motion, lead_s: float) -> FloatMap:
+    """Return (R, C): the map of now at a lead, as blurred as its place is unsure by then."""
+    box = round(BOX_OVER_SIGMA * motion.spread_mps * lead_s / grid.cell_m) // 2 * 2 + 1
+    blurred = cv2.blur(now, (box, box), borderType=cv2.BORDER_REPLICATE) if box > 1 else now
+    to_now = _upwind(grid, motion, lead_s)
+    size = (grid.cols, grid.rows)
+    how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    later = cv2.warpAffine(blurred, to_now, size, flags=how, borderMode=cv2.BORDER_REPLICATE)
+    return later.astype(np.float32, copy=False)
+
+
+def _is_seen_upwind(seen: MaskMap, grid: GroundGrid, motion: Motion, lead_s: float) -> MaskMap:
+    """Return (R, C): whether the place whose shade is here at a lead is seen now."""
+    to_now = _upwind(grid, motion, lead_s)
+    size = (grid.cols, grid.rows)
+    how = cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP
+    return cv2.warpAffine(seen.astype(np.uint8), to_now, size, flags=how) > 0
+
+
+def _upwind(grid: GroundGrid, motion: Motion, lead_s: float) -> npt.NDArray[np.float64]:
+    """The affine map (2, 3) from a cell's column and row to those of where its shade is now."""
+    right = motion.east_mps * lead_s / grid.cell_m
+    down = -motion.north_mps * lead_s / grid.cell_m
+    return np.array([[1.0, 0.0, -right], [0.0, 1.0, -down]])

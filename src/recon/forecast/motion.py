@@ -1,0 +1,74 @@
+"""How the shadows move, told from many pairs of shade maps."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from recon.forecast.phase_correlation import shift_between
+from recon.forecast.settings import ForecastSettings
+from recon.forecast.state import ForecastState, PairVelocity
+from recon.model.shade import ShadeMap
+from recon.model.units import ns_to_seconds, seconds_to_ns
+
+NORMAL_MAD = 1.4826
+"""A normal deviate's standard deviation over its median absolute deviation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """The shadows' common velocity, and how far pairs spread around it (standard deviation)."""
+
+    east_mps: float
+    north_mps: float
+    spread_mps: float
+
+
+def with_pairs(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
+    """Return the state with a map compared to those kept, if the last one kept is old enough."""
+    at_ns = shade.captured_at_ns
+    every_ns = seconds_to_ns(settings.keep_every_s)
+    if state.kept and at_ns // every_ns == state.kept[-1].captured_at_ns // every_ns:
+        return state
+    found = (_velocity(before, shade, settings) for before in _partners(state, at_ns, settings))
+    recent_ns = at_ns - seconds_to_ns(settings.motion_window_s)
+    velocities = (*state.velocities, *(one for one in found if one is not None))
+    oldest_ns = at_ns - seconds_to_ns(max(settings.pair_s))
+    return replace(
+        state,
+        velocities=tuple(one for one in velocities if one.at_ns > recent_ns),
+        kept=(*(m for m in state.kept if m.captured_at_ns >= oldest_ns), shade),
+    )
+
+
+def motion_of(state: ForecastState, settings: ForecastSettings) -> Motion | None:
+    """Return the median of the late pairs' velocities; None when they are few or do not agree."""
+    if len(state.velocities) < settings.least_pairs:
+        return None
+    all_mps = np.array([(one.east_mps, one.north_mps) for one in state.velocities])
+    middle_mps = np.median(all_mps, axis=0)
+    spread_mps = NORMAL_MAD * float(np.median(np.hypot(*(all_mps - middle_mps).T)))
+    if spread_mps > settings.most_spread_mps:
+        return None
+    east_mps, north_mps = (float(mps) for mps in middle_mps)
+    return Motion(east_mps, north_mps, max(spread_mps, settings.least_spread_mps))
+
+
+def _partners(state: ForecastState, at_ns: int, settings: ForecastSettings) -> list[ShadeMap]:
+    """The kept maps nearest to the wanted distances in time, each once."""
+    chosen: dict[int, ShadeMap] = {}
+    for wanted_s in settings.pair_s:
+        slack_ns = seconds_to_ns(settings.keep_every_s)
+        wanted_ns = at_ns - seconds_to_ns(wanted_s)
+        near = [m for m in state.kept if abs(m.captured_at_ns - wanted_ns) <= slack_ns]
+        if near:
+            best = min(near, key=lambda m: abs(m.captured_at_ns - wanted_ns))
+            chosen[best.captured_at_ns] = best
+    return list(chosen.values())
+
+
+def _velocity(before: ShadeMap, now: ShadeMap, settings: ForecastSettings) -> PairVelocity | None:
+    shift = shift_between(before, now, settings)
+    if shift is None or not shift.is_clear(settings):
+        return None
+    gap_s = ns_to_seconds(now.captured_at_ns - before.captured_at_ns)
+    return PairVelocity(now.captured_at_ns, shift.east_m / gap_s, shift.north_m / gap_s)

@@ -1,0 +1,34 @@
+"""What lies in sun now stays so, less and less surely."""
+
+import numpy as np
+
+from recon.forecast.cover import prior_sunlit, sunlit_now, with_map
+from recon.forecast.settings import ForecastSettings
+from recon.forecast.state import ForecastState
+from recon.model.shade import SURE, ShadeMap, SunForecast
+
+
+def persistence(
+    state: ForecastState, shade: ShadeMap, settings: ForecastSettings
+) -> tuple[ForecastState, SunForecast]:
+    """Return the state after a map, and the forecast; see `recon.forecast.Forecaster`."""
+    state = with_map(state, shade, settings)
+    return state, persisting(shade, prior_sunlit(state, settings), settings)
+
+
+def persisting(shade: ShadeMap, prior: float, settings: ForecastSettings) -> SunForecast:
+    """Return the forecast that leaves everything where it is."""
+    lead_s = np.array(settings.lead_s, dtype=np.float64)
+    kept = np.exp(-lead_s / settings.persistence_memory_s)
+    kept[lead_s > settings.persistence_horizon_s] = 0.0
+    now = sunlit_now(shade, prior, settings)
+    probability = prior + kept[:, np.newaxis, np.newaxis] * (now - prior)
+    return SunForecast(
+        grid=shade.grid,
+        issued_at_ns=shade.captured_at_ns,
+        lead_s=lead_s,
+        sun_probability=np.rint(probability * SURE).astype(np.uint8),
+        horizon_s=np.where(shade.valid, np.float32(settings.persistence_horizon_s), np.float32(0)),
+        prior_sunlit=prior,
+        method="persistence",
+    )

@@ -1,0 +1,124 @@
+"""By how much the shade of one map lies elsewhere in another: phase correlation.
+
+C. D. Kuglin, D. C. Hines, The phase correlation image alignment method, Proc. Int. Conf. on
+Cybernetics and Society (1975). Two things are done first. The mean of the surroundings is taken off
+each cell, over seen cells only, and the rest fades out towards the edge of what is seen: that edge
+stays where it is, and would be found as a shift of nothing. And small details weigh less than
+large ones.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+from scipy import fft
+
+from recon.forecast.settings import ForecastSettings
+from recon.model.shade import FloatMap, MaskMap, ShadeMap
+from recon.model.units import ns_to_seconds
+
+Spectrum = npt.NDArray[np.complex64]
+
+FADES_OVER_CELLS = 12.0
+"""From the edge of what is seen inwards."""
+
+PEAK_CELLS = 12
+"""Around the best shift nothing counts as a rival to it: a peak is some cells wide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """East and north metres from the earlier map to the later one, and how clear that is."""
+
+    east_m: float
+    north_m: float
+    peak: float
+    """Share of the phases that agree, in [0, 1]."""
+    rival: float
+    """The next best shift's peak as a share of this one's."""
+
+    def is_clear(self, settings: ForecastSettings) -> bool:
+        """Return whether this is a shift rather than chance."""
+        return self.peak >= settings.least_peak and self.rival <= settings.most_rival
+
+
+def shift_between(before: ShadeMap, now: ShadeMap, settings: ForecastSettings) -> Shift | None:
+    """Return the shift of the shade between two maps of one grid, or None without any contrast.
+
+    Shifts faster than the settings allow, or longer than the grid, are not looked for.
+    """
+    if min(_contrast(before), _contrast(now)) < settings.least_contrast:
+        return None
+    grid = now.grid
+    # Twice the grid, so that what leaves on one side is not taken for what enters on the other.
+    shape = fft.next_fast_len(2 * grid.rows, real=True), fft.next_fast_len(2 * grid.cols, real=True)
+    detail_cells = settings.detail_m / grid.cell_m
+    earlier, later = (fft.rfft2(_details(shade, detail_cells), shape) for shade in (before, now))
+    agreement = _agreement(earlier, later, shape, settings.smooth_cells)
+    gap_s = ns_to_seconds(now.captured_at_ns - before.captured_at_ns)
+    reach = int(min(settings.fastest_mps * gap_s / grid.cell_m, min(grid.rows, grid.cols) - 1))
+    return _best(agreement, max(reach, 1), grid.cell_m)
+
+
+def _contrast(shade: ShadeMap) -> float:
+    return float(shade.transmittance[shade.valid].std()) if shade.valid.any() else 0.0
+
+
+def _details(shade: ShadeMap, blur_cells: float) -> FloatMap:
+    """Return (R, C): the transmittance less its surroundings' mean, fading out at the edge."""
+    seen = shade.valid.astype(np.float32)
+    direct = np.where(shade.valid, shade.transmittance, np.float32(0.0))
+    means, shares = (cv2.GaussianBlur(a, (0, 0), blur_cells) for a in (direct, seen))
+    details = (direct - means / np.maximum(shares, 1e-3)) * _inwards(shade.valid)
+    return details.astype(np.float32)
+
+
+def _inwards(valid: MaskMap) -> FloatMap:
+    """Return (R, C): 0 where unseen or at the edge of what is seen, 1 far inside."""
+    framed = cv2.copyMakeBorder(valid.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+    cells = cv2.distanceTransform(framed, cv2.DIST_L2, 3)[1:-1, 1:-1]
+    inside: FloatMap = np.clip(cells / FADES_OVER_CELLS, 0.0, 1.0).astype(np.float32)
+    return inside
+
+
+def _agreement(
+    earlier: Spectrum, later: Spectrum, shape: tuple[int, int], smooth_cells: float
+) -> FloatMap:
+    """Return (rows, cols) of `shape`, middle = no shift: the share of phases that agree on each."""
+    both = np.conj(earlier) * later
+    waves2 = np.add.outer(np.fft.fftfreq(shape[0]) ** 2, np.fft.rfftfreq(shape[1]) ** 2)
+    weight = np.exp(-2.0 * (np.pi * smooth_cells) ** 2 * waves2).astype(np.float32)
+    phases = both / np.maximum(np.abs(both), np.float32(1e-12))
+    found = fft.irfft2(weight * phases, shape)
+    # The peak of a perfect match: all weights in phase.
+    whole = fft.irfft2(weight.astype(np.complex64), shape)[0, 0]
+    shares: FloatMap = fft.fftshift(found / whole).astype(np.float32)
+    return shares
+
+
+def _best(agreement: FloatMap, reach: int, cell_m: float) -> Shift:
+    middle_row, middle_col = agreement.shape[0] // 2, agreement.shape[1] // 2
+    near = agreement[
+        middle_row - reach : middle_row + reach + 1, middle_col - reach : middle_col + reach + 1
+    ]
+    row, col = (int(i) for i in np.unravel_index(int(np.argmax(near)), near.shape))
+    peak = float(near[row, col])
+    others = near.copy()
+    others[
+        max(0, row - PEAK_CELLS) : row + PEAK_CELLS + 1,
+        max(0, col - PEAK_CELLS) : col + PEAK_CELLS + 1,
+    ] = 0.0
+    down = row - reach + _between(near[:, col], row)
+    right = col - reach + _between(near[row], col)
+    rival = float(others.max()) / peak if peak > 0.0 else 1.0
+    return Shift(right * cell_m, -down * cell_m, peak, rival)
+
+
+def _between(line: FloatMap, best: int) -> float:
+    """Return where between its neighbours a parabola through them peaks, in [-0.5, 0.5]."""
+    if best in (0, len(line) - 1):
+        return 0.0
+    before, at, after = (float(line[best + i]) for i in (-1, 0, 1))
+    bend = before - 2.0 * at + after
+    return 0.5 * (before - after) / bend if bend < 0.0 else 0.0

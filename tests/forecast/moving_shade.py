@@ -1,0 +1,59 @@
+"""Shade maps of known shade with a known motion, as a good detector would make them."""
+
+import numpy as np
+from tests.detection.shaded_field import FIELD, SEEN_RADIUS_M, DriftingShade, centres
+
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.model.geo import GroundGrid
+from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap, SunForecast
+
+SEEN = np.hypot(*centres(FIELD)) < SEEN_RADIUS_M
+
+
+def shade_map(
+    transmittance: np.ndarray,
+    at_s: float,
+    seen: np.ndarray = SEEN,
+    confidence: float = 0.9,
+    grid: GroundGrid = FIELD,
+) -> ShadeMap:
+    nowhere = np.float32(np.nan)
+    return ShadeMap(
+        grid=grid,
+        captured_at_ns=round(at_s * 1e9),
+        source_serials=("EYE",),
+        transmittance=np.where(seen, transmittance, nowhere).astype(np.float32),
+        valid=seen,
+        confidence=np.where(seen, confidence, 0.0).astype(np.float32),
+        metres_per_pixel=np.where(seen, 1.0, nowhere).astype(np.float32),
+    )
+
+
+def drawn_velocity(seed: int, slowest: float = 2.0, fastest: float = 8.0) -> tuple[float, float]:
+    """Any direction; in m/s."""
+    rng = np.random.default_rng(seed)
+    speed, course = rng.uniform(slowest, fastest), rng.uniform(0.0, 2.0 * np.pi)
+    return float(speed * np.cos(course)), float(speed * np.sin(course))
+
+
+def noisy_map(shade: DriftingShade, at_s: float) -> ShadeMap:
+    """With a detector's errors of a tenth."""
+    rng = np.random.default_rng([shade.seed, round(at_s)])
+    direct = shade.transmittance(FIELD, at_s)
+    return shade_map(np.clip(direct + rng.normal(0.0, 0.1, direct.shape), 0.0, 1.0), at_s)
+
+
+def is_sunlit(shade: DriftingShade, at_s: float) -> np.ndarray:
+    """The truth."""
+    return shade.transmittance(FIELD, at_s) >= SUNLIT_TRANSMITTANCE
+
+
+def forecasts(
+    method: str, maps: list[ShadeMap], settings: ForecastSettings | None = None
+) -> list[SunForecast]:
+    """The forecast after each map."""
+    state, told = ForecastState(), []
+    for one in maps:
+        state, forecast = FORECASTERS[method](state, one, settings or ForecastSettings())
+        told.append(forecast)
+    return told

@@ -1,0 +1,195 @@
+"""One velocity for all shadows: against known motion, persistence, and a slow horizon."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.detection.shaded_field import FIELD, DriftingShade, centres
+from tests.forecast.moving_shade import (
+    SEEN,
+    drawn_velocity,
+    forecasts,
+    is_sunlit,
+    noisy_map,
+    shade_map,
+)
+
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.forecast.global_shift import seen_upwind_s
+from recon.forecast.motion import Motion, motion_of
+from recon.forecast.state import PairVelocity
+from recon.model.geo import GroundGrid
+from recon.model.shade import SunForecast
+
+SEEDS = range(700, 710)
+SETTINGS = ForecastSettings(lead_s=(0.0, 30.0, 60.0, 120.0, 300.0))
+
+
+def brier(told: SunForecast, lead: int, truth: np.ndarray, where: np.ndarray) -> float:
+    chances = told.sun_probability[lead] / 255.0
+    return float(((chances - truth) ** 2)[where].mean())
+
+
+class TestAgainstPersistence:
+    def test_a_minute_ahead_its_brier_score_is_half_where_it_foresees_and_no_worse_elsewhere(
+        self,
+    ) -> None:
+        seen: dict[str, list[float]] = {method: [] for method in FORECASTERS}
+        unseen: dict[str, list[float]] = {method: [] for method in FORECASTERS}
+        for seed in SEEDS:
+            velocity = drawn_velocity(seed, fastest=5.0)
+            shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
+            maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 90.0, 5.0)]
+            told = {method: forecasts(method, maps, SETTINGS) for method in FORECASTERS}
+            for i in (13, 17):
+                truth = is_sunlit(shade, 5.0 * i + 60.0)
+                foreseen = told["global_shift"][i].horizon_s >= 60.0
+                assert foreseen.any()
+                for method in FORECASTERS:
+                    seen[method].append(brier(told[method][i], 2, truth, foreseen))
+                    unseen[method].append(brier(told[method][i], 2, truth, SEEN & ~foreseen))
+        shifted, still = np.mean(seen["global_shift"]), np.mean(seen["persistence"])
+        assert shifted < 0.5 * still, (shifted, still)
+        assert shifted < 0.15, (shifted, still)
+        # A coin would have 0.25 where nothing is known.
+        assert np.mean(unseen["global_shift"]) < np.mean(unseen["persistence"])
+        assert np.mean(unseen["global_shift"]) < 0.27
+
+    def test_what_it_calls_likely_happens_as_often_as_it_says(self) -> None:
+        said, came = [], []
+        for seed in SEEDS:
+            shade = DriftingShade(seed, cover=0.5, velocity_mps=drawn_velocity(seed, fastest=5.0))
+            maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 65.0, 5.0)]
+            told = forecasts("global_shift", maps, SETTINGS)[-1]
+            foreseen = told.horizon_s >= 30.0
+            said.append(told.sun_probability[1][foreseen] / 255.0)
+            came.append(is_sunlit(shade, 90.0)[foreseen])
+        chances, happened = np.concatenate(said), np.concatenate(came)
+        for low, high in ((0.0, 0.2), (0.2, 0.8), (0.8, 1.0)):
+            among = (chances >= low) & (chances < high)
+            assert abs(chances[among].mean() - happened[among].mean()) < 0.2, (low, high)
+
+
+class TestMotion:
+    def test_the_velocity_is_found_within_half_a_metre_a_second(self) -> None:
+        for seed in SEEDS:
+            velocity = drawn_velocity(seed)
+            shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
+            maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 45.0, 5.0)]
+            told = forecasts("global_shift", maps, SETTINGS)[-1]
+            assert told.velocity_mps == pytest.approx(velocity, abs=0.5), seed
+
+    def test_a_turn_of_the_wind_is_followed_within_its_window(self) -> None:
+        before = DriftingShade(710, cover=0.4, velocity_mps=(6.0, 0.0))
+        after = DriftingShade(711, cover=0.4, velocity_mps=(0.0, -5.0))
+        maps = [noisy_map(before, at_s) for at_s in np.arange(0.0, 60.0, 5.0)]
+        maps += [noisy_map(after, at_s) for at_s in np.arange(60.0, 130.0, 5.0)]
+        told = forecasts("global_shift", maps, SETTINGS)
+        assert told[11].velocity_mps == pytest.approx((6.0, 0.0), abs=0.5)
+        assert told[-1].velocity_mps == pytest.approx((0.0, -5.0), abs=0.5)
+
+    def test_it_is_the_median_so_that_some_wrong_pairs_do_no_harm(self) -> None:
+        right = tuple(PairVelocity(i, 5.0 + 0.1 * (i % 3 - 1), -2.0) for i in range(9))
+        wrong = (PairVelocity(9, -20.0, 3.0), PairVelocity(10, 8.0, 25.0))
+        motion = motion_of(ForecastState(velocities=(*right, *wrong)), SETTINGS)
+        assert motion is not None
+        assert (motion.east_mps, motion.north_mps) == pytest.approx((5.0, -2.0), abs=0.11)
+        assert motion.spread_mps == SETTINGS.least_spread_mps
+
+    def test_pairs_that_disagree_or_are_few_tell_no_motion(self) -> None:
+        rng = np.random.default_rng(3)
+        wild = tuple(PairVelocity(i, *map(float, rng.normal(0.0, 6.0, 2))) for i in range(20))
+        assert motion_of(ForecastState(velocities=wild), SETTINGS) is None
+        few = tuple(PairVelocity(i, 5.0, 0.0) for i in range(SETTINGS.least_pairs))
+        assert motion_of(ForecastState(velocities=few), SETTINGS) is not None
+        assert motion_of(ForecastState(velocities=few[1:]), SETTINGS) is None
+
+
+class TestHorizon:
+    @settings(max_examples=30, deadline=None)
+    @given(
+        st.integers(0, 99),
+        st.floats(-9.0, 9.0),
+        st.floats(-9.0, 9.0),
+        st.floats(0.1, 1.0),
+    )
+    def test_it_is_how_long_each_cells_upwind_places_are_seen(
+        self, seed: int, east_mps: float, north_mps: float, share: float
+    ) -> None:
+        rng = np.random.default_rng(seed)
+        grid = GroundGrid(FIELD.frame, 0.0, 0.0, 4.0, 12, 15)
+        seen = rng.random((12, 15)) < share
+        found = seen_upwind_s(seen, grid, Motion(east_mps, north_mps, 0.3), SETTINGS)
+        for row in range(12):
+            for col in range(15):
+                slow_s = self.slow_s(seen, row, col, (east_mps / 4.0, -north_mps / 4.0))
+                # Where a place lies within a thousandth of an edge, either side will do.
+                assert found[row, col] in slow_s, (row, col)
+
+    @staticmethod
+    def slow_s(
+        seen: np.ndarray, row: int, col: int, cells_per_s: tuple[float, float]
+    ) -> set[float]:
+        """One cell traced back step by step; both answers where a step ends near cells' edges."""
+        answers: set[float] = set()
+        for nudge in (-2e-3, 2e-3):
+            for other in (-2e-3, 2e-3):
+                horizon_s = 0.0
+                at_s = 0.0
+                alive = bool(seen[row, col])
+                while alive and at_s < 300.0:
+                    at_s += SETTINGS.horizon_step_s
+                    from_col = int(np.floor(col - cells_per_s[0] * at_s + 0.5 + nudge))
+                    from_row = int(np.floor(row - cells_per_s[1] * at_s + 0.5 + other))
+                    inside = 0 <= from_row < seen.shape[0] and 0 <= from_col < seen.shape[1]
+                    alive = inside and bool(seen[from_row, from_col])
+                    horizon_s = at_s if alive else horizon_s
+                answers.add(horizon_s)
+        return answers
+
+    def test_downwind_is_foreseen_longest_and_beyond_is_the_prior(self) -> None:
+        shade = DriftingShade(712, cover=0.4, velocity_mps=(5.0, 0.0))
+        maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 65.0, 5.0)]
+        told = forecasts("global_shift", maps, SETTINGS)[-1]
+        assert told.method == "global_shift"
+        middle = told.horizon_s[64]
+        assert middle[20] < middle[64] < middle[110]
+        # 448 m of footprint lie upwind of its eastern edge: 90 s at 5 m/s.
+        assert middle[SEEN[64]].max() == pytest.approx(480.0 / 5.0, abs=10.0)
+        beyond = told.horizon_s[np.newaxis] < told.lead_s[:, np.newaxis, np.newaxis]
+        beyond |= ~SEEN
+        assert (told.sun_probability[beyond] == round(told.prior_sunlit * 255.0)).all()
+
+
+class TestWithoutAMotion:
+    @pytest.mark.parametrize("level", [0.0, 0.6, 1.0])
+    def test_an_even_sky_persists(self, level: float) -> None:
+        maps = [shade_map(np.full(SEEN.shape, level), 5.0 * i) for i in range(14)]
+        told = forecasts("global_shift", maps, SETTINGS)[-1]
+        assert (told.method, told.velocity_mps) == ("persistence", None)
+        still = forecasts("persistence", maps, SETTINGS)[-1]
+        assert np.array_equal(told.sun_probability, still.sun_probability)
+        assert np.array_equal(told.horizon_s, still.horizon_s)
+
+    def test_maps_that_have_nothing_in_common_persist(self) -> None:
+        maps = [noisy_map(DriftingShade(720 + i), 5.0 * i) for i in range(14)]
+        assert forecasts("global_shift", maps, SETTINGS)[-1].method == "persistence"
+
+    def test_the_first_maps_persist(self) -> None:
+        shade = DriftingShade(740, cover=0.4)
+        maps = [noisy_map(shade, 5.0 * i) for i in range(3)]
+        assert [t.method for t in forecasts("global_shift", maps, SETTINGS)] == ["persistence"] * 3
+
+    def test_another_grid_begins_anew(self) -> None:
+        shade = DriftingShade(741, cover=0.4)
+        maps = [noisy_map(shade, 5.0 * i) for i in range(12)]
+        moved = replace(maps[-1], grid=replace(FIELD, west_m=-200.0), captured_at_ns=60 * 10**9)
+        told = forecasts("global_shift", [*maps, moved], SETTINGS)
+        assert [t.method for t in told[-2:]] == ["global_shift", "persistence"]
+
+
+def test_the_middle_of_the_field_is_the_middle_of_the_tests() -> None:
+    east_m, north_m = centres(FIELD)
+    assert (float(east_m.mean()), float(north_m.mean())) == pytest.approx((0.0, 0.0))
