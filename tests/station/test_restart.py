@@ -5,20 +5,34 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.fleet.said import PLACE, core, extended
 from tests.station.audited import UTC_NS, Audited
+from tests.station.commanded import Told
 from tests.station.station_world import World, from_the_ground, square_mission, world
 
 from recon.model.authority import Lead, Leader
 from recon.model.command import FlyMission, Hover, LandNow, Phase
-from recon.model.event import AuthorityTaken, GhostDismissed, OperatorOrder
+from recon.model.event import AuthorityTaken, Event, GhostDismissed, OperatorOrder
 from recon.model.units import NS_PER_S
 from recon.record.audit import AuditEntry, AuditLine, Stamped, decode_line, encode_line
 from recon.sim.fleet import Airborne
-from recon.station.last_run import LARGEST_ID, MOST_ORDERS, MOST_VEHICLES, LastRun
+from recon.station.air import LOST_KEPT
+from recon.station.auditing import Auditing, audit
+from recon.station.ghost_view import ghost_view
+from recon.station.last_run import (
+    LARGEST_ID,
+    MOST_NAMELESS,
+    MOST_ORDERS,
+    MOST_VEHICLES,
+    LastRun,
+)
+from recon.station.nameless_sightings import NAMELESS_KIND
 from recon.station.restart import INTERRUPTED, first_ids, restart_entries, restored
+from recon.station.sightings import sighting_of
 from recon.station.state import Station
 
 HOUR_NS = 3_600 * NS_PER_S
@@ -294,6 +308,8 @@ KINDS = st.sampled_from(
         "order.sent",
         "vehicle.seen",
         "vehicle.took_off",
+        "vehicle.nameless",
+        "vehicle.nameless_gone",
         "authority.taken",
         "sticks.began",
         "fleet_return.ordered",
@@ -305,6 +321,7 @@ KINDS = st.sampled_from(
 KEYS = st.sampled_from(
     [
         "id",
+        "name",
         "phase",
         "order",
         "body",
@@ -373,3 +390,139 @@ class TestHostile:
         place_before = last.sightings["SIM-1"].place
         last.take(line("vehicle.seen", details, serial="SIM-1"))
         assert last.sightings["SIM-1"].place == place_before
+
+
+def heard_again(told: Told, lines: list[AuditLine], after_s: float) -> Told:
+    """A new run, that begins some seconds later with what the last one's audit tells."""
+    now_ns = told.now_ns + round(after_s * NS_PER_S)
+    again = Told()
+    again.now_ns = now_ns
+    again.station = restored(again.station, last_run(lines), now_ns)
+    return again
+
+
+class Heard(Told):
+    """What happens goes through the audit."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.memory = Auditing()
+        self.entries: list[tuple[int, AuditEntry]] = []
+
+    def happens(self, event: Event) -> Told:
+        before = self.station
+        super().happens(event)
+        self.memory, entries = audit(self.memory, before, event, self.station, self.now_ns)
+        self.entries += [(self.now_ns, entry) for entry in entries]
+        return self
+
+    def lines(self) -> list[AuditLine]:
+        return as_lines(self.entries)
+
+
+def as_lines(entries: Iterable[tuple[int, AuditEntry]]) -> list[AuditLine]:
+    return [
+        decode_line(encode_line(Stamped(n, UTC_NS, at_ns, entry), "0" * 64))
+        for n, (at_ns, entry) in enumerate(entries, start=1)
+    ]
+
+
+class TestWithoutASerial:
+    """What flew and never said who it is stays in the air over a restart."""
+
+    def flew(self, seconds: float = 4.0) -> Heard:
+        told = Heard()
+        told.opens(7, core(), extended(None))
+        told.keeps_saying(7, core(), extended(None)).passes(seconds)
+        return told
+
+    def test_it_is_a_ghost_and_an_alarm_again_under_a_name_of_its_own(self) -> None:
+        told = self.flew()
+        again = heard_again(told, told.lines(), 60.0).passes(0.2)
+        (state,) = again.station.watch.lost.values()
+        assert [*again.station.watch.lost] == ["lost-1"]
+        assert state.position.value == PLACE
+        assert again.alarms() == {"unidentified_lost"}
+        view = ghost_view(again.station, state, again.now_ns)
+        assert view is not None
+        assert (view.dismissed_as, view.radius_m) == ("lost-1", 124.2)
+        again.happens(GhostDismissed("lost-1", "Ann")).passes(0.2)
+        assert again.alarms() == set()
+        assert again.station.watch.lost == {}
+
+    def test_one_whose_link_had_ended_is_too_at_once(self) -> None:
+        told = Heard()
+        told.opens(7, core(), extended(None)).closes(7)
+        assert [*heard_again(told, told.lines(), 5.0).station.watch.lost] == ["lost-1"]
+
+    @pytest.mark.parametrize("name", ["link-7", "unidentified link 7"])
+    def test_a_dismissed_one_does_not_come_back(self, name: str) -> None:
+        told = self.flew()
+        told.closes(7).passes(5.0).happens(GhostDismissed(name, "Ann"))
+        assert heard_again(told, told.lines(), 5.0).station.watch.lost == {}
+
+    def test_one_that_landed_or_said_its_serial_does_not_either(self) -> None:
+        for last in (core(flying=False), extended("A")):
+            told = self.flew()
+            told.says(7, last).closes(7)
+            assert heard_again(told, told.lines(), 5.0).station.watch.lost == {}
+
+    def test_a_second_crash_before_anything_is_heard_loses_none(self) -> None:
+        told = self.flew()
+        once = heard_again(told, told.lines(), 5.0)
+        entries = [(once.now_ns, entry) for entry in restart_entries(once.station)]
+        twice = heard_again(once, as_lines(entries), 5.0)
+        assert [*twice.station.watch.lost] == ["lost-1"]
+        (state,) = twice.station.watch.lost.values()
+        assert state.core_received_at_ns == round(2.1 * NS_PER_S)
+
+    def test_it_is_written_down_every_five_seconds_and_once_it_had_time_to_say_who_it_is(
+        self,
+    ) -> None:
+        told = self.flew(14.0)
+        times_s = [at_ns / NS_PER_S for at_ns, e in told.entries if e.kind == NAMELESS_KIND]
+        assert [round(at_s) for at_s in times_s] == [2, 7, 12]
+        assert not [e for _, e in self.flew(1.0).entries if e.kind == NAMELESS_KIND]
+
+    def test_for_some_seconds_nobody_is_held_for_it(self) -> None:
+        told = self.flew()
+        again = heard_again(told, told.lines(), 60.0)
+        again.opens(1, core(), extended("A")).keeps_saying(1, core(), extended("A")).passes(9.8)
+        assert again.alarms() == {"unidentified_lost"}
+        again.passes(1.0)
+        assert again.alarms() == {"unidentified_lost", "separation"}
+
+    def test_too_many_to_tell_apart_are_one_that_is_everywhere(self) -> None:
+        last = LastRun()
+        flies = {**details_of_a_flight(), "heard_ns": NS_PER_S}
+        for n in range(MOST_VEHICLES + 1):
+            last.take(line("vehicle.seen", flies, serial=f"S{n}"))
+        assert [*last.nameless] == ["many-lost"]
+        station = restored(Station(), last, NS_PER_S)
+        assert [*station.watch.lost] == ["many-lost"]
+        assert station.watch.lost["many-lost"].position.value is None
+
+    def test_what_stands_on_the_ground_makes_room_for_what_flies(self) -> None:
+        last = LastRun()
+        stands = {**details_of_a_flight(), "is_flying": False}
+        for n in range(MOST_VEHICLES + 10):
+            last.take(line("vehicle.seen", stands, serial=f"S{n}"))
+        last.take(line("vehicle.seen", details_of_a_flight(), serial="FLIES"))
+        assert "FLIES" in last.sightings
+        assert len(last.sightings) == MOST_VEHICLES
+        assert last.nameless == {}
+
+    def test_a_made_up_million_takes_no_more_than_the_limit(self) -> None:
+        last = LastRun()
+        for n in range(MOST_NAMELESS + 50):
+            last.take(line(NAMELESS_KIND, {**details_of_a_flight(), "name": f"n{n}"}, serial=None))
+        assert len(last.nameless) == MOST_NAMELESS + 1
+        station = restored(Station(), last, NS_PER_S)
+        assert len(station.watch.lost) == LOST_KEPT + 1
+
+
+def details_of_a_flight() -> dict[str, Any]:
+    told = Told().opens(1, core(), extended("A"))
+    vehicle = told.station.fleet.vehicles["A"]
+    details: dict[str, Any] = msgspec.to_builtins(sighting_of(told.station, vehicle))
+    return details

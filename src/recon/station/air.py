@@ -80,7 +80,7 @@ def is_dismissed(station: Station, vehicle: VehicleState) -> bool:
 
 def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
     """Return whether there is something to dismiss: a ghost, or a vehicle that never told where."""
-    if _lost_as(station, name) is not None:
+    if lost_as(station, name) is not None:
         return True
     vehicle = station.fleet.vehicles.get(name)
     if vehicle is None or vehicle.core_received_at_ns is None:
@@ -95,9 +95,9 @@ def dismiss(station: Station, event: GhostDismissed, now_ns: int) -> Station:
     """Return the station after somebody has taken a ghost out of the air; only what is one."""
     if not is_hazard_unseen(station, event.serial, now_ns):
         return station
-    watch, lost_as = station.watch, _lost_as(station, event.serial)
-    if lost_as is not None:
-        lost = {name: state for name, state in watch.lost.items() if name != lost_as}
+    watch, key = station.watch, lost_as(station, event.serial)
+    if key is not None:
+        lost = {name: state for name, state in watch.lost.items() if name != key}
         return replace(station, watch=replace(watch, lost=lost))
     heard_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
     dismissed = {**watch.dismissed, event.serial: heard_at_ns}
@@ -147,7 +147,15 @@ def lost_name(link_id: int) -> str:
     return f"link-{link_id}"
 
 
-def _lost_as(station: Station, name: str) -> str | None:
-    """Which of the lost is meant: by what it is dismissed by, or as its alarm names it."""
+def dismissed_by(station: Station, vehicle: VehicleState) -> str:
+    """Return what a vehicle's ghost is dismissed by, with a serial or without."""
+    lost = station.watch.lost.items()
+    return vehicle.serial or next(
+        (name for name, state in lost if state is vehicle), lost_name(vehicle.link_id or 0)
+    )
+
+
+def lost_as(station: Station, name: str) -> str | None:
+    """Return which of the lost is meant: by what it is dismissed by, or as its alarm names it."""
     lost = station.watch.lost
     return next((key for key, s in lost.items() if name in (key, s.display_name)), None)

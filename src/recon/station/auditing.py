@@ -19,10 +19,11 @@ from recon.model.event import (
 )
 from recon.record.audit import AuditEntry
 from recon.safety import Override
-from recon.station import authority, preflight
+from recon.station import air, authority, preflight
 from recon.station.audited_alarms import AlarmsTold, alarm_entries, seen_entry
 from recon.station.audited_links import LinksTold, link_entries
 from recon.station.audited_orders import OrdersTold, ended_streams, order_entries
+from recon.station.nameless_sightings import nameless_entries
 from recon.station.sightings import Sightings, sightings
 from recon.station.state import Station
 
@@ -37,6 +38,7 @@ class Auditing:
     alarms: AlarmsTold = field(default_factory=AlarmsTold)
     links: LinksTold = field(default_factory=LinksTold)
     sightings: Sightings = field(default_factory=Sightings)
+    nameless: Mapping[str, int] = field(default_factory=dict)
 
 
 def audit(
@@ -47,6 +49,8 @@ def audit(
     links, told = link_entries(memory.links, before, event, after, now_ns)
     entries += told
     seen, told = sightings(memory.sightings, before, event, after, now_ns)
+    entries += told
+    nameless, told = nameless_entries(memory.nameless, before, event, after, now_ns)
     entries += told
     if after.leads is not before.leads:
         entries += _leads(before.leads, after)
@@ -63,7 +67,7 @@ def audit(
     if after.alarms is not before.alarms:
         alarms, told = alarm_entries(alarms, after.alarms, now_ns)
         entries += told
-    return Auditing(orders, alarms, links, seen), tuple(entries)
+    return Auditing(orders, alarms, links, seen, nameless), tuple(entries)
 
 
 def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
@@ -76,7 +80,8 @@ def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry
         case PreflightOverridden(serial=serial, by=by):
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
         case GhostDismissed(serial, by):
-            yield _about(after, "ghost.dismissed", "is no longer counted as in the air", by, serial)
+            name = air.lost_as(before, serial) or serial
+            yield _about(before, "ghost.dismissed", "is no longer counted as in the air", by, name)
         case SeparationHoldSwitched(is_on, by):
             word = "on" if is_on else "off"
             text = f"the separation watchdog's holds were switched {word}"

@@ -5,7 +5,7 @@ from recon.model.geo import LatLon
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import home
 from recon.safety.prediction.flyer import last_place
-from recon.station.air import ghost, lost_name
+from recon.station.air import dismissed_by, ghost
 from recon.station.state import Station
 
 
@@ -18,7 +18,7 @@ def ghost_view(station: Station, vehicle: VehicleState, now_ns: int) -> schema.G
     home_place = home(vehicle) if found.home_m is not None else None
     way = [] if home_place is None else [_lon_lat(place), _lon_lat(home_place)]
     return schema.GhostView(
-        dismissed_as=vehicle.serial or lost_name(vehicle.link_id or 0),
+        dismissed_as=dismissed_by(station, vehicle),
         age_s=found.age_s,
         latitude_deg=place.latitude_deg,
         longitude_deg=place.longitude_deg,

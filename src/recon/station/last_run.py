@@ -9,10 +9,13 @@ import msgspec
 from recon.model.authority import Leader
 from recon.model.command import BODY_NAMES, Body, Phase
 from recon.record.audit import STARTED_KIND, STOPPED_KIND, AuditLine
+from recon.station.air import MANY_LOST
+from recon.station.nameless_sightings import NAMELESS_GONE_KIND, NAMELESS_KIND
 from recon.station.sighting import Sighting
 from recon.station.sightings import SIGHTING_KINDS
 
 MOST_VEHICLES = 256
+MOST_NAMELESS = 256
 MOST_ORDERS = 200
 LARGEST_ID = 2**52
 """Beyond it a JavaScript number, and so the console, could not tell two orders apart."""
@@ -36,6 +39,10 @@ class _Order(msgspec.Struct):
 class _Lead(msgspec.Struct):
     leader: Leader
     holder: str = ""
+
+
+class _Name(msgspec.Struct):
+    name: Annotated[str, msgspec.Meta(min_length=1, max_length=80)]
 
 
 class _Ids(msgspec.Struct):
@@ -66,6 +73,8 @@ class LastRun:
     """Collects what the lines tell, the oldest first."""
 
     sightings: dict[str, Sighting] = field(default_factory=dict)
+    nameless: dict[str, Sighting] = field(default_factory=dict)
+    """What flew without a serial, by what its ghost is dismissed by."""
     leads: dict[str, tuple[Leader, str]] = field(default_factory=dict)
     orders: dict[int, OpenOrder] = field(default_factory=dict)
     last_id: int = 0
@@ -92,6 +101,8 @@ class LastRun:
             self.orders.clear()
         elif line.kind.startswith("order."):
             self._take_order(line)
+        elif line.kind in (NAMELESS_KIND, NAMELESS_GONE_KIND):
+            self._take_nameless(line)
         elif serial is None:
             return
         elif line.kind in SIGHTING_KINDS:
@@ -101,11 +112,27 @@ class LastRun:
             self._take_lead(serial, lead.leader, lead.holder)
         elif line.kind == "ghost.dismissed":
             self.sightings.pop(serial, None)
+            self.nameless.pop(serial, None)
 
     def _take_sighting(self, serial: str, sighting: Sighting) -> None:
+        """Beyond the limit those on the ground make room; when all may fly, nothing is silent."""
+        if serial not in self.sightings and len(self.sightings) >= MOST_VEHICLES:
+            landed = (key for key, seen in self.sightings.items() if seen.is_flying is False)
+            self.sightings.pop(next(landed, ""), None)
         if serial in self.sightings or len(self.sightings) < MOST_VEHICLES:
             self.sightings[serial] = sighting
             self._take_lead(serial, sighting.leader, sighting.holder)
+        elif sighting.is_flying is not False:
+            self.nameless[MANY_LOST] = sighting
+
+    def _take_nameless(self, line: AuditLine) -> None:
+        name = msgspec.convert(line.details, _Name).name
+        if line.kind == NAMELESS_GONE_KIND:
+            self.nameless.pop(name, None)
+            return
+        sighting = msgspec.convert(line.details, Sighting)
+        is_known = name in self.nameless or len(self.nameless) < MOST_NAMELESS
+        self.nameless[name if is_known else MANY_LOST] = sighting
 
     def _take_lead(self, serial: str, leader: Leader, holder: str) -> None:
         if serial in self.leads or len(self.leads) < MOST_VEHICLES:

@@ -27,6 +27,15 @@ def awaited(station: Station, now_ns: int) -> tuple[VehicleState, ...]:
     return tuple(vehicles[serial] for serial in station.restored_flights if serial in vehicles)
 
 
+def is_new(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
+    """Return whether it is too early to watch a vehicle: by what is heard next, it is another."""
+    if vehicle.serial is not None:
+        return vehicle.serial in station.restored_flights and is_settling(station, now_ns)
+    if vehicle.link_id is None:
+        return is_settling(station, now_ns)
+    return may_yet_say_its_serial(station, vehicle, now_ns)
+
+
 def with_nameless(station: Station, now_ns: int) -> Station:
     """Return the station that knows since when each link has flown without a serial."""
     before = station.watch.nameless_since_ns

@@ -15,11 +15,13 @@ from recon.model.command import Command, Phase
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
 from recon.model.units import ns_to_seconds
-from recon.model.vehicle import VehicleState, VelocityNed
+from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
 from recon.station import alarms
+from recon.station.air import MANY_LOST, with_lost
 from recon.station.alarms import Condition, Severity
 from recon.station.last_run import LastRun, OpenOrder
+from recon.station.nameless_sightings import restored_entries
 from recon.station.orders import OrderBook, OrderRecord, PhaseChange
 from recon.station.restart_settings import RestartSettings
 from recon.station.sighting import Place, Sighting
@@ -50,13 +52,11 @@ def restored(station: Station, last: LastRun, now_ns: int) -> Station:
     gone_s = ns_to_seconds(now_ns - last.last_at_ns)
     if not 0.0 <= gone_s <= settings.forgotten_after_s:
         return _with_interrupted(station, last, now_ns)
-    flights = {
-        serial: sighting
-        for serial, sighting in last.sightings.items()
-        if sighting.is_flying is not False
-        and 0.0 <= ns_to_seconds(now_ns - sighting.heard_ns) <= settings.forgotten_after_s
+    flights = _may_still_fly(last.sightings, now_ns, settings)
+    seen = {
+        serial: _vehicle(s, serial, station.fleet.profiles.get(serial))
+        for serial, s in flights.items()
     }
-    seen = {serial: _vehicle(station, serial, s) for serial, s in flights.items()}
     fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, **seen})
     leads = {serial: _lead(*lead, now_ns) for serial, lead in last.leads.items()}
     station = replace(
@@ -65,6 +65,7 @@ def restored(station: Station, last: LastRun, now_ns: int) -> Station:
         leads={**station.leads, **leads},
         restored_flights=flights,
         restored_at_ns=now_ns,
+        watch=replace(station.watch, lost=_lost(last, now_ns, settings)),
     )
     return _with_interrupted(station, last, now_ns)
 
@@ -75,6 +76,7 @@ def restart_entries(station: Station) -> Iterator[AuditEntry]:
         if serial in station.restored_flights:
             text = "flew when the last run saw it last; lost until it is heard"
             yield sighting_entry(RESTORED_KIND, text, station, vehicle)
+    yield from restored_entries(station)
     for serial, lead in station.leads.items():
         name = _name(station, serial)
         who = {"leader": lead.leader.value, "holder": lead.holder, "reason": lead.reason}
@@ -164,11 +166,34 @@ def _battery_doubt(
     return "its battery was changed" if now > then + settings.battery_gain_fraction else None
 
 
-def _vehicle(station: Station, serial: str, sighting: Sighting) -> VehicleState:
+def _may_still_fly(
+    sightings: Mapping[str, Sighting], now_ns: int, settings: RestartSettings
+) -> dict[str, Sighting]:
+    return {
+        key: sighting
+        for key, sighting in sightings.items()
+        if sighting.is_flying is not False
+        and 0.0 <= ns_to_seconds(now_ns - sighting.heard_ns) <= settings.forgotten_after_s
+    }
+
+
+def _lost(last: LastRun, now_ns: int, settings: RestartSettings) -> Mapping[str, VehicleState]:
+    """What flew without a serial, under new names: links are numbered anew."""
+    lost: Mapping[str, VehicleState] = {}
+    for key, sighting in _may_still_fly(last.nameless, now_ns, settings).items():
+        name = key if key == MANY_LOST else f"lost-{len(lost) + 1}"
+        profile = VehicleProfile(serial="", name=f"unidentified {name}")
+        lost = with_lost(lost, name, _vehicle(sighting, None, profile))
+    return lost
+
+
+def _vehicle(
+    sighting: Sighting, serial: str | None, profile: VehicleProfile | None
+) -> VehicleState:
     at_ns = sighting.heard_ns
     return VehicleState(
         serial=serial,
-        profile=station.fleet.profiles.get(serial),
+        profile=profile,
         is_simulated=sighting.is_simulated,
         is_flying=Stamped(sighting.is_flying, at_ns),
         position=Stamped(_lat_lon_or_none(sighting.place), at_ns),

@@ -72,13 +72,10 @@ def switch_hold(station: Station, event: SeparationHoldSwitched) -> Station:
 
 def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
     watch, eye = station.watch, station.imaging.eye_serial
-    awaited = {vehicle.serial for vehicle in newcomers.awaited(station, now_ns)}
     for vehicle, claimed in in_the_air(station):
         if vehicle.serial != claimed:
             continue  # a link in conflict: most likely it tells of the same aircraft
-        if claimed is None and newcomers.may_yet_say_its_serial(station, vehicle, now_ns):
-            continue
-        if claimed is not None and claimed in awaited:
+        if newcomers.is_new(station, vehicle, now_ns):
             continue
         serial = vehicle.serial or ""
         count = watch.sticks.get(serial)
