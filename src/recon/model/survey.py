@@ -65,6 +65,9 @@ class Survey:
     """Clockwise from north; None: the one with the fewest turns."""
     planner: str = "lawnmower_once"
     budget: SurveyBudget = SurveyBudget()
+    counts_neighbours: bool = False
+    """Whether a place counts as imaged from a neighbouring row too. A mosaic is made of what was
+    seen from nearly above; for counting or looking any photo does."""
     cell_m: float = 4.0
     """Progress is kept in cells of this size: finer than shadows' edges are known."""
 

@@ -75,17 +75,24 @@ def near_row(within_m: float) -> BoolArray:
 
 
 class TestImaged:
-    def test_a_row_images_the_footprints_width_less_the_slack(self) -> None:
+    def test_a_row_images_its_own_band(self) -> None:
+        """And 3 m more, for it may be flown as far beside."""
         cells = imaged(counted(row_flown()))
-        east_m = PLAN.cells.along_m
-        inner = (east_m > 20.0) & (east_m < 270.0)
+        inner = (PLAN.cells.along_m > 20.0) & (PLAN.cells.along_m < 270.0)
+        assert (cells[inner] == near_row(PLAN.lattice.spacing_m / 2.0 + 3.0)[inner]).all()
+
+    def test_where_neighbours_count_it_images_the_footprint_less_the_slack(self) -> None:
+        survey = replace(PLAN.survey, counts_neighbours=True)
+        cells = imaged(counted(row_flown(), plan=planned(survey)))
+        inner = (PLAN.cells.along_m > 20.0) & (PLAN.cells.along_m < 270.0)
         half_m = 60.0 * np.tan(np.deg2rad(33.0)) - 3.0
+        assert half_m > 1.9 * (PLAN.lattice.spacing_m / 2.0 + 3.0)
         assert (cells[inner] == near_row(half_m)[inner]).all()
 
     @pytest.mark.parametrize("hz", [0.5, 1.0, 2.0, 5.0, 10.0])
     def test_however_often_it_is_told(self, hz: float) -> None:
         east_m = PLAN.cells.along_m
-        inner = (east_m > 20.0) & (east_m < 270.0) & near_row(30.0)
+        inner = (east_m > 20.0) & (east_m < 270.0) & near_row(15.0)
         assert imaged(counted(row_flown(hz=hz)))[inner].all()
 
     def test_counting_bit_by_bit_is_counting_at_once(self) -> None:

@@ -1,6 +1,6 @@
 """A survey made ready to be flown: rows, ways between them, cells."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
@@ -44,6 +44,8 @@ class SurveyPlan:
     settings: SurveySettings
     lattice: RowLattice
     swath: Swath
+    counted_swath: Swath
+    """What of the swath counts as imaged: all of it, or the row's own band."""
     pieces: tuple[Piece, ...]
     ways: Ways
     cells: SurveyCells
@@ -113,13 +115,22 @@ def plan_survey(
         return Refusal(RULE, _no_rows(survey, surroundings))
     ways = Ways(flyable)
     cells = cells_over(area, frame, survey.cell_m, lattice, pieces, swath)
-    return SurveyPlan(survey, frame, settings, lattice, swath, pieces, ways, cells)
+    counted = _counted(survey, swath, lattice, settings)
+    return SurveyPlan(survey, frame, settings, lattice, swath, counted, pieces, ways, cells)
 
 
 def row_reach_m(lattice: RowLattice, swath: Swath) -> float:
     """Return how far rows may run from the region: half a spacing across, and the lead along."""
     along_m = max(swath.lead_m, swath.least_row_m / 2.0)
     return hypot(lattice.spacing_m / 2.0, along_m)
+
+
+def _counted(survey: Survey, swath: Swath, lattice: RowLattice, settings: SurveySettings) -> Swath:
+    if survey.counts_neighbours:
+        return swath
+    # A vehicle that is as far off its row as it may be still counts for the whole band.
+    own_m = lattice.spacing_m / 2.0 + settings.place_slack_m
+    return replace(swath, half_across_m=min(swath.half_across_m, own_m))
 
 
 def _left(

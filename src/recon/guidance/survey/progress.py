@@ -2,7 +2,8 @@
 
 A photo is taken every `interval_s`, but not at known moments. So a cell counts as imaged when it
 was in view, without a break, for at least that long: then a photo shows it, whatever the timer's
-phase. It counts as imaged in sun when it was so in view and sunlit for that long.
+phase. It counts as imaged in sun when it was so in view and sunlit for that long. Unless the survey
+says otherwise only what lies in the row's own band is looked at: seen from nearly above.
 
 Assumed: the timer runs, the camera looks straight down with its longer side across the course, and
 the vehicle flew straight between two positions a moment apart. What is flown across the rows, at
@@ -159,7 +160,8 @@ class _Count:
         start, end = ((float(along), float(across)) for along, across in lying)
         if not _is_photographed(plan, (a, b), (end[0] - start[0], end[1] - start[1])):
             return
-        cross = crossing(plan.cells, plan.lattice, plan.swath, (start, end), (a.at_ns, b.at_ns))
+        times_ns = (a.at_ns, b.at_ns)
+        cross = crossing(plan.cells, plan.lattice, plan.counted_swath, (start, end), times_ns)
         middle_ns = (a.at_ns + b.at_ns) // 2
         shade = nearest_map(self._progress.shade, middle_ns, plan.settings.shade_age_s)
         sunlit, known = sunlit_cells(shade, plan.cells.grid, cross.window)
