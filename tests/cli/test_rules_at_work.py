@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from tests.cli.flown import Flown, Said, flown
 
-FAULTS = ("telemetry-dropout:SIM-1:14:2", "telemetry-dropout:SIM-2:14:5", "pilot-takes:SIM-3:14:9")
+FAULTS = ("telemetry-dropout:SIM-1:15:2", "telemetry-dropout:SIM-2:15:5", "pilot-takes:SIM-3:15:9")
 Told = tuple[Flown, list[Said]]
 
 
@@ -19,6 +19,8 @@ def nudged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Told]:
         ThreadPoolExecutor() as beside,
     ):
         ways = [f"SIM-{number}" for number in (1, 2, 3)]
+        # Heard in the air with nothing ordered, they count as their pilots'.
+        assert [here.recon("take", *ways).code] == [0]
         words = ("--north", 24, "--speed", 1.5)
         yield here, list(beside.map(lambda serial: here.recon("nudge", serial, *words), ways))
 
