@@ -6,10 +6,16 @@ from tests.detection.shaded_field import FIELD, DriftingShade
 from tests.forecast.moving_shade import SEEN, drawn_velocity, noisy_map, shade_map
 
 from recon.forecast import ForecastSettings
-from recon.forecast.phase_correlation import shift_between
+from recon.forecast.phase_correlation import Shift, shift_between, spectrum_of
 from recon.model.shade import ShadeMap
 
 SETTINGS = ForecastSettings()
+
+
+def shift_of(
+    before: ShadeMap, now: ShadeMap, settings: ForecastSettings = SETTINGS
+) -> Shift | None:
+    return shift_between(spectrum_of(before, settings), spectrum_of(now, settings), settings)
 
 
 @pytest.mark.parametrize("gap_s", [10.0, 20.0])
@@ -18,7 +24,7 @@ def test_a_known_shift_is_found_to_a_fraction_of_a_cell(gap_s: float) -> None:
     for seed in range(600, 620):
         velocity = drawn_velocity(seed)
         shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
-        shift = shift_between(noisy_map(shade, 50.0), noisy_map(shade, 50.0 + gap_s), SETTINGS)
+        shift = shift_of(noisy_map(shade, 50.0), noisy_map(shade, 50.0 + gap_s))
         assert shift is not None
         clear.append(shift.is_clear(SETTINGS))
         if clear[-1]:
@@ -32,7 +38,7 @@ def test_a_known_shift_is_found_to_a_fraction_of_a_cell(gap_s: float) -> None:
 
 def test_nothing_moves_where_nothing_moves() -> None:
     shade = DriftingShade(621, cover=0.4, velocity_mps=(0.0, 0.0))
-    shift = shift_between(noisy_map(shade, 0.0), noisy_map(shade, 10.0), SETTINGS)
+    shift = shift_of(noisy_map(shade, 0.0), noisy_map(shade, 10.0))
     assert shift is not None
     assert shift.is_clear(SETTINGS)
     assert (shift.east_m, shift.north_m) == pytest.approx((0.0, 0.0), abs=0.8)
@@ -43,7 +49,7 @@ def test_the_edge_of_what_is_seen_is_no_shade_that_stands_still() -> None:
     shade = DriftingShade(622, cover=0.5, velocity_mps=(8.0, 0.0))
     narrow = SEEN & (np.arange(FIELD.rows) > 40)[:, np.newaxis]
     maps = [shade_map(shade.transmittance(FIELD, at_s), at_s, narrow) for at_s in (0.0, 10.0)]
-    shift = shift_between(maps[0], maps[1], SETTINGS)
+    shift = shift_of(maps[0], maps[1])
     assert shift is not None
     assert (shift.east_m, shift.north_m) == pytest.approx((80.0, 0.0), abs=4.0)
 
@@ -53,7 +59,7 @@ def test_unrelated_maps_have_no_clear_shift() -> None:
     for seed in range(630, 660):
         before = noisy_map(DriftingShade(seed), 0.0)
         now = noisy_map(DriftingShade(seed + 1_000), 20.0)
-        shift = shift_between(before, now, SETTINGS)
+        shift = shift_of(before, now)
         clear.append(shift is not None and shift.is_clear(SETTINGS))
     assert np.mean(clear) < 0.1, clear
 
@@ -61,15 +67,15 @@ def test_unrelated_maps_have_no_clear_shift() -> None:
 @pytest.mark.parametrize("level", [0.0, 0.7, 1.0])
 def test_an_even_sky_has_no_shift(level: float) -> None:
     even = np.full(SEEN.shape, level)
-    assert shift_between(shade_map(even, 0.0), shade_map(even, 10.0), SETTINGS) is None
+    assert shift_of(shade_map(even, 0.0), shade_map(even, 10.0)) is None
     unseen = np.zeros_like(SEEN)
-    assert shift_between(shade_map(even, 0.0, unseen), shade_map(even, 9.0), SETTINGS) is None
+    assert shift_of(shade_map(even, 0.0, unseen), shade_map(even, 9.0)) is None
 
 
 def test_no_shift_faster_than_the_settings_is_looked_for() -> None:
     shade = DriftingShade(661, cover=0.4, velocity_mps=(8.0, 0.0))
     slow = ForecastSettings(fastest_mps=4.0)
-    shift = shift_between(noisy_map(shade, 0.0), noisy_map(shade, 10.0), slow)
+    shift = shift_of(noisy_map(shade, 0.0), noisy_map(shade, 10.0), slow)
     assert shift is not None
     assert max(abs(shift.east_m), abs(shift.north_m)) <= 44.0
 
@@ -77,7 +83,7 @@ def test_no_shift_faster_than_the_settings_is_looked_for() -> None:
 def test_maps_are_read_not_changed() -> None:
     maps: list[ShadeMap] = [noisy_map(DriftingShade(662), at_s) for at_s in (0.0, 10.0)]
     before = [(m.transmittance.copy(), m.valid.copy()) for m in maps]
-    shift_between(maps[0], maps[1], SETTINGS)
+    shift_of(maps[0], maps[1])
     for one, (transmittance, valid) in zip(maps, before, strict=True):
         assert np.array_equal(one.transmittance, transmittance, equal_nan=True)
         assert np.array_equal(one.valid, valid)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon.forecast.phase_correlation import shift_between
+from recon.forecast.phase_correlation import ShadeSpectrum, shift_between, spectrum_of
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState, PairVelocity
 from recon.model.shade import ShadeMap
@@ -27,16 +27,17 @@ def with_pairs(state: ForecastState, shade: ShadeMap, settings: ForecastSettings
     """Return the state with a map compared to those kept, if the last one kept is old enough."""
     at_ns = shade.captured_at_ns
     every_ns = seconds_to_ns(settings.keep_every_s)
-    if state.kept and at_ns // every_ns == state.kept[-1].captured_at_ns // every_ns:
+    if state.kept and at_ns // every_ns == state.kept[-1].at_ns // every_ns:
         return state
-    found = (_velocity(before, shade, settings) for before in _partners(state, at_ns, settings))
+    now = spectrum_of(shade, settings)
+    found = (_velocity(before, now, settings) for before in _partners(state, at_ns, settings))
     recent_ns = at_ns - seconds_to_ns(settings.motion_window_s)
     velocities = (*state.velocities, *(one for one in found if one is not None))
     oldest_ns = at_ns - seconds_to_ns(max(settings.pair_s))
     return replace(
         state,
         velocities=tuple(one for one in velocities if one.at_ns > recent_ns),
-        kept=(*(m for m in state.kept if m.captured_at_ns >= oldest_ns), shade),
+        kept=(*(one for one in state.kept if one.at_ns >= oldest_ns), now),
     )
 
 
@@ -53,22 +54,24 @@ def motion_of(state: ForecastState, settings: ForecastSettings) -> Motion | None
     return Motion(east_mps, north_mps, max(spread_mps, settings.least_spread_mps))
 
 
-def _partners(state: ForecastState, at_ns: int, settings: ForecastSettings) -> list[ShadeMap]:
+def _partners(state: ForecastState, at_ns: int, settings: ForecastSettings) -> list[ShadeSpectrum]:
     """The kept maps nearest to the wanted distances in time, each once."""
-    chosen: dict[int, ShadeMap] = {}
+    chosen: dict[int, ShadeSpectrum] = {}
     for wanted_s in settings.pair_s:
         slack_ns = seconds_to_ns(settings.keep_every_s)
         wanted_ns = at_ns - seconds_to_ns(wanted_s)
-        near = [m for m in state.kept if abs(m.captured_at_ns - wanted_ns) <= slack_ns]
+        near = [one for one in state.kept if abs(one.at_ns - wanted_ns) <= slack_ns]
         if near:
-            best = min(near, key=lambda m: abs(m.captured_at_ns - wanted_ns))
-            chosen[best.captured_at_ns] = best
+            best = min(near, key=lambda one: abs(one.at_ns - wanted_ns))
+            chosen[best.at_ns] = best
     return list(chosen.values())
 
 
-def _velocity(before: ShadeMap, now: ShadeMap, settings: ForecastSettings) -> PairVelocity | None:
+def _velocity(
+    before: ShadeSpectrum, now: ShadeSpectrum, settings: ForecastSettings
+) -> PairVelocity | None:
     shift = shift_between(before, now, settings)
     if shift is None or not shift.is_clear(settings):
         return None
-    gap_s = ns_to_seconds(now.captured_at_ns - before.captured_at_ns)
-    return PairVelocity(now.captured_at_ns, shift.east_m / gap_s, shift.north_m / gap_s)
+    gap_s = ns_to_seconds(now.at_ns - before.at_ns)
+    return PairVelocity(now.at_ns, shift.east_m / gap_s, shift.north_m / gap_s)

@@ -8,6 +8,7 @@ large ones.
 """
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import cv2
 import numpy as np
@@ -15,10 +16,11 @@ import numpy.typing as npt
 from scipy import fft
 
 from recon.forecast.settings import ForecastSettings
+from recon.model.geo import GroundGrid
 from recon.model.shade import FloatMap, MaskMap, ShadeMap
 from recon.model.units import ns_to_seconds
 
-Spectrum = npt.NDArray[np.complex64]
+Waves: TypeAlias = npt.NDArray[np.complex64]
 
 FADES_OVER_CELLS = 12.0
 """From the edge of what is seen inwards."""
@@ -43,21 +45,42 @@ class Shift:
         return self.peak >= settings.least_peak and self.rival <= settings.most_rival
 
 
-def shift_between(before: ShadeMap, now: ShadeMap, settings: ForecastSettings) -> Shift | None:
+@dataclass(frozen=True, slots=True, eq=False)
+class ShadeSpectrum:
+    """The waves in one shade map; what is kept of it to be compared with later ones."""
+
+    grid: GroundGrid
+    at_ns: int
+    shape: tuple[int, int]
+    """Rows and columns transformed: twice the grid, so that what leaves on one side is not taken
+    for what enters on the other."""
+    waves: Waves | None
+    """None without any contrast."""
+
+
+def spectrum_of(shade: ShadeMap, settings: ForecastSettings) -> ShadeSpectrum:
+    """Return the spectrum of a map's details."""
+    grid = shade.grid
+    shape = fft.next_fast_len(2 * grid.rows, real=True), fft.next_fast_len(2 * grid.cols, real=True)
+    waves: Waves | None = None
+    if _contrast(shade) >= settings.least_contrast:
+        waves = fft.rfft2(_details(shade, settings.detail_m / grid.cell_m), shape)
+    return ShadeSpectrum(grid, shade.captured_at_ns, shape, waves)
+
+
+def shift_between(
+    before: ShadeSpectrum, now: ShadeSpectrum, settings: ForecastSettings
+) -> Shift | None:
     """Return the shift of the shade between two maps of one grid, or None without any contrast.
 
     Shifts faster than the settings allow, or longer than the grid, are not looked for.
     """
-    if min(_contrast(before), _contrast(now)) < settings.least_contrast:
+    if before.waves is None or now.waves is None:
         return None
     grid = now.grid
-    # Twice the grid, so that what leaves on one side is not taken for what enters on the other.
-    shape = fft.next_fast_len(2 * grid.rows, real=True), fft.next_fast_len(2 * grid.cols, real=True)
-    detail_cells = settings.detail_m / grid.cell_m
-    earlier, later = (fft.rfft2(_details(shade, detail_cells), shape) for shade in (before, now))
-    agreement = _agreement(earlier, later, shape, settings.smooth_cells)
-    gap_s = ns_to_seconds(now.captured_at_ns - before.captured_at_ns)
-    reach = int(min(settings.fastest_mps * gap_s / grid.cell_m, min(grid.rows, grid.cols) - 1))
+    agreement = _agreement(before.waves, now.waves, now.shape, settings.smooth_cells)
+    reach_m = settings.fastest_mps * ns_to_seconds(now.at_ns - before.at_ns)
+    reach = int(min(reach_m / grid.cell_m, min(grid.rows, grid.cols) - 1))
     return _best(agreement, max(reach, 1), grid.cell_m)
 
 
@@ -83,17 +106,18 @@ def _inwards(valid: MaskMap) -> FloatMap:
 
 
 def _agreement(
-    earlier: Spectrum, later: Spectrum, shape: tuple[int, int], smooth_cells: float
+    earlier: Waves, later: Waves, shape: tuple[int, int], smooth_cells: float
 ) -> FloatMap:
     """Return (rows, cols) of `shape`, middle = no shift: the share of phases that agree on each."""
     both = np.conj(earlier) * later
-    waves2 = np.add.outer(np.fft.fftfreq(shape[0]) ** 2, np.fft.rfftfreq(shape[1]) ** 2)
-    weight = np.exp(-2.0 * (np.pi * smooth_cells) ** 2 * waves2).astype(np.float32)
+    by_row, by_col = (
+        np.exp(-2.0 * (np.pi * smooth_cells * np.fft.fftfreq(size)) ** 2) for size in shape
+    )
+    weight = np.outer(by_row, by_col[: both.shape[1]]).astype(np.float32)
     phases = both / np.maximum(np.abs(both), np.float32(1e-12))
-    found = fft.irfft2(weight * phases, shape)
-    # The peak of a perfect match: all weights in phase.
-    whole = fft.irfft2(weight.astype(np.complex64), shape)[0, 0]
-    shares: FloatMap = fft.fftshift(found / whole).astype(np.float32)
+    found = fft.fftshift(fft.irfft2(weight * phases, shape))
+    # A perfect match has all weights in phase.
+    shares: FloatMap = (found / (by_row.mean() * by_col.mean())).astype(np.float32)
     return shares
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from recon.model.shade import ShadeMap
+from recon.forecast.phase_correlation import ShadeSpectrum
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class ForecastState:
     """Mean share in sun of what was seen lately; None before anything was."""
     seen_s: float = 0.0
     """For how long that mean has been taken; no longer than it remembers."""
-    kept: tuple[ShadeMap, ...] = ()
+    kept: tuple[ShadeSpectrum, ...] = ()
     """Maps to compare with, oldest first."""
     velocities: tuple[PairVelocity, ...] = ()
     """Oldest first."""
