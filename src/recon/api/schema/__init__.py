@@ -1,0 +1,138 @@
+"""What the API says and hears. The console's types are generated from these models.
+
+Ages are seconds at the moment the message was made (`StationState.time_ns`); a reader adds the time
+since. `value: null` means unknown. Heights are above the vehicle's own takeoff point unless named
+otherwise.
+"""
+
+from recon.api.schema.answers import (
+    OrderResponse,
+    OrderResult,
+    Problem,
+    WordResponse,
+)
+from recon.api.schema.asked import (
+    AnyOrder,
+    Asked,
+    AuthorityRequest,
+    CameraStartOrder,
+    CameraStopOrder,
+    FleetReturnRequest,
+    GoToOrder,
+    HoldPositionOrder,
+    HoverOrder,
+    LandOrder,
+    MissionOrder,
+    NudgeOrder,
+    OrderRequest,
+    PreflightOverrideRequest,
+    ReturnHomeOrder,
+    StickOrder,
+    WaypointOrder,
+)
+from recon.api.schema.message import (
+    Message,
+)
+from recon.api.schema.orders import (
+    AlarmView,
+    CommandView,
+    PhaseView,
+    PhaseWord,
+    Severity,
+)
+from recon.api.schema.records import (
+    AuditEntryView,
+    AuditPage,
+    CheckView,
+    PreflightView,
+)
+from recon.api.schema.site import (
+    AreaView,
+    GroundImageView,
+    LayerView,
+    LimitsView,
+    PadView,
+    SiteView,
+)
+from recon.api.schema.station import (
+    FleetReturnView,
+    LinkView,
+    ReturningView,
+    StationState,
+    StationView,
+)
+from recon.api.schema.vehicles import (
+    AgedFlag,
+    AgedNumber,
+    AgedText,
+    AttitudeView,
+    FrameView,
+    GhostView,
+    LeaderWord,
+    LeadView,
+    OverrideView,
+    PositionView,
+    StalenessWord,
+    SteeringView,
+    VehicleView,
+    VelocityView,
+)
+
+__all__ = [
+    "AgedFlag",
+    "AgedNumber",
+    "AgedText",
+    "AlarmView",
+    "AnyOrder",
+    "AreaView",
+    "Asked",
+    "AttitudeView",
+    "AuditEntryView",
+    "AuditPage",
+    "AuthorityRequest",
+    "CameraStartOrder",
+    "CameraStopOrder",
+    "CheckView",
+    "CommandView",
+    "FleetReturnRequest",
+    "FleetReturnView",
+    "FrameView",
+    "GhostView",
+    "GoToOrder",
+    "GroundImageView",
+    "HoldPositionOrder",
+    "HoverOrder",
+    "LandOrder",
+    "LayerView",
+    "LeadView",
+    "LeaderWord",
+    "LimitsView",
+    "LinkView",
+    "Message",
+    "MissionOrder",
+    "NudgeOrder",
+    "OrderRequest",
+    "OrderResponse",
+    "OrderResult",
+    "OverrideView",
+    "PadView",
+    "PhaseView",
+    "PhaseWord",
+    "PositionView",
+    "PreflightOverrideRequest",
+    "PreflightView",
+    "Problem",
+    "ReturnHomeOrder",
+    "ReturningView",
+    "Severity",
+    "SiteView",
+    "StalenessWord",
+    "StationState",
+    "StationView",
+    "SteeringView",
+    "StickOrder",
+    "VehicleView",
+    "VelocityView",
+    "WaypointOrder",
+    "WordResponse",
+]

@@ -1,0 +1,86 @@
+"""What the station tells of itself, its links and the whole."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from recon.api.schema.message import Message
+from recon.api.schema.orders import AlarmView, CommandView
+from recon.api.schema.site import GroundImageView, SiteView
+from recon.api.schema.vehicles import VehicleView
+
+
+class LinkView(Message):
+    """One TCP connection of a companion app, with what its bytes have been like."""
+
+    id: int
+    remote_address: str
+    status: Literal["identified", "unidentified", "conflict", "closed"]
+    claimed_serial: str | None
+    opened_age_s: float
+    last_packet_age_s: float | None
+    closed_reason: str | None
+    bytes_received: int
+    packets_received: int
+    images_received: int
+    bad_hash: int
+    bad_size: int
+    unknown_pid: int
+    meaningless: int
+    bytes_skipped: int
+    commands_queued: int
+    answers_not_believed: int = Field(description="acknowledgments that may answer another command")
+
+
+class StationView(Message):
+    """The station itself."""
+
+    version: str
+    link_addresses: list[str]
+    uptime_s: float
+    frames_dropped: int
+    capture_folder: str | None
+    capture_dropped_bytes: int
+    connections_refused: int
+    separation_hold_on: bool = Field(
+        description="whether the watchdogs hold vehicles; else they only raise alarms"
+    )
+
+
+class ReturningView(Message):
+    """One vehicle of a fleet return; without a flight (yet) wave, heights and pad are null."""
+
+    serial: str
+    vehicle_name: str
+    stage: Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
+    since_age_s: float
+    reason: str | None = Field(description="why it waits, was released or is left out")
+    wave: int | None
+    layer_height_m: float | None = Field(description="above the site's ground altitude")
+    layer_height_above_takeoff_m: float | None
+    pad: str | None
+    hold_command_id: int
+    mission_command_id: int | None
+
+
+class FleetReturnView(Message):
+    """The newest fleet return; vehicles by wave and height."""
+
+    called_by: str
+    age_s: float
+    is_over: bool
+    vehicles: list[ReturningView]
+
+
+class StationState(Message):
+    """Everything a console shows; the stream pushes one of these at up to 10 Hz."""
+
+    time_ns: int
+    station: StationView
+    site: SiteView | None
+    vehicles: list[VehicleView]
+    links: list[LinkView]
+    commands: list[CommandView]
+    alarms: list[AlarmView]
+    ground_image: GroundImageView | None
+    fleet_return: FleetReturnView | None
