@@ -94,7 +94,6 @@ class HoldPosition:
     """Hold the present position against wind and drift, steered by the station, until told else."""
 
 
-EmergencyBody = Hover | LandNow | ReturnHome
 SteeredBody = GoTo | Nudge | HoldPosition
 """Never on the wire themselves: the station turns them into a stream of `VirtualStick`."""
 WireBody = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
