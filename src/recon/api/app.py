@@ -44,7 +44,9 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
     """
     app = FastAPI(title="Recon", version=version, docs_url=None, redoc_url=None)
     _add_state_routes(app, port)
+    _add_audit_and_streams(app, port)
     _add_order_routes(app, port)
+    _add_hazard_routes(app, port)
     _add_readiness_routes(app, port)
     _add_picture_routes(app, port)
     _add_console(app, console)
@@ -54,8 +56,6 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
 
 
 def _add_state_routes(app: FastAPI, port: StationPort) -> None:
-    stream, changes = StateStream(port), AuditStream(port)
-
     @app.get("/api/state")
     async def state() -> schema.StationState:
         """Everything a console shows, as of now; the stream sends the same."""
@@ -82,6 +82,10 @@ def _add_state_routes(app: FastAPI, port: StationPort) -> None:
         """One command and its life."""
         found = next((c for c in port.state().commands if c.id == command_id), None)
         return _found(found, f"no command {command_id} is among the latest")
+
+
+def _add_audit_and_streams(app: FastAPI, port: StationPort) -> None:
+    stream, changes = StateStream(port), AuditStream(port)
 
     @app.get("/api/audit")
     async def audit(
@@ -142,6 +146,8 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
         """
         return port.fleet_return(asked.serials, _who(request))
 
+
+def _add_hazard_routes(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/vehicles/{serial}/ghost/dismiss", responses=_PROBLEMS, status_code=204)
     async def dismiss_ghost(serial: str, request: Request) -> None:
         """Say that somebody knows where a vehicle is that is not heard: it is a hazard no more.
