@@ -29,7 +29,13 @@ from recon.model.command import (
     StopCamera,
     VirtualStick,
 )
-from recon.model.event import AuthorityTaken, OperatorOrder, PreflightOverridden
+from recon.model.event import (
+    AuthorityTaken,
+    CommandSent,
+    Event,
+    OperatorOrder,
+    PreflightOverridden,
+)
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import seconds_to_ns
@@ -37,6 +43,7 @@ from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.site import Site
 from recon.station.build import first_state
 from recon.station.orders import OrderRecord
+from recon.station.state import Station
 from recon.station.virtual import FakeLink, VirtualDriver
 from studies.counting_app import CountingApp
 
@@ -49,7 +56,7 @@ OPEN_FOR_S = 240.0
 STICK_GRACE_S = 3.0
 """A stick's own time and the longest delay: later than this after an order's end none may move."""
 MOST_SENDINGS = 4
-"""Of an emergency order: once, and three repeats."""
+"""Of an emergency order on one link: once, and three repeats."""
 
 
 @dataclass(slots=True)
@@ -118,6 +125,9 @@ class SessionStudy:
         profiles = {s: _profile(s, home) for s, home in zip(serials, homes, strict=True)}
         station = first_state(Site(name="study", profiles=profiles))
         self.driver = VirtualDriver(station, keeps_log=False)
+        self.driver.observe = self._count
+        self._sendings: Counter[tuple[int, int]] = Counter()
+        """How often each command left on each link."""
         self.vehicles = [
             self._join(CountingApp(s, home, random.Random(self.rng.random())))
             for s, home in zip(serials, homes, strict=True)
@@ -249,11 +259,21 @@ class SessionStudy:
             assert order.record is not None
             self.tally.ends[f"{order.record.command.name}: {order.record.phase.value}"] += 1
             self._judge_marked(number, order, order.record)
-            if order.record.command.is_emergency and order.record.times_sent > MOST_SENDINGS:
-                self.tally.broken.append(f"order {number} was sent {order.record.times_sent} times")
+            if order.record.command.is_emergency:
+                self._judge_repeats(number)
         for vehicle in self.vehicles:
             self._judge_emergencies(vehicle)
             self._judge_sticks(vehicle)
+
+    def _judge_repeats(self, number: int) -> None:
+        """A stop goes out on every link that claims its vehicle, and on each so often at most."""
+        for (sent, link_id), times in self._sendings.items():
+            if sent == number and times > MOST_SENDINGS:
+                self.tally.broken.append(f"order {number} was sent {times} times on link {link_id}")
+
+    def _count(self, _before: Station, _after: Station, event: Event) -> None:
+        if isinstance(event, CommandSent):
+            self._sendings[event.command_id, event.link_id] += 1
 
     def _judge_marked(self, number: int, order: _Order, record: OrderRecord) -> None:
         if order.mark is None:
