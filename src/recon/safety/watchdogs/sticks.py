@@ -15,7 +15,7 @@ def sticks(picture: Picture) -> Iterator[Finding]:
         quiet_s = watched.stick_quiet_s
         if quiet_s is not None and quiet_s > picture.settings.stick_quiet_s:
             text = (
-                f"no stick has left for it for {quiet_s:.1f} s though it is steered; its app should "
-                "stop it within a second: if it moves on, hold it, or its pilot takes the sticks"
+                f"no stick has left for it for {quiet_s:.1f} s though it is steered; its app "
+                "should stop it within 1 s: if it moves on, hold it, or have its pilot stop it"
             )
             yield watched.finding(RULE, Severity.ERROR, text)
