@@ -34,6 +34,54 @@ def guidance_orders(told: Told, body: Body, number: int = 90) -> Phase:
     return told.phase(number)
 
 
+def says(told: Told, north_mps: float, *, flying: bool = True) -> Told:
+    where = core(flying=flying, velocity=(north_mps, 0.0, 0.0))
+    return told.keeps_saying(1, where, HOVERING[1]).passes(0.5)
+
+
+class TestByHand:
+    def test_who_flies_about_with_nothing_ordered_is_its_pilots_until_taken(self) -> None:
+        told = says(Told().opens(1), 6.0)
+        assert led_by(told) is Leader.PILOT
+        refused = told.record(told.order(mission()))
+        assert refused.note.startswith("leader: A is led by pilot (it moves, and nothing has been")
+        assert told.alarms() == set()
+        takes(says(told, 6.0), Leader.OPERATOR)
+        assert led_by(says(told, 6.0)) is Leader.OPERATOR
+
+    def test_stops_need_no_leader(self) -> None:
+        for body in (Hover(), LandNow(), ReturnHome()):
+            told = says(Told().opens(1), 6.0)
+            assert told.phase(told.order(body)) is Phase.SENT
+
+    def test_one_that_hovers_is_the_operators_until_it_moves(self, told: Told) -> None:
+        assert led_by(says(told, 1.9)) is Leader.OPERATOR
+        assert led_by(says(told, 2.0)) is Leader.PILOT
+
+    def test_on_the_ground_it_is_the_operators_and_in_the_air_whose_hand_took_it_there(
+        self,
+    ) -> None:
+        told = says(Told().opens(1), 3.0, flying=False)
+        assert led_by(told) is Leader.OPERATOR
+        assert led_by(says(told, 3.0)) is Leader.PILOT
+
+    def test_whom_somebody_took_before_stays_taken(self) -> None:
+        told = says(Told().opens(1), 0.0, flying=False)
+        takes(told, Leader.OPERATOR)
+        assert led_by(says(told, 6.0)) is Leader.OPERATOR
+
+    def test_after_an_order_of_ours_motion_alone_tells_nothing(self, told: Told) -> None:
+        told.order(mission())
+        told.passes(10.0)  # it comes to nothing
+        assert led_by(says(told, 6.0)) is Leader.OPERATOR
+
+    def test_without_velocity_or_mode_nobody_can_say(self) -> None:
+        nothing = core(velocity=None), HOVERING[1]
+        assert led_by(Told().opens(1, *nothing).passes(0.5)) is Leader.OPERATOR
+        moving = core(velocity=(6.0, 0.0, 0.0)), extended(mode=None)
+        assert led_by(Told().opens(1, *moving).passes(0.5)) is Leader.OPERATOR
+
+
 class TestByWord:
     def test_the_operator_leads_until_somebody_takes_it(self, told: Told) -> None:
         assert led_by(told) is Leader.OPERATOR

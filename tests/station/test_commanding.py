@@ -8,8 +8,9 @@ from tests.safety.cases import STICK, mission
 from tests.station.commanded import PROFILES, Told, flying
 
 from recon.fleet.state import Fleet
+from recon.model.authority import Leader
 from recon.model.command import Body, Hover, Phase, ReturnHome, StartCamera, StopCamera
-from recon.model.event import CommandSent
+from recon.model.event import AuthorityTaken, CommandSent
 from recon.model.report import ImageReport
 from recon.model.vehicle import AltitudeReference, FlightMode
 
@@ -59,7 +60,8 @@ class TestMission:
 
     def test_an_old_mode_is_no_knowledge_of_the_mode_now(self) -> None:
         """Mode 3 four seconds ago: it may be 10 by now, from the mission before."""
-        told = hovering().keeps_saying(1, core(velocity=(-5.0, 0.0, 0.0))).passes(2.5)
+        told = hovering().happens(AuthorityTaken("A", Leader.OPERATOR, "Ann"))
+        told.keeps_saying(1, core(velocity=(-5.0, 0.0, 0.0))).passes(2.5)
         told.is_stuck = True
         order = told.order(mission())
         told.passes(1.5).happens(CommandSent(1, order))

@@ -9,7 +9,7 @@ from tests.station.returning_world import LEAST_LEVEL_M
 from tests.station.test_fleet_return import SIX, six_in_the_air
 
 from recon.geo.distance import moved_m
-from recon.model.authority import Leader
+from recon.model.authority import Lead, Leader
 from recon.model.command import GoTo, Hover, Phase, ReturnHome
 from recon.model.event import AuthorityTaken, SeparationHoldSwitched, Tick
 from recon.model.geo import LatLon
@@ -28,6 +28,8 @@ class Two:
 
     def __init__(self, gap_m: float, a_mps: float = 5.0, b_mps: float = -5.0) -> None:
         self.told = Told()
+        taken = {serial: Lead(Leader.OPERATOR, "Ann", 0, "taken over by Ann") for serial in "AB"}
+        self.told.station = replace(self.told.station, leads=taken)
         self.north_m = {1: 0.0, 2: gap_m}
         self.mps = {1: a_mps, 2: b_mps}
         self.flying = {1: True, 2: True}

@@ -96,6 +96,18 @@ def pilot_has_it(
     return replace(station, alarms=book), (WithdrawMotion(links, why),)
 
 
+def flies_unbidden(station: Station, serial: str, now_ns: int) -> Station:
+    """Return the station after a vehicle was seen to move in the air with nothing ordered here.
+
+    It is flown by hand: its pilot leads it until somebody takes it over. Whom somebody has taken
+    over stays as it is; there the pilot shows by the flight table.
+    """
+    if serial in station.leads:
+        return station
+    why = "it moves, and nothing has been ordered here: its pilot flies it"
+    return _led(station, serial, Lead(Leader.PILOT, PILOT, now_ns, why))
+
+
 def _led(station: Station, serial: str, lead: Lead) -> Station:
     return replace(station, leads={**station.leads, serial: lead})
 

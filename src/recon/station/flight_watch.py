@@ -7,7 +7,7 @@ or ended by the aircraft's own failsafe. So is a vehicle that has been told noth
 from collections.abc import Callable
 from dataclasses import replace
 
-from recon.fleet.flight_table import Reading, Told, Verdict, kind_of, read
+from recon.fleet.flight_table import ModeKind, Reading, Told, Verdict, kind_of, read
 from recon.model.command import STEERED_BODIES, Command, LandNow, Phase, Refusal
 from recon.model.intent import Commanded, Intent
 from recon.model.units import ns_to_seconds, seconds_to_ns
@@ -26,6 +26,9 @@ Stepped = tuple[Station, tuple[Output, ...]]
 
 _SPEAKS_WITHIN_S = 0.5
 """Who speaks more often is followed whenever it speaks: nothing is gained by looking between."""
+
+FLOWN_BY_HAND_MPS = 2.0
+"""In position mode an aircraft that nobody steers stands: gusts and GNSS noise stay under this."""
 
 _LASTING = (Verdict.PILOT, Verdict.FAILSAFE)
 _SENT_BY_LIFE = (Told.HOLD_SENT, Told.RETURN_SENT, Told.LAND_SENT)
@@ -56,6 +59,7 @@ def _follow(station: Station, serial: str, now_ns: int, ask: Ask) -> Stepped:
     if vehicle is None:
         return _forget(station, serial), ()
     station = _let_go_of_nothing(station, serial, vehicle, now_ns)
+    station = _led_by_who_flies(station, serial, vehicle, now_ns)
     station = intents.stands(intents.count_passed(station, serial), serial)
     record = _record(station, serial)
     if record is not None:
@@ -209,7 +213,11 @@ def _let_go_of_nothing(
     intent, follows = _state(station, serial)
     record = station.orders.records.get(intent.command_id or 0)
     if serial not in station.followings:
-        return intents.let_go(station, serial, now_ns)
+        station = intents.let_go(station, serial, now_ns)
+        new = replace(
+            intents.following_of(station, serial), is_unbidden=serial not in station.leads
+        )
+        return intents.with_following(station, serial, new)
     if intent.commanded is not Commanded.NOTHING and intent.command_id != follows.command_id:
         return intents.follow_anew(station, serial)
     if record is not None and not follows.has_begun and record.phase in _CAME_TO_NOTHING:
@@ -219,6 +227,30 @@ def _let_go_of_nothing(
     if is_down and (is_over or follows.failsafe is not None):
         return intents.let_go(station, serial, now_ns)
     return station
+
+
+def _led_by_who_flies(station: Station, serial: str, vehicle: VehicleState, now_ns: int) -> Station:
+    """A vehicle that flies about in position mode, with nothing ordered here, is its pilot's.
+
+    Other modes tell by the flight table who flies it; one that hovers may be anybody's.
+    """
+    intent, follows = _state(station, serial)
+    if intent.commanded is not Commanded.NOTHING or vehicle.is_flying.value is None:
+        return station
+    if vehicle.is_flying.value is False:
+        if follows.is_unbidden:
+            return station
+        return intents.with_following(station, serial, replace(follows, is_unbidden=True))
+    is_flown = follows.is_unbidden and _moves_in_position_mode(vehicle)
+    return authority.flies_unbidden(station, serial, now_ns) if is_flown else station
+
+
+def _moves_in_position_mode(vehicle: VehicleState) -> bool:
+    mode, velocity = vehicle.flight_mode.value, vehicle.velocity_ned.value
+    if mode is None or velocity is None:
+        return False
+    is_neutral = kind_of(mode, vehicle.gnss_signal_level.value) is ModeKind.NEUTRAL
+    return is_neutral and velocity.speed_mps >= FLOWN_BY_HAND_MPS
 
 
 _CAME_TO_NOTHING = (Phase.TIMED_OUT, Phase.REFUSED_BY_APP, Phase.FAILED, Phase.EXPIRED)

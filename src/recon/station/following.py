@@ -29,3 +29,5 @@ class Following:
     core_at_ns: int | None = None
     """When the telemetry came that the mission's passed waypoints were last counted by."""
     failsafe: str | None = None
+    is_unbidden: bool = False
+    """New here, or on the ground and told nothing: if it moves, nobody at the station made it."""

@@ -58,7 +58,9 @@ def restored(station: Station, last: LastRun, now_ns: int) -> Station:
         for serial, s in flights.items()
     }
     fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, **seen})
-    leads = {serial: _lead(*lead, now_ns) for serial, lead in last.leads.items()}
+    # Who flew before was led by somebody: the operator, unless the audit names another.
+    known = dict.fromkeys(flights, (Leader.OPERATOR, "")) | dict(last.leads)
+    leads = {serial: _lead(*lead, now_ns) for serial, lead in known.items()}
     station = replace(
         station,
         fleet=fleet,
