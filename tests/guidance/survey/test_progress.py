@@ -139,11 +139,22 @@ class TestImaged:
         assert (whole & ~broken).any()
         assert not (broken & ~whole).any()
 
+    def test_positions_that_were_dropped_break_what_was_in_view(self) -> None:
+        """So many wait that the oldest are forgotten: nobody knows the way there any more."""
+        plan = replace(PLAN, settings=replace(PLAN.settings, positions_kept=4))
+        seen = row_flown()
+        progress = with_seen(no_progress(plan.cells), "A", seen[:15], plan)
+        progress = settled(progress, plan, LATE_NS)
+        few = settled(with_seen(progress, "A", seen[15:], plan), plan, LATE_NS)
+        alone = [seen[11:15], seen[-4:]]
+        expected = imaged(counted(alone[0])) | imaged(counted(alone[1]))
+        assert np.array_equal(imaged(few), expected)
+
     def test_a_burst_is_taken_for_one_position(self) -> None:
         """Positions of a second that all come at once, after it."""
-        seen = row_flown(hz=10.0)
+        seen = row_flown(hz=10.0)[120:240]
         bursts = [
-            replace(each, at_ns=seconds_to_ns(11.0 + index // 10))
+            replace(each, at_ns=seconds_to_ns(22.0 + index // 10))
             for index, each in enumerate(seen)
         ]
         assert np.array_equal(imaged(counted(bursts)), imaged(counted(seen[9::10])))

@@ -121,6 +121,12 @@ class TestCoverage:
         points_m = points_in(field, np.random.default_rng(7), 5000)
         assert are_shown(plan, points_m, phase).all()
 
+    @pytest.mark.parametrize("phase", [0.0, 0.5, 0.999])
+    def test_a_field_smaller_than_a_photo_distance_is_in_a_photo(self, phase: float) -> None:
+        field = rectangle(9.0, 7.0)
+        plan = planned(survey_of(field, cell_m=1.0))
+        assert are_shown(plan, points_in(field, np.random.default_rng(7), 500), phase).all()
+
     def test_the_sampler_finds_a_missing_row(self) -> None:
         plan = planned(survey_of(rectangle(), side=0.2))
         pieces = tuple(piece for piece in plan.pieces if piece.row != 1)
@@ -304,6 +310,23 @@ class TestFlyingAgain:
     def test_pieces_over_all_cells_are_all_pieces(self) -> None:
         plan = planned(survey_of(holed()))
         assert plan.pieces_over(plan.cells.is_inside) == plan.pieces
+
+    @pytest.mark.parametrize("phase", [0.0, 0.5, 0.999])
+    def test_pieces_over_one_stretch_show_all_of_it(self, phase: float) -> None:
+        plan = planned(survey_of(rectangle(100.0, 60.0), bearing_deg=90.0))
+        cells = plan.cells
+        assert min(s.end_m - s.start_m for s in cells.stretches) < plan.swath.photo_m / 2.0
+        for index in range(len(cells.stretches)):
+            rows, cols = np.nonzero(cells.stretch == index)
+            again = replace(plan, pieces=plan.pieces_over(cells.stretch == index))
+            at = np.column_stack(
+                [
+                    cells.grid.west_m + (cols + 0.5) * cells.grid.cell_m,
+                    cells.grid.north_m - (rows + 0.5) * cells.grid.cell_m,
+                ]
+            )
+            assert len(at) > 0
+            assert are_shown(again, at, phase).all()
 
     def test_nothing_wanted_is_nothing_flown(self) -> None:
         plan = planned(survey_of(holed()))

@@ -47,6 +47,7 @@ class InView:
     `NEVER` where they are not.
     """
 
+    at_ns: int
     window: Window
     since_ns: IntArray
     sunlit_since_ns: IntArray
@@ -156,6 +157,8 @@ class _Count:
         """Count a vehicle's way between two positions."""
         plan = self._plan
         before = self._in_view.pop(serial, None)
+        if before is not None and before.at_ns != a.at_ns:
+            before = None
         lying = plan.lattice.along_across_m([(a.east_m, a.north_m), (b.east_m, b.north_m)])
         start, end = ((float(along), float(across)) for along, across in lying)
         if not _is_photographed(plan, (a, b), (end[0] - start[0], end[1] - start[1])):
@@ -165,10 +168,15 @@ class _Count:
         middle_ns = (a.at_ns + b.at_ns) // 2
         shade = nearest_map(self._progress.shade, middle_ns, plan.settings.shade_age_s)
         sunlit, known = sunlit_cells(shade, plan.cells.grid, cross.window)
-        self._in_view[serial] = self._counted(cross, before, sunlit, known)
+        self._in_view[serial] = self._counted(cross, before, sunlit, known, b.at_ns)
 
     def _counted(
-        self, cross: Crossing, before: InView | None, sunlit: BoolArray, known: BoolArray
+        self,
+        cross: Crossing,
+        before: InView | None,
+        sunlit: BoolArray,
+        known: BoolArray,
+        at_ns: int,
     ) -> InView:
         since_ns, lit_since_ns = _carried(before, cross.window)
         since_ns = _since(cross, since_ns)
@@ -182,6 +190,7 @@ class _Count:
         self._is_sun_known[cross.window.index] |= imaged & known
         stays = cross.stays_in_view
         return InView(
+            at_ns,
             cross.window,
             np.where(stays, since_ns, NEVER),
             np.where(stays & sunlit, lit_since_ns, NEVER),
