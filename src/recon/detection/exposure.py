@@ -2,8 +2,8 @@
 
 Clouds change some cells' light, the camera all cells' by one factor. Between two frames a few
 seconds apart the factor is where the cells' changes crowd most: the mean of the shortest interval
-that holds half of them. Where even that interval is wide, light itself is changing over the whole
-view, and the camera's part is not told from it: the exposure then counts as unchanged.
+that holds a third of them. Where even that interval is wide, light itself is changing over the
+whole view, and the camera's part is not told from it: the exposure then counts as unchanged.
 """
 
 from dataclasses import dataclass
@@ -19,6 +19,9 @@ from recon.model.units import seconds_to_ns
 
 SMOOTHED_CELLS = 5
 """Across: takes four fifths of the noise away, and is no wider than shadows' edges."""
+
+CROWD_SHARE = 1.0 / 3.0
+"""Of the cells: under a sky of small clouds hardly more keep their light for some seconds."""
 
 LEAST_CELLS = 50
 """Cells that two frames must both show; fewer may all lie under one edge."""
@@ -49,13 +52,13 @@ def gain_now(
 
 
 def common_change(before: CellLight, now: CellLight, spread: float) -> float:
-    """Return the natural log of the factor that half of the cells or more have changed by, or 0."""
+    """Return the natural log of the factor that the crowd of cells has changed by, or 0."""
     both = before.seen & now.seen
     if np.count_nonzero(both) < LEAST_CELLS:
         return 0.0
     changes = np.zeros(both.shape, dtype=np.float32)
     changes[both] = np.log(now.light[both] / before.light[both])
-    middle, width = _shortest_half(_smoothed(changes, both)[both])
+    middle, width = _crowd(_smoothed(changes, both)[both])
     return middle if width <= spread else 0.0
 
 
@@ -67,10 +70,10 @@ def _smoothed(changes: FloatMap, known: MaskMap) -> FloatMap:
     return means.astype(np.float32, copy=False)
 
 
-def _shortest_half(values: npt.NDArray[np.float32]) -> tuple[float, float]:
-    """Return the mean and the width of the shortest interval that holds half of the values."""
+def _crowd(values: npt.NDArray[np.float32]) -> tuple[float, float]:
+    """Return the mean and the width of the shortest interval that holds a third of the values."""
     ordered = np.sort(values)
-    half = len(ordered) // 2
-    widths = ordered[half:] - ordered[: len(ordered) - half]
+    held = int(len(ordered) * CROWD_SHARE)
+    widths = ordered[held:] - ordered[: len(ordered) - held]
     first = int(np.argmin(widths))
-    return float(ordered[first : first + half + 1].mean(dtype=np.float64)), float(widths[first])
+    return float(ordered[first : first + held + 1].mean(dtype=np.float64)), float(widths[first])

@@ -39,7 +39,7 @@ class DetectionSettings:
     """Of a cell's samples, taken for its light in full sun; above it are glints and noise."""
 
     least_samples: int = 4
-    """With less than 20 s nothing is said of a cell: most shadows stay longer."""
+    """Seen for less than 15 s nothing is said of a cell: most shadows stay longer."""
 
     flat_confidence: float = 0.4
     """Of a cell that did not change for the whole window: it may have been in shade throughout."""
@@ -58,8 +58,8 @@ class DetectionSettings:
     """Across a longer gap most cells may have changed their light; no exposure is told then."""
 
     exposure_spread: float = 0.04
-    """How alike half of the cells must have changed (natural log of light) for the change to count
-    as the camera's: sensor noise and shifts of placement stay below, moving soft cloud above."""
+    """How alike a third of the cells must have changed (natural log of light) for it to count as the
+    camera's doing: sensor noise and shifts of placement stay below, moving soft cloud above."""
 
     least_image: float = 0.01
     """Share of the grid that a frame must show at all."""
