@@ -58,8 +58,8 @@ class DetectionSettings:
     """Across a longer gap most cells may have changed their light; no exposure is told then."""
 
     exposure_spread: float = 0.04
-    """How alike a third of the cells must have changed (natural log of light) for it to count as the
-    camera's doing: sensor noise and shifts of placement stay below, moving soft cloud above."""
+    """How alike a third of the cells must have changed (natural log of light) for it to be taken
+    for the camera's doing: noise and shifts of placement stay below, moving soft cloud above."""
 
     least_image: float = 0.01
     """Share of the grid that a frame must show at all."""
