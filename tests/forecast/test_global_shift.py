@@ -173,6 +173,12 @@ class TestWithoutAMotion:
         assert np.array_equal(told.sun_probability, still.sun_probability)
         assert np.array_equal(told.horizon_s, still.horizon_s)
 
+    def test_a_pattern_of_the_ground_in_the_maps_is_no_motion(self) -> None:
+        """A detector's reference leaves the same errors at the same places in every map."""
+        still = DriftingShade(739, cover=0.4, velocity_mps=(0.0, 0.0))
+        maps = [noisy_map(still, 5.0 * i) for i in range(14)]
+        assert [t.method for t in forecasts("global_shift", maps, SETTINGS)] == ["persistence"] * 14
+
     def test_maps_that_have_nothing_in_common_persist(self) -> None:
         maps = [noisy_map(DriftingShade(720 + i), 5.0 * i) for i in range(14)]
         assert forecasts("global_shift", maps, SETTINGS)[-1].method == "persistence"

@@ -1,6 +1,7 @@
 """How the shadows move, told from many pairs of shade maps."""
 
 from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
@@ -74,4 +75,6 @@ def _velocity(
     if shift is None or not shift.is_clear(settings):
         return None
     gap_s = ns_to_seconds(now.at_ns - before.at_ns)
-    return PairVelocity(now.at_ns, shift.east_m / gap_s, shift.north_m / gap_s)
+    velocity = PairVelocity(now.at_ns, shift.east_m / gap_s, shift.north_m / gap_s)
+    is_moving = hypot(velocity.east_mps, velocity.north_mps) >= settings.slowest_mps
+    return velocity if is_moving else None

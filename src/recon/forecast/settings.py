@@ -58,6 +58,10 @@ class ForecastSettings:
     least_spread_mps: float = 0.3
     """The velocity is never taken as better known: clouds do not move as one."""
 
+    slowest_mps: float = 0.5
+    """What seems to stand still is the ground's pattern in the maps, or is served by persistence
+    just as well: such a pair tells no motion."""
+
     fastest_mps: float = 30.0
     """No shift beyond is looked for: high clouds move at 18 m/s."""
 
