@@ -17,6 +17,7 @@ from tests.guidance.survey.flyers import (
 
 from recon.guidance.survey import (
     Surroundings,
+    Surveyor,
     SurveyPlan,
     SurveyState,
     abort,
@@ -26,6 +27,7 @@ from recon.guidance.survey import (
     plan_survey,
     refused,
     start,
+    step,
 )
 from recon.model.command import Refusal
 from recon.model.survey import CellState, Survey, SurveyBudget, SurveyPhase
@@ -195,6 +197,27 @@ class TestTroubles:
         assert (end.phase, end.round) == (SurveyPhase.DONE, 1)
         assert len(flights.given) > 3
         assert all(m.length_m < 8.0 * 160.0 for m in flights.given)
+
+    def test_the_ways_there_and_home_are_of_the_battery(self) -> None:
+        for place_m, home_m, is_given in (
+            ((0.0, 0.0), (0.0, 0.0), True),
+            ((0.0, -1500.0), (0.0, 0.0), False),
+            ((0.0, 0.0), (0.0, -1500.0), False),
+        ):
+            state = begun(survey_of(rectangle()), fleet(1))
+            surveyor = Surveyor("S-1", place_m, time_left_s=200.0, home_m=home_m)
+            assert bool(step(state, [surveyor], 10**10)[1]) == is_given
+
+    def test_the_next_round_waits_until_the_last_positions_count(self) -> None:
+        state = begun(survey_of(rectangle()), fleet(1))
+        state, (first,) = step(state, [Surveyor("S-1", (0.0, 0.0))], seconds_to_ns(10.0))
+        flown = Surveyor("S-1", (0.0, 0.0), ended_mission=first.number)
+        given = []
+        for second in (20.0, 21.0, 22.0, 23.0):
+            state, missions = step(state, [flown], seconds_to_ns(second))
+            given.append(len(missions))
+        assert given == [0, 0, 0, 1]
+        assert state.round == 2
 
     def test_an_empty_battery_waits(self) -> None:
         flyers = fleet(1, endurance_s=10.0)

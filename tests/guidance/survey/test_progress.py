@@ -205,6 +205,23 @@ class TestLight:
         assert not (progress.state == CellState.IN_SUN).any()
         assert not progress.is_sun_known.any()
 
+    def test_off_the_map_nothing_is_known(self) -> None:
+        whole = shade(20.0)
+        half = replace(
+            whole,
+            grid=replace(whole.grid, cols=20),
+            **{
+                name: getattr(whole, name)[:, :20]
+                for name in ("transmittance", "valid", "confidence", "metres_per_pixel")
+            },
+        )
+        plan = replace(PLAN, settings=replace(PLAN.settings, shade_age_s=99.0))
+        progress = counted(row_flown(), half, plan=plan)
+        is_on_map = PLAN.cells.along_m < 150.0
+        assert (progress.state == CellState.IN_SUN).any()
+        assert ((progress.state == CellState.IN_SUN) == imaged(progress) & is_on_map).all()
+        assert not progress.is_sun_known[~is_on_map].any()
+
     def test_a_blink_of_sun_shorter_than_the_interval_is_none(self) -> None:
         maps = [shade(10.0 + t, is_lit=t == 20) for t in range(38)]
         plan = replace(PLAN, settings=replace(PLAN.settings, shade_maps_kept=99))
