@@ -88,7 +88,8 @@ fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nig
 			-- -max_total_time=$(FUZZ_SECONDS) -max_len=4096 || exit 1; \
 	done
 
-study: setup ## Long runs: fences and fleets sampled, 100,000 simulated seconds, mutants (about half an hour)
+study: setup ## Long runs: the sky held against measurements, fences and fleets sampled, 100,000 simulated seconds, mutants (about half an hour)
+	$(RUN) python -m studies.sky_statistics
 	$(RUN) python -m studies.fences --scenes 10000
 	$(RUN) python -m studies.fleets --scenes 10000
 	$(RUN) python -m studies.session --seconds 100000
