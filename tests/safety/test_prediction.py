@@ -201,6 +201,11 @@ class TestOtherIntents:
         flown = where(aircraft(velocity=(4.0, 0.0, 1.0)), Intent(Commanded.STICK), 5.0, 60.0)
         assert flown.north_m[0] == pytest.approx([20.0, 23.2], abs=0.05)
 
+    def test_a_stick_that_climbs_may_be_anywhere_up_to_its_height(self) -> None:
+        climbs = Intent(Commanded.STICK, target_height_above_takeoff_m=55.0)
+        flown = where(aircraft(), climbs, 1.0)
+        assert (flown.low_m[0, 0], flown.high_m[0, 0]) == (40.0, 55.0)
+
     def test_a_stick_to_a_place_stops_there(self) -> None:
         goes = Intent(Commanded.STICK, target=at(50.0, 0.0))
         assert where(aircraft(), goes, 60.0).north_m[0] == pytest.approx([50.0], abs=0.01)

@@ -35,6 +35,13 @@ MOVES = [Hover(), ReturnHome(), mission(), STICK]
 STEERED = [GoTo(PLACE, 40.0, 5.0), Nudge(1.0, 0.0, 0.0), HoldPosition()]
 
 
+def test_of_a_vehicle_nobody_knows_another_rule_speaks() -> None:
+    asked = command(Hover(), takeoff=True)
+    nobody = replace(situation(), vehicle=None, claimants=())
+    assert flying(asked, nobody) is None
+    assert refused_by(approve(asked, nobody)) == "reachable"
+
+
 @pytest.mark.parametrize("body", MOVES)
 class TestWithoutTakeoff:
     def test_it_goes_to_a_vehicle_that_flies(self, body: Body) -> None:
