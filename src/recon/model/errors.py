@@ -13,7 +13,6 @@ The command line prints the text of a `ReconError` as one sentence and exits wit
 commands are no errors: they are values (`recon.model.command.Refusal`).
 """
 
-
 import traceback
 from pathlib import Path
 
