@@ -12,10 +12,12 @@ from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.sim import field
 from recon.sim.camera_feed import View
 from recon.sim.errors import FrameSourceError
+from recon.sim.eye import EyeSettings
 from recon.sim.farmland import lay_out
-from recon.sim.farmland_raster import draw
+from recon.sim.farmland_raster import Part, draw, draw_shadows
 from recon.sim.noise import tileable_noise
 from recon.sim.world import LayerSettings, Sky, SkySettings
+from recon.sim.world.sky_light import light_under
 from recon.site import demo_site_folder
 
 SEED = 5
@@ -30,7 +32,7 @@ def camera():
 @pytest.fixture(scope="module")
 def frames(camera):
     circle = ImageCircle(camera.centre_col_px, camera.centre_row_px, 340.0)
-    return field.FieldFrames(camera, circle, SEED)
+    return field.FieldFrames(camera, circle, SEED, eye=EyeSettings.perfect())
 
 
 def pose(east_m: float = 0.0, north_m: float = 0.0, yaw_deg: float = 0.0):
@@ -75,11 +77,13 @@ def maps(grid: GroundGrid, camera, there):
 
 
 def raster_part(east_m: float, north_m: float) -> np.ndarray:
-    """Return the finest raster's 200 m around a place, at one metre."""
-    fine = draw(lay_out(SEED), 1024, 0.5, SEED)
-    col, row = round((east_m - 100 + 256) / 0.5), round((256 - north_m - 100) / 0.5)
-    part = fine.rgb[row : row + 400, col : col + 400]
-    return cv2.resize(part, (200, 200), interpolation=cv2.INTER_AREA)
+    """Return the land 200 m around a place, at one metre, with the shadows of trees and roofs."""
+    part = Part(round((-north_m - 100) / 0.5), round((east_m - 100) / 0.5), 400, 0.5)
+    land, sky = lay_out(SEED), Sky(SkySettings(layers=()))
+    light = light_under(sky, 0.0)
+    shadow = draw_shadows(land, part, sky.sun_at(0.0))[:, :, np.newaxis] / 255.0
+    fine = draw(land, part, SEED) * (1.0 - shadow * light.beam / (light.beam + light.sky)) ** 0.4545
+    return cv2.resize(fine, (200, 200), interpolation=cv2.INTER_AREA)
 
 
 def test_the_same_view_is_the_same_picture(frames) -> None:
@@ -103,9 +107,11 @@ def test_a_view_without_a_pose_is_refused(frames) -> None:
 
 def test_a_coarse_raster_agrees_with_the_fine_one() -> None:
     land = lay_out(SEED)
-    fine, coarse = draw(land, 1024, 0.5, SEED), draw(land, 256, 2.0, SEED)
-    shrunk = cv2.resize(fine.rgb, (256, 256), interpolation=cv2.INTER_AREA)
-    assert correlation(shrunk, coarse.rgb) > 0.93
+    fine, coarse = (
+        draw(land, Part(-size // 2, -size // 2, size, 512.0 / size), SEED) for size in (1024, 256)
+    )
+    shrunk = cv2.resize(fine, (256, 256), interpolation=cv2.INTER_AREA)
+    assert correlation(shrunk, coarse) > 0.93
 
 
 def test_noise_is_seamless_and_of_unit_strength() -> None:
@@ -132,7 +138,11 @@ def test_pictures_show_the_shadows_where_the_sky_has_them(frames, camera) -> Non
     lit = frames.render(View(40.0, 0, there)).astype(float).sum(axis=2)
     grid = GroundGrid(LocalFrame(GeoPoint(0.0, 0.0, 0.0)), -150, 150, 2.0, 150, 150)
     cols, rows = maps(grid, camera, there)
-    seen = cv2.remap((shaded / np.maximum(lit, 1.0)).astype(np.float32), cols, rows, 1)
+    light = (shaded / np.maximum(lit, 1.0)) ** 2.2
+    seen = cv2.remap(light.astype(np.float32), cols, rows, cv2.INTER_LINEAR)
     truth = sky.on_grid(grid, 40.0)
     assert 0.1 < (truth < 0.5).mean() < 0.9
-    assert correlation(seen, truth) > 0.95
+    shadows = draw_shadows(lay_out(SEED), Part(-75, -75, 150, 2.0), sky.sun_at(40.0))
+    in_the_open = cv2.dilate(shadows, np.ones((5, 5))) == 0
+    assert in_the_open.mean() > 0.8
+    assert correlation(seen[in_the_open], truth[in_the_open]) > 0.99

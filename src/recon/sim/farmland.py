@@ -1,4 +1,4 @@
-"""Procedural farmland seen from above: plots with crop rows, roads, tracks, a creek and trees.
+"""Procedural farmland seen from above: plots with crop rows, roads, tracks, water, trees, farms.
 
 The land is described once (rectangles, lines, points in east-north metres) and drawn at any
 resolution, so that coarse rasters of the distance agree with the fine one below the eye.
@@ -12,6 +12,8 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 Colour = tuple[float, float, float]
+Box = tuple[float, float, float, float]
+"""West, south, east, north in metres."""
 
 SECTION_M = 805.0
 """Half a mile between roads."""
@@ -31,6 +33,21 @@ CROPS: tuple[tuple[str, Colour, float], ...] = (
 )
 """Name, colour (RGB, muted as from a hundred metres up), share; the rest is meadow."""
 MEADOW: Colour = (120, 130, 84)
+BARENESS = {"soil": 1.0, "stubble": 0.6, "maize": 0.25, "soybean": 0.25, "wheat": 0.3}
+"""Share of soil seen between plants; the rest is grass."""
+ROOFS: tuple[Colour, ...] = ((176, 178, 180), (134, 66, 54), (92, 94, 98), (188, 180, 164))
+"""Sheet metal, red barn, slate, old metal."""
+
+FIRST_FARM_M = (154.0, 66.0)
+"""South-west corner of a farm near the origin: where the demonstration keeps out of a farmyard."""
+YARD_M = 50.0
+FARMS_PER_CROSSING = 0.4
+PONDS = 60
+POND_EDGE_M = 5.0
+"""Of grass around water."""
+NO_POND_WITHIN_M = 500.0
+"""The fields around the origin are fields."""
+HEIGHT_PER_RADIUS = 2.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +63,13 @@ class Plot:
     row_contrast: float
     rows_run_north: bool
     patchiness: float
+    bareness: float
+    """Share of soil among the crop, 0 to 1: where the ground is wet, soil darkens most."""
+
+    @property
+    def box_m(self) -> Box:
+        """West, south, east, north."""
+        return self.west_m, self.south_m, self.east_m, self.north_m
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +81,54 @@ class Tree:
     radius_m: float
     shade: float
 
+    @property
+    def height_m(self) -> float:
+        """Of the top: broad crowns stand on tall trees."""
+        return HEIGHT_PER_RADIUS * self.radius_m
+
+
+@dataclass(frozen=True, slots=True)
+class Building:
+    """A roof from above, its ridge along the longer side; walls as high as `height_m`."""
+
+    west_m: float
+    south_m: float
+    east_m: float
+    north_m: float
+    height_m: float
+    colour: Colour
+
+    @property
+    def box_m(self) -> Box:
+        """West, south, east, north."""
+        return self.west_m, self.south_m, self.east_m, self.north_m
+
+
+@dataclass(frozen=True, slots=True)
+class Pond:
+    """An ellipse of water."""
+
+    east_m: float
+    north_m: float
+    across_m: float
+    along_m: float
+    turned_deg: float
+    """Clockwise from east."""
+
+    @property
+    def box_m(self) -> Box:
+        """A box around it, meadow's edge included, however it is turned."""
+        reach_m = max(self.across_m, self.along_m) + POND_EDGE_M
+        east, north = self.east_m, self.north_m
+        return east - reach_m, north - reach_m, east + reach_m, north + reach_m
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Farmland:
     """What lies on the land within `half_width_m` of the origin."""
 
     plots: tuple[Plot, ...]
-    tracks: tuple[tuple[float, float, float, float], ...]
+    tracks: tuple[Box, ...]
     """Rectangles west, south, east, north of dirt tracks."""
     trees: tuple[Tree, ...]
     creek_m: FloatArray
@@ -71,6 +136,10 @@ class Farmland:
     roads_east_m: tuple[float, ...]
     roads_north_m: tuple[float, ...]
     half_width_m: float
+    yards: tuple[Box, ...] = ()
+    """Rectangles of gravel that farms stand on."""
+    buildings: tuple[Building, ...] = ()
+    ponds: tuple[Pond, ...] = ()
 
 
 def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
@@ -79,14 +148,59 @@ def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
     roads_east = _road_lines(ROAD_EAST_M, half_width_m)
     roads_north = _road_lines(ROAD_NORTH_M, half_width_m)
     plots: list[Plot] = []
-    tracks: list[tuple[float, float, float, float]] = []
+    tracks: list[Box] = []
     for west, east in pairwise(roads_east):
         for south, north in pairwise(roads_north):
             _divide(random, (west + 9, south + 9, east - 9, north - 9), plots, tracks)
     creek = _creek(random, half_width_m)
     trees = (*_creek_trees(random, creek), *_hedges(random, plots), *_groves(random))
+    # Farms and ponds have numbers of their own, so that more of them move no field.
+    farms = np.random.default_rng((seed, 1))
+    yards, buildings = _farms(farms, roads_east, roads_north)
     return Farmland(
-        tuple(plots), tuple(tracks), trees, creek, roads_east, roads_north, half_width_m
+        tuple(plots),
+        tuple(tracks),
+        trees,
+        creek,
+        roads_east,
+        roads_north,
+        half_width_m,
+        yards,
+        buildings,
+        _ponds(farms, half_width_m),
+    )
+
+
+def _farms(
+    random: np.random.Generator, roads_east: tuple[float, ...], roads_north: tuple[float, ...]
+) -> tuple[tuple[Box, ...], tuple[Building, ...]]:
+    """Return gravel yards and what stands on them: one by the origin, others at crossings."""
+    corners = [FIRST_FARM_M] + [
+        (east + 16.0, north + 16.0)
+        for east in roads_east
+        for north in roads_north
+        if random.random() < FARMS_PER_CROSSING
+    ]
+    yards = tuple((e - 3.0, n - 3.0, e + YARD_M, n + YARD_M) for e, n in corners)
+    return yards, tuple(b for east, north in corners for b in _farm(random, east, north))
+
+
+def _farm(random: np.random.Generator, east_m: float, north_m: float) -> list[Building]:
+    """Return a barn, a shed and a house around a yard, seen from its south-west corner."""
+    roofs = [ROOFS[int(k)] for k in random.integers(0, len(ROOFS), 3)]
+    barn = (east_m + 2.0, north_m + 2.0, east_m + 18.0, north_m + 40.0, 9.0)
+    shed = (east_m + 26.0, north_m + 34.0, east_m + 46.0, north_m + 46.0, 6.0)
+    house = (east_m + 32.0, north_m + 4.0, east_m + 45.0, north_m + 15.0, 7.0)
+    return [Building(*box, roof) for box, roof in zip((barn, shed, house), roofs, strict=True)]
+
+
+def _ponds(random: np.random.Generator, half_width_m: float) -> tuple[Pond, ...]:
+    places = random.uniform(-half_width_m, half_width_m, (PONDS, 2))
+    sizes = random.uniform((16.0, 10.0, 0.0), (45.0, 24.0, 180.0), (PONDS, 3))
+    return tuple(
+        Pond(*map(float, (*place, *size)))
+        for place, size in zip(places, sizes, strict=True)
+        if float(np.hypot(*place)) > NO_POND_WITHIN_M
     )
 
 
@@ -97,9 +211,9 @@ def _road_lines(through_m: float, half_width_m: float) -> tuple[float, ...]:
 
 def _divide(
     random: np.random.Generator,
-    box: tuple[float, float, float, float],
+    box: Box,
     plots: list[Plot],
-    tracks: list[tuple[float, float, float, float]],
+    tracks: list[Box],
 ) -> None:
     """Split a rectangle until it is a plot's size; some of the splits become dirt tracks."""
     west, south, east, north = box
@@ -124,7 +238,7 @@ def _divide(
         _divide(random, (west, cut + gap, east, north), plots, tracks)
 
 
-def _plot(random: np.random.Generator, box: tuple[float, float, float, float]) -> Plot:
+def _plot(random: np.random.Generator, box: Box) -> Plot:
     west, south, east, north = box
     pick, colour, name = random.random(), MEADOW, "meadow"
     for crop, crop_colour, share in CROPS:
@@ -145,6 +259,7 @@ def _plot(random: np.random.Generator, box: tuple[float, float, float, float]) -
         row_contrast=float(random.uniform(3.0, 7.0)) if has_rows else 0.0,
         rows_run_north=runs_north,
         patchiness=float(random.uniform(3.0, 9.0)),
+        bareness=BARENESS.get(name, 0.1),
     )
 
 

@@ -1,14 +1,31 @@
-"""Drawing farmland into a raster: RGB, row 0 north, centred on the origin."""
+"""Drawing farmland into pixels: part by part, each the same whatever else is drawn.
+
+Pixels of a size `cell_m` are numbered over the whole land: column j covers east from j to j + 1
+cells, row i covers north from -i - 1 to -i cells, so the origin is a corner of four.
+"""
 
 from dataclasses import dataclass
+from functools import lru_cache
+from math import cos, radians, sin, tan
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
 from recon.model.imagery import RgbImage
-from recon.sim.farmland import MEADOW, Farmland, FloatArray, Plot, Tree
+from recon.sim.farmland import (
+    MEADOW,
+    POND_EDGE_M,
+    Building,
+    Farmland,
+    FloatArray,
+    Plot,
+    Pond,
+    Tree,
+)
+from recon.sim.land_index import LandIndex, index_of
 from recon.sim.noise import FloatImage, tileable_noise
+from recon.sim.world import SunPosition
 
 GRAVEL = (168.0, 160.0, 145.0)
 DIRT = (150.0, 133.0, 106.0)
@@ -18,60 +35,158 @@ CROWN = (58.0, 76.0, 44.0)
 
 HEADLAND_M = 16.0
 TRAMLINE_M = 24.0
-SHADOW_DARKENS = 0.62
-SHADOW_EAST, SHADOW_NORTH = -0.7, 0.7
-"""Tree shadows fall to the north-west: a morning's sun."""
+PLANT_ROW_M = 0.75
+"""Between rows of maize or soybeans; seen from low only."""
+WETTEST_DARKENS = 0.34
+"""Soil that is wet through, over dry soil, in screen brightness: about half of the light."""
+WET_ABOVE, WET_OVER = 0.5, 1.1
+"""Deviations of a field 400 m coarse: where the ground begins to be wet, and until it is wet."""
 
+LOWEST_SHADOW_SUN_DEG = 12.0
+"""Shadows of trees are drawn as if the sun stood here at least: lower, they cover all."""
 SMALLEST_CROWN_PX = 0.6
+POND_CORNERS = 40
+DARKER_SLOPE = 0.88
+"""Of a roof: the slope that faces away from the noon's sun."""
 NOISE_CELLS = 512
+MARGIN_PX = 6
+"""Blurred edges look this far beyond a part's own pixels."""
+FRACTION_BITS = 4
+"""OpenCV draws at sixteenths of a pixel."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Raster:
-    """Pixels of `cell_m`; the raster's centre is the origin."""
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A square of the land's pixels: its first row and column, and its size."""
 
-    rgb: RgbImage
+    row: int
+    col: int
+    size: int
     cell_m: float
 
+    def with_margin(self) -> "Part":
+        """Return the part with what lies around it."""
+        return Part(
+            self.row - MARGIN_PX, self.col - MARGIN_PX, self.size + 2 * MARGIN_PX, self.cell_m
+        )
+
     @property
-    def half_width_m(self) -> float:
-        """From the centre to an edge."""
-        return len(self.rgb) * self.cell_m / 2.0
+    def box_m(self) -> tuple[float, float, float, float]:
+        """West, south, east, north."""
+        west, north = self.col * self.cell_m, -self.row * self.cell_m
+        return west, north - self.size * self.cell_m, west + self.size * self.cell_m, north
 
 
-def draw(land: Farmland, size: int, cell_m: float, seed: int) -> Raster:
-    """Return the land as (size, size) pixels of `cell_m`."""
-    canvas = _Canvas(size, cell_m, seed)
+def draw(land: Farmland, part: Part, seed: int) -> RgbImage:
+    """Return the land's colours in full sun, without shadows, (size, size, 3)."""
+    index = index_of(land)
+    canvas = _Canvas(part.with_margin(), seed)
+    box = canvas.part.box_m
     canvas.pixels[:] = VERGE
-    for plot in land.plots:
+    for plot in index.plots.within(box):
         canvas.draw_plot(plot)
-    for track in land.tracks:
+    for track in index.tracks.within(box):
         canvas.fill(track, DIRT)
     canvas.draw_creek(land)
+    for pond in index.ponds.within(box):
+        canvas.draw_pond(pond)
     canvas.draw_roads(land)
+    for yard in index.yards.within(box):
+        canvas.fill(yard, GRAVEL)
     canvas.add_grain()
-    canvas.draw_trees(land.trees)
-    return Raster(np.clip(canvas.pixels, 0.0, 255.0).astype(np.uint8), cell_m)
+    for building in index.buildings.within(box):
+        canvas.draw_roof(building)
+    canvas.draw_trees(_seen_trees(index, canvas.part))
+    inner = canvas.pixels[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX]
+    return np.clip(inner, 0.0, 255.0).astype(np.uint8)
+
+
+def draw_shadows(land: Farmland, part: Part, sun: SunPosition) -> npt.NDArray[np.uint8]:
+    """Return how much of the sun's beam trees and roofs keep off the ground, (size, size), /255."""
+    index, wide = index_of(land), part.with_margin()
+    image = np.zeros((wide.size, wide.size), dtype=np.uint8)
+    elevation = radians(max(sun.elevation_deg, LOWEST_SHADOW_SUN_DEG))
+    azimuth = radians(sun.azimuth_deg)
+    per_height = np.array([-sin(azimuth), -cos(azimuth)]) / tan(elevation)
+    for building in index.buildings.within(wide.box_m):
+        _shade_of_roof(image, wide, building, per_height)
+    for tree in _seen_trees(index, wide):
+        _shade_of_tree(image, wide, tree, per_height)
+    soft = cv2.GaussianBlur(image, (0, 0), 0.9)
+    return soft[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX].astype(np.uint8, copy=True)
+
+
+def _seen_trees(index: LandIndex, part: Part) -> list[Tree]:
+    """Return the trees large enough for a pixel that stand in a part or shade it."""
+    trees = index.trees.within(part.box_m)
+    return [tree for tree in trees if tree.radius_m > SMALLEST_CROWN_PX * part.cell_m]
+
+
+def _shade_of_roof(
+    image: npt.NDArray[np.uint8], part: Part, building: Building, per_height: FloatArray
+) -> None:
+    at = building
+    base = np.array([(e, n) for e in (at.west_m, at.east_m) for n in (at.south_m, at.north_m)])
+    ends = np.concatenate([base, base + at.height_m * per_height]).astype(np.float32)
+    hull = cv2.convexHull(ends).reshape(-1, 2).astype(np.float64)
+    corners = _fixed_point(part, hull)
+    if _is_near(corners, part):
+        cv2.fillConvexPoly(image, corners, 255, cv2.LINE_AA, FRACTION_BITS)
+
+
+def _shade_of_tree(
+    image: npt.NDArray[np.uint8], part: Part, tree: Tree, per_height: FloatArray
+) -> None:
+    """Draw a crown's shadow: a disc from the crown's foot to its top."""
+    foot = np.array([tree.east_m, tree.north_m])
+    shifts = np.outer([0.3, 0.7], tree.height_m * per_height)
+    points = _fixed_point(part, foot + shifts)
+    width = max(1, round(1.7 * tree.radius_m / part.cell_m))
+    if _is_near(points, part, width):
+        ends = [tuple(point) for point in points.tolist()]
+        cv2.line(image, ends[0], ends[1], 255, width, cv2.LINE_AA, FRACTION_BITS)
+
+
+def _fixed_point(part: Part, points_m: FloatArray) -> npt.NDArray[np.int32]:
+    """Return (N, 2) column and row in sixteenths of the part's pixels."""
+    cols = points_m[:, 0] / part.cell_m - 0.5 - part.col
+    rows = -points_m[:, 1] / part.cell_m - 0.5 - part.row
+    return np.rint(np.stack([cols, rows], axis=1) * 2**FRACTION_BITS).astype(np.int32)
+
+
+def _is_near(points: npt.NDArray[np.int32], part: Part, reach_px: int = 2) -> bool:
+    low, high = points.min(axis=0) / 2**FRACTION_BITS, points.max(axis=0) / 2**FRACTION_BITS
+    return bool((low < part.size + reach_px).all() and (high > -reach_px).all())
+
+
+@lru_cache(maxsize=32)
+def _noise_tile(seed: int, smallest_cells: float, slope: float, blur_px: int) -> FloatImage:
+    """Return noise; details finer than a pixel average out."""
+    tile = tileable_noise(NOISE_CELLS, seed, smallest_cells, slope)
+    if blur_px <= 1:
+        return tile
+    wrapped = cv2.copyMakeBorder(tile, *[blur_px] * 4, cv2.BORDER_WRAP)
+    blurred = cv2.blur(wrapped, (blur_px, blur_px))[blur_px:-blur_px, blur_px:-blur_px]
+    return blurred.astype(np.float32, copy=True)
 
 
 class _Canvas:
-    def __init__(self, size: int, cell_m: float, seed: int) -> None:
-        self.size = size
-        self.cell_m = cell_m
-        self.half_m = size * cell_m / 2.0
-        self.pixels: FloatImage = np.empty((size, size, 3), dtype=np.float32)
-        centres = (np.arange(size, dtype=np.float32) + 0.5) * cell_m - self.half_m
-        self.east_m, self.north_m = centres, -centres
+    def __init__(self, part: Part, seed: int) -> None:
+        self.part, self.cell_m = part, part.cell_m
+        self.pixels: FloatImage = np.empty((part.size, part.size, 3), dtype=np.float32)
+        numbers = np.arange(part.size, dtype=np.float64)
+        self.east_m = ((numbers + part.col + 0.5) * part.cell_m).astype(np.float32)
+        self.north_m = (-(numbers + part.row + 0.5) * part.cell_m).astype(np.float32)
         self._patches = self._noise(seed + 1, tile_m=900.0, smallest_cells=3.0, slope=1.6)
         self._grain = self._noise(seed + 2, tile_m=NOISE_CELLS * 0.8, smallest_cells=1.0, slope=0.7)
+        self._wet = self._noise(seed + 3, tile_m=2_600.0, smallest_cells=2.0, slope=1.5)
+        if part.cell_m <= 0.5:
+            self._grain += 0.8 * self._noise(seed + 4, NOISE_CELLS * 0.25, 1.0, 0.6)
 
     def _noise(self, seed: int, tile_m: float, smallest_cells: float, slope: float) -> FloatImage:
-        """Return noise fixed to the ground, at this raster's pixels."""
-        tile = tileable_noise(NOISE_CELLS, seed, smallest_cells, slope)
+        """Return noise fixed to the ground, at this part's pixels."""
         per_m = NOISE_CELLS / tile_m
-        if self.cell_m * per_m > 1.0:
-            # Details finer than a pixel average out.
-            tile = cv2.blur(tile, (k := max(1, round(self.cell_m * per_m)), k)).astype(np.float32)
+        tile = _noise_tile(seed, smallest_cells, slope, max(1, round(self.cell_m * per_m)))
         cols, rows = np.meshgrid(
             np.mod(self.east_m * per_m, NOISE_CELLS), np.mod(self.north_m * per_m, NOISE_CELLS)
         )
@@ -86,9 +201,9 @@ class _Canvas:
 
     def _slices(self, box: tuple[float, float, float, float]) -> tuple[slice, slice]:
         west, south, east, north = (round(edge / self.cell_m) for edge in box)
-        half = self.size // 2
-        rows = slice(max(0, half - north), max(0, half - south))
-        return rows, slice(max(0, half + west), max(0, half + east))
+        row, col, size = self.part.row, self.part.col, self.part.size
+        rows = slice(min(size, max(0, -north - row)), min(size, max(0, -south - row)))
+        return rows, slice(min(size, max(0, west - col)), min(size, max(0, east - col)))
 
     def fill(self, box: tuple[float, float, float, float], colour: tuple[float, ...]) -> None:
         self.pixels[self._slices(box)] = colour
@@ -104,6 +219,8 @@ class _Canvas:
         if plot.row_contrast > 0.0:
             light += self._crop_rows(plot, east, north)
         area += light[:, :, np.newaxis] * np.array([1.0, 0.95, 0.75], dtype=np.float32)
+        wet = np.clip((self._wet[rows, cols] - WET_ABOVE) / WET_OVER, 0.0, 1.0)
+        area *= (1.0 - WETTEST_DARKENS * plot.bareness * wet)[:, :, np.newaxis]
 
     def _crop_rows(self, plot: Plot, east: FloatImage, north: FloatImage) -> FloatImage:
         """Return the light and dark of crop rows: across on the headlands, tramlines between."""
@@ -112,16 +229,27 @@ class _Canvas:
             (plot.south_m, plot.north_m) if plot.rows_run_north else (plot.west_m, plot.east_m)
         )
         is_headland = (v < low + HEADLAND_M) | (v > high - HEADLAND_M)
-        visible = max(0.0, 1.0 - 2.0 * self.cell_m / plot.row_spacing_m)
-        wave = 2.0 * np.pi / plot.row_spacing_m
-        stripes = np.where(is_headland, np.sin(wave * v), np.sin(wave * u))
+        stripes = self._stripes(plot.row_spacing_m, u, v, is_headland) + self._stripes(
+            PLANT_ROW_M, u, v, is_headland
+        )
         to_tramline = np.abs(np.mod(u, TRAMLINE_M) - TRAMLINE_M / 2.0)
         tramline = np.clip(1.0 - to_tramline / max(1.0, self.cell_m), 0.0, 1.0)
         tramline = np.where(is_headland, 0.0, tramline) * min(1.0, 1.0 / self.cell_m)
         shade: FloatImage = (
-            plot.row_contrast * (visible * stripes - 1.6 * tramline) - 3.0 * is_headland
+            plot.row_contrast * (stripes - 1.6 * tramline) - 3.0 * is_headland
         ).astype(np.float32)
         return shade
+
+    def _stripes(
+        self, spacing_m: float, u: FloatImage, v: FloatImage, is_headland: npt.NDArray[np.bool_]
+    ) -> FloatImage:
+        """Return waves of a spacing, as far as the pixels are fine enough for them."""
+        visible = max(0.0, 1.0 - 2.0 * self.cell_m / spacing_m)
+        if visible == 0.0:
+            return np.zeros((1, 1), dtype=np.float32)
+        wave = np.float32(2.0 * np.pi / spacing_m)
+        across, along = visible * np.sin(wave * v), visible * np.sin(wave * u)
+        return np.where(is_headland, across, along).astype(np.float32)
 
     def draw_roads(self, land: Farmland) -> None:
         far = land.half_width_m
@@ -132,42 +260,53 @@ class _Canvas:
                 self.fill((-far, north - width_m / 2, far, north + width_m / 2), colour)
 
     def draw_creek(self, land: Farmland) -> None:
-        points = self._pixels_of(land.creek_m)
+        west, _, east, _ = self.part.box_m
+        near = (land.creek_m[:, 0] > west - 60.0) & (land.creek_m[:, 0] < east + 60.0)
+        points = _fixed_point(self.part, land.creek_m[near])
         for width_m, colour in ((46.0, MEADOW), (8.0, WATER)):
             thickness = max(1, round(width_m / self.cell_m))
-            cv2.polylines(self.pixels, [points], False, colour, thickness, cv2.LINE_AA)
+            cv2.polylines(
+                self.pixels, [points], False, colour, thickness, cv2.LINE_8, FRACTION_BITS
+            )
 
-    def draw_trees(self, trees: tuple[Tree, ...]) -> None:
-        seen = [tree for tree in trees if self._is_seen(tree)]
-        shadow = self._discs(seen, shift=1.3)
-        shadow = cv2.GaussianBlur(shadow, (0, 0), 0.9).astype(np.float32)
-        self.pixels *= (1.0 - (1.0 - SHADOW_DARKENS) * shadow)[:, :, np.newaxis]
-        cover = cv2.GaussianBlur(self._discs(seen), (0, 0), 0.8).astype(np.float32)
-        light = 5.0 * self._grain + self._discs(seen, shades=True)
+    def draw_pond(self, pond: Pond) -> None:
+        angles = np.linspace(0.0, 2.0 * np.pi, POND_CORNERS, endpoint=False)
+        turned = radians(pond.turned_deg)
+        for wider_m, colour in ((POND_EDGE_M, MEADOW), (0.0, WATER)):
+            along = (pond.across_m + wider_m) * np.cos(angles)
+            aside = (pond.along_m + wider_m) * np.sin(angles)
+            east = pond.east_m + along * cos(turned) + aside * sin(turned)
+            north = pond.north_m - along * sin(turned) + aside * cos(turned)
+            outline = _fixed_point(self.part, np.stack([east, north], axis=1))
+            cv2.fillConvexPoly(self.pixels, outline, colour, cv2.LINE_8, FRACTION_BITS)
+
+    def draw_roof(self, building: Building) -> None:
+        """Draw two slopes; the one to the north or west is a little darker from above."""
+        at, colour = building, np.array(building.colour)
+        self.fill((at.west_m, at.south_m, at.east_m, at.north_m), tuple(colour))
+        east, north = (at.west_m + at.east_m) / 2.0, (at.south_m + at.north_m) / 2.0
+        runs_north = at.north_m - at.south_m > at.east_m - at.west_m
+        box = (at.west_m, at.south_m, east, at.north_m)
+        box = box if runs_north else (at.west_m, north, at.east_m, at.north_m)
+        self.fill(box, tuple(DARKER_SLOPE * colour))
+
+    def draw_trees(self, trees: list[Tree]) -> None:
+        if not trees:
+            return
+        cover = cv2.GaussianBlur(self._discs(trees), (0, 0), 0.8).astype(np.float32)
+        light = 5.0 * self._grain + self._discs(trees, shades=True)
         crowns = light[:, :, np.newaxis] + np.array(CROWN, dtype=np.float32)
         self.pixels += cover[:, :, np.newaxis] * (crowns - self.pixels)
 
-    def _is_seen(self, tree: Tree) -> bool:
-        is_large_enough = tree.radius_m > SMALLEST_CROWN_PX * self.cell_m
-        return is_large_enough and max(abs(tree.east_m), abs(tree.north_m)) < self.half_m
-
-    def _discs(self, trees: list[Tree], shift: float = 0.0, shades: bool = False) -> FloatImage:
-        """Return an image with a disc per crown, of 1 or of its shade, shifted by some radii."""
-        image = np.zeros((self.size, self.size), dtype=np.float32)
-        if not trees:
-            return image
-        centres = np.array([(tree.east_m, tree.north_m) for tree in trees])
-        radii = np.array([[tree.radius_m] for tree in trees])
-        points = self._pixels_of(centres + shift * radii * (SHADOW_EAST, SHADOW_NORTH))
+    def _discs(self, trees: list[Tree], shades: bool = False) -> FloatImage:
+        """Return an image with a disc per crown, of 1 or of its shade."""
+        image = np.zeros((self.part.size, self.part.size), dtype=np.float32)
+        points = _fixed_point(self.part, np.array([(t.east_m, t.north_m) for t in trees]))
         for tree, point in zip(trees, points.tolist(), strict=True):
-            radius = max(1, round(tree.radius_m / self.cell_m))
-            cv2.circle(image, point, radius, tree.shade if shades else 1.0, -1, cv2.LINE_AA)
+            radius = max(1, round(tree.radius_m / self.cell_m * 2**FRACTION_BITS))
+            value = tree.shade if shades else 1.0
+            cv2.circle(image, point, radius, value, -1, cv2.LINE_8, FRACTION_BITS)
         return image
 
     def add_grain(self) -> None:
         self.pixels += (2.6 * self._grain + 1.5 * self._patches)[:, :, np.newaxis]
-
-    def _pixels_of(self, points_m: FloatArray) -> npt.NDArray[np.int32]:
-        cols = (points_m[:, 0] + self.half_m) / self.cell_m - 0.5
-        rows = (self.half_m - points_m[:, 1]) / self.cell_m - 0.5
-        return np.rint(np.stack([cols, rows], axis=1)).astype(np.int32)

@@ -15,7 +15,7 @@ BETWEEN_LAYERS_DEG = (25.0, 70.0)
 """Wind turns with height; two layers that move alike are one to a forecaster."""
 
 
-def _expect(name: str, value: float, lowest: float, highest: float) -> None:
+def expect(name: str, value: float, lowest: float, highest: float) -> None:
     """Refuse what is not a number within the bounds (infinity only where it is a bound)."""
     if not lowest <= value <= highest:
         raise SimulationError(f"{name}: expected {lowest:g} to {highest:g}, got {value:g}")
@@ -47,10 +47,10 @@ class WindShift:
     heading_deg: float
 
     def __post_init__(self) -> None:
-        _expect("wind shift: start_s", self.start_s, 0.0, inf)
-        _expect("wind shift: duration_s", self.duration_s, 1.0, inf)
-        _expect("wind shift: speed_mps", self.speed_mps, 0.0, 60.0)
-        _expect("wind shift: heading_deg", self.heading_deg, -360.0, 360.0)
+        expect("wind shift: start_s", self.start_s, 0.0, inf)
+        expect("wind shift: duration_s", self.duration_s, 1.0, inf)
+        expect("wind shift: speed_mps", self.speed_mps, 0.0, 60.0)
+        expect("wind shift: heading_deg", self.heading_deg, -360.0, 360.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,19 +88,19 @@ class LayerSettings:
     """In order, each after the end of the one before."""
 
     def __post_init__(self) -> None:
-        _expect("base_height_m", self.base_height_m, 50.0, 15_000.0)
-        _expect("speed_mps", self.speed_mps, 0.0, 60.0)
-        _expect("heading_deg", self.heading_deg, -360.0, 360.0)
-        _expect("cover", self.cover, 0.0, 1.0)
-        _expect("spectral_slope", self.spectral_slope, 2.1, 5.0)
-        _expect("outer_scale_m", self.outer_scale_m, 200.0, 100_000.0)
-        _expect("finest_scale_m", self.finest_scale_m, 10.0, self.outer_scale_m)
-        _expect("softness", self.softness, 0.01, 5.0)
-        _expect("largest_optical_depth", self.largest_optical_depth, 0.01, 200.0)
-        _expect("lifetime_s", self.lifetime_s, 1.0, inf)
-        _expect("lifetime_exponent", self.lifetime_exponent, 0.0, 2.0)
-        _expect("modulation", self.modulation, 0.0, 3.0)
-        _expect("modulation_s", self.modulation_s, 1.0, inf)
+        expect("base_height_m", self.base_height_m, 50.0, 15_000.0)
+        expect("speed_mps", self.speed_mps, 0.0, 60.0)
+        expect("heading_deg", self.heading_deg, -360.0, 360.0)
+        expect("cover", self.cover, 0.0, 1.0)
+        expect("spectral_slope", self.spectral_slope, 2.1, 5.0)
+        expect("outer_scale_m", self.outer_scale_m, 200.0, 100_000.0)
+        expect("finest_scale_m", self.finest_scale_m, 10.0, self.outer_scale_m)
+        expect("softness", self.softness, 0.01, 5.0)
+        expect("largest_optical_depth", self.largest_optical_depth, 0.01, 200.0)
+        expect("lifetime_s", self.lifetime_s, 1.0, inf)
+        expect("lifetime_exponent", self.lifetime_exponent, 0.0, 2.0)
+        expect("modulation", self.modulation, 0.0, 3.0)
+        expect("modulation_s", self.modulation_s, 1.0, inf)
         ends = [0.0, *(shift.start_s + shift.duration_s for shift in self.shifts)]
         if any(shift.start_s < end for shift, end in zip(self.shifts, ends, strict=False)):
             raise SimulationError("wind shifts: expected each after the end of the one before")
@@ -143,12 +143,12 @@ class WindSettings:
     def __post_init__(self) -> None:
         if self.seed < 0:
             raise SimulationError(f"wind: expected a seed from 0 upwards, got {self.seed}")
-        _expect("wind: speed_10m_mps", self.speed_10m_mps, 0.0, 40.0)
-        _expect("wind: heading_deg", self.heading_deg, -360.0, 360.0)
-        _expect("wind: shear_exponent", self.shear_exponent, 0.0, 1.0)
-        _expect("wind: veer_deg_per_100m", self.veer_deg_per_100m, -45.0, 45.0)
-        _expect("wind: gust_intensity", self.gust_intensity, 0.0, 1.0)
-        _expect("wind: gust_scale_m", self.gust_scale_m, 10.0, 1_000.0)
+        expect("wind: speed_10m_mps", self.speed_10m_mps, 0.0, 40.0)
+        expect("wind: heading_deg", self.heading_deg, -360.0, 360.0)
+        expect("wind: shear_exponent", self.shear_exponent, 0.0, 1.0)
+        expect("wind: veer_deg_per_100m", self.veer_deg_per_100m, -45.0, 45.0)
+        expect("wind: gust_intensity", self.gust_intensity, 0.0, 1.0)
+        expect("wind: gust_scale_m", self.gust_scale_m, 10.0, 1_000.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,6 +163,6 @@ class LightSettings:
     """Diffuse light between broken clouds over that of a clear sky: their sides are bright."""
 
     def __post_init__(self) -> None:
-        _expect("light: linke_turbidity", self.linke_turbidity, 1.0, 10.0)
-        _expect("light: altitude_m", self.altitude_m, -500.0, 6_000.0)
-        _expect("light: cloud_brightening", self.cloud_brightening, 1.0, 4.0)
+        expect("light: linke_turbidity", self.linke_turbidity, 1.0, 10.0)
+        expect("light: altitude_m", self.altitude_m, -500.0, 6_000.0)
+        expect("light: cloud_brightening", self.cloud_brightening, 1.0, 4.0)
