@@ -83,8 +83,11 @@ def ordered_hold(aircraft: Aircraft) -> Flight:
 def ordered_stick(
     aircraft: Aircraft, velocity_mps: FloatArray, up_m: float, timeout_s: float
 ) -> Flight:
-    """A velocity (2,) taken up, kept for its time and the reaction's, and braked."""
+    """A velocity (2,) taken up from now on, kept for its time and the reaction's, and braked."""
     flight = Flight(aircraft)
+    if aircraft.age_s > 0.0:
+        flown_m = aircraft.age_s * aircraft.velocity_mps[:2]
+        flight.goes(flight.place_m + flown_m, aircraft.age_s, (flight.low_m, flight.high_m))
     flight.widens((up_m, up_m))
     _take_up(flight, velocity_mps)
     band_m = (flight.low_m, flight.high_m)

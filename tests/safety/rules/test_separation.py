@@ -222,10 +222,24 @@ class TestLeadingApart:
             (Nudge(0.0, 0.0, -10.0), True),
             (route((-20.0, 0.0), (-100.0, 0.0)), True),
             (route((-20.0, 0.0), (-100.0, 0.0), (0.0, 0.0)), False),
+            (Nudge(0.0, 0.0, 10.0), False),  # up, past it
+            (route((0.0, 0.0, 60.0), (-100.0, 0.0, 60.0)), False),
+            (route((0.0, 0.0, 30.0), (-100.0, 0.0, 30.0)), True),
+            (route((0.0, 0.0, 40.0), (0.0, 0.0, 40.0)), False),  # it stays where it is
+            (HoldPosition(), True),  # no stop is refused
         ],
     )
     def test_nearer_is_refused_and_away_passes(self, body: object, passes: bool) -> None:
         assert (judged(body, self.own, self.near) is None) is passes  # type: ignore[arg-type]
+
+    @pytest.mark.parametrize("stays", [(0.0, 0.0, 36.0), (20.0, 0.0, 36.0)])
+    def test_one_that_has_yet_to_come_down_is_not_too_near_already(
+        self, stays: tuple[float, float, float]
+    ) -> None:
+        """It is 8 m higher, and was told to come down to here."""
+        above = Traffic(aircraft("B", height_m=44.0), flies(route((0.0, 0.0, 36.0), stays)))
+        own = aircraft("A", height_m=36.0)
+        refused(judged(route((0.0, 0.0, 36.0), (0.0, 0.0, 36.0)), own, above), "of B")
 
     @pytest.mark.parametrize("age_s", [0.0, 0.2, 1.0])
     def test_one_that_is_leaving_already_may_go_on(self, age_s: float) -> None:

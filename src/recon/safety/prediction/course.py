@@ -68,11 +68,13 @@ def part_words(part: int) -> str:
 class Course:
     """A vehicle's course. `rows` is (N, 14), in order of time and without gaps, times in seconds
     from now, east and north in the plane, heights as up metres of the site's frame. All of it may
-    be flown later by `delay_s`: a mission that has not begun."""
+    be flown later by `delay_s`: a mission that has not begun. `here_m` are the two heights between
+    which it was last heard; on its first row it may be higher or lower by then."""
 
     name: str
     serial: str | None
     rows: FloatArray
+    here_m: tuple[float, float]
     delay_s: float = 0.0
 
 
@@ -81,7 +83,7 @@ class CourseWriter:
 
     def __init__(self, east_m: float, north_m: float, low_m: float, high_m: float) -> None:
         self.east_m, self.north_m = east_m, north_m
-        self.low_m, self.high_m = low_m, high_m
+        self.low_m, self.high_m = self.here_m = low_m, high_m
         self.time_s = 0.0
         self.radius_m = 0.0
         self.rows: list[Row] = []
@@ -125,4 +127,5 @@ class CourseWriter:
 
     def course(self, name: str, serial: str | None) -> Course:
         """Return what has been written."""
-        return Course(name, serial, np.array(self.rows, dtype=np.float64).reshape(-1, COLUMNS))
+        rows = np.array(self.rows, dtype=np.float64).reshape(-1, COLUMNS)
+        return Course(name, serial, rows, self.here_m)

@@ -14,7 +14,7 @@ from recon.safety.prediction.course import (
     FloatArray,
     Part,
 )
-from recon.safety.prediction.sampling import Samples, sample
+from recon.safety.prediction.sampling import sample
 from recon.safety.prediction.settings import PredictionSettings
 from recon.safety.prediction.tubes import IntArray, Tubes, cut
 
@@ -69,10 +69,10 @@ def first_meeting(
     apart_m = _apart_m(mine, theirs, pairs)
     gap_m = apart_m - mine.radius_m[pairs.own] - theirs.radius_m[pairs.other]
     is_near = gap_m < need.horizontal_m
-    near_now_m = _near_now_m(own, others, theirs, need)
-    is_leaving = mine.at_s[pairs.own] < settings.escape_s
-    comes_nearer = apart_m < near_now_m[pairs.course] - CLOSER_M
-    is_meeting = is_near & (comes_nearer | ~is_leaving)
+    now = _now(own, others, theirs, need)
+    comes_nearer = apart_m < now.apart_m[pairs.course] - CLOSER_M
+    comes_nearer |= _comes_up_or_down_to(mine, pairs, now)
+    is_meeting = is_near & (comes_nearer | ~_is_leaving(mine, settings)[pairs.own])
     if not is_meeting.any():
         return None
     met = _kept(pairs, is_meeting)
@@ -156,10 +156,20 @@ def _apart_m(mine: Tubes, theirs: Tubes, pairs: _Pairs) -> FloatArray:
     )
 
 
-def _near_now_m(
-    own: Course, others: Sequence[Course], theirs: Tubes, need: Separation
-) -> FloatArray:
-    """How far each other is from here now if that is too near already; else infinite, (G,).
+@dataclass(frozen=True, slots=True, eq=False)
+class _Now:
+    """How near each other is now, (G,): how far apart horizontally, infinite if that is not too
+    near; its lowest and highest height, and how far apart in height. What is not seen may be at
+    any height, and is as near at one as at another."""
+
+    apart_m: FloatArray
+    low_m: FloatArray
+    high_m: FloatArray
+    vertical_m: FloatArray
+
+
+def _now(own: Course, others: Sequence[Course], theirs: Tubes, need: Separation) -> _Now:
+    """How near the others are from here.
 
     Here is all the way since it was last heard: one that is leaving was nearer then.
     """
@@ -179,16 +189,29 @@ def _near_now_m(
     heard_m, place_m = (np.broadcast_to(each, starts_m.shape) for each in (heard_m, place_m))
     apart_m = segments_apart_m(heard_m, place_m, starts_m, ends_m)
     gap_m = apart_m - radius_m  # its own place is known now, how far a turn may lead is not counted
-    is_near = (gap_m < need.horizontal_m) & (_vertical_now_m(here, now) < need.vertical_m)
-    near_m: FloatArray = np.where(is_near, apart_m, np.inf)
-    return near_m
-
-
-def _vertical_now_m(here: Samples, now: Samples) -> FloatArray:
-    gap: FloatArray = np.maximum(
-        now.low_m[:, 0] - here.high_m[0, 0], here.low_m[0, 0] - now.high_m[:, 0]
+    low_m, high_m = np.array([course.here_m for course in others]).T
+    vertical_m = np.maximum(low_m - own.here_m[1], own.here_m[0] - high_m)
+    is_near = (gap_m < need.horizontal_m) & (vertical_m < need.vertical_m)
+    return _Now(
+        apart_m=np.where(is_near, apart_m, np.inf),
+        low_m=low_m,
+        high_m=high_m,
+        vertical_m=np.where(is_unseen, -np.inf, vertical_m),
     )
-    return gap
+
+
+def _is_leaving(mine: Tubes, settings: PredictionSettings) -> BoolArray:
+    """Which pieces are of the time for leading apart; what stays for long does not leave."""
+    leaving: BoolArray = (mine.at_s < settings.escape_s) & (mine.until_s < 2.0 * settings.escape_s)
+    return leaving
+
+
+def _comes_up_or_down_to(mine: Tubes, pairs: _Pairs, now: _Now) -> BoolArray:
+    """Whether a piece is nearer in height to where the other is now than here is."""
+    below_m = now.low_m[pairs.course] - mine.high_m[pairs.own]
+    above_m = mine.low_m[pairs.own] - now.high_m[pairs.course]
+    nearer: BoolArray = np.maximum(below_m, above_m) < now.vertical_m[pairs.course] - CLOSER_M
+    return nearer
 
 
 def segments_apart_m(p0: FloatArray, p1: FloatArray, q0: FloatArray, q1: FloatArray) -> FloatArray:

@@ -38,12 +38,14 @@ class Tubes:
     """N pieces of courses: within the time from `early_s` to `late_s` the vehicle may be anywhere
     within `radius_m` of the straight line and between the two heights. Each array is (N,).
 
-    `at_s` is when it is thought to enter the piece. `first` (G + 1,) says where each course begins.
+    `at_s` is when it is thought to enter the piece, `until_s` when to leave it. `first` (G + 1,)
+    says where each course begins.
     """
 
     early_s: FloatArray
     late_s: FloatArray
     at_s: FloatArray
+    until_s: FloatArray
     starts_m: FloatArray
     """(N, 2)"""
     ends_m: FloatArray
@@ -74,6 +76,7 @@ def cut(courses: Sequence[Course], settings: PredictionSettings) -> Tubes:
         early_s=_earlier(enters_s, settings),
         late_s=_later(leaves_s, settings) + delays_s[index],
         at_s=enters_s,
+        until_s=leaves_s,
         starts_m=_place(found, share_0),
         ends_m=_place(found, share_1),
         low_m=_extreme(found, LOW_0, LOW_1, share_0, share_1, np.minimum),
