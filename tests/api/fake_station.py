@@ -1,5 +1,6 @@
 """A station that the API can be put around, and its application under test."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -7,32 +8,58 @@ import numpy as np
 from fastapi import FastAPI
 
 from recon.api.app import create_app
-from recon.api.schema import AuditPage, OrderResponse, PreflightView, StationState, WordResponse
+from recon.api.port import SurveyCells
+from recon.api.schema import (
+    AuditPage,
+    OrderResponse,
+    PreflightView,
+    StationState,
+    SurveyRequest,
+    SurveyResponse,
+    SurveyView,
+    SurveyWays,
+    WordResponse,
+)
 from recon.api.security import Access
 from recon.model.authority import Leader
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
-from recon.site import default_site
-from recon.station.build import first_state
+from recon.model.shade import ShadeMap, SunForecast
+from recon.site import Site, default_site
+from recon.station.build import first_state, worker_tasks
 from recon.station.driver import AsyncioDriver
+from recon.station.outputs import StartWork
 from recon.station.service import Service
+from recon.station.worker import Task, do_work
 
 TOKEN = "a-token-of-enough-letters"
+
+
+@dataclass
+class WorkerAtOnce:
+    """Does work where it is asked for."""
+
+    tasks: Mapping[str, Task]
+    driver: AsyncioDriver
+
+    def submit(self, work: StartWork) -> None:
+        self.driver.handle(do_work(self.tasks, work))
 
 
 @dataclass
 class FakeStation:
     """The real service around a station without sockets; pictures are put in by hand."""
 
+    site: Site = field(default_factory=default_site)
     frames: dict[str, Frame] = field(default_factory=dict)
     image: GroundImage | None = None
     asked: list[tuple[list[str], Body, bool]] = field(default_factory=list)
     states_made: int = 0
 
     def __post_init__(self) -> None:
-        site = default_site()
-        self.driver = AsyncioDriver(first_state(site), lambda: 1_000_000_000)
-        self.service = Service.around(self.driver, site, None)
+        self.driver = AsyncioDriver(first_state(self.site), lambda: 1_000_000_000)
+        self.driver.worker = WorkerAtOnce(worker_tasks(self.site), self.driver)
+        self.service = Service.around(self.driver, self.site, None)
 
     def state(self) -> StationState:
         self.states_made += 1
@@ -103,6 +130,32 @@ class FakeStation:
 
     def ground_image(self) -> GroundImage | None:
         return self.image
+
+    def shade(self) -> tuple[int, ShadeMap] | None:
+        return self.service.shade()
+
+    def forecast(self) -> tuple[int, SunForecast] | None:
+        return self.service.forecast()
+
+    def ask_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
+        return self.service.ask_survey(asked, by)
+
+    def survey(self, survey_id: int) -> SurveyView | None:
+        return self.service.survey(survey_id)
+
+    def start_survey(
+        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+    ) -> SurveyResponse:
+        return self.service.start_survey(survey_id, serials, takeoff=takeoff, by=by)
+
+    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> SurveyResponse:
+        return self.service.stop_survey(survey_id, is_aborted=is_aborted, by=by)
+
+    def survey_ways(self, survey_id: int) -> SurveyWays | None:
+        return self.service.survey_ways(survey_id)
+
+    def survey_cells(self, survey_id: int) -> SurveyCells | None:
+        return self.service.survey_cells(survey_id)
 
     def geotiff(self, image: GroundImage) -> bytes:
         return self.service.geotiff(image)

@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal
 
 from fastapi import FastAPI, HTTPException, Query, Request, Response, WebSocket
 from fastapi import Path as InPath
@@ -13,11 +13,14 @@ from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException as AnyHTTPException
 
 from recon.api import pictures, schema
+from recon.api.answering import PNG, PROBLEMS, found, who
 from recon.api.audit_stream import MOST_ON_A_PAGE, AuditStream
 from recon.api.orders import to_body
 from recon.api.port import StationPort
 from recon.api.security import Access, Doorman
 from recon.api.stream import StateStream
+from recon.api.sun_routes import add_sun_routes
+from recon.api.survey_routes import add_survey_routes
 from recon.model.authority import Leader
 
 CONSOLE_MISSING = """<!doctype html><title>Recon</title><p>The console is not built.
@@ -33,9 +36,6 @@ SECURITY_HEADERS = {
     "Referrer-Policy": "no-referrer",
 }
 
-_T = TypeVar("_T")
-_PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": schema.Problem}}
-
 
 def create_app(port: StationPort, access: Access, console: Path | None, version: str) -> FastAPI:
     """Return the application around a station.
@@ -49,6 +49,8 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
     _add_hazard_routes(app, port)
     _add_readiness_routes(app, port)
     _add_picture_routes(app, port)
+    add_sun_routes(app, port)
+    add_survey_routes(app, port)
     _add_console(app, console)
     _add_manners(app)
     app.add_middleware(Doorman, access=access)
@@ -66,22 +68,22 @@ def _add_state_routes(app: FastAPI, port: StationPort) -> None:
         """All vehicles with every value's age."""
         return port.state().vehicles
 
-    @app.get("/api/vehicles/{serial}", responses=_PROBLEMS)
+    @app.get("/api/vehicles/{serial}", responses=PROBLEMS)
     async def vehicle(serial: str) -> schema.VehicleView:
         """One vehicle."""
-        found = next((v for v in port.state().vehicles if v.serial == serial), None)
-        return _found(found, f"no vehicle has the serial {serial!r}")
+        known = next((v for v in port.state().vehicles if v.serial == serial), None)
+        return found(known, f"no vehicle has the serial {serial!r}")
 
     @app.get("/api/commands")
     async def commands() -> list[schema.CommandView]:
         """The latest commands and their lives, the newest first."""
         return port.state().commands
 
-    @app.get("/api/commands/{command_id}", responses=_PROBLEMS)
+    @app.get("/api/commands/{command_id}", responses=PROBLEMS)
     async def command(command_id: int) -> schema.CommandView:
         """One command and its life."""
-        found = next((c for c in port.state().commands if c.id == command_id), None)
-        return _found(found, f"no command {command_id} is among the latest")
+        known = next((c for c in port.state().commands if c.id == command_id), None)
+        return found(known, f"no command {command_id} is among the latest")
 
 
 def _add_audit_and_streams(app: FastAPI, port: StationPort) -> None:
@@ -116,7 +118,7 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
             asked.serials,
             to_body(asked.order),
             takeoff=asked.takeoff,
-            issued_by=_who(request),
+            issued_by=who(request),
             holder=asked.holder,
         )
 
@@ -127,14 +129,14 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
             asked.serials,
             to_body(asked.order),
             takeoff=asked.takeoff,
-            issued_by=_who(request),
+            issued_by=who(request),
             holder=asked.holder,
         )
 
     @app.post("/api/all-stop")
     async def all_stop(request: Request) -> schema.OrderResponse:
         """Hold everything that flies, identified or not. Never cuts motors."""
-        return port.all_stop(_who(request))
+        return port.all_stop(who(request))
 
     @app.post("/api/fleet-return")
     async def fleet_return(
@@ -144,28 +146,28 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
 
         Each result is the hold it begins with; `fleet_return` of the state tells the rest.
         """
-        return port.fleet_return(asked.serials, _who(request))
+        return port.fleet_return(asked.serials, who(request))
 
 
 def _add_hazard_routes(app: FastAPI, port: StationPort) -> None:
-    @app.post("/api/vehicles/{serial}/ghost/dismiss", responses=_PROBLEMS, status_code=204)
+    @app.post("/api/vehicles/{serial}/ghost/dismiss", responses=PROBLEMS, status_code=204)
     async def dismiss_ghost(serial: str, request: Request) -> None:
         """Say that somebody knows where a vehicle is that is not heard: it is a hazard no more.
 
         A vehicle without a serial is named as its ghost's `dismissed_as` says.
         """
-        if not port.dismiss_ghost(serial, _who(request)):
+        if not port.dismiss_ghost(serial, who(request)):
             raise HTTPException(404, f"{serial!r} is heard, on the ground, or not known: no ghost")
 
     @app.post("/api/separation-hold/{switch}", status_code=204)
     async def separation_hold(switch: Literal["on", "off"], request: Request) -> None:
         """Switch on or off that the watchdogs hold vehicles; off, an alarm says so all the time."""
-        port.switch_separation_hold(switch == "on", _who(request))
+        port.switch_separation_hold(switch == "on", who(request))
 
-    @app.post("/api/alarms/{alarm_id}/acknowledge", responses=_PROBLEMS, status_code=204)
+    @app.post("/api/alarms/{alarm_id}/acknowledge", responses=PROBLEMS, status_code=204)
     async def acknowledge(alarm_id: int, request: Request) -> None:
         """Mark an alarm as seen by a person; it stays until its cause ends."""
-        if not port.acknowledge(alarm_id, _who(request)):
+        if not port.acknowledge(alarm_id, who(request)):
             raise HTTPException(404, f"there is no alarm {alarm_id}")
 
 
@@ -175,12 +177,12 @@ def _add_readiness_routes(app: FastAPI, port: StationPort) -> None:
         serial: str, asked: schema.AuthorityRequest, request: Request
     ) -> schema.WordResponse:
         """Take a vehicle over, or give it away: from now on only `leader` sets it in motion."""
-        return port.take_authority(serial, Leader(asked.leader), _who(request))
+        return port.take_authority(serial, Leader(asked.leader), who(request))
 
-    @app.get("/api/vehicles/{serial}/preflight", responses=_PROBLEMS)
+    @app.get("/api/vehicles/{serial}/preflight", responses=PROBLEMS)
     async def preflight(serial: str) -> schema.PreflightView:
         """A vehicle's checklist, worked out now from what the station knows."""
-        return _found(port.preflight(serial), f"no vehicle has the serial {serial!r}")
+        return found(port.preflight(serial), f"no vehicle has the serial {serial!r}")
 
     @app.post("/api/vehicles/{serial}/preflight/override")
     async def override_preflight(
@@ -190,36 +192,33 @@ def _add_readiness_routes(app: FastAPI, port: StationPort) -> None:
 
         The reason is kept in the audit, with who gave it.
         """
-        return port.override_preflight(serial, asked.reason, _who(request))
+        return port.override_preflight(serial, asked.reason, who(request))
 
 
 def _add_picture_routes(app: FastAPI, port: StationPort) -> None:
     serial_path = Annotated[str, InPath(max_length=2048)]
     jpeg: dict[int | str, dict[str, object]] = {200: {"content": {"image/jpeg": {}}}}
-    png: dict[int | str, dict[str, object]] = {200: {"content": {"image/png": {}}}}
     tiff: dict[int | str, dict[str, object]] = {200: {"content": {"image/tiff": {}}}}
 
-    @app.get(
-        "/api/vehicles/{serial}/frame.jpg", response_class=Response, responses=_PROBLEMS | jpeg
-    )
+    @app.get("/api/vehicles/{serial}/frame.jpg", response_class=Response, responses=PROBLEMS | jpeg)
     async def frame(serial: serial_path) -> Response:
         """A vehicle's newest camera frame, as it came."""
-        newest = _found(port.frame(serial), f"{serial!r} has sent no frame")
+        newest = found(port.frame(serial), f"{serial!r} has sent no frame")
         data = await asyncio.to_thread(pictures.frame_jpeg, newest)
         return Response(data, media_type="image/jpeg", headers={"X-Frame-Id": str(newest.id)})
 
-    @app.get("/api/ground-image.png", response_class=Response, responses=_PROBLEMS | png)
+    @app.get("/api/ground-image.png", response_class=Response, responses=PROBLEMS | PNG)
     async def ground_png() -> Response:
         """The newest ground image; its corners are in the state."""
-        newest = _found(port.ground_image(), "no frame has been laid on the ground yet")
+        newest = found(port.ground_image(), "no frame has been laid on the ground yet")
         data = await asyncio.to_thread(pictures.ground_png, newest)
         headers = {"X-Frame-Id": str(newest.frame_id)}
         return Response(data, media_type="image/png", headers=headers)
 
-    @app.get("/api/ground-image.tif", response_class=Response, responses=_PROBLEMS | tiff)
+    @app.get("/api/ground-image.tif", response_class=Response, responses=PROBLEMS | tiff)
     async def ground_tiff() -> Response:
         """The newest ground image as a GeoTIFF file."""
-        newest = _found(port.ground_image(), "no frame has been laid on the ground yet")
+        newest = found(port.ground_image(), "no frame has been laid on the ground yet")
         data = await asyncio.to_thread(port.geotiff, newest)
         name = f'attachment; filename="recon-ground-{newest.frame_id}.tif"'
         return Response(data, media_type="image/tiff", headers={"Content-Disposition": name})
@@ -258,14 +257,3 @@ def _add_manners(app: FastAPI) -> None:
         if request.url.path.startswith("/api/"):
             response.headers.setdefault("Cache-Control", "no-store")
         return response
-
-
-def _found(value: _T | None, sentence: str) -> _T:
-    if value is None:
-        raise HTTPException(404, sentence)
-    return value
-
-
-def _who(request: Request) -> str:
-    """Who asks, for the commands' record."""
-    return f"api {request.client.host}" if request.client is not None else "api"

@@ -17,17 +17,18 @@ def frame_jpeg(frame: Frame) -> bytes:
         return frame.jpeg
     assert frame.rgb is not None
     bgr = cv2.cvtColor(frame.rgb, cv2.COLOR_RGB2BGR)
-    return _encoded(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return encoded(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
 
 
 def ground_png(image: GroundImage) -> bytes:
     """Return a ground image as a PNG file, transparent where nothing was seen."""
     bgra = cv2.cvtColor(image.rgb, cv2.COLOR_RGB2BGRA)
     bgra[..., 3] = np.where(image.valid, 255, 0)
-    return _encoded(".png", bgra, [cv2.IMWRITE_PNG_COMPRESSION, PNG_COMPRESSION])
+    return encoded(".png", bgra, [cv2.IMWRITE_PNG_COMPRESSION, PNG_COMPRESSION])
 
 
-def _encoded(suffix: str, pixels: cv2.typing.MatLike, options: list[int]) -> bytes:
+def encoded(suffix: str, pixels: cv2.typing.MatLike, options: list[int]) -> bytes:
+    """Return pixels (BGR, BGRA or grey) as a file of a kind."""
     is_done, data = cv2.imencode(suffix, pixels, options)
     if not is_done:
         raise ValueError(f"expected pixels that can be written as {suffix}, got {pixels.shape}")

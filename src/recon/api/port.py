@@ -1,17 +1,35 @@
 """What the API needs of the station. The station implements it; tests may too."""
 
+from dataclasses import dataclass
 from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
 
 from recon.api.schema import (
     AuditPage,
     OrderResponse,
     PreflightView,
     StationState,
+    SurveyRequest,
+    SurveyResponse,
+    SurveyView,
+    SurveyWays,
     WordResponse,
 )
 from recon.model.authority import Leader
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
+from recon.model.shade import ShadeMap, SunForecast
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurveyCells:
+    """A survey's cells, (R, C): `state` holds `CellState`s, `inside` is the region."""
+
+    number: int
+    state: npt.NDArray[np.uint8]
+    inside: npt.NDArray[np.bool_]
 
 
 class StationPort(Protocol):
@@ -86,6 +104,32 @@ class StationPort(Protocol):
 
     def ground_image(self) -> GroundImage | None:
         """Return the newest frame laid on the ground."""
+
+    def shade(self) -> tuple[int, ShadeMap] | None:
+        """Return the newest shade map and its number."""
+
+    def forecast(self) -> tuple[int, SunForecast] | None:
+        """Return the newest forecast and its number."""
+
+    def ask_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
+        """Ask for a survey; its rows are worked out then, and `survey` tells when they are."""
+
+    def survey(self, survey_id: int) -> SurveyView | None:
+        """Return a survey as it stands."""
+
+    def start_survey(
+        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+    ) -> SurveyResponse:
+        """Start a survey with these vehicles, or let them join; they are given to guidance."""
+
+    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> SurveyResponse:
+        """Pause a survey, or abort it for good; its vehicles hold."""
+
+    def survey_ways(self, survey_id: int) -> SurveyWays | None:
+        """Return a survey's planned and flown ways."""
+
+    def survey_cells(self, survey_id: int) -> SurveyCells | None:
+        """Return a survey's cells as they stand."""
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from recon.model.authority import Leader
 from recon.model.command import Body, Phase
 from recon.model.report import Report
+from recon.model.survey import Survey
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +155,36 @@ class FleetReturnOrdered:
     by: str
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SurveyAsked:
+    """Somebody asks for a survey; its id is given by whoever asks. Nothing flies by it."""
+
+    survey: Survey
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyStarted:
+    """Somebody starts a survey with these vehicles, and by that gives them to guidance.
+
+    `takeoff` is the explicit word that each may leave the ground, once.
+    """
+
+    survey_id: int
+    serials: tuple[str, ...]
+    by: str
+    takeoff: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyStopped:
+    """Somebody pauses a survey, or aborts it for good; its vehicles hold."""
+
+    survey_id: int
+    by: str
+    is_aborted: bool
+
+
 @dataclass(frozen=True, slots=True)
 class AuditTroubled:
     """The audit cannot be written, for this reason; None: it can again."""
@@ -214,6 +245,9 @@ Event = (
     | GhostDismissed
     | SeparationHoldSwitched
     | FleetReturnOrdered
+    | SurveyAsked
+    | SurveyStarted
+    | SurveyStopped
     | AlarmAcknowledged
     | AuditTroubled
     | StationFaulted

@@ -26,6 +26,7 @@ from recon.station.audited_orders import OrdersTold, ended_streams, order_entrie
 from recon.station.nameless_sightings import nameless_entries
 from recon.station.sightings import Sightings, sightings
 from recon.station.state import Station
+from recon.station.survey.audited import survey_entries
 
 _NOBODY_YET = Lead()
 
@@ -46,6 +47,7 @@ def audit(
 ) -> tuple[Auditing, tuple[AuditEntry, ...]]:
     """Return the entries of one step, in the order of cause and effect."""
     entries = list(_words(before, event, after))
+    entries += survey_entries(before, event, after, now_ns)
     links, told = link_entries(memory.links, before, event, after, now_ns)
     entries += told
     seen, told = sightings(memory.sightings, before, event, after, now_ns)

@@ -96,6 +96,13 @@ def pilot_has_it(
     return replace(station, alarms=book), (WithdrawMotion(links, why),)
 
 
+def hand_back(station: Station, serial: str, to: str, why: str, now_ns: int) -> Station:
+    """Return the station with a vehicle led by the operator that guidance leads no longer."""
+    if lead_of(station, serial).leader is not Leader.GUIDANCE:
+        return station
+    return _led(station, serial, Lead(Leader.OPERATOR, to, now_ns, why))
+
+
 def flies_unbidden(station: Station, serial: str, now_ns: int) -> Station:
     """Return the station after a vehicle was seen to move in the air with nothing ordered here.
 

@@ -1,6 +1,9 @@
 """Rooms put together: a site becomes the station's first state and the worker's tasks."""
 
+from dataclasses import replace
+
 import cv2
+import numpy as np
 
 from recon.camera.ground import GroundProjector
 from recon.camera.motion import displaced_pose
@@ -13,13 +16,19 @@ from recon.site import Site
 from recon.station.fleet_return.planning import PLAN_RETURN, plan_task
 from recon.station.imaging import LAY_FRAME, Imaging, LayFrame
 from recon.station.settings import StationSettings
+from recon.station.shade.work import READ_SHADE, read_task
 from recon.station.state import Station
+from recon.station.survey.planning import PLAN_SURVEY, STEP_SURVEY, step_task
+from recon.station.survey.planning import plan_task as plan_survey_task
 from recon.station.worker import Task
+
+NEAR_AXIS_RAD = 0.3
+"""Over this angle a fisheye's pixels per radian hardly change."""
 
 
 def first_state(site: Site, settings: StationSettings | None = None) -> Station:
     """Return the station before anything has happened."""
-    chosen = settings or StationSettings()
+    chosen = _with_lens(settings or StationSettings(), site)
     marked = None if site.eye is None else site.eye.marked_frame
     return Station(
         settings=chosen,
@@ -35,10 +44,16 @@ def first_state(site: Site, settings: StationSettings | None = None) -> Station:
 
 def worker_tasks(site: Site) -> dict[str, Task]:
     """Return what the worker can do for a site: plan the fleet's return; with an eye, lay its
-    frames on the ground."""
+    frames on the ground; read shade from them; plan surveys and carry them on."""
     cv2.setNumThreads(1)
+    tasks: dict[str, Task] = {
+        PLAN_RETURN: plan_task,
+        READ_SHADE: read_task,
+        PLAN_SURVEY: plan_survey_task,
+        STEP_SURVEY: step_task,
+    }
     if site.eye is None or site.frame is None or site.ground_grid is None:
-        return {PLAN_RETURN: plan_task}
+        return tasks
     eye, frame = site.eye, site.frame
     projector = GroundProjector(site.ground_grid, eye.camera, eye.image_circle)
     mount = site.profiles.get(eye.serial, VehicleProfile(eye.serial)).mount
@@ -50,4 +65,12 @@ def worker_tasks(site: Site) -> dict[str, Task]:
         pose = displaced_pose(eye.solution.pose, marked, now, shift_m, mount)
         return projector.lay(payload.frame, pose)
 
-    return {LAY_FRAME: lay, PLAN_RETURN: plan_task}
+    return {LAY_FRAME: lay, **tasks}
+
+
+def _with_lens(settings: StationSettings, site: Site) -> StationSettings:
+    """With what a pixel of this eye's lens covers; near its axis, where most of the field is."""
+    if site.eye is None:
+        return settings
+    pixels = float(site.eye.camera.profile.radius_px(np.array([NEAR_AXIS_RAD]))[0]) / NEAR_AXIS_RAD
+    return replace(settings, detection=replace(settings.detection, pixels_per_radian=pixels))

@@ -12,7 +12,9 @@ from recon.station.alarms import Condition, Severity
 from recon.station.fleet_return import told as fleet_return
 from recon.station.orders import OrderRecord
 from recon.station.settings import StationSettings
+from recon.station.shade import told as shade
 from recon.station.state import Station
+from recon.station.survey import told as survey
 
 NAMES_TOLD = 8
 """Of many vehicles an alarm names this many and counts the rest."""
@@ -43,8 +45,10 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _of_order(record)
     yield from faults.conditions(station, now_ns)
     yield from fleet_return.conditions(station)
+    yield from survey.conditions(station)
     yield from _watch(station)
     yield from _imaging(station)
+    yield from shade.conditions(station)
     yield from _audit(station)
 
 

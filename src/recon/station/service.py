@@ -7,6 +7,7 @@ from itertools import count
 
 from recon import __version__
 from recon.api import schema
+from recon.api.port import SurveyCells
 from recon.model.authority import Leader
 from recon.model.command import Body, Hover, Phase, Refusal
 from recon.model.event import (
@@ -21,6 +22,7 @@ from recon.model.event import (
     SeparationHoldSwitched,
 )
 from recon.model.imagery import Frame, GroundImage
+from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
 from recon.record.audit_log import AuditLog
@@ -35,6 +37,7 @@ from recon.station.orders import OrderRecord
 from recon.station.readiness_view import preflight_view
 from recon.station.site_view import site_view
 from recon.station.state import Station
+from recon.station.survey.desk import SurveyDesk
 from recon.station.views import Surroundings, state_view
 
 
@@ -183,6 +186,46 @@ class Service:
     def ground_image(self) -> GroundImage | None:
         """Return the newest ground image."""
         return self.driver.station.imaging.ground_image
+
+    def shade(self) -> tuple[int, ShadeMap] | None:
+        """Return the newest shade map and its number."""
+        line = self.driver.station.shade
+        return None if line.shade is None else (line.number, line.shade)
+
+    def forecast(self) -> tuple[int, SunForecast] | None:
+        """Return the newest forecast and its number."""
+        line = self.driver.station.shade
+        return None if line.sun is None else (line.number, line.sun)
+
+    def ask_survey(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
+        """Ask for a survey."""
+        return self._surveys.ask(asked, by)
+
+    def survey(self, survey_id: int) -> schema.SurveyView | None:
+        """Return a survey as it stands."""
+        return self._surveys.view(survey_id)
+
+    def start_survey(
+        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+    ) -> schema.SurveyResponse:
+        """Start a survey with these vehicles, or let them join."""
+        return self._surveys.start(survey_id, serials, takeoff=takeoff, by=by)
+
+    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> schema.SurveyResponse:
+        """Pause a survey, or abort it for good."""
+        return self._surveys.stop(survey_id, is_aborted=is_aborted, by=by)
+
+    def survey_ways(self, survey_id: int) -> schema.SurveyWays | None:
+        """Return a survey's planned and flown ways."""
+        return self._surveys.ways(survey_id)
+
+    def survey_cells(self, survey_id: int) -> SurveyCells | None:
+        """Return a survey's cells as they stand."""
+        return self._surveys.cells(survey_id)
+
+    @property
+    def _surveys(self) -> SurveyDesk:
+        return SurveyDesk(self.driver, self.site, self._ids)
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file."""

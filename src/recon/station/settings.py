@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass, field
 
+from recon.detection import DetectionSettings
 from recon.fleet.settings import FleetSettings
+from recon.forecast import ForecastSettings
 from recon.guidance.steering import SteeringSettings
 from recon.safety import SafetySettings
 from recon.station.lease import StreamSettings
@@ -16,6 +18,8 @@ class StationSettings:
     fleet: FleetSettings = field(default_factory=FleetSettings)
     safety: SafetySettings = field(default_factory=SafetySettings)
     restart: RestartSettings = field(default_factory=RestartSettings)
+    detection: DetectionSettings = field(default_factory=DetectionSettings)
+    forecast: ForecastSettings = field(default_factory=ForecastSettings)
 
     order_expiry_s: float = 5.0
     """An order not on the wire by then is not what its giver sees any more."""

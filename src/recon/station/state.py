@@ -17,7 +17,9 @@ from recon.station.imaging import Imaging
 from recon.station.lease import Lease
 from recon.station.orders import OrderBook
 from recon.station.settings import StationSettings
+from recon.station.shade.line import ShadeLine
 from recon.station.sighting import Sighting
+from recon.station.survey.record import Surveys
 from recon.station.watch_state import Watch
 
 
@@ -64,6 +66,10 @@ class Station:
     orders: OrderBook = field(default_factory=OrderBook)
     alarms: AlarmBook = field(default_factory=AlarmBook)
     imaging: Imaging = field(default_factory=Imaging)
+    shade: ShadeLine = field(default_factory=ShadeLine)
+    """What the eye's ground images say of shade and sun."""
+    surveys: Surveys = field(default_factory=Surveys)
+    """Of this run; never brought back after a restart."""
     frames: Mapping[str, Frame] = field(default_factory=dict)
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1

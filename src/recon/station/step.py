@@ -26,6 +26,9 @@ from recon.model.event import (
     SeparationHoldSwitched,
     StationFaulted,
     SticksDue,
+    SurveyAsked,
+    SurveyStarted,
+    SurveyStopped,
     Tick,
     WorkerResult,
 )
@@ -51,7 +54,11 @@ from recon.station.fleet_return import planning
 from recon.station.fleet_return.advance import advance as advance_fleet_return
 from recon.station.fleet_return.call import call as fleet_return_call
 from recon.station.outputs import Output, StartWork
+from recon.station.shade import reading as shade_reading
+from recon.station.shade import work as shade_work
 from recon.station.state import Station
+from recon.station.survey import carrying, observing, words
+from recon.station.survey import planning as survey_planning
 
 _NO_PROFILE = VehicleProfile(serial="")
 
@@ -71,15 +78,10 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return _packet(station, event, now_ns)
         case Tick():
             return _tick(station, now_ns)
-        case WorkerResult(kind=planning.PLAN_RETURN):
-            return planning.take(station, event, now_ns), ()
         case WorkerResult():
-            return _work_done(station, event), ()
-        case DeadlineMissed(job_id, planning.PLAN_RETURN):
-            return planning.lost(station, job_id), ()
+            return _work_done(station, event, now_ns)
         case DeadlineMissed():
-            dropped = station.imaging.frames_dropped + 1
-            return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
+            return _work_lost(station, event)
         case AuthorityTaken():
             return authority.take(station, event, now_ns), ()
         case SticksDue():
@@ -98,6 +100,12 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return preflight.override(station, event, now_ns), ()
         case FleetReturnOrdered():
             return fleet_return_call(station, event, now_ns)
+        case SurveyAsked():
+            return survey_planning.ask(station, event, now_ns)
+        case SurveyStarted():
+            return words.begin(station, event, now_ns), ()
+        case SurveyStopped():
+            return words.stop(station, event, now_ns)
         case StationFaulted():
             return faults.note(station, event, now_ns), ()
         case AuditTroubled(problem):
@@ -126,6 +134,8 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     vehicle = station.fleet.vehicle_of_link(event.link_id)
     if vehicle is None:
         return station, outputs
+    if isinstance(event.report, CoreReport):
+        station = observing.see_vehicle(station, vehicle, now_ns)
     if vehicle.serial in station.restored_flights:
         station = restart.recheck(station, vehicle.serial, now_ns)
     match event.report:
@@ -167,6 +177,7 @@ TICK_PARTS: Mapping[str, Callable[[Station, int], Stepped]] = {
     "driving the streams of sticks": commanding.drive_streams,
     "watching the orders": commanding.watch,
     "leading the fleet home": advance_fleet_return,
+    "carrying the surveys on": carrying.carry_on,
     "looking with the watchdogs": watch.look,
     "raising alarms": raise_alarms,
 }
@@ -203,15 +214,57 @@ def _frame(
     return station, () if work is None else (StartWork(work[0], imaging.LAY_FRAME, work[1]),)
 
 
-def _work_done(station: Station, event: WorkerResult) -> Station:
-    """Take a ground image in, unless a newer one is already there."""
+def _work_done(station: Station, event: WorkerResult, now_ns: int) -> Stepped:
+    """Take in what the worker brings."""
+    match event.kind:
+        case planning.PLAN_RETURN:
+            return planning.take(station, event, now_ns), ()
+        case survey_planning.PLAN_SURVEY:
+            return survey_planning.take_plan(station, event), ()
+        case survey_planning.STEP_SURVEY:
+            return carrying.take_step(station, event, now_ns)
+        case shade_work.READ_SHADE:
+            return _shade_read(station, event)
+        case _:
+            return _frame_laid(station, event)
+
+
+def _work_lost(station: Station, event: DeadlineMissed) -> Stepped:
+    """Work was dropped for newer work."""
+    match event.kind:
+        case planning.PLAN_RETURN:
+            return planning.lost(station, event.job_id), ()
+        case survey_planning.PLAN_SURVEY:
+            return survey_planning.lost_plan(station, event.job_id), ()
+        case survey_planning.STEP_SURVEY:
+            return carrying.lost_step(station, event.job_id), ()
+        case shade_work.READ_SHADE:
+            return shade_reading.lost(station, event.job_id)
+        case _:
+            dropped = station.imaging.frames_dropped + 1
+            return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
+
+
+def _frame_laid(station: Station, event: WorkerResult) -> Stepped:
+    """Take a ground image in, unless a newer one is already there; it is to be read for shade."""
     seen = station.imaging
     if not isinstance(event.result, GroundImage):
-        return replace(station, imaging=replace(seen, latest_error=event.error))
+        return replace(station, imaging=replace(seen, latest_error=event.error)), ()
     image, latest = event.result, seen.ground_image
     if latest is not None and latest.captured_at_ns > image.captured_at_ns:
-        return station
-    return replace(station, imaging=replace(seen, ground_image=image, latest_error=None))
+        return station, ()
+    station = replace(station, imaging=replace(seen, ground_image=image, latest_error=None))
+    return shade_reading.take_image(station, image)
+
+
+def _shade_read(station: Station, event: WorkerResult) -> Stepped:
+    """Take a shade map in, and let the surveys see it."""
+    before = station.shade.number
+    station, work = shade_reading.take_result(station, event)
+    shade = station.shade.shade
+    if shade is not None and station.shade.number != before:
+        station = observing.see_shade(station, shade)
+    return station, work
 
 
 def _message(

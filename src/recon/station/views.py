@@ -18,8 +18,10 @@ from recon.station.fleet_return import told as fleet_return
 from recon.station.ghost_view import ghost_view
 from recon.station.orders import OrderRecord
 from recon.station.readiness_view import lead_view, override_view
+from recon.station.shade import told as shade
 from recon.station.state import Station
 from recon.station.steering_view import steering_view
+from recon.station.survey import told as survey
 
 SHOWN_ORDERS = 50
 TRACK_POINTS_SHOWN = 120
@@ -46,6 +48,8 @@ def state_view(station: Station, around: Surroundings, now_ns: int) -> schema.St
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
         ground_image=_ground_image(station, now_ns),
         fleet_return=fleet_return.view(station, now_ns),
+        shade=shade.view(station, now_ns),
+        surveys=survey.view(station, now_ns),
     )
 
 

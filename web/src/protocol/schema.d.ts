@@ -126,6 +126,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/forecast.png": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Forecast
+         * @description How likely sun is, at the nearest of the forecast's leads. Values: grey is probability;
+         *     transparent is beyond the horizon.
+         */
+        get: operations["forecast_api_forecast_png_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/ground-image.png": {
         parameters: {
             query?: never;
@@ -226,6 +247,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/shade.png": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Shade
+         * @description The newest shade map; its corners are in the state. Values: grey is transmittance.
+         */
+        get: operations["shade_api_shade_png_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/state": {
         parameters: {
             query?: never;
@@ -238,6 +279,132 @@ export interface paths {
          * @description Everything a console shows, as of now; the stream sends the same.
          */
         get: operations["state_api_state_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/surveys": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Surveys
+         * @description The surveys of this run, the newest first.
+         */
+        get: operations["surveys_api_surveys_get"];
+        put?: never;
+        /**
+         * Ask
+         * @description Plan a survey of a region. Answered when its rows are worked out; nothing flies by it.
+         */
+        post: operations["ask_api_surveys_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/surveys/{survey_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Survey
+         * @description One survey with its figures.
+         */
+        get: operations["survey_api_surveys__survey_id__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/surveys/{survey_id}/{word}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stop
+         * @description Pause a survey, or abort it for good. Its vehicles hold where they are.
+         */
+        post: operations["stop_api_surveys__survey_id___word__post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/surveys/{survey_id}/cells.png": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Cells
+         * @description A survey's cells: not yet, in shade, in sun; its corners are in the survey.
+         */
+        get: operations["cells_api_surveys__survey_id__cells_png_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/surveys/{survey_id}/start": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Start
+         * @description Fly a survey with these vehicles: by this word they are led by the station's guidance.
+         *
+         *     Said of a running survey, the vehicles join it, or fly for it again.
+         */
+        post: operations["start_api_surveys__survey_id__start_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/surveys/{survey_id}/ways": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Ways
+         * @description A survey's planned rows, the missions flown now, and the ways flown so far.
+         */
+        get: operations["ways_api_surveys__survey_id__ways_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -666,6 +833,51 @@ export interface components {
             is_over: boolean;
             /** Vehicles */
             vehicles: components["schemas"]["ReturningView"][];
+        };
+        /**
+         * ForecastView
+         * @description The newest forecast; leads count from the moment its shade map was taken.
+         */
+        ForecastView: {
+            /** Cell M */
+            cell_m: number;
+            /** Cols */
+            cols: number;
+            /** Corners */
+            corners: [
+                number,
+                number
+            ][];
+            /**
+             * Foreseen Share
+             * @description of all cells, by lead: those foreseen from something seen
+             */
+            foreseen_share: number[];
+            /** Issued Age S */
+            issued_age_s: number;
+            /** Lead S */
+            lead_s: number[];
+            /**
+             * Method
+             * @description what made it: the fallback, where the chosen one fell back
+             */
+            method: string;
+            /**
+             * Number
+             * @description that of the shade map it is made from
+             */
+            number: number;
+            /**
+             * Prior Sunlit
+             * @description what is said where nothing better is known
+             */
+            prior_sunlit: number;
+            /** Rows */
+            rows: number;
+            /** Shadows East Mps */
+            shadows_east_mps: number | null;
+            /** Shadows North Mps */
+            shadows_north_mps: number | null;
         };
         /**
          * FrameView
@@ -1172,6 +1384,77 @@ export interface components {
             wave: number | null;
         };
         /**
+         * ShadeLineView
+         * @description How the line from the eye's frames to shade maps and forecasts stands.
+         */
+        ShadeLineView: {
+            /**
+             * Detection
+             * @description the method that reads shade
+             */
+            detection: string;
+            /** Error */
+            error: string | null;
+            forecast: components["schemas"]["ForecastView"] | null;
+            /**
+             * Forecaster
+             * @description the method that foresees sun
+             */
+            forecaster: string;
+            /**
+             * Frames Dropped
+             * @description ground images that were never read: no time
+             */
+            frames_dropped: number;
+            /** Frames Rejected */
+            frames_rejected: number;
+            map: components["schemas"]["ShadeMapView"] | null;
+            /**
+             * Rejected
+             * @description why the newest frame was not read, if it was not
+             */
+            rejected: string | null;
+        };
+        /**
+         * ShadeMapView
+         * @description The newest shade map; corners are (longitude, latitude) NW, NE, SE, SW.
+         */
+        ShadeMapView: {
+            /** Captured Age S */
+            captured_age_s: number;
+            /** Cell M */
+            cell_m: number;
+            /** Cols */
+            cols: number;
+            /** Corners */
+            corners: [
+                number,
+                number
+            ][];
+            /**
+             * Known Share
+             * @description of all cells: those of which anything is known
+             */
+            known_share: number;
+            /**
+             * Mean Confidence
+             * @description of the known cells
+             */
+            mean_confidence: number | null;
+            /**
+             * Number
+             * @description counts the shade maps of this run
+             */
+            number: number;
+            /** Rows */
+            rows: number;
+            /**
+             * Sunlit Share
+             * @description of the known cells
+             */
+            sunlit_share: number | null;
+        };
+        /**
          * SiteView
          * @description The site: its place, what holds in its air, and the quality of the eye's marked pose.
          */
@@ -1226,8 +1509,11 @@ export interface components {
             ground_image: components["schemas"]["GroundImageView"] | null;
             /** Links */
             links: components["schemas"]["LinkView"][];
+            shade: components["schemas"]["ShadeLineView"] | null;
             site: components["schemas"]["SiteView"] | null;
             station: components["schemas"]["StationView"];
+            /** Surveys */
+            surveys: components["schemas"]["SurveyView"][];
             /** Time Ns */
             time_ns: number;
             /** Vehicles */
@@ -1313,6 +1599,293 @@ export interface components {
             velocity_y_mps: number;
             /** Yaw Deg */
             yaw_deg: number;
+        };
+        /**
+         * SurveyBudgetRequest
+         * @description When the survey ends although it is not done; null: never for that reason.
+         */
+        SurveyBudgetRequest: {
+            /** Flown M */
+            flown_m?: number | null;
+            /**
+             * Rounds
+             * @default 6
+             */
+            rounds: number;
+            /** Time S */
+            time_s?: number | null;
+        };
+        /**
+         * SurveyCameraRequest
+         * @description The survey drones' camera: fields of view, and the interval its timer is set to.
+         */
+        SurveyCameraRequest: {
+            /**
+             * Across Deg
+             * @default 66
+             */
+            across_deg: number;
+            /**
+             * Along Deg
+             * @default 52
+             */
+            along_deg: number;
+            /**
+             * Interval S
+             * @default 2
+             */
+            interval_s: number;
+        };
+        /**
+         * SurveyCellsView
+         * @description Where the picture of the cells lies; its number rises as they do.
+         */
+        SurveyCellsView: {
+            /** Cell M */
+            cell_m: number;
+            /** Cols */
+            cols: number;
+            /** Corners */
+            corners: [
+                number,
+                number
+            ][];
+            /** Number */
+            number: number;
+            /** Rows */
+            rows: number;
+        };
+        /**
+         * SurveyFiguresView
+         * @description Areas by counted cells; times from the start, null: not yet.
+         */
+        SurveyFiguresView: {
+            /**
+             * In Shade M2
+             * @description imaged, and not for sure in sun
+             */
+            in_shade_m2: number;
+            /** In Sun M2 */
+            in_sun_m2: number;
+            /** Not Yet M2 */
+            not_yet_m2: number;
+            /**
+             * Reached M2
+             * @description what the rows see for sure
+             */
+            reached_m2: number;
+            /** Region M2 */
+            region_m2: number;
+            /**
+             * Sun Unknown M2
+             * @description imaged, and nobody knows in which light
+             */
+            sun_unknown_m2: number;
+            /** Time To 95 Imaged S */
+            time_to_95_imaged_s: number | null;
+            /** Time To 95 In Sun S */
+            time_to_95_in_sun_s: number | null;
+        };
+        /**
+         * SurveyingView
+         * @description One vehicle of a survey.
+         */
+        SurveyingView: {
+            /**
+             * Is Flying Rows
+             * @description a mission of the survey is under way
+             */
+            is_flying_rows: boolean;
+            /** Mission Command Id */
+            mission_command_id: number | null;
+            /**
+             * Refused
+             * @description why its newest mission was refused, if it was
+             */
+            refused: string | null;
+            /** Serial */
+            serial: string;
+            /** Vehicle Name */
+            vehicle_name: string;
+            /**
+             * Waits For
+             * @description why it flies nothing (more) for the survey now
+             */
+            waits_for: string | null;
+        };
+        /**
+         * SurveyRequest
+         * @description A survey to plan. Either `region`, a survey region of the site by name, or `polygon`.
+         *
+         *     Nothing flies by this: see `/api/surveys/{id}/start`.
+         */
+        SurveyRequest: {
+            /**
+             * @default {
+             *       "rounds": 6
+             *     }
+             */
+            budget: components["schemas"]["SurveyBudgetRequest"];
+            /**
+             * @default {
+             *       "across_deg": 66,
+             *       "along_deg": 52,
+             *       "interval_s": 2
+             *     }
+             */
+            camera: components["schemas"]["SurveyCameraRequest"];
+            /**
+             * Cell M
+             * @default 4
+             */
+            cell_m: number;
+            /**
+             * Counts Neighbours
+             * @default false
+             */
+            counts_neighbours: boolean;
+            /**
+             * Front Overlap
+             * @default 0.7
+             */
+            front_overlap: number;
+            /** Height Above Takeoff M */
+            height_above_takeoff_m: number;
+            /**
+             * Name
+             * @description null: the region's
+             */
+            name?: string | null;
+            /**
+             * Planner
+             * @default lawnmower_once
+             */
+            planner: string;
+            /**
+             * Polygon
+             * @description the rings of a GeoJSON polygon, longitude first: the outline, then its holes
+             */
+            polygon?: number[][][] | null;
+            /** Region */
+            region?: string | null;
+            /** Row Bearing Deg */
+            row_bearing_deg?: number | null;
+            /**
+             * Side Overlap
+             * @default 0.6
+             */
+            side_overlap: number;
+            /** Speed Mps */
+            speed_mps: number;
+        };
+        /**
+         * SurveyResponse
+         * @description What became of a word on a survey: taken, or refused for a reason; and the survey.
+         */
+        SurveyResponse: {
+            /** Accepted */
+            accepted: boolean;
+            /** Reason */
+            reason: string | null;
+            /** Rule */
+            rule: string | null;
+            survey: components["schemas"]["SurveyView"] | null;
+        };
+        /**
+         * SurveyStartRequest
+         * @description With whom to fly. By this word the vehicles are given to the station's guidance.
+         *
+         *     `takeoff` is the explicit word that each may leave the ground, once.
+         */
+        SurveyStartRequest: {
+            /** Serials */
+            serials: string[];
+            /**
+             * Takeoff
+             * @default false
+             */
+            takeoff: boolean;
+        };
+        /**
+         * SurveyView
+         * @description One survey: a light summary; its ways and cells are asked for by themselves.
+         */
+        SurveyView: {
+            /** Age S */
+            age_s: number;
+            /** Asked By */
+            asked_by: string;
+            cells: components["schemas"]["SurveyCellsView"] | null;
+            figures: components["schemas"]["SurveyFiguresView"] | null;
+            /** Flown M */
+            flown_m: number;
+            /** Height Above Takeoff M */
+            height_above_takeoff_m: number;
+            /** Id */
+            id: number;
+            /** Missions */
+            missions: number;
+            /** Name */
+            name: string;
+            /**
+             * Phase
+             * @enum {string}
+             */
+            phase: "planning" | "refused" | "created" | "running" | "paused" | "aborted" | "done";
+            /** Planner */
+            planner: string;
+            /** Reason */
+            reason: string;
+            /** Round */
+            round: number;
+            /**
+             * Rows
+             * @description how many rows, or pieces of rows, are planned
+             */
+            rows: number;
+            /** Speed Mps */
+            speed_mps: number;
+            /** Started By */
+            started_by: string | null;
+            /** Vehicles */
+            vehicles: components["schemas"]["SurveyingView"][];
+            /**
+             * Ways
+             * @description rises as flown ways grow
+             */
+            ways: number;
+        };
+        /**
+         * SurveyWay
+         * @description The way of one mission: (longitude, latitude) of its corners.
+         */
+        SurveyWay: {
+            /** Number */
+            number: number;
+            /** Places */
+            places: [
+                number,
+                number
+            ][];
+            /** Serial */
+            serial: string;
+        };
+        /**
+         * SurveyWays
+         * @description A survey's rows, each from end to end; the missions flown now; and the ways flown so far.
+         */
+        SurveyWays: {
+            /** Flown */
+            flown: components["schemas"]["SurveyWay"][];
+            /** Flying */
+            flying: components["schemas"]["SurveyWay"][];
+            /** Rows */
+            rows: [
+                number,
+                number
+            ][][];
+            /** Survey Id */
+            survey_id: number;
         };
         /** ValidationError */
         ValidationError: {
@@ -1629,6 +2202,48 @@ export interface operations {
             };
         };
     };
+    forecast_api_forecast_png_get: {
+        parameters: {
+            query?: {
+                /** @description in colours, or grey values of one pixel a cell */
+                as?: "picture" | "values";
+                lead_s?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/png": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     ground_png_api_ground_image_png_get: {
         parameters: {
             query?: never;
@@ -1782,6 +2397,47 @@ export interface operations {
             };
         };
     };
+    shade_api_shade_png_get: {
+        parameters: {
+            query?: {
+                /** @description in colours, or grey values of one pixel a cell */
+                as?: "picture" | "values";
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/png": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     state_api_state_get: {
         parameters: {
             query?: never;
@@ -1798,6 +2454,249 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["StationState"];
+                };
+            };
+        };
+    };
+    surveys_api_surveys_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyView"][];
+                };
+            };
+        };
+    };
+    ask_api_surveys_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SurveyRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    survey_api_surveys__survey_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                survey_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyView"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    stop_api_surveys__survey_id___word__post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                survey_id: number;
+                word: "pause" | "abort";
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    cells_api_surveys__survey_id__cells_png_get: {
+        parameters: {
+            query?: {
+                /** @description in colours, or grey values of one pixel a cell */
+                as?: "picture" | "values";
+            };
+            header?: never;
+            path: {
+                survey_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/png": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    start_api_surveys__survey_id__start_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                survey_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SurveyStartRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    ways_api_surveys__survey_id__ways_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                survey_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyWays"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };

@@ -199,6 +199,8 @@ export function station(
     alarms: [],
     ground_image: null,
     fleet_return: null,
+    shade: null,
+    surveys: [],
     ...changes,
   };
 }

@@ -7,6 +7,8 @@ from pydantic import Field
 from recon.api.schema.message import Message
 from recon.api.schema.orders import AlarmView, CommandView
 from recon.api.schema.site import GroundImageView, SiteView
+from recon.api.schema.sun import ShadeLineView
+from recon.api.schema.surveys import SurveyView
 from recon.api.schema.vehicles import VehicleView
 
 
@@ -84,3 +86,5 @@ class StationState(Message):
     alarms: list[AlarmView]
     ground_image: GroundImageView | None
     fleet_return: FleetReturnView | None
+    shade: ShadeLineView | None
+    surveys: list[SurveyView]

@@ -1,0 +1,236 @@
+"""Surveys and shade by HTTP: what is asked, refused, told and drawn."""
+
+import cv2
+import numpy as np
+import pytest
+from tests.api.client import Client
+from tests.api.fake_station import FakeStation, application
+from tests.ready import ready_profile, ready_site
+from tests.station.station_world import HOME
+from tests.station.test_shade_line import ground_image
+
+from recon.detection import DetectionState, RejectedFrame
+from recon.detection.rejected import FrameFault
+from recon.forecast import ForecastSettings, ForecastState
+from recon.forecast.persistence import persisting
+from recon.geo import geo_from_enu
+from recon.model.event import WorkerResult
+from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.shade import ShadeMap, SunForecast
+from recon.station.shade.reading import take_image
+from recon.station.shade.work import READ_SHADE, ShadeRead
+
+FRAME = LocalFrame(HOME)
+
+
+def ring(*places_m: tuple[float, float]) -> list[list[float]]:
+    points = np.array([(*place, 0.0) for place in (*places_m, places_m[0])])
+    latitude, longitude, _ = geo_from_enu(FRAME, points)
+    return [[float(lon), float(lat)] for lon, lat in zip(longitude, latitude, strict=True)]
+
+
+SQUARE = ring((0.0, 0.0), (120.0, 0.0), (120.0, 80.0), (0.0, 80.0))
+ASKED = {"name": "field", "polygon": [SQUARE], "height_above_takeoff_m": 40.0, "speed_mps": 5.0}
+
+
+@pytest.fixture
+def station() -> FakeStation:
+    return FakeStation(ready_site(HOME, [ready_profile("A", HOME)]))
+
+
+@pytest.fixture
+def client(station: FakeStation) -> Client:
+    return Client(application(station))
+
+
+class TestAsked:
+    def test_it_is_answered_with_its_rows_worked_out(self, client: Client) -> None:
+        answer = client.post("/api/surveys", json=ASKED).json()
+        assert answer["accepted"]
+        survey = answer["survey"]
+        assert survey["phase"] == "created"
+        assert survey["rows"] >= 4
+        assert survey["figures"]["region_m2"] == pytest.approx(9_600.0, rel=0.05)
+        assert survey["figures"]["not_yet_m2"] == survey["figures"]["region_m2"]
+        assert client.get("/api/surveys").json() == [survey]
+        assert client.get(f"/api/surveys/{survey['id']}").json() == survey
+
+    @pytest.mark.parametrize(
+        ("changes", "words"),
+        [
+            ({"polygon": [ring((0, 0), (50, 50), (50, 0), (0, 50))]}, "polygon"),
+            ({"polygon": [[[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]]}, "origin"),
+            ({"polygon": [[[-93.6, 41.9]]]}, "polygon"),
+            ({"polygon": None, "region": "north"}, "no survey region 'north'"),
+            ({"polygon": None}, "either a region of the site or a polygon"),
+            ({"region": "north"}, "either a region of the site or a polygon"),
+            ({"speed_mps": 14.0}, "fly at"),
+            ({"height_above_takeoff_m": 9_000.0}, "height"),
+            ({"planner": "best"}, "no planner best"),
+        ],
+    )
+    def test_what_cannot_be_flown_is_refused_with_words(
+        self, client: Client, changes: dict[str, object], words: str
+    ) -> None:
+        answer = client.post("/api/surveys", json=ASKED | changes).json()
+        assert not answer["accepted"]
+        assert answer["rule"] == "survey"
+        assert words in answer["reason"]
+        assert all(each["phase"] == "refused" for each in client.get("/api/surveys").json())
+
+    @pytest.mark.parametrize("extra", [{"fly": True}, {"speed_mps": "fast"}, {"cell_m": None}])
+    def test_what_is_no_request_is_one_sentence(
+        self, client: Client, extra: dict[str, object]
+    ) -> None:
+        response = client.post("/api/surveys", json=ASKED | extra)
+        assert response.status_code == 422
+        assert list(response.json()) == ["error"]
+
+    def test_without_a_site_there_is_no_survey(self) -> None:
+        answer = Client(application(FakeStation())).post("/api/surveys", json=ASKED).json()
+        assert not answer["accepted"]
+        assert "--site" in answer["reason"]
+
+
+class TestWords:
+    @pytest.fixture
+    def number(self, client: Client) -> int:
+        asked: int = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
+        return asked
+
+    def test_a_stranger_is_refused_and_nothing_starts(self, client: Client, number: int) -> None:
+        answer = client.post(f"/api/surveys/{number}/start", json={"serials": ["Z"]}).json()
+        assert not answer["accepted"]
+        assert "Z is not known" in answer["reason"]
+        assert client.get(f"/api/surveys/{number}").json()["phase"] == "created"
+
+    def test_nobody_is_no_request(self, client: Client, number: int) -> None:
+        assert client.post(f"/api/surveys/{number}/start", json={"serials": []}).status_code == 422
+
+    def test_what_does_not_fly_cannot_be_paused_but_aborted(
+        self, client: Client, number: int
+    ) -> None:
+        assert not client.post(f"/api/surveys/{number}/pause").json()["accepted"]
+        answer = client.post(f"/api/surveys/{number}/abort").json()
+        assert answer["accepted"]
+        assert answer["survey"]["phase"] == "aborted"
+        assert not client.post(f"/api/surveys/{number}/abort").json()["accepted"]
+
+    @pytest.mark.parametrize("word", ["pause", "abort"])
+    def test_a_survey_that_is_not_there_is_refused(self, client: Client, word: str) -> None:
+        answer = client.post(f"/api/surveys/77/{word}").json()
+        assert answer == {
+            "accepted": False,
+            "rule": "survey",
+            "reason": "there is no survey 77",
+            "survey": None,
+        }
+
+    def test_other_words_are_none(self, client: Client, number: int) -> None:
+        assert client.post(f"/api/surveys/{number}/explode").status_code == 422
+
+
+class TestLooks:
+    @pytest.mark.parametrize("path", ["", "/ways", "/cells.png"])
+    def test_what_is_not_there_is_one_sentence(self, client: Client, path: str) -> None:
+        response = client.get(f"/api/surveys/77{path}")
+        assert response.status_code == 404
+        assert "no survey 77" in response.json()["error"]
+
+    def test_rows_lie_in_the_field(self, client: Client) -> None:
+        number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
+        ways = client.get(f"/api/surveys/{number}/ways").json()
+        places = np.array([place for row in ways["rows"] for place in row])
+        west, south = np.array(SQUARE).min(axis=0)
+        east, north = np.array(SQUARE).max(axis=0)
+        assert (places >= (west - 3e-4, south - 3e-4)).all()
+        assert (places <= (east + 3e-4, north + 3e-4)).all()
+        assert ways["flying"] == ways["flown"] == []
+
+    def test_cells_are_values_or_a_picture(self, client: Client) -> None:
+        survey = client.post("/api/surveys", json=ASKED).json()["survey"]
+        path = f"/api/surveys/{survey['id']}/cells.png"
+        values = decoded(client.get(path, params={"as": "values"}).content)
+        assert values.shape[:2] == (survey["cells"]["rows"], survey["cells"]["cols"])
+        counted = (values[..., 3] == 255).sum() * survey["cells"]["cell_m"] ** 2
+        assert counted == survey["figures"]["region_m2"]
+        assert (values[..., 0] == 0).all()
+        assert decoded(client.get(path).content).shape[0] > values.shape[0]
+
+
+class TestShade:
+    def test_before_any_there_is_none(self, client: Client) -> None:
+        for path in ("/api/shade.png", "/api/forecast.png"):
+            response = client.get(path)
+            assert response.status_code == 404
+            assert list(response.json()) == ["error"]
+
+    def test_the_map_and_the_forecast_are_drawn_as_they_are(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        shade, sun = found()
+        put(station, shade, sun)
+        response = client.get("/api/shade.png", params={"as": "values"})
+        assert response.headers["X-Frame-Id"] == "1"
+        drawn = decoded(response.content)
+        assert (drawn[..., 3] == np.where(shade.valid, 255, 0)).all()
+        assert drawn[0, 0, 0] == 0
+        assert drawn[0, 3, 0] == 255
+        picture = decoded(client.get("/api/shade.png").content)
+        assert picture[0, 0, 0] > picture[0, 0, 2], "shade is blue"
+        assert picture[0, -1, 0] < picture[0, -1, 2], "sun is yellow"
+
+    @pytest.mark.parametrize(("asked_s", "told"), [(0.0, "0"), (44.0, "30"), (4_000.0, "600")])
+    def test_the_nearest_lead_is_given_and_said(
+        self, client: Client, station: FakeStation, asked_s: float, told: str
+    ) -> None:
+        put(station, *found())
+        response = client.get("/api/forecast.png", params={"lead_s": asked_s, "as": "values"})
+        assert response.headers["X-Lead-S"] == told
+        drawn = decoded(response.content)
+        is_foreseen = float(told) <= 300.0
+        assert (drawn[..., 3] == 255).any() == is_foreseen
+
+    @pytest.mark.parametrize("lead", ["-1", "nan", "soon"])
+    def test_a_lead_that_is_none_is_refused(self, client: Client, lead: str) -> None:
+        assert client.get(f"/api/forecast.png?lead_s={lead}").status_code == 422
+
+
+def decoded(data: bytes) -> np.ndarray:
+    return cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+
+
+def found() -> tuple[ShadeMap, SunForecast]:
+    """Shade in the west, sun in the east, nothing known of the last row."""
+    grid = GroundGrid(FRAME, 0.0, 0.0, 4.0, 3, 4)
+    valid = np.ones((3, 4), dtype=np.bool_)
+    valid[2] = False
+    light = np.where(np.arange(4) < 2, np.float32(0.0), np.float32(1.0)) * np.ones(
+        (3, 1), np.float32
+    )
+    light = np.where(valid, light, np.float32(np.nan)).astype(np.float32)
+    ones = np.ones((3, 4), np.float32)
+    shade = ShadeMap(grid, 0, ("EYE",), light, valid, ones, ones)
+    return shade, persisting(shade, 0.5, ForecastSettings())
+
+
+def put(station: FakeStation, shade: ShadeMap, sun: SunForecast) -> None:
+    """As if the worker had read them from a frame."""
+    driver = station.driver
+    driver.worker = None
+    driver.station, _ = take_image(driver.station, ground_image(1))
+    job = driver.station.shade.job_id
+    assert job is not None
+    read = ShadeRead(DetectionState(), ForecastState(), (shade, sun))
+    driver.handle(WorkerResult(job, READ_SHADE, read))
+
+
+def test_a_rejected_frame_is_no_map(client: Client, station: FakeStation) -> None:
+    driver = station.driver
+    driver.worker = None
+    driver.station, _ = take_image(driver.station, ground_image(1))
+    rejected = RejectedFrame(1, FrameFault.BLACK, "expected a picture, got black")
+    read = ShadeRead(DetectionState(), ForecastState(), rejected)
+    driver.handle(WorkerResult(driver.station.shade.job_id or 0, READ_SHADE, read))
+    assert client.get("/api/shade.png").status_code == 404
+    assert driver.station.shade.frames_rejected == 1
