@@ -24,6 +24,9 @@ MOST_SHOTS_IN_HAND = 4
 SHORTEST_LATENCY_S = 0.2
 LONGEST_LATENCY_S = 1.0
 JITTER_S = 0.05
+"""Either way of a vehicle's own latency, with each picture: the phone's encoder and its queue."""
+CAPTURES_KEPT = 4096
+"""An hour at a picture a second."""
 
 
 class ImageFormat(Enum):
@@ -84,6 +87,15 @@ class Shot:
         return wire.encode(wire.CompressedImage(target_fps_hz=self.target_fps_hz, jpeg=jpeg))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Capture:
+    """When a picture was truly taken and when it goes out: for the score and for tests."""
+
+    view: View
+    taken_at_ns: int
+    send_at_ns: int
+
+
 @dataclass(slots=True)
 class CameraFeed:
     """A feed that is on or off, its pace, and the pictures on their way."""
@@ -95,7 +107,9 @@ class CameraFeed:
     is_on: bool = False
     target_fps_hz: float = 0.0
     next_shot_ns: int = 0
+    captures: deque[Capture] = field(default_factory=lambda: deque(maxlen=CAPTURES_KEPT))
     _latency_s: float = 0.0
+    _jitter_seed: int = 0
     _shot_count: int = 0
     _taken: deque[Shot] = field(default_factory=deque)
     _in_hand: int = 0
@@ -104,6 +118,7 @@ class CameraFeed:
     def __post_init__(self) -> None:
         drawn = self.random.uniform(SHORTEST_LATENCY_S + JITTER_S, LONGEST_LATENCY_S - JITTER_S)
         self._latency_s = drawn if self.settings.latency_s is None else self.settings.latency_s
+        self._jitter_seed = self.random.getrandbits(64)
         if self.settings.starts_on:
             self.switch_on(self.settings.largest_fps_hz, self.start_ns)
 
@@ -128,14 +143,19 @@ class CameraFeed:
         """Take the picture that is due at `next_shot_ns`."""
         now_ns = self.next_shot_ns
         self.next_shot_ns = self._after(now_ns)
-        latency_s = self._latency_s + self.random.uniform(-JITTER_S, JITTER_S)
         if self._in_hand >= MOST_SHOTS_IN_HAND:
             return
         view = View((now_ns - self.start_ns) / NS_PER_S, self._shot_count, pose)
         self._shot_count += 1
         self._in_hand += 1
-        send_at_ns = now_ns + seconds_to_ns(max(0.0, latency_s))
+        send_at_ns = now_ns + seconds_to_ns(self._latency_at(now_ns))
+        self.captures.append(Capture(view, now_ns, send_at_ns))
         self._taken.append(Shot(view, self.target_fps_hz, send_at_ns, self.source, self.settings))
+
+    def _latency_at(self, taken_at_ns: int) -> float:
+        """Return the seconds from taking to sending: a function of the time it was taken at."""
+        jitter = Random(f"{self._jitter_seed}/{taken_at_ns - self.start_ns}")
+        return max(0.0, self._latency_s + jitter.uniform(-JITTER_S, JITTER_S))
 
     def skip_to(self, now_ns: int) -> None:
         """Take the next picture at this moment, and none before."""

@@ -16,6 +16,7 @@ from recon.model.imagery import RgbImage
 from recon.sim.farmland import (
     MEADOW,
     POND_EDGE_M,
+    Box,
     Building,
     Farmland,
     FloatArray,
@@ -45,6 +46,8 @@ WET_ABOVE, WET_OVER = 0.5, 1.1
 LOWEST_SHADOW_SUN_DEG = 12.0
 """Shadows of trees are drawn as if the sun stood here at least: lower, they cover all."""
 SMALLEST_CROWN_PX = 0.6
+CROWN_SHADES_ITSELF = 70
+"""Of 255: leaves shade leaves."""
 POND_CORNERS = 40
 DARKER_SLOPE = 0.88
 """Of a roof: the slope that faces away from the noon's sun."""
@@ -71,7 +74,7 @@ class Part:
         )
 
     @property
-    def box_m(self) -> tuple[float, float, float, float]:
+    def box_m(self) -> Box:
         """West, south, east, north."""
         west, north = self.col * self.cell_m, -self.row * self.cell_m
         return west, north - self.size * self.cell_m, west + self.size * self.cell_m, north
@@ -108,10 +111,17 @@ def draw_shadows(land: Farmland, part: Part, sun: SunPosition) -> npt.NDArray[np
     elevation = radians(max(sun.elevation_deg, LOWEST_SHADOW_SUN_DEG))
     azimuth = radians(sun.azimuth_deg)
     per_height = np.array([-sin(azimuth), -cos(azimuth)]) / tan(elevation)
-    for building in index.buildings.within(wide.box_m):
+    buildings, trees = index.buildings.within(wide.box_m), _seen_trees(index, wide)
+    for building in buildings:
         _shade_of_roof(image, wide, building, per_height)
-    for tree in _seen_trees(index, wide):
+    for tree in trees:
         _shade_of_tree(image, wide, tree, per_height)
+    # What is seen of a roof or a crown from above is its lit top.
+    for building in buildings:
+        rows, cols = _slices(wide, building.box_m)
+        image[rows, cols] = 0
+    for tree in trees:
+        _light_on_crown(image, wide, tree)
     soft = cv2.GaussianBlur(image, (0, 0), 0.9)
     return soft[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX].astype(np.uint8, copy=True)
 
@@ -145,6 +155,22 @@ def _shade_of_tree(
     if _is_near(points, part, width):
         ends = [tuple(point) for point in points.tolist()]
         cv2.line(image, ends[0], ends[1], 255, width, cv2.LINE_AA, FRACTION_BITS)
+
+
+def _light_on_crown(image: npt.NDArray[np.uint8], part: Part, tree: Tree) -> None:
+    points = _fixed_point(part, np.array([(tree.east_m, tree.north_m)]))
+    radius = max(1, round(tree.radius_m / part.cell_m * 2**FRACTION_BITS))
+    if _is_near(points, part, 2 + radius // 2**FRACTION_BITS):
+        at = (int(points[0, 0]), int(points[0, 1]))
+        cv2.circle(image, at, radius, CROWN_SHADES_ITSELF, -1, cv2.LINE_AA, FRACTION_BITS)
+
+
+def _slices(part: Part, box: Box) -> tuple[slice, slice]:
+    """Return the part's rows and columns that a box covers."""
+    west, south, east, north = (round(edge / part.cell_m) for edge in box)
+    row, col, size = part.row, part.col, part.size
+    rows = slice(min(size, max(0, -north - row)), min(size, max(0, -south - row)))
+    return rows, slice(min(size, max(0, west - col)), min(size, max(0, east - col)))
 
 
 def _fixed_point(part: Part, points_m: FloatArray) -> npt.NDArray[np.int32]:
@@ -199,17 +225,11 @@ class _Canvas:
         )
         return sampled.astype(np.float32, copy=False)
 
-    def _slices(self, box: tuple[float, float, float, float]) -> tuple[slice, slice]:
-        west, south, east, north = (round(edge / self.cell_m) for edge in box)
-        row, col, size = self.part.row, self.part.col, self.part.size
-        rows = slice(min(size, max(0, -north - row)), min(size, max(0, -south - row)))
-        return rows, slice(min(size, max(0, west - col)), min(size, max(0, east - col)))
-
-    def fill(self, box: tuple[float, float, float, float], colour: tuple[float, ...]) -> None:
-        self.pixels[self._slices(box)] = colour
+    def fill(self, box: Box, colour: tuple[float, ...]) -> None:
+        self.pixels[_slices(self.part, box)] = colour
 
     def draw_plot(self, plot: Plot) -> None:
-        rows, cols = self._slices((plot.west_m, plot.south_m, plot.east_m, plot.north_m))
+        rows, cols = _slices(self.part, plot.box_m)
         area = self.pixels[rows, cols]
         if area.size == 0:
             return

@@ -1,0 +1,78 @@
+"""What is true in the simulated world: for the score and for tests, never for the station.
+
+All of it is a pure function of the world's settings: nothing has to be recorded while it flies.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.geo import GroundGrid
+from recon.model.imagery import CameraPose
+from recon.model.shade import SUNLIT_TRANSMITTANCE
+from recon.model.survey import SurveyCamera
+from recon.model.units import NS_PER_S
+from recon.sim.camera_feed import View
+from recon.sim.errors import SimulationError
+from recon.sim.field import FieldFrames
+from recon.sim.noise import FloatImage
+from recon.sim.survey_shutter import IntervalTimer, SurveyPhoto, TruePath, photos
+from recon.sim.world import Sky, SunPosition
+
+
+@dataclass(frozen=True, slots=True)
+class WorldTruth:
+    """Sky, eye and survey cameras as they are. Times are ns since the simulation's start.
+
+    Ground points are east and north metres of the site's frame.
+    """
+
+    sky: Sky
+    eye: FieldFrames | None = None
+    seed: int = 0
+    """The fleet's: survey cameras' timers are drawn from it."""
+
+    def sun_at(self, time_ns: int) -> SunPosition:
+        """Return where the sun stands."""
+        return self.sky.sun_at(time_ns / NS_PER_S)
+
+    def transmittance(
+        self, east_m: npt.ArrayLike, north_m: npt.ArrayLike, time_ns: int
+    ) -> FloatImage:
+        """Return the direct beam's share, 0 to 1, at ground points (broadcast together)."""
+        return self.sky.transmittance(east_m, north_m, time_ns / NS_PER_S)
+
+    def transmittance_on(self, grid: GroundGrid, time_ns: int) -> FloatImage:
+        """Return the direct beam's share at a grid's cells (rows, cols)."""
+        return self.sky.on_grid(grid, time_ns / NS_PER_S)
+
+    def eye_pose(self, view: View) -> CameraPose:
+        """Return where the eye's camera truly was for a picture; `SimulationError` without one."""
+        if self.eye is None:
+            raise SimulationError("true poses: expected an eye in this world, got none")
+        return self.eye.true_pose(view)
+
+    def survey_photos(
+        self,
+        serial: str,
+        camera: SurveyCamera,
+        path: TruePath,
+        span_ns: tuple[int, int],
+        home_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    ) -> list[SurveyPhoto]:
+        """Return the photos a survey drone truly took from a time up to before another.
+
+        `path` tells where it truly was, from its home, which lies east, north, up of the origin.
+        """
+        timer = IntervalTimer(self.seed, serial, camera.interval_s)
+        return photos(timer, camera, path, span_ns, home_m)
+
+    def share_in_sun(self, photo: SurveyPhoto, points_to_a_side: int = 8) -> float:
+        """Return the share of a photo's ground that was in sun when it was taken."""
+        steps = (np.arange(points_to_a_side) + 0.5) / points_to_a_side
+        down, right = (grid.ravel()[:, np.newaxis] for grid in np.meshgrid(steps, steps))
+        front_left, front_right, _, back_left = photo.corners_m
+        places = front_left + right * (front_right - front_left) + down * (back_left - front_left)
+        share = self.transmittance(places[:, 0], places[:, 1], photo.captured_at_ns)
+        return float(np.mean(share >= SUNLIT_TRANSMITTANCE))
