@@ -1,6 +1,7 @@
 """The app on its link: what it says, what it answers, what it then does."""
 
 import random
+from dataclasses import replace
 from math import isfinite
 
 import pytest
@@ -9,11 +10,17 @@ from hypothesis import strategies as st
 
 from recon import wire
 from recon.geo import enu_from_geo
-from recon.model.geo import LocalFrame
+from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, FlightMode
-from recon.sim.commands import HoverOnGround
+from recon.sim.aircraft import Aircraft, AircraftSettings
+from recon.sim.commands import AppHabits, HoverOnGround
+from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
+from recon.sim.kinematics import Motion
+from recon.sim.manoeuvres import Hold
+from recon.sim.telemetry import FIELD_SENSORS, HomeAltitude, Sensors
 
+HOME = GeoPoint(41.9, -93.6, 275.0)
 HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))
 SQUARE = [(0.0, 10.0, 40.0), (60.0, 10.0, 40.0), (60.0, 70.0, 40.0)]
 
@@ -278,3 +285,59 @@ def test_garbage_does_no_harm(app_bench) -> None:
         bench.app.receive(noise.randbytes(400), bench.now_ns)
     bench.run(11.0)
     assert of(wire.Acknowledgment, bench.send(HOVER))
+
+
+@pytest.mark.parametrize("tells", [True, False])
+def test_mission_numbers_are_told_or_always_0(app_bench, mission_packet, tells) -> None:
+    bench = app_bench()
+    bench.app.settings = replace(bench.app.settings, habits=AppHabits(tells_mission_id=tells))
+    bench.send(mission_packet(SQUARE))
+    bench.run(1.0)
+    assert bench.mode == FlightMode.GPS_WAYPOINT
+    assert bench.last(wire.ExtendedTelemetry).mission_id == int(tells)
+
+
+def test_limits_set_in_the_aircraft_are_kept_and_told(app_bench, mission_packet) -> None:
+    bench = app_bench()
+    bench.app.aircraft.settings = AircraftSettings(max_height_m=50.0, max_distance_m=120.0)
+    bench.send(mission_packet([(0.0, 10.0, 50.1), (60.0, 10.0, 40.0)]))
+    bench.send(mission_packet([(0.0, 10.0, 40.0), (121.0, 10.0, 40.0)]))
+    bench.run(1.0)
+    assert bench.mode == FlightMode.GPS_ATTI
+    bench.send(stick(velocity_x_mps=0.0, height_above_takeoff_m=80.0))
+    bench.run(40.0)
+    assert bench.app.aircraft.motion.height_m == pytest.approx(50.0, abs=0.1)
+    told = bench.last(wire.ExtendedTelemetry)
+    assert (told.max_height_reached, told.max_distance_reached) == (1, 0)
+
+
+def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> None:
+    low, high = GeoPoint(41.9, -93.6, 260.0), GeoPoint(41.901, -93.6, 291.0)
+    config = SimulationConfig(
+        home=low,
+        vehicle_count=2,
+        airborne=Airborne.ALL,
+        altitude_bias_m=0.0,
+        pads={"SIM-1": low, "SIM-2": high},
+    )
+    told = []
+    for app in build_fleet(config, 0):
+        app.connected(0)
+        packets = wire.Deframer().feed(b"".join(app.advance(200_000_000)))
+        core = of(wire.CoreTelemetry, packets)[-1]
+        told.append((core.altitude_m - core.height_above_takeoff_m, core.height_above_takeoff_m))
+    assert [base for base, _ in told] == pytest.approx([260.0, 291.0])
+    assert [height for _, height in told] == pytest.approx([40.0, 50.0], abs=0.5)
+
+
+def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:
+    altitude = HomeAltitude(275.0)
+    aircraft = Aircraft(0, motion=Motion(height_m=50.0), manoeuvre=Hold())
+    ends = []
+    for seed in range(200):
+        sensors = Sensors(HOME, altitude, FIELD_SENSORS, random.Random(seed), random.Random(-seed))
+        sensors.core(aircraft, 0.1)
+        start, end = (sensors.core(aircraft, s).height_above_takeoff_m for s in (0.1, 900.0))
+        assert start == pytest.approx(50.0, abs=0.6)
+        ends.append(end - 50.0)
+    assert 0.5 < (sum(e * e for e in ends) / len(ends)) ** 0.5 < 1.1

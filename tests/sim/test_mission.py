@@ -1,12 +1,14 @@
 """Missions: every waypoint is reached, no limit is exceeded, corners are rounded."""
 
 from itertools import pairwise
-from math import hypot
+from math import hypot, sqrt
 
+import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
+from recon.geo.path import rounded_path as geo_rounded_path
 from recon.model.vehicle import FlightMode
 from recon.sim.kinematics import Limits, Motion
 from recon.sim.mission import MissionPoint
@@ -44,6 +46,11 @@ def closest_m(track: list[Motion], point: MissionPoint) -> float:
         hypot(m.north_m - point.north_m, m.east_m - point.east_m, m.height_m - point.height_m)
         for m in track
     )
+
+
+def segment_distance_m(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
+    along = float(np.clip((point - start) @ (end - start) / ((end - start) @ (end - start)), 0, 1))
+    return float(np.linalg.norm(point - start - along * (end - start)))
 
 
 def flown(flights, mission: tuple[MissionPoint, ...], curved: bool) -> list[Motion]:
@@ -94,7 +101,7 @@ def test_reversals_are_flown_to_their_end(flights, turn_back_m) -> None:
     assert closest_m(track[-1:], mission[-1]) < 1.5
 
 
-def test_a_curved_flight_does_not_stop_at_its_corners_and_follows_the_arc(flights) -> None:
+def test_a_curved_flight_does_not_stop_at_its_corners_and_follows_the_curve(flights) -> None:
     mission = tuple(
         MissionPoint(n, e, 20.0, 6.0, r)
         for n, e, r in ((0.0, 20.0, 0.2), (120.0, 20.0, 20.0), (120.0, 140.0, 0.2))
@@ -102,14 +109,28 @@ def test_a_curved_flight_does_not_stop_at_its_corners_and_follows_the_arc(flight
     track = flown(flights, mission, curved=True)
     corner = [m for m in track if hypot(m.north_m - 120.0, m.east_m - 20.0) < 25.0]
     assert min(m.ground_speed_mps for m in corner) > 3.0
-    # The arc's middle is r (sqrt 2 - 1) from the corner.
-    assert closest_m(corner, mission[1]) == pytest.approx(20.0 * (2.0**0.5 - 1.0), abs=0.8)
-    centre_north, centre_east = 100.0, 40.0
-    on_arc = [m for m in corner if m.north_m > 100.0 and m.east_m < 40.0]
-    assert on_arc
-    for m in on_arc:
-        radius = hypot(m.north_m - centre_north, m.east_m - centre_east)
-        assert radius == pytest.approx(20.0, abs=1.0)
+    # The quadratic curve's middle is a quarter of |start - 2 corner + end| from the corner.
+    assert closest_m(corner, mission[1]) == pytest.approx(20.0 * 2.0**0.5 / 4.0, abs=0.5)
+    on_curve = [m for m in corner if m.north_m > 101.0 and m.east_m < 39.0]
+    assert on_curve
+    for m in on_curve:
+        # From the corner back x and ahead y: sqrt x + sqrt y = sqrt r.
+        shares = sqrt(max(0.0, 120.0 - m.north_m) / 20.0), sqrt(max(0.0, m.east_m - 20.0) / 20.0)
+        assert sum(shares) == pytest.approx(1.0, abs=0.08)
+
+
+def test_a_corner_is_cut_as_the_shared_geometry_cuts_it() -> None:
+    """The station's fences and the simulator's aircraft read a radius the same way."""
+    waypoints = [(0.0, 0.0, 20.0), (120.0, 20.0, 30.0), (40.0, 90.0, 25.0), (60.0, 200.0, 25.0)]
+    radii = [0.2, 30.0, 25.0, 0.2]
+    path = rounded_path(
+        [Corner(*place, radius, 6.0) for place, radius in zip(waypoints, radii, strict=True)],
+        LIMITS,
+    )
+    shared = geo_rounded_path(waypoints, radii, chord_error_m=0.001).points_m
+    for point in path.points_m:
+        distances = [segment_distance_m(point, a, b) for a, b in pairwise(shared)]
+        assert min(distances) < 0.005
 
 
 def test_loiter_and_gimbal_are_done_at_the_waypoint(flights) -> None:

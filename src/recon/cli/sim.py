@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import typer
 
+from recon.cli.places import parse_place
 from recon.cli.sim_options import (
     AirborneOption,
     AltitudeBiasMOption,
@@ -59,6 +60,7 @@ class EyeWorld(NamedTuple):
 
 
 def sim_command(
+    context: typer.Context,
     vehicles: VehiclesOption = 4,
     station: StationOption = "127.0.0.1:3001",
     altitude_reference: AltitudeReferenceOption = WaypointAltitude.TAKEOFF,
@@ -81,6 +83,8 @@ def sim_command(
     seed: SeedOption = 0,
 ) -> None:
     """Run simulated companion apps that connect to a station, until Ctrl+C."""
+    if context.invoked_subcommand is not None:
+        return
     try:
         host, port = parse_station(station)
         _refuse_non_positive("--fps", fps)
@@ -126,11 +130,7 @@ _AIRBORNE = {None: Airborne.EYE, True: Airborne.ALL, False: Airborne.NONE}
 
 def parse_station(text: str) -> tuple[str, int]:
     """Return host and port of `HOST:PORT` ([..] around an IPv6 address); `SimulationError`."""
-    host, colon, port = text.rpartition(":")
-    host = host.removeprefix("[").removesuffix("]")
-    if not (colon and host and port.isascii() and port.isdigit() and 0 < int(port) < 65_536):
-        raise SimulationError(f"--station: expected HOST:PORT like 127.0.0.1:3001, got {text!r}")
-    return host, int(port)
+    return parse_place("--station", text)
 
 
 def parse_home(text: str) -> tuple[float, float]:

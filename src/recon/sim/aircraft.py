@@ -1,18 +1,24 @@
 """One simulated aircraft: its flight controller's modes, battery, home and gimbal."""
 
 from dataclasses import dataclass, field, replace
+from math import hypot
 
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
+from recon.sim.air import Air
 from recon.sim.battery import FORCED_LANDING_FRACTION, Battery
-from recon.sim.kinematics import Limits, Motion, step
+from recon.sim.kinematics import Demand, Limits, Motion, hold_height_mps, step
 from recon.sim.manoeuvres import GoHome, Grounded, Hold, Land, Manoeuvre, Stick, TakeOff
 from recon.sim.mission import Gimbal, MissionFlight, MissionPoint
+from recon.sim.power import GROUND_LOAD, flying_load
 
 TICK_NS = 50_000_000
 """Motion advances in steps of 50 ms, so that it does not depend on how often it is asked."""
 
 FLYING_ABOVE_M = 0.02
+AT_LIMIT_WITHIN_M = 0.5
+STICK_DRIFT_SHARE = 0.08
+"""Of the wind: under sticks the controller holds a velocity, no place, and not quite that one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +34,10 @@ class AircraftSettings:
     mode and in missions the flight controller holds against it."""
     landing_confirmation_s: float = 1.0
     """The app confirms a landing this long after the aircraft stopped at 0.3 m."""
+    max_height_m: float = 500.0
+    """Above takeoff: the aircraft climbs no higher, and tells when it is there."""
+    max_distance_m: float = 5_000.0
+    """From home: told when it is reached; missions that lead farther are rejected."""
 
 
 @dataclass(slots=True)
@@ -42,6 +52,8 @@ class Aircraft:
     battery: Battery = field(default_factory=lambda: Battery(1.0, 1500.0))
     is_pilots: bool = False
     """Whether the pilot's mode switch keeps the app's missions and sticks out."""
+    air: Air = field(default_factory=Air)
+    has_gnss: bool = True
     home_north_m: float = 0.0
     home_east_m: float = 0.0
     _mission_count: int = 0
@@ -68,6 +80,24 @@ class Aircraft:
         """The number of the mission being flown, else 0."""
         return self._mission_count if isinstance(self.manoeuvre, MissionFlight) else 0
 
+    @property
+    def is_at_max_height(self) -> bool:
+        """Whether it is as high as its settings let it."""
+        return self.motion.height_m >= self.settings.max_height_m - AT_LIMIT_WITHIN_M
+
+    @property
+    def is_at_max_distance(self) -> bool:
+        """Whether it is as far from home as its settings let it."""
+        away_m = hypot(
+            self.motion.north_m - self.home_north_m, self.motion.east_m - self.home_east_m
+        )
+        return away_m >= self.settings.max_distance_m - AT_LIMIT_WITHIN_M
+
+    @property
+    def obeys_the_app(self) -> bool:
+        """Whether missions, sticks and returns do anything: not for lack of GNSS, or a pilot."""
+        return self.has_gnss and not self.is_pilots
+
     def advance(self, now_ns: int) -> None:
         """Move on in whole ticks, up to `now_ns`."""
         while self.now_ns + TICK_NS <= now_ns:
@@ -93,12 +123,14 @@ class Aircraft:
             self.manoeuvre = Land(self.settings.landing_confirmation_s)
 
     def go_home(self) -> None:
-        """Return and land; on the ground nothing."""
-        if not self.is_on_ground:
+        """Return and land; on the ground, or not knowing where it is, nothing."""
+        if not self.is_on_ground and self.has_gnss:
             self.manoeuvre = self._way_home()
 
     def take_off_and_go_home(self) -> None:
         """What some apps make of a return order on the ground."""
+        if not self.has_gnss:
+            return
         if self.is_on_ground:
             self._set_home()
         self.take_off(self._way_home())
@@ -108,9 +140,9 @@ class Aircraft:
     ) -> None:
         """Fly a mission in place of whatever is flown now; from the ground take off first.
 
-        While the pilot has it, nothing.
+        While the pilot has it, or without GNSS, nothing.
         """
-        if self.is_pilots:
+        if not self.obeys_the_app:
             return
         self._mission_count = self._mission_count % 0xFFFF + 1
         settings = self.settings
@@ -129,8 +161,8 @@ class Aircraft:
         self._mission_count = 0
 
     def stick(self, stick: Stick) -> None:
-        """Fly a stick command; on the ground, or while the pilot has it, nothing."""
-        if not self.is_on_ground and not self.is_pilots:
+        """Fly a stick command; on the ground, for a pilot's, or without GNSS, nothing."""
+        if not self.is_on_ground and self.obeys_the_app:
             self.manoeuvre = stick
 
     def pilot_takes(self, mode: FlightMode = FlightMode.GPS_SPORT) -> None:
@@ -145,6 +177,23 @@ class Aircraft:
         if isinstance(self.manoeuvre, Hold):
             self.manoeuvre = Hold()
 
+    def lose_gnss(self) -> None:
+        """Know no longer where it is: whatever was flown ends, and the wind carries it along."""
+        self.has_gnss = False
+        if not self.is_on_ground and not isinstance(self.manoeuvre, Land | TakeOff):
+            self.manoeuvre = Hold(FlightMode.ATTI)
+
+    def find_gnss(self) -> None:
+        """Know again where it is, and hold there."""
+        self.has_gnss = True
+        if self.flight_mode is FlightMode.ATTI:
+            self.manoeuvre = Hold()
+
+    def crash(self) -> None:
+        """Fall from where it is, and lie there."""
+        self.manoeuvre = Grounded()
+        self._lie_still()
+
     def _set_home(self) -> None:
         self.home_north_m, self.home_east_m = self.motion.north_m, self.motion.east_m
 
@@ -158,16 +207,41 @@ class Aircraft:
         )
 
     def _tick(self, seconds: float) -> None:
+        self.air.step(self.motion, self.now_ns, seconds)
         if not self.is_on_ground:
-            demand = self.manoeuvre.demand(self.motion, seconds)
+            demand = self._carried(self.manoeuvre.demand(self.motion, seconds))
+            wind = self.air.horizontal
             self.motion = _kept_above_ground(
-                step(self.motion, demand, seconds, self.settings.limits)
+                step(self.motion, demand, seconds, self.settings.limits, wind)
             )
             self._go_on()
         self.gimbal.step(seconds)
-        self.battery.drain(seconds, self.is_flying, self.motion.ground_speed_mps)
+        load = flying_load(self.motion, self.air.horizontal) if self.is_flying else GROUND_LOAD
+        self.battery.drain(seconds, load)
         if self.battery.fraction < FORCED_LANDING_FRACTION:
             self.land()
+
+    def _carried(self, demand: Demand) -> Demand:
+        """Return what is flown of a demand: the wind adds its part, the height limit takes its."""
+        north, east, up = self._drift() if self.is_flying else (0.0, 0.0, 0.0)
+        limits = self.settings.limits
+        highest = hold_height_mps(self.motion.height_m, self.settings.max_height_m, limits)
+        return Demand(
+            demand.velocity_north_mps + north,
+            demand.velocity_east_mps + east,
+            min(demand.velocity_up_mps + up, highest),
+            demand.yaw_deg,
+        )
+
+    def _drift(self) -> tuple[float, float, float]:
+        """Return the velocity that the air adds to what is asked for."""
+        north, east, up = self.air.push
+        if not self.has_gnss:
+            return *self.air.horizontal, up
+        if isinstance(self.manoeuvre, Stick):
+            wind_north, wind_east = self.air.horizontal
+            return north + STICK_DRIFT_SHARE * wind_north, east + STICK_DRIFT_SHARE * wind_east, up
+        return north, east, up
 
     def _go_on(self) -> None:
         following = self.manoeuvre.successor(self.motion)
@@ -175,11 +249,11 @@ class Aircraft:
             return
         self.manoeuvre = following
         if isinstance(following, Grounded):
-            self.motion = replace(
-                Motion(yaw_deg=self.motion.yaw_deg),
-                north_m=self.motion.north_m,
-                east_m=self.motion.east_m,
-            )
+            self._lie_still()
+
+    def _lie_still(self) -> None:
+        motion = self.motion
+        self.motion = Motion(north_m=motion.north_m, east_m=motion.east_m, yaw_deg=motion.yaw_deg)
 
 
 def _kept_above_ground(motion: Motion) -> Motion:

@@ -30,7 +30,7 @@ from recon.sim.faults import (
     FaultKind,
 )
 from recon.sim.rig import EyeRig
-from recon.sim.telemetry import Sensors, SensorSettings, position_deg
+from recon.sim.telemetry import HomeAltitude, Sensors, SensorSettings, position_deg
 
 CORE_PERIOD_NS = 100_000_000
 EXTENDED_PERIOD_NS = 500_000_000
@@ -70,6 +70,11 @@ _LINK_ORDERS = {
     FaultKind.SECOND_LINK: LinkOrderKind.SECOND,
 }
 
+_ENDS: dict[FaultKind, Callable[[Aircraft], None]] = {
+    FaultKind.PILOT_TAKES: Aircraft.pilot_gives_back,
+    FaultKind.GNSS_LOSS: Aircraft.find_gnss,
+}
+
 
 @dataclass(frozen=True, slots=True)
 class AppSettings:
@@ -80,6 +85,7 @@ class AppSettings:
     seed: int = 0
     habits: AppHabits = field(default_factory=AppHabits)
     faults: tuple[Fault, ...] = ()
+    sensors: SensorSettings = field(default_factory=SensorSettings)
     renders_inline: bool = True
     """False: the driver takes the shots and renders them in a thread."""
 
@@ -105,10 +111,12 @@ class SimulatedApp:
         self.feed = feed
         self.rig = rig
         self._start_ns = aircraft.now_ns
-        bias_m = settings.habits.altitude_bias_m
+        home, habits = settings.home, settings.habits
+        self._altitude = HomeAltitude(home.ellipsoid_height_m, habits.altitude_bias_m)
         random = Random(f"{settings.seed}/{settings.serial}/sensors")
-        self._sensors = Sensors(settings.home, SensorSettings(altitude_bias_m=bias_m), random)
-        self._commands = CommandReader(settings.home, aircraft, feed, settings.habits)
+        slow_random = Random(f"{settings.seed}/{settings.serial}/drift")
+        self._sensors = Sensors(home, self._altitude, settings.sensors, random, slow_random)
+        self._commands = CommandReader(home, aircraft, feed, habits, self._altitude)
         self._links: dict[int, _Link] = {}
         self._acts: deque[tuple[int, Reaction]] = deque()
         self._link_orders: deque[LinkOrder] = deque()
@@ -255,8 +263,8 @@ class SimulatedApp:
         self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
         is_placeholder = self._has(FaultKind.PLACEHOLDER_SERIAL, now_ns)
         serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
-        has_gnss = not self._has(FaultKind.GNSS_LOSS, now_ns)
-        packet = self._sensors.extended(self.aircraft, self.feed, serial, has_gnss)
+        tells_id = self.settings.habits.tells_mission_id
+        packet = self._sensors.extended(self.aircraft, self.feed, serial, tells_id)
         self._broadcast(packet, now_ns)
 
     def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
@@ -281,9 +289,9 @@ class SimulatedApp:
                 yield begin_ns, partial(self._begin_link_fault, fault)
             elif fault.kind in AIRCRAFT_FAULTS:
                 yield begin_ns, partial(self._begin_aircraft_fault, fault)
-            if fault.kind is FaultKind.PILOT_TAKES and isfinite(fault.duration_s):
-                end_ns = begin_ns + seconds_to_ns(fault.duration_s)
-                yield end_ns, self.aircraft.pilot_gives_back
+            end = _ENDS.get(fault.kind)
+            if end is not None and isfinite(fault.duration_s):
+                yield begin_ns + seconds_to_ns(fault.duration_s), partial(end, self.aircraft)
 
     def _happen(self, now_ns: int) -> None:
         _due_ns, happen = self._fault_moments.pop(0)
@@ -293,6 +301,8 @@ class SimulatedApp:
         self._lines.append(f"fault {fault.kind.value}")
         if fault.kind is FaultKind.PILOT_TAKES:
             self.aircraft.pilot_takes()
+        elif fault.kind is FaultKind.GNSS_LOSS:
+            self.aircraft.lose_gnss()
         else:
             self.aircraft.battery.lose_a_cell(FAILED_CELL_FRACTION)
 

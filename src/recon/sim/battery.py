@@ -1,4 +1,4 @@
-"""A flight battery, as simple as it can be: a share that drains while flying."""
+"""A flight battery, as simple as it can be: a share that drains under load."""
 
 from dataclasses import dataclass
 
@@ -7,8 +7,6 @@ from recon.model.vehicle import BatteryWarning
 LOW_FRACTION = 0.30
 SERIOUS_FRACTION = 0.15
 FORCED_LANDING_FRACTION = 0.05
-GROUND_SHARE = 0.08
-"""On the ground the electronics draw this share of what hovering does."""
 
 
 @dataclass(slots=True)
@@ -18,9 +16,8 @@ class Battery:
     fraction: float
     endurance_s: float
 
-    def drain(self, seconds: float, is_flying: bool, speed_mps: float) -> None:
-        """Use `seconds` worth: fast flight costs up to a quarter more than hovering."""
-        load = (1.0 + 0.25 * min(1.0, speed_mps / 15.0)) if is_flying else GROUND_SHARE
+    def drain(self, seconds: float, load: float) -> None:
+        """Use `seconds` worth; `load` counts in hovering in calm air."""
         self.fraction = max(0.0, self.fraction - load * seconds / self.endurance_s)
 
     def lose_a_cell(self, left_fraction: float) -> None:

@@ -4,7 +4,7 @@ The answer is sent before acting (as apps in the field do), so a positive one pr
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from math import isfinite, isnan, nan
 
@@ -17,6 +17,7 @@ from recon.sim.aircraft import Aircraft
 from recon.sim.camera_feed import CameraFeed
 from recon.sim.manoeuvres import Stick
 from recon.sim.mission import MissionPoint
+from recon.sim.telemetry import HomeAltitude
 
 
 class HoverOnGround(Enum):
@@ -35,6 +36,8 @@ class AppHabits:
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
     altitude_bias_m: float = 0.0
     """Added to every absolute altitude the app knows, its home's included."""
+    tells_mission_id: bool = True
+    """False: telemetry's MissionID is always 0, as some apps in the field send it."""
     sdk: SdkLimits = field(default_factory=SdkLimits)
 
 
@@ -52,9 +55,15 @@ class CommandReader:
     """Turns command packets into reactions of one app."""
 
     def __init__(
-        self, home: GeoPoint, aircraft: Aircraft, feed: CameraFeed | None, habits: AppHabits
+        self,
+        home: GeoPoint,
+        aircraft: Aircraft,
+        feed: CameraFeed | None,
+        habits: AppHabits,
+        altitude: HomeAltitude,
     ) -> None:
         self._home = home
+        self._altitude = altitude
         self._frame = LocalFrame(home)
         self._aircraft = aircraft
         self._feed = feed
@@ -116,14 +125,14 @@ class CommandReader:
     def _fly(self, packet: wire.ExecuteWaypointMission) -> str:
         points = self.mission_points(packet)
         is_curved = packet.curved_flight == 1
-        problem = mission_problem(points, is_curved, self._habits.sdk)
+        problem = mission_problem(points, is_curved, self._limits()) or self._deafness()
         if problem is not None:
             return f"mission rejected silently: {problem}"
         self._aircraft.fly_mission(points, is_curved, packet.land_at_end == 1)
         return f"mission of {len(points)} waypoints"
 
     def _stick(self, packet: wire.VirtualStickCommand) -> str:
-        problem = stick_problem(packet, self._habits.sdk)
+        problem = stick_problem(packet, self._habits.sdk) or self._deafness()
         if problem is not None:
             return f"stick rejected silently: {problem}"
         self._aircraft.stick(
@@ -141,6 +150,21 @@ class CommandReader:
         )
         return "stick" if not self._aircraft.is_on_ground else "stick: nothing, on the ground"
 
+    def _limits(self) -> SdkLimits:
+        """Return the SDK's limits and, where they are lower, those set in the aircraft."""
+        sdk, own = self._habits.sdk, self._aircraft.settings
+        return replace(
+            sdk,
+            highest_m=min(sdk.highest_m, own.max_height_m),
+            farthest_m=min(sdk.farthest_m, own.max_distance_m),
+        )
+
+    def _deafness(self) -> str | None:
+        """Return why the flight controller takes neither missions nor sticks now, else None."""
+        if self._aircraft.is_pilots:
+            return "the pilot's mode switch"
+        return None if self._aircraft.has_gnss else "no GNSS"
+
     def mission_points(self, packet: wire.ExecuteWaypointMission) -> tuple[MissionPoint, ...]:
         """Return a mission's waypoints in home metres, its altitudes read as this app does.
 
@@ -148,7 +172,7 @@ class CommandReader:
         """
         subtracted_m = 0.0
         if self._habits.altitude_reference is AltitudeReference.WGS84:
-            subtracted_m = self._home.ellipsoid_height_m + self._habits.altitude_bias_m
+            subtracted_m = self._altitude.believed_m
         return tuple(self._point(waypoint, subtracted_m) for waypoint in packet.waypoints)
 
     def _point(self, waypoint: wire.Waypoint, subtracted_m: float) -> MissionPoint:

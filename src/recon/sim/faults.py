@@ -38,7 +38,8 @@ class FaultKind(Enum):
     """The pilot flips the mode switch to sport and holds; missions and sticks of the app do nothing
     until he flips it back, after the duration."""
     GNSS_LOSS = "gnss-loss"
-    """The receiver has 3 satellites and no signal worth the name, as long as the fault lasts."""
+    """The receiver has 3 satellites and no signal worth the name, as long as the fault lasts: the
+    aircraft ends what it flies (mode ATTI), and the wind carries it along."""
     LOW_BATTERY = "low-battery"
     """A cell fails: from the start on a fifth of the charge is left at most. It does not end."""
 
@@ -64,7 +65,7 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
 
 LINK_FAULTS = (FaultKind.HALF_OPEN, FaultKind.SECOND_LINK, FaultKind.RESTART)
 """Faults that happen once, to the connection."""
-AIRCRAFT_FAULTS = (FaultKind.PILOT_TAKES, FaultKind.LOW_BATTERY)
+AIRCRAFT_FAULTS = (FaultKind.PILOT_TAKES, FaultKind.LOW_BATTERY, FaultKind.GNSS_LOSS)
 """Faults that happen once, to the aircraft."""
 
 ALL_VEHICLES = "*"

@@ -8,6 +8,7 @@ from random import Random
 from recon.geo import enu_from_point, point_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import AltitudeReference
+from recon.sim.air import Air
 from recon.sim.aircraft import Aircraft, AircraftSettings
 from recon.sim.app import AppSettings, SimulatedApp
 from recon.sim.battery import Battery
@@ -18,6 +19,8 @@ from recon.sim.faults import Fault
 from recon.sim.kinematics import Motion
 from recon.sim.manoeuvres import Grounded, Hold, Manoeuvre, TakeOff, Wander
 from recon.sim.rig import EyeRig
+from recon.sim.telemetry import SensorSettings
+from recon.sim.world import Wind, WindSettings
 
 EYE_SERIAL = "SIM-EYE"
 EYE_HEIGHT_M = 130.0
@@ -60,6 +63,11 @@ class SimulationConfig:
     altitude_bias_m: float | None = None
     """None draws one per vehicle, up to 40 m either way."""
     endurance_s: float = 1500.0
+    sensors: SensorSettings = field(default_factory=SensorSettings)
+    wind: WindSettings | None = None
+    """None: calm."""
+    tells_mission_id: bool = True
+    """False: the apps tell MissionID 0 always."""
     seed: int = 0
     faults: tuple[Fault, ...] = ()
     pads: Mapping[str, GeoPoint] = field(default_factory=dict)
@@ -107,7 +115,9 @@ def _build_app(
             config.altitude_reference,
             config.hover_on_ground,
             drawn_bias_m if config.altitude_bias_m is None else config.altitude_bias_m,
+            config.tells_mission_id,
         ),
+        sensors=config.sensors,
         faults=tuple(f for f in config.faults if f.is_for(serial, number)),
         renders_inline=renders_inline,
     )
@@ -118,10 +128,12 @@ def _build_app(
     )
     motion = _eye_start(config) if is_eye else _survey_start(config, number)
     manoeuvre: Manoeuvre = Grounded() if motion.height_m == 0.0 else Hold()
+    east_m, north_m = (float(v) for v in enu_from_point(LocalFrame(config.home), home)[:2])
     if config.wanders and not is_eye:
-        east_m, north_m, _ = enu_from_point(LocalFrame(config.home), home)
-        manoeuvre = _wandering(settings, motion, number, random, (float(north_m), float(east_m)))
-    aircraft = Aircraft(start_ns, settings, motion, manoeuvre, battery=battery)
+        manoeuvre = _wandering(settings, motion, number, random, (north_m, east_m))
+    wind = None if config.wind is None else Wind(config.wind)
+    air = Air(wind, north_m, east_m, start_ns)
+    aircraft = Aircraft(start_ns, settings, motion, manoeuvre, battery=battery, air=air)
     if not is_eye or config.eye is None:
         return SimulatedApp(app, aircraft)
     feed_random = Random(f"{config.seed}/{serial}/feed")

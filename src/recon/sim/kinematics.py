@@ -14,12 +14,21 @@ GRAVITY_MPS2 = 9.80665
 DRAG_PER_S = 0.22
 """Horizontal deceleration by drag per m/s of airspeed: about 18 degrees of tilt at 15 m/s."""
 
+BRAKING_MPS2 = 2.0
+"""What approaches brake with: a fifth of the acceleration is kept for wind and for steering."""
+
+Wind = tuple[float, float]
+"""North and east, where the air goes, in m/s."""
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:
     """What the airframe and its flight controller allow."""
 
     speed_mps: float = 15.0
+    """Over the ground, as the flight controller allows it."""
+    airspeed_mps: float = 17.0
+    """Through the air: a wind of 10 m/s leaves 7 against it."""
     acceleration_mps2: float = 2.5
     climb_mps: float = 2.6
     descent_mps: float = 3.2
@@ -57,12 +66,18 @@ class Demand:
     yaw_deg: float | None = None
 
 
-def step(motion: Motion, demand: Demand, seconds: float, limits: Limits) -> Motion:
-    """Return the motion `seconds` later, with every limit kept."""
-    north, east = _follow_horizontally(motion, demand, seconds, limits)
+def step(
+    motion: Motion, demand: Demand, seconds: float, limits: Limits, wind: Wind = (0.0, 0.0)
+) -> Motion:
+    """Return the motion `seconds` later, with every limit kept.
+
+    `wind` is the air's velocity north and east. The airframe leans against it, and where it would
+    have to fly faster through the air than it can, it flies slower over the ground.
+    """
+    north, east = _follow_horizontally(motion, demand, seconds, limits, wind)
     up = _follow_vertically(motion.velocity_up_mps, demand.velocity_up_mps, seconds, limits)
     yaw = _turn(motion.yaw_deg, demand.yaw_deg, seconds, limits.yaw_rate_dps)
-    pitch, roll = _tilt(motion, north, east, seconds, yaw)
+    pitch, roll = _tilt(motion, (north, east), seconds, yaw, wind)
     return Motion(
         north_m=motion.north_m + 0.5 * (motion.velocity_north_mps + north) * seconds,
         east_m=motion.east_m + 0.5 * (motion.velocity_east_mps + east) * seconds,
@@ -79,10 +94,10 @@ def step(motion: Motion, demand: Demand, seconds: float, limits: Limits) -> Moti
 def braking_speed_mps(distance_m: float, deceleration_mps2: float) -> float:
     """Return the speed from which a stop within `distance_m` is possible.
 
-    Near the target the square root is replaced by a line, so that the approach settles
-    instead of overshooting by a step.
+    Near the target the square root is replaced by a line that goes on from it smoothly, so that the
+    approach settles instead of overshooting by a step.
     """
-    settling_m = 2.0 * deceleration_mps2
+    settling_m = deceleration_mps2
     if distance_m < settling_m:
         return distance_m
     return sqrt(2.0 * deceleration_mps2 * (distance_m - 0.5 * settling_m))
@@ -96,11 +111,10 @@ def hold_height_mps(height_m: float, target_m: float, limits: Limits) -> float:
 
 
 def _follow_horizontally(
-    motion: Motion, demand: Demand, seconds: float, limits: Limits
+    motion: Motion, demand: Demand, seconds: float, limits: Limits, wind: Wind
 ) -> tuple[float, float]:
-    wanted_north, wanted_east = _clip(
-        demand.velocity_north_mps, demand.velocity_east_mps, limits.speed_mps
-    )
+    asked = _clip(demand.velocity_north_mps, demand.velocity_east_mps, limits.speed_mps)
+    wanted_north, wanted_east = _against(asked, wind, limits.airspeed_mps)
     change_north, change_east = _clip(
         wanted_north - motion.velocity_north_mps,
         wanted_east - motion.velocity_east_mps,
@@ -123,12 +137,32 @@ def _turn(yaw_deg: float, wanted_deg: float | None, seconds: float, rate_dps: fl
     return wrap_degrees(yaw_deg + change)
 
 
+def _against(asked: tuple[float, float], wind: Wind, fastest_mps: float) -> tuple[float, float]:
+    """Return the velocity over the ground that is left of `asked` in a wind: the course is kept.
+
+    A wind that is faster than the airframe carries it along.
+    """
+    through = asked[0] - wind[0], asked[1] - wind[1]
+    if hypot(*through) <= fastest_mps:
+        return asked
+    if hypot(*wind) >= fastest_mps:
+        north, east = _clip(-wind[0], -wind[1], fastest_mps)
+        return wind[0] + north, wind[1] + east
+    # The share k of what is asked with |k asked - wind| = fastest.
+    square = asked[0] ** 2 + asked[1] ** 2
+    along = asked[0] * wind[0] + asked[1] * wind[1]
+    rest = fastest_mps**2 - wind[0] ** 2 - wind[1] ** 2
+    share = (along + sqrt(along * along + square * rest)) / square
+    return share * asked[0], share * asked[1]
+
+
 def _tilt(
-    motion: Motion, north: float, east: float, seconds: float, yaw_deg: float
+    motion: Motion, velocity: tuple[float, float], seconds: float, yaw_deg: float, wind: Wind
 ) -> tuple[float, float]:
     """Return pitch (nose up) and roll (right down) that give this acceleration against drag."""
-    push_north = (north - motion.velocity_north_mps) / seconds + DRAG_PER_S * north
-    push_east = (east - motion.velocity_east_mps) / seconds + DRAG_PER_S * east
+    north, east = velocity
+    push_north = (north - motion.velocity_north_mps) / seconds + DRAG_PER_S * (north - wind[0])
+    push_east = (east - motion.velocity_east_mps) / seconds + DRAG_PER_S * (east - wind[1])
     heading = radians(yaw_deg)
     forward = push_north * cos(heading) + push_east * sin(heading)
     right = push_east * cos(heading) - push_north * sin(heading)

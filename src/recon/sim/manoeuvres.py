@@ -8,7 +8,14 @@ from math import atan2, cos, degrees, hypot, radians, sin
 from typing import Protocol
 
 from recon.model.vehicle import FlightMode
-from recon.sim.kinematics import Demand, Limits, Motion, braking_speed_mps, hold_height_mps
+from recon.sim.kinematics import (
+    BRAKING_MPS2,
+    Demand,
+    Limits,
+    Motion,
+    braking_speed_mps,
+    hold_height_mps,
+)
 
 TAKEOFF_HEIGHT_M = 1.2
 SPIN_UP_S = 1.5
@@ -238,6 +245,6 @@ def _towards(
     distance = hypot(north, east)
     if distance < 1e-6:
         return Demand(velocity_up_mps=up_mps)
-    share = min(speed_mps, braking_speed_mps(distance, 1.2)) / distance
+    share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
     yaw = heading_deg(north, east) if distance > 3.0 else None
     return Demand(north * share, east * share, up_mps, yaw)

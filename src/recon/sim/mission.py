@@ -4,7 +4,14 @@ from dataclasses import dataclass
 from math import hypot, sqrt
 
 from recon.model.vehicle import FlightMode
-from recon.sim.kinematics import Demand, Limits, Motion, braking_speed_mps, hold_height_mps
+from recon.sim.kinematics import (
+    BRAKING_MPS2,
+    Demand,
+    Limits,
+    Motion,
+    braking_speed_mps,
+    hold_height_mps,
+)
 from recon.sim.manoeuvres import Hold, Land, Manoeuvre, heading_deg
 from recon.sim.path import Corner, FlightPath, rounded_path
 
@@ -166,7 +173,7 @@ def _pursue(motion: Motion, target: MissionPoint, speed_mps: float, limits: Limi
     distance = sqrt(north * north + east * east + up * up)
     if distance < 1e-6:
         return Demand()
-    share = min(speed_mps, braking_speed_mps(distance, 0.8)) / distance
+    share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
     # A steep leg is flown as fast as the climb or descent limit lets it.
     steepest = limits.climb_mps if up > 0.0 else limits.descent_mps
     if abs(up) * share > steepest:

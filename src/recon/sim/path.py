@@ -1,22 +1,28 @@
-"""A curved mission's path: straight legs joined by arcs, and how fast it may be flown.
+"""A curved mission's path: straight legs joined by quadratic curves, and how fast it may be flown.
 
 The path is held as dense samples, because following, speed limits and braking are then three short
-loops. Corners are rounded as the ICD says (3.2.3): `CornerRadius` is the radius of the arc.
+loops. `CornerRadius` (ICD 3.2.3) is how far before its waypoint the path leaves the leg and how far
+after it joins the next, as in `geo.path`: this reading fits the SDK's rule that the radii of two
+neighbours must be less than their distance, at any angle.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import acos, ceil, cos, hypot, inf, sin, sqrt, tan
+from math import ceil, inf, sqrt
 
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo.path import corner_reaches_m
 from recon.sim.kinematics import Limits
 
 FloatArray = npt.NDArray[np.float64]
 
 SPACING_M = 0.5
-SHARPEST_FULL_TURN_RAD = 2.6
+SIDEWAYS_SHARE = 0.6
+"""Of the acceleration, spent on a corner's curve; the rest is for speed and for steering."""
+SHARPEST = 0.1
+"""Where the curve doubles back on itself within so much of its length, it is crept through."""
 LEAST_SPEED_MPS = 0.5
 """Tight corners are crept through rather than stopped at."""
 
@@ -73,15 +79,18 @@ class FlightPath:
 
 def rounded_path(corners: Sequence[Corner], limits: Limits) -> FlightPath:
     """Return the path past at least two corners, flown within the airframe's limits."""
-    points = [_point(corners[0])]
+    waypoints = np.array([_point(corner) for corner in corners])
+    reaches = corner_reaches_m(waypoints, np.array([corner.radius_m for corner in corners]))
+    points = [waypoints[0]]
     speeds = [corners[0].speed_mps]
     for index in range(1, len(corners) - 1):
-        before, corner, after = corners[index - 1 : index + 2]
-        arc = _arc(before, corner, after, limits.acceleration_mps2)
-        _extend(points, speeds, arc[0][0], before.speed_mps)
-        for point, limit in arc:
-            _extend(points, speeds, point, min(limit, before.speed_mps))
-    _extend(points, speeds, _point(corners[-1]), corners[-2].speed_mps)
+        speed_mps = corners[index - 1].speed_mps
+        curve = _curve(waypoints[index - 1 : index + 2], float(reaches[index]), limits)
+        _extend(points, speeds, curve[0][0], speed_mps)
+        for point, limit in curve:
+            points.append(point)
+            speeds.append(min(limit, speed_mps))
+    _extend(points, speeds, waypoints[-1], corners[-2].speed_mps)
     samples = np.array(points)
     steps = np.linalg.norm(np.diff(samples, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -103,53 +112,42 @@ def _extend(
         speeds.append(speed_mps)
 
 
-def _arc(
-    before: Corner, corner: Corner, after: Corner, acceleration_mps2: float
-) -> list[tuple[FloatArray, float]]:
-    """Return points of the arc that rounds a corner, each with the speed it can be flown at."""
-    incoming, length_in = _direction(before, corner)
-    outgoing, length_out = _direction(corner, after)
-    turn = acos(max(-1.0, min(1.0, float(incoming[:2] @ outgoing[:2]))))
-    if turn < 1e-3 or min(length_in, length_out) < 1e-6:
-        return [(_point(corner), inf)]
-    # The arc may use half of each leg, and a near reversal would use far more than it is worth:
-    # what does not fit gets a smaller radius.
-    tangent_m = min(
-        corner.radius_m * tan(min(turn, SHARPEST_FULL_TURN_RAD) / 2.0),
-        length_in / 2.0,
-        length_out / 2.0,
-    )
-    radius_m = tangent_m / tan(min(turn, 3.14) / 2.0)
-    start, end = _point(corner) - incoming * tangent_m, _point(corner) + outgoing * tangent_m
-    limit = max(LEAST_SPEED_MPS, sqrt(0.6 * acceleration_mps2 * radius_m))
-    count = max(2, ceil(radius_m * turn / SPACING_M))
-    shares = (k / count for k in range(count + 1))
-    return [(_on_arc(start, end, incoming, outgoing, turn, share), limit) for share in shares]
+def _curve(waypoints: FloatArray, reach_m: float, limits: Limits) -> list[tuple[FloatArray, float]]:
+    """Return points of the curve that cuts a corner, each with the speed it can be flown at."""
+    corner = waypoints[1]
+    back, ahead = _unit(waypoints[0] - corner), _unit(waypoints[2] - corner)
+    if reach_m < 1e-6:
+        return [(corner, _speed_round(back, ahead, 0.5, 1e-6, limits))]
+    start, end = corner + reach_m * back, corner + reach_m * ahead
+    count = max(2, ceil(2.0 * reach_m / SPACING_M))
+    curve = []
+    for k in range(count + 1):
+        t = k / count
+        point = (1.0 - t) ** 2 * start + 2.0 * t * (1.0 - t) * corner + t**2 * end
+        curve.append((point, _speed_round(back, ahead, t, reach_m, limits)))
+    return curve
 
 
-def _on_arc(
-    start: FloatArray,
-    end: FloatArray,
-    incoming: FloatArray,
-    outgoing: FloatArray,
-    turn: float,
-    share: float,
-) -> FloatArray:
-    """Return the arc's point at `share` of its turn: tangent to both legs."""
-    # Along the first tangent the arc advances r sin(a), across it r (1 - cos(a)).
-    angle = share * turn
-    chord = end[:2] - start[:2]
-    radius = float(np.linalg.norm(chord)) / (2.0 * sin(turn / 2.0))
-    across = outgoing[:2] - incoming[:2] * cos(turn)
-    across = across / max(1e-12, float(np.linalg.norm(across)))
-    plane = start[:2] + radius * (incoming[:2] * sin(angle) + across * (1.0 - cos(angle)))
-    return np.array([plane[0], plane[1], start[2] + share * (end[2] - start[2])])
+def _speed_round(
+    back: FloatArray, ahead: FloatArray, t: float, reach_m: float, limits: Limits
+) -> float:
+    """Return the speed at which the curve at `t` takes no more than its share of acceleration."""
+    # The derivative at t is 2 reach (t ahead - (1 - t) back); its length and the constant cross
+    # product with the second derivative give the curvature.
+    tangent = t * ahead - (1.0 - t) * back
+    length = float(np.linalg.norm(tangent))
+    if length < SHARPEST:
+        return LEAST_SPEED_MPS
+    bend = float(np.linalg.norm(np.cross(back, ahead)))
+    curvature = bend / (2.0 * reach_m * length**3)
+    if curvature < 1e-9:
+        return inf
+    return max(LEAST_SPEED_MPS, sqrt(SIDEWAYS_SHARE * limits.acceleration_mps2 / curvature))
 
 
-def _direction(a: Corner, b: Corner) -> tuple[FloatArray, float]:
-    """Return the step per horizontal metre from a to b, and the horizontal distance."""
-    length = hypot(b.north_m - a.north_m, b.east_m - a.east_m)
-    return (_point(b) - _point(a)) / max(length, 1e-9), length
+def _unit(offset: FloatArray) -> FloatArray:
+    unit: FloatArray = offset / max(1e-9, float(np.linalg.norm(offset)))
+    return unit
 
 
 def _within_limits(points: FloatArray, wanted_mps: FloatArray, limits: Limits) -> FloatArray:

@@ -1,0 +1,114 @@
+"""What a bad link does to a stream: its settings, and when and where it does it.
+
+Every draw is from a generator of its own, so that how long a stall lasts does not move the next
+flipped byte. Times count from the connection's start; positions count bytes.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import floor, inf, log1p
+from random import Random
+
+from recon.model.units import seconds_to_ns
+from recon.sim.errors import SimulationError
+
+BYTES_PER_MB = 1_000_000
+S_PER_MIN = 60.0
+NEVER = 1e12
+"""More bytes, or more seconds, than any link lives."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Damage:
+    """How bad a link is; as it stands: a good one. Raises `SimulationError` for what cannot be."""
+
+    delay_s: float = 0.0
+    jitter_s: float = 0.0
+    """Each read is late by up to so much more, drawn evenly; order is kept, as TCP keeps it."""
+    rate_bytes_per_s: float = inf
+    stalls_per_min: float = 0.0
+    stall_s: float = 2.0
+    """Nothing passes for so long; then all of it at once."""
+    resets_per_min: float = 0.0
+    """A reset ends the connection hard on both sides (RST, no FIN)."""
+    corrupted_per_mb: float = 0.0
+    """Bytes changed in a million."""
+
+    def __post_init__(self) -> None:
+        _expect("delay", self.delay_s, 0.0, 60.0, "seconds")
+        _expect("jitter", self.jitter_s, 0.0, 60.0, "seconds")
+        _expect("rate", self.rate_bytes_per_s, 10.0, inf, "bytes a second")
+        _expect("stalls", self.stalls_per_min, 0.0, 600.0, "a minute")
+        _expect("stall", self.stall_s, 0.0, 600.0, "seconds")
+        _expect("resets", self.resets_per_min, 0.0, 600.0, "a minute")
+        _expect("corruption", self.corrupted_per_mb, 0.0, BYTES_PER_MB, "bytes in a million")
+
+    def reset_after_s(self, random: Random) -> float:
+        """Draw how long a connection lasts; infinity where none is reset."""
+        return _drawn_s(self.resets_per_min, random)
+
+
+class Stalls:
+    """The stretches of time in which nothing passes; asked in order of time."""
+
+    def __init__(self, damage: Damage, random: Random, start_ns: int) -> None:
+        self._stretches = _stretches(damage, random, start_ns)
+        self._begin_ns, self._end_ns = next(self._stretches)
+
+    def passes_ns(self, wanted_ns: float) -> float:
+        """Return when what wants to pass then does; times asked must not fall."""
+        while wanted_ns >= self._end_ns:
+            self._begin_ns, self._end_ns = next(self._stretches)
+        return self._end_ns if wanted_ns >= self._begin_ns else wanted_ns
+
+
+class Flips:
+    """Which bytes of a stream are changed, and into what."""
+
+    def __init__(self, damage: Damage, random: Random) -> None:
+        self._share = damage.corrupted_per_mb / BYTES_PER_MB
+        self._random = random
+        self._untouched = self._gap()
+
+    def through(self, data: bytes) -> bytes:
+        """Return the next bytes of the stream as they come out; never more, never fewer."""
+        if self._untouched >= len(data):
+            self._untouched -= len(data)
+            return data
+        changed = bytearray(data)
+        while self._untouched < len(data):
+            at = int(self._untouched)
+            changed[at] ^= self._random.randint(1, 255)
+            self._untouched = at + 1 + self._gap()
+        self._untouched -= len(data)
+        return bytes(changed)
+
+    def _gap(self) -> float:
+        """Draw how many bytes stay as they are before the next change."""
+        if self._share <= 0.0:
+            return inf
+        if self._share >= 1.0:
+            return 0.0
+        gap = log1p(-self._random.random()) / log1p(-self._share)
+        return float(floor(gap)) if gap < NEVER else inf
+
+
+def _stretches(damage: Damage, random: Random, start_ns: int) -> Iterator[tuple[float, float]]:
+    """Yield begin and end of each stall, in order; at last one that never comes."""
+    at_ns: float = start_ns
+    while damage.stall_s > 0.0 and (sound_s := _drawn_s(damage.stalls_per_min, random)) < NEVER:
+        at_ns += seconds_to_ns(sound_s)
+        end_ns = at_ns + seconds_to_ns(damage.stall_s)
+        yield at_ns, end_ns
+        at_ns = end_ns
+    yield inf, inf
+
+
+def _drawn_s(per_min: float, random: Random) -> float:
+    rate_hz = per_min / S_PER_MIN
+    return random.expovariate(rate_hz) if rate_hz > 1.0 / NEVER else inf
+
+
+def _expect(what: str, value: float, lowest: float, highest: float, unit: str) -> None:
+    if not lowest <= value <= highest:
+        raise SimulationError(f"{what}: expected {lowest:g} to {highest:g} {unit}, got {value:g}")
