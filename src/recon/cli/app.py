@@ -6,6 +6,7 @@ from recon.cli.inspect import inspect_command
 from recon.cli.openapi import openapi_command
 from recon.cli.operating import add_commands, new_app
 from recon.cli.run import run_command
+from recon.cli.score import score_command
 from recon.cli.sim import sim_command
 
 app = new_app()
@@ -13,6 +14,7 @@ add_commands(app)
 app.add_typer(audit_app, name="audit")
 app.command("run")(run_command)
 app.command("demo")(demo_command)
+app.command("score")(score_command)
 app.command("sim")(sim_command)
 app.command("inspect")(inspect_command)
 app.command("openapi")(openapi_command)

@@ -1,0 +1,123 @@
+"""What photos truly show, and in which light: the truth that no station is told.
+
+A photo counts where a mosaic would take it from: the band of its row, as the survey counts it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.guidance.survey import SurveyPlan
+from recon.model.shade import SUNLIT_TRANSMITTANCE
+from recon.score.flight import Hop
+from recon.sim.world import Sky
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+STEEPEST_COURSE = 0.27
+"""Across over along a row: what surveys count as flown along it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Photos:
+    """Where photos were taken on rows: `at_s` (N,), `places_m` (N, 2) east-north."""
+
+    at_s: FloatArray
+    places_m: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Imaged:
+    """What photos showed, on the plan's cells; times are infinite where no photo did.
+
+    A photo is shaded when more than half of what it shows of the region lies in shade.
+    """
+
+    first_s: FloatArray
+    """(R, C): when a cell was first on a photo."""
+    first_in_sun_s: FloatArray
+    photos: int
+    shaded_photos: int
+
+
+def photos_of(hops: Sequence[Hop], phase_s: float, plan: SurveyPlan) -> Photos:
+    """Return the photos that a timer of that phase takes along rows."""
+    interval_s = plan.survey.camera.interval_s
+    times: list[FloatArray] = []
+    places: list[FloatArray] = []
+    for hop in hops:
+        if not (hop.is_row and _is_along(hop, plan)):
+            continue
+        first = ceil((hop.start_s - phase_s) / interval_s)
+        after = ceil((hop.end_s - phase_s) / interval_s)
+        at_s = phase_s + interval_s * np.arange(first, after, dtype=np.float64)
+        times.append(at_s)
+        places.append(hop.places_m(at_s))
+    if not times:
+        return Photos(np.zeros(0), np.zeros((0, 2)))
+    return Photos(np.concatenate(times), np.concatenate(places))
+
+
+def imaged(photos: Sequence[Photos], plan: SurveyPlan, sky: Sky) -> Imaged:
+    """Return what the photos of all vehicles show."""
+    shape = plan.cells.is_inside.shape
+    first_s, first_in_sun_s = np.full(shape, np.inf), np.full(shape, np.inf)
+    taken = shaded = 0
+    for each in photos:
+        number, cells = _shown(each, plan)
+        if cells.size == 0:
+            continue
+        at_s = each.at_s[number]
+        east_m, north_m = _middles_m(plan, cells)
+        in_sun = sky.transmittance(east_m, north_m, at_s) >= SUNLIT_TRANSMITTANCE
+        np.minimum.at(first_s.reshape(-1), cells, at_s)
+        np.minimum.at(first_in_sun_s.reshape(-1), cells[in_sun], at_s[in_sun])
+        shown = np.bincount(number, minlength=len(each.at_s))
+        lit = np.bincount(number[in_sun], minlength=len(each.at_s))
+        taken += int((shown > 0).sum())
+        shaded += int(((shown > 0) & (2 * lit < shown)).sum())
+    return Imaged(first_s, first_in_sun_s, taken, shaded)
+
+
+def _is_along(hop: Hop, plan: SurveyPlan) -> bool:
+    ends = plan.lattice.along_across_m([hop.start_m, hop.end_m])
+    along_m, across_m = np.abs(ends[1] - ends[0]).tolist()
+    return bool(along_m > 0.0 and across_m <= STEEPEST_COURSE * along_m)
+
+
+def _shown(photos: Photos, plan: SurveyPlan) -> tuple[IntArray, IntArray]:
+    """Pairs of a photo's number and the flat index of a cell of the region that it shows."""
+    survey, cells = plan.survey, plan.cells
+    half_along_m = survey.camera.along_m(survey.height_above_takeoff_m) / 2.0
+    half_across_m = plan.counted_swath.half_across_m
+    lying = plan.lattice.along_across_m(photos.places_m)
+    reach = ceil(np.hypot(half_along_m, half_across_m) / cells.grid.cell_m) + 1
+    numbers: list[IntArray] = []
+    shown: list[IntArray] = []
+    for number, ((east_m, north_m), (along_m, across_m)) in enumerate(
+        zip(photos.places_m.tolist(), lying.tolist(), strict=True)
+    ):
+        row = int((cells.grid.north_m - north_m) / cells.grid.cell_m)
+        col = int((east_m - cells.grid.west_m) / cells.grid.cell_m)
+        rows = slice(max(row - reach, 0), max(row + reach + 1, 0))
+        cols = slice(max(col - reach, 0), max(col + reach + 1, 0))
+        is_shown = np.abs(cells.along_m[rows, cols] - along_m) <= half_along_m
+        is_shown &= np.abs(cells.across_m[rows, cols] - across_m) <= half_across_m
+        is_shown &= cells.is_inside[rows, cols]
+        found = np.nonzero(is_shown)
+        flat = (found[0] + rows.start) * cells.grid.cols + found[1] + cols.start
+        numbers.append(np.full(len(flat), number, dtype=np.int64))
+        shown.append(flat.astype(np.int64))
+    if not numbers:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    return np.concatenate(numbers), np.concatenate(shown)
+
+
+def _middles_m(plan: SurveyPlan, cells: IntArray) -> tuple[FloatArray, FloatArray]:
+    grid = plan.cells.grid
+    row, col = np.divmod(cells, grid.cols)
+    return grid.west_m + (col + 0.5) * grid.cell_m, grid.north_m - (row + 0.5) * grid.cell_m

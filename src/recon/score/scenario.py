@@ -1,0 +1,72 @@
+"""A scenario: a place, a fleet, a sky, what goes wrong, what is to be imaged, and how."""
+
+from dataclasses import dataclass
+
+from recon.model.geo import LocalFrame
+from recon.model.survey import Survey
+from recon.sim.faults import Fault
+from recon.sim.world import LightSettings, SkySettings, WindSettings
+
+Place = tuple[float, float]
+"""East and north metres of the site."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """The survey drones; `pads_m` holds one place for each."""
+
+    pads_m: tuple[Place, ...]
+    endurance_s: float
+    """Hovering, from full to empty."""
+    reserve_share: float
+    """Of the battery, that nobody plans with."""
+    swap_s: float
+    """On the ground, for a fresh battery."""
+
+    @property
+    def serials(self) -> tuple[str, ...]:
+        """One for each drone."""
+        return tuple(f"S-{number + 1}" for number in range(len(self.pads_m)))
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioEye:
+    """The eye hovers over a place and sees a circle of the ground."""
+
+    over_m: Place
+    height_m: float
+    radius_m: float
+    period_s: float
+    """Between two shade maps."""
+    cell_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Methods:
+    """Who sees, who foresees: names; the planner's is in the survey.
+
+    `detection` is `ideal`, for shade maps that are the truth, or a detector's name; `forecast` is
+    `none` or a forecaster's name.
+    """
+
+    detection: str = "ideal"
+    forecast: str = "global_shift"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scenario:
+    """All that a run needs beside its seed; `sky.seed` and `wind.seed` are the run's to set."""
+
+    name: str
+    about: str
+    frame: LocalFrame
+    fleet: Fleet
+    eye: ScenarioEye
+    sky: SkySettings
+    light: LightSettings
+    wind: WindSettings
+    faults: tuple[Fault, ...]
+    survey: Survey
+    methods: Methods
+    limit_s: float
+    """When the run ends at the latest."""

@@ -1,0 +1,70 @@
+"""The numbers of flights that go by events, each with its reason."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class FlightSettings:
+    """Speeds in m/s, times in seconds."""
+
+    acceleration_mps2: float = 2.5
+    braking_mps2: float = 2.0
+    """A fifth of the acceleration is kept for wind and for steering."""
+
+    stopped_mps: float = 0.4
+    """Slower than this, half a metre from it, a waypoint counts as reached."""
+
+    climb_mps: float = 2.6
+    descent_mps: float = 3.2
+    vertical_s: float = 3.0
+    """Spinning up, speeding up and slowing down, of a whole climb."""
+
+    landing_s: float = 9.0
+    """The last metres come down slowly, and a second goes by until the landing is confirmed."""
+
+    home_mps: float = 10.0
+    """Go-home's usual speed."""
+
+    climb_load: float = 1.3
+    """Of a battery, in hovering; sinking counts as hovering."""
+
+    fast_load: float = 0.25
+    """What air that comes at 15 m/s adds to hovering."""
+
+    home_slack: float = 1.2
+    """A vehicle flies home while the battery still lasts for this many times the way."""
+
+    sample_s: float = 2.0
+    """Positions are told this often at least: surveys want them within 3 s."""
+
+    separation_m: float = 10.0
+    """Two in the air nearer than this count as a violation: half of it is GNSS."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunSettings:
+    """How a run is watched."""
+
+    score_maps_every_s: float = 30.0
+    """Shade maps less far apart say the same again."""
+
+    forecast_every_s: float = 10.0
+    """Of the maps that forecasts get: as far apart as the nearest two that are compared."""
+
+    score_forecasts_every_s: float = 60.0
+    lead_s: tuple[float, ...] = (60.0, 180.0, 300.0, 600.0)
+    """Whole minutes, so that one truth serves many leads."""
+
+    watch_s: float = 1_200.0
+    """The eye watches this long at least, whenever the survey is done: else a sky that lets it end
+    early would be scored on fewer maps."""
+
+    longest_way_home_s: float = 1_800.0
+    """After the limit: a run ends then even if somebody is still in the air."""
+
+    idle_s: float = 1.0
+    """The planner is asked this often when something has ended."""
+
+
+FLIGHT = FlightSettings()
+RUN = RunSettings()

@@ -1,0 +1,163 @@
+"""The figures of several runs as tables in Markdown."""
+
+from collections.abc import Callable, Sequence
+from math import inf, isinf
+
+from recon.score.closed_loop import CURVE_MIN
+from recon.score.forecast_metrics import Ahead, LeadScore
+from recon.score.interval import Interval, interval, ratio, times
+from recon.score.run_score import RunScore
+from recon.score.scenario import Scenario
+from recon.score.settings import RUN
+
+Row = tuple[str, ...]
+Parts = Callable[[LeadScore], tuple[float, float]]
+NOTHING = "-"
+"""Where no run has the figure."""
+
+
+def tables(scenario: Scenario, runs: Sequence[RunScore]) -> str:
+    """Return all figures: the survey's, the shade's, the forecast's. The runs' order is nothing."""
+    runs = sorted(runs, key=lambda each: each.seed)
+    parts = [_head(scenario, runs), _survey(scenario, runs), _shade(runs)]
+    if any(each.leads for each in runs):
+        parts.append(_forecast(runs))
+    return "\n\n".join(parts)
+
+
+def _head(scenario: Scenario, runs: Sequence[RunScore]) -> str:
+    methods, survey = scenario.methods, scenario.survey
+    return (
+        f"{scenario.name}: {scenario.about}\n"
+        f"detection {methods.detection}, forecast {methods.forecast}, planner {survey.planner}; "
+        f"{len(runs)} seeds"
+    )
+
+
+def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
+    limit_s = scenario.limit_s
+    rows = [
+        _time("time to 95 % imaged, min", [r.to_95_imaged_s for r in runs], limit_s),
+        _time("time to 95 % in sun, min", [r.to_95_in_sun_s for r in runs], limit_s),
+    ]
+    for index, minute in enumerate(m for m in CURVE_MIN if 60.0 * m <= limit_s):
+        shares = [r.in_sun_share[index] for r in runs]
+        rows.append(_row(f"in sun after {minute:g} min, %", shares, _percent, 1.0))
+    rows += [
+        _row(
+            "said in sun, but on no photo in sun, %",
+            _of(runs, "wrongly_in_sun_share"),
+            _percent,
+            1.0,
+        ),
+        _row("until all have landed, min", _of(runs, "survey_s"), _minutes),
+        _row("flight time of all drones, min", _of(runs, "flight_s"), _minutes),
+        _row("missions", _of(runs, "missions"), _plain),
+        _row("photos on rows", _of(runs, "photos"), _plain),
+        _row("of them in shade, %", _of(runs, "shaded_share"), _percent, 1.0),
+        _row("violations: nearer than 10 m", _of(runs, "encounters"), _plain),
+        _row("violations: landed under the reserve", _of(runs, "low_landings"), _plain),
+    ]
+    return _table(("survey", "mean", "95 %", "runs"), rows)
+
+
+def _shade(runs: Sequence[RunScore]) -> str:
+    overlaps = ratio([(r.shade.both, r.shade.either) for r in runs])
+    rows = [
+        _told("shade IoU", overlaps, _fine),
+        _row("boundary error, m", _of(runs, "boundary_error_m"), _plain),
+        _row("footprint that anything is said of, %", _of(runs, "known_share"), _percent, 1.0),
+        _row("footprint in shade, %", _of(runs, "shade_share"), _percent, 1.0),
+    ]
+    return _table(("shade", "figure", "95 %", "runs"), rows)
+
+
+def _forecast(runs: Sequence[RunScore]) -> str:
+    head = ("forecast", *(f"{lead_s / 60.0:g} min" for lead_s in RUN.lead_s))
+    rows = [
+        (f"cells, {ahead.value}, %", *(_cells(runs, lead_s, ahead) for lead_s in RUN.lead_s))
+        for ahead in Ahead
+    ]
+    figures: dict[str, Parts] = {
+        "Brier": lambda score: (score.squares, score.cells),
+        "shade IoU": lambda score: (score.shade.both, score.shade.either),
+    }
+    for name, parts in figures.items():
+        for ahead in Ahead:
+            cells = [_lead(runs, lead_s, ahead, parts) for lead_s in RUN.lead_s]
+            rows.append((f"{name}, {ahead.value}", *cells))
+    return _table(head, rows)
+
+
+def _lead(runs: Sequence[RunScore], lead_s: float, ahead: Ahead, parts: Parts) -> str:
+    scores = [run.leads.get((lead_s, ahead)) for run in runs]
+    found = ratio([parts(score) for score in scores if score is not None])
+    if found is None:
+        return NOTHING
+    mean = _fine(found.mean)
+    return mean if isinf(found.high) else f"{mean} ({_fine(found.low)} to {_fine(found.high)})"
+
+
+def _cells(runs: Sequence[RunScore], lead_s: float, ahead: Ahead) -> str:
+    def cells(which: Ahead) -> int:
+        return sum(
+            score.cells for run in runs if (score := run.leads.get((lead_s, which))) is not None
+        )
+
+    return f"{100.0 * cells(ahead) / cells(Ahead.ALL):.0f}" if cells(Ahead.ALL) else NOTHING
+
+
+def _of(runs: Sequence[RunScore], name: str) -> list[float | None]:
+    return [getattr(run, name) for run in runs]
+
+
+def _row(
+    name: str, values: Sequence[float | None], words: Callable[[float], str], most: float = inf
+) -> Row:
+    return _told(name, interval(values), words, most)
+
+
+def _told(
+    name: str, found: Interval | None, words: Callable[[float], str], most: float = inf
+) -> Row:
+    if found is None:
+        return name, NOTHING, NOTHING, "0"
+    return name, words(found.mean), _bounds(found, words, most), f"{found.count}"
+
+
+def _time(name: str, values: Sequence[float | None], limit_s: float) -> Row:
+    found = times(values, limit_s)
+    if found is None:
+        return name, NOTHING, NOTHING, "0"
+    is_cut = found.reached < found.count
+    mean = ("at least " if is_cut else "") + _minutes(found.mean.mean)
+    reached = f"{found.reached} of {found.count} in time"
+    return name, mean, _bounds(found.mean, _minutes, limit_s), reached
+
+
+def _bounds(found: Interval, words: Callable[[float], str], most: float) -> str:
+    """The interval, as far as a figure from 0 to `most` can be at all."""
+    if found.high == inf:
+        return NOTHING
+    return f"{words(max(found.low, 0.0))} to {words(min(found.high, most))}"
+
+
+def _plain(value: float) -> str:
+    return f"{value:.1f}"
+
+
+def _fine(value: float) -> str:
+    return f"{value:.2f}"
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.1f}"
+
+
+def _minutes(value: float) -> str:
+    return f"{value / 60.0:.1f}"
+
+
+def _table(head: Row, rows: Sequence[Row]) -> str:
+    lines = [head, ("---",) * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)

@@ -1,0 +1,62 @@
+"""`recon score` as it is called: tables that repeat, complaints in one line."""
+
+from pathlib import Path
+
+import pytest
+from tests.score.scenes import SMALL, written
+from typer.testing import CliRunner
+
+from recon.cli.app import app
+
+FEW = ["--seeds", "2", "--first-seed", "7"]
+
+
+def test_tables_come_out_and_progress_goes_beside(tmp_path: Path) -> None:
+    path = str(written(tmp_path))
+    first, second = (CliRunner().invoke(app, ["score", path, *FEW]) for _ in range(2))
+    assert first.exit_code == 0
+    assert first.stdout_bytes == second.stdout_bytes
+    assert "ideal, forecast global_shift, planner lawnmower_again; 2 seeds" in first.stdout
+    assert "| time to 95 % in sun, min |" in first.stdout
+    assert "| shade IoU | 1.00 |" in first.stdout
+    assert "| Brier, unseen |" in first.stdout
+    assert [line.split(":")[0] for line in first.stderr.splitlines()] == ["seed 7", "seed 8"]
+
+
+def test_methods_can_be_chosen(tmp_path: Path) -> None:
+    options = ["--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
+    assert done.exit_code == 0
+    assert "forecast none, planner lawnmower_once; 1 seeds" in done.stdout
+    assert "Brier" not in done.stdout
+
+
+def test_faults_that_are_not_felt_are_told(tmp_path: Path) -> None:
+    text = SMALL.replace("pilot-takes:1:40:30", "no-ack:1")
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, text)), "--seeds", "1"])
+    assert "faults that flights by events do not feel: no-ack" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--seeds", "0"], "expected --seeds of 1 to 10000"),
+        (["--first-seed", "-1"], "--first-seed of 0 or more"),
+        (["--planner", "magic"], "--planner: expected lawnmower_once or lawnmower_again, got"),
+        (["--detection", "magic"], "--detection: expected ideal or brightness_ratio or otsu, got"),
+        (["--forecast", "magic"], "--forecast: expected none or global_shift or persistence, got"),
+    ],
+)
+def test_bad_options_are_one_line(tmp_path: Path, options: list[str], words: str) -> None:
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr.startswith("recon score: ")
+    assert words in done.stderr
+
+
+def test_a_bad_scenario_is_told_with_its_line(tmp_path: Path) -> None:
+    path = written(tmp_path, SMALL.replace("cover = 0.4", "cover = 4"))
+    done = CliRunner().invoke(app, ["score", str(path)])
+    assert done.exit_code == 2
+    assert done.stderr.startswith(f"recon score: {path}:24: clouds[0].cover: expected 0 to 1, got")

@@ -1,0 +1,45 @@
+"""A small scenario as text, and as it is read."""
+
+from pathlib import Path
+
+from recon.score import Scenario, load_scenario
+
+SMALL = """about = "a small field under cumulus"
+start_utc = 2025-06-20T16:00:00Z
+faults = ["pilot-takes:1:40:30"]
+
+[site]
+latitude_deg = 41.9
+longitude_deg = -93.6
+ground_altitude_m = 280.0
+
+[task]
+region_m = [
+    [0.0, 0.0], [200.0, 0.0],
+    [200.0, 150.0], [0.0, 150.0],
+]
+limit_min = 10.0
+
+[fleet]
+survey_drones = 2
+
+[eye]
+radius_m = 160.0
+
+[[clouds]]
+cover = 0.4
+outer_scale_m = 2000.0
+
+[wind]
+speed_10m_mps = 4.0
+"""
+
+
+def written(folder: Path, text: str = SMALL) -> Path:
+    path = folder / "small.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def small(folder: Path, text: str = SMALL) -> Scenario:
+    return load_scenario(written(folder, text))

@@ -1,0 +1,161 @@
+"""Every scenario is read; what is wrong in one is told with file, line, expected and come."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.score.scenes import SMALL, small, written
+
+from recon.detection import DETECTORS
+from recon.forecast import FORECASTERS
+from recon.guidance.survey import PLANNERS
+from recon.score import ScenarioError, load_scenario
+from recon.score.scenario_schema import METHOD_NAMES, DetectionName, ForecastName, PlannerName
+from recon.score.toml_lines import key_lines, line_of
+
+FOLDER = Path(__file__).parents[2] / "scenarios"
+FILES = sorted(FOLDER.glob("*.toml"))
+EXPECTED = {
+    "clear-sky",
+    "thin-cirrus",
+    "cumulus-20",
+    "cumulus-40",
+    "cumulus-60",
+    "two-layers",
+    "wind-shift",
+    "overcast",
+    "one-big-gap",
+    "fault-storm",
+    "one-drone",
+    "eight-drones",
+    "l-shaped-5ha",
+    "holed-11ha",
+    "large-60ha",
+}
+
+
+def fault_of(folder: Path, old: str, new: str) -> str:
+    """What is said of the small scenario with one thing changed, without the folder."""
+    assert SMALL.count(old) == 1
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario(written(folder, SMALL.replace(old, new)))
+    return str(caught.value).removeprefix(f"{folder}/")
+
+
+def test_the_scenarios_that_are_promised_are_there() -> None:
+    assert {path.stem for path in FILES} == EXPECTED
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_every_scenario_is_read(path: Path) -> None:
+    scenario = load_scenario(path)
+    assert scenario.name == path.stem
+    assert scenario.survey.budget.time_s == scenario.limit_s > 0.0
+    least, most = (
+        scenario.survey.region.outline_m.min(axis=0),
+        scenario.survey.region.outline_m.max(axis=0),
+    )
+    assert (most - least > 100.0).all()
+
+
+def test_the_fields_are_as_large_as_they_say() -> None:
+    for name, count in (("one-drone", 1), ("cumulus-40", 3), ("eight-drones", 8)):
+        assert len(load_scenario(FOLDER / f"{name}.toml").fleet.pads_m) == count
+    assert len(load_scenario(FOLDER / "holed-11ha.toml").survey.region.holes_m) == 1
+    assert len(load_scenario(FOLDER / "two-layers.toml").sky.layers) == 2
+    assert load_scenario(FOLDER / "clear-sky.toml").sky.layers == ()
+
+
+def test_a_scenario_says_what_its_file_says(tmp_path: Path) -> None:
+    scenario = small(tmp_path)
+    assert scenario.sky.sun.start_utc_s == 1_750_435_200.0
+    assert scenario.frame.origin.ellipsoid_height_m == 280.0
+    assert scenario.fleet.pads_m == ((90.0, -30.0), (110.0, -30.0))
+    assert scenario.eye.over_m == (100.0, 75.0)
+    assert [layer.cover for layer in scenario.sky.layers] == [0.4]
+    assert scenario.faults[0].start_s == 40.0
+
+
+def test_the_methods_that_may_be_named_are_those_that_are_there() -> None:
+    assert METHOD_NAMES["detection"] == ("ideal", *DETECTORS) == DetectionName.__args__
+    assert set(METHOD_NAMES["forecast"]) == {"none", *FORECASTERS} == set(ForecastName.__args__)
+    assert set(METHOD_NAMES["planner"]) == set(PLANNERS) == set(PlannerName.__args__)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("cover = 0.4", "cover = 1.4", "clouds[0].cover: expected 0 to 1, got 1.4"),
+        ("cover = 0.4", "covers = 0.4", "got 'covers'; did you mean 'cover'?"),
+        ("cover = 0.4", 'cover = "much"', "clouds[0].cover: expected a number, got 'much'"),
+        ("survey_drones = 2", "survey_drones = 0", "expected a whole number of 1 to 16, got 0"),
+        ("survey_drones = 2", "drones = 2", "expected only the keys survey_drones,"),
+        ("latitude_deg = 41.9", "latitude_deg = 141.9", "a number of -89 to 89, got 141.9"),
+        ("limit_min = 10.0", "limit_min = -1.0", "task.limit_min: expected a number"),
+        ("limit_min = 10.0", "speed_mps = 14.0\nlimit_min = 10.0", "fly at 8.8 m/s at most"),
+        ("[200.0, 0.0],", "[200.0],", "task.region_m[1]: expected [east, north] in metres, got a"),
+        ("[200.0, 0.0],\n    [200.0, 150.0]", "[200.0, 150.0],\n    [200.0, 0.0]", "cannot be sur"),
+        ('"pilot-takes:1:40:30"', '"gremlins"', "faults[0]: fault 'gremlins': expected one of"),
+        ('"pilot-takes:1:40:30"', '"pilot-takes:7"', "faults[0]: expected a vehicle of S-1, S-2"),
+        ("radius_m = 160.0", "radius_m = 160.0\nperiod_s = 3", "expected 1 or 2 or 5, got 3"),
+        ("speed_10m_mps = 4.0", "speed_10m_mps = nan", "speed_10m_mps: expected 0 to 40, got nan"),
+        ("2025-06-20T16:00:00Z", "2025-06-20T16:00:00", "expected a moment like 2025-06-20T16:00"),
+        ("2025-06-20T16:00:00Z", '"today"', "start_utc: expected a moment like 2025-06-20T16:00"),
+        ("[eye]", '[methods]\nplanner = "magic"\n[eye]', "or 'lawnmower_once', got 'magic'"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_line(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    said = fault_of(tmp_path, old, new)
+    assert words in said
+    assert said.startswith("small.toml:")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("cover = 0.4", "cover = 1.4", 24),
+        ("cover = 0.4", "covers = 0.4", 24),
+        ("survey_drones = 2", "survey_drones = 0", 18),
+        ("[200.0, 0.0],", "[200.0],", 11),
+        ('"pilot-takes:1:40:30"', '"gremlins"', 3),
+        ("[wind]\nspeed_10m_mps = 4.0", "[wind]\nspeed_10m_mps = 99.0", 28),
+    ],
+)
+def test_the_line_is_that_of_the_key(tmp_path: Path, old: str, new: str, line: int) -> None:
+    assert fault_of(tmp_path, old, new).startswith(f"small.toml:{line}: ")
+
+
+def test_no_file_no_toml_and_no_text(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match="expected a scenario's file, got: No such file"):
+        load_scenario(tmp_path / "none.toml")
+    with pytest.raises(ScenarioError, match=r"small.toml:2: expected a TOML file, got: "):
+        load_scenario(written(tmp_path, 'about = "x"\nlimit = = 3\n'))
+    (tmp_path / "bytes.toml").write_bytes(b'about = "x"\n\xff\xfe')
+    with pytest.raises(ScenarioError, match=r"bytes.toml:2: expected UTF-8 text"):
+        load_scenario(tmp_path / "bytes.toml")
+
+
+@given(st.binary(max_size=200))
+def test_no_bytes_break_the_reader(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
+    path = tmp_path_factory.mktemp("any") / "any.toml"
+    path.write_bytes(data)
+    with pytest.raises(ScenarioError):
+        load_scenario(path)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_every_key_has_the_line_it_stands_on(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    lines = key_lines(text)
+    for table, values in tomllib.loads(text).items():
+        tables = values if isinstance(values, list) else [values]
+        for index, each in enumerate(tables):
+            for key in each if isinstance(each, dict) else ():
+                where = f"{table}[{index}]" if isinstance(values, list) else table
+                line = line_of(lines, f"{where}.{key}")
+                assert line is not None
+                assert text.splitlines()[line - 1].startswith(f"{key} =")
