@@ -5,7 +5,7 @@ from importlib import import_module
 
 import typer
 
-from recon.cli.operating import COMMANDS, operating_app
+from recon.cli.operating import COMMANDS, GROUPS, operating_app
 from recon.client.errors import ClientError
 from recon.model.errors import ReconError
 
@@ -26,7 +26,7 @@ def main() -> None:
 
 def _app(first_word: list[str]) -> typer.Typer:
     """Return the commands of a running station alone when one of them is meant: see `operating`."""
-    if first_word and first_word[0] in COMMANDS:
+    if first_word and first_word[0] in (*COMMANDS, *GROUPS):
         return operating_app()
     if first_word == ["audit"]:
         reading = operating_app()

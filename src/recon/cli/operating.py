@@ -12,6 +12,7 @@ from recon.cli.negative_numbers import TakesNegativeNumbers
 from recon.cli.returning import fleet_return_command
 from recon.cli.steering import goto_command, nudge_command
 from recon.cli.stopping import all_stop_command, hold_command, land_command, return_command
+from recon.cli.surveying import survey_app
 from recon.cli.watching import alarms_command, commands_command, status_command
 
 COMMANDS: dict[str, Callable[..., None]] = {
@@ -33,6 +34,9 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "alarms": alarms_command,
     "commands": commands_command,
 }
+
+GROUPS: dict[str, typer.Typer] = {"survey": survey_app}
+"""Commands of several words."""
 
 WITH_COORDINATES = frozenset({"goto"})
 """Commands whose arguments may be negative."""
@@ -61,6 +65,9 @@ def add_commands(app: typer.Typer) -> None:
     for name, command in COMMANDS.items():
         takes_negative = name in WITH_COORDINATES
         app.command(name, cls=TakesNegativeNumbers if takes_negative else None)(command)
+
+    for name, words in GROUPS.items():
+        app.add_typer(words, name=name)
 
     @app.callback()
     def group() -> None:

@@ -21,6 +21,7 @@ from recon.client.order import Order, VehicleAnswer
 from recon.client.readiness import Preflight, PreflightOverride, PreflightPoint
 from recon.client.returning import Returning
 from recon.client.station import Station
+from recon.client.surveys import Survey, SurveyFigures, Surveying, Surveys
 from recon.client.telemetry import Aged, Heading, Lead, Position, Telemetry, Velocity
 from recon.client.vehicle import Vehicle
 from recon.client.watched import Alarm, AuditEntry, AuditPage, StopAnswer
@@ -58,6 +59,10 @@ __all__ = [
     "StationUnreachableError",
     "StickFrame",
     "StopAnswer",
+    "Survey",
+    "SurveyFigures",
+    "Surveying",
+    "Surveys",
     "Telemetry",
     "TookTooLongError",
     "Vehicle",

@@ -11,6 +11,7 @@ from recon.client.life import Life
 from recon.client.messages import StateMessage
 from recon.client.order import VehicleAnswer
 from recon.client.stream import Stream
+from recon.client.surveys import Surveys
 from recon.client.telemetry import Telemetry
 from recon.client.vehicle import Vehicle
 from recon.client.watched import Alarm, AuditPage, StopAnswer, StopMessage
@@ -31,6 +32,7 @@ class Station:
         self._http = Http(self.address, answer_within_s)
         self._desk = OrderDesk(self._http, self._stream)
         self.fleet = Fleet(self._desk)
+        self.surveys = Surveys(self._http)
 
     async def __aenter__(self) -> "Station":
         """Open the stream and wait for the first state; raises `ClientError`."""

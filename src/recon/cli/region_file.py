@@ -1,0 +1,60 @@
+"""One region to survey from a GeoJSON file, checked before anything is asked of the station."""
+
+from pathlib import Path
+from typing import Any
+
+from recon.client import ClientError
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.site.errors import SiteError
+from recon.site.geojson import Feature, read_features, regions_of
+
+Rings = list[list[list[float]]]
+
+
+class RegionFileError(ClientError):
+    """A file that holds no region to survey; the text names the file, the feature, and why."""
+
+
+def read_region(path: Path, feature: str | None, origin: GeoPoint) -> tuple[str, Rings]:
+    """Return the name and the rings of the one region in a file, or of the feature of that name.
+
+    `origin` is the site's: a region far from it is none. Raises `RegionFileError`.
+    """
+    try:
+        features = read_features(path)
+        chosen = _chosen(path, features, feature)
+        regions = regions_of(chosen, LocalFrame(origin))
+    except SiteError as problem:
+        raise RegionFileError(str(problem)) from problem
+    if len(regions) != 1:
+        raise RegionFileError(
+            f"{chosen.place}: expected one polygon, got {len(regions)}: make each a feature of its "
+            "own and name one with --feature"
+        )
+    return _name(chosen) or path.stem, _rings(chosen)
+
+
+def _chosen(path: Path, features: tuple[Feature, ...], name: str | None) -> Feature:
+    named = [each for each in features if name is None or _name(each) == name]
+    if len(named) == 1:
+        return named[0]
+    known = ", ".join(ascii(_name(each) or f"feature {each.number}") for each in features) or "none"
+    if name is None:
+        raise RegionFileError(
+            f"{path}: expected one feature, got {len(features)}: name one with --feature ({known})"
+        )
+    raise RegionFileError(
+        f"{path}: expected one feature named {name!a}, got {len(named)}; there are: {known}"
+    )
+
+
+def _name(feature: Feature) -> str | None:
+    name = feature.properties.get("name")
+    return name if isinstance(name, str) else None
+
+
+def _rings(feature: Feature) -> Rings:
+    """Longitude and latitude; heights, which a region has none of, are left out."""
+    coordinates: Any = feature.geometry["coordinates"]
+    polygon = coordinates if feature.geometry["type"] == "Polygon" else coordinates[0]
+    return [[position[:2] for position in ring] for ring in polygon]
