@@ -5,6 +5,7 @@ resolution, so that coarse rasters of the distance agree with the fine one below
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -142,6 +143,7 @@ class Farmland:
     ponds: tuple[Pond, ...] = ()
 
 
+@lru_cache(maxsize=4)
 def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
     """Return the land of a seed."""
     random = np.random.default_rng(seed)

@@ -1,0 +1,50 @@
+"""Noise has the statistics of electrons, and pixel values the curve of a screen."""
+
+import numpy as np
+import pytest
+
+from recon.sim.eye import SensorSettings
+from recon.sim.eye.sensor import light_of_value, noise_of, read_out, value_of_light
+
+SHAPE = (400, 400)
+
+
+def read(light: float, settings: SensorSettings, number: int = 0) -> np.ndarray:
+    return read_out(np.full(SHAPE, light, np.float32), noise_of(1, number, SHAPE), settings)
+
+
+@pytest.mark.parametrize("light", [0.05, 0.2, 0.6])
+def test_noise_is_shot_and_read_noise(light: float) -> None:
+    settings = SensorSettings(full_well=400.0, read_noise=0.01)
+    found = light_of_value()[read(light, settings)].astype(float)
+    assert found.mean() == pytest.approx(light, rel=0.02)
+    expected = np.sqrt(0.01**2 + light / 400.0)
+    assert found.std() == pytest.approx(expected, rel=0.05)
+
+
+def test_noise_is_a_function_of_the_pictures_number() -> None:
+    first, again, second = noise_of(1, 5, SHAPE), noise_of(1, 5, SHAPE), noise_of(1, 6, SHAPE)
+    assert np.array_equal(first, again)
+    assert abs(np.corrcoef(first.ravel(), second.ravel())[0, 1]) < 0.01
+    assert first.mean() == pytest.approx(0.0, abs=0.01)
+    assert first.std() == pytest.approx(1.0, abs=0.01)
+
+
+def test_without_noise_values_come_back() -> None:
+    quiet = SensorSettings(full_well=1e12, read_noise=0.0)
+    values = np.arange(256, dtype=np.uint8)
+    light = light_of_value()[values].reshape(1, -1)
+    found = read_out(light, np.ones_like(light), quiet)
+    assert np.abs(found[0].astype(int) - values)[8:].max() <= 1
+
+
+def test_light_beyond_white_is_white_and_below_black_black() -> None:
+    settings = SensorSettings()
+    assert (read(7.0, settings) == 255).all()
+    assert (read(-7.0, SensorSettings(full_well=1e12)) == 0).all()
+
+
+def test_dark_values_are_told_apart() -> None:
+    steps = np.diff(value_of_light().astype(int))
+    assert steps.max() <= 2
+    assert steps.min() >= 0
