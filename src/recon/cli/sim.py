@@ -17,6 +17,7 @@ from recon.cli.sim_options import (
     EnduranceMinOption,
     EyeOption,
     FaultOption,
+    FaultsOption,
     FeedOption,
     FpsOption,
     FrameSizeOption,
@@ -25,6 +26,7 @@ from recon.cli.sim_options import (
     HoverOnGroundOption,
     ImageFormatOption,
     LatencySOption,
+    MissionIdsOption,
     ReplaySiteOption,
     SeedOption,
     SiteOption,
@@ -32,6 +34,8 @@ from recon.cli.sim_options import (
     VehiclesOption,
     WanderOption,
     WaypointAltitude,
+    WindMpsOption,
+    WindToDegOption,
 )
 from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
@@ -39,6 +43,8 @@ from recon.model.vehicle import AltitudeReference
 from recon.sim.camera_feed import FeedSettings, FrameSource, ImageFormat
 from recon.sim.commands import HoverOnGround
 from recon.sim.errors import SimulationError
+from recon.sim.eye import EyeSettings
+from recon.sim.fault_file import FaultScript, load_faults
 from recon.sim.faults import parse_fault
 from recon.sim.field import FieldFrames
 from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig
@@ -46,7 +52,8 @@ from recon.sim.frame_files import folder_frames
 from recon.sim.replay import load_replay, rig_over
 from recon.sim.rig import EyeRig
 from recon.sim.run import run_fleet
-from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
+from recon.sim.telemetry import FIELD_SENSORS
+from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.site import Eye, Site, SiteError, demo_site_folder, load_site
 
 LONGEST_LATENCY_S = 60.0
@@ -80,6 +87,10 @@ def sim_command(
     altitude_bias_m: AltitudeBiasMOption = None,
     endurance_min: EnduranceMinOption = 25.0,
     fault: FaultOption = None,
+    faults: FaultsOption = None,
+    wind_mps: WindMpsOption = 0.0,
+    wind_to_deg: WindToDegOption = 50.0,
+    mission_ids: MissionIdsOption = True,
     seed: SeedOption = 0,
 ) -> None:
     """Run simulated companion apps that connect to a station, until Ctrl+C."""
@@ -93,6 +104,7 @@ def sim_command(
             raise SimulationError(
                 f"--latency-s: expected 0 to {LONGEST_LATENCY_S:g} seconds, got {latency_s:g}"
             )
+        script = FaultScript() if faults is None else load_faults(faults)
         place = _place(site)
         feed_settings = FeedSettings(fps, image_format, latency_s, feed)
         if not eye and (frames is not None or replay_site is not None):
@@ -111,7 +123,11 @@ def sim_command(
             altitude_bias_m=altitude_bias_m,
             endurance_s=60.0 * endurance_min,
             seed=seed,
-            faults=tuple(parse_fault(text) for text in fault or ()),
+            sensors=FIELD_SENSORS,
+            wind=_wind(wind_mps, wind_to_deg, seed),
+            tells_mission_id=mission_ids,
+            faults=(*(parse_fault(text) for text in fault or ()), *script.faults),
+            chances=script.chances,
             pads=_pads(place) if home is None and replay_site is None else {},
             go_home_heights_m={
                 serial: profile.go_home_height_m
@@ -160,6 +176,12 @@ def _refuse_non_positive(option: str, value: float) -> None:
         raise SimulationError(f"{option}: expected a positive number, got {value:g}")
 
 
+def _wind(speed_mps: float, heading_deg: float, seed: int) -> WindSettings | None:
+    if speed_mps == 0.0:
+        return None
+    return WindSettings(seed=abs(seed), speed_10m_mps=speed_mps, heading_deg=heading_deg)
+
+
 def _place(folder: Path | None) -> Site:
     place = load_site(demo_site_folder() if folder is None else folder)
     if place.frame is None:
@@ -193,7 +215,8 @@ def _eye_world(
         return EyeWorld(rig, folder_frames(frames, rows, cols))
     if rig is None or place.eye is None:
         raise SimulationError("expected a site with an [eye], or --frames, or --no-eye, got none")
-    land = FieldFrames(rig.camera, place.eye.image_circle, seed, _sky(rig.frame.origin, seed))
+    sky, eye = _sky(rig.frame.origin, seed), EyeSettings(seed)
+    land = FieldFrames(rig.camera, place.eye.image_circle, seed, sky, eye)
     return EyeWorld(rig, land)
 
 
