@@ -15,6 +15,8 @@ import { OrderBar } from "./panels/orders/OrderBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationBanner";
 import { StationPanel } from "./panels/station/StationPanel";
+import { SunPanel } from "./panels/sun/SunPanel";
+import { SurveyPanel } from "./panels/survey/SurveyPanel";
 import { VehicleList } from "./panels/vehicles/VehicleList";
 import "./layout.css";
 
@@ -67,6 +69,8 @@ export function App() {
       <OrderBar />
       <aside class="side side-events" aria-label="Alarms and commands">
         <AlarmList />
+        <SurveyPanel />
+        <SunPanel />
         <FleetReturn />
         <CommandList />
         <LinkList />

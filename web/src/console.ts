@@ -3,6 +3,7 @@ import { createFleetView, type FleetView } from "./fleet/fleetView";
 import { createSelection, type Selection, selectedVehicles } from "./fleet/selection";
 import type { ThemeSwitch } from "./look/theme";
 import type { LonLat } from "./map/localGrid";
+import { createOverlay, type Overlay } from "./map/overlay";
 import { createDesk, type Desk } from "./orders/desk";
 import { createFlyHere, type FlyHere } from "./orders/flyHere";
 import { type Targets, targetsOf } from "./orders/targets";
@@ -21,6 +22,7 @@ export interface Console {
   readonly targets: Accessor<Targets>;
   readonly desk: Desk;
   readonly flyHere: FlyHere;
+  readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
   /** Seconds to add to every age of the newest state, growing as one looks. */
   readonly behindS: Accessor<number>;
@@ -63,6 +65,7 @@ export function createConsole(
     targets,
     desk,
     flyHere,
+    overlay: createOverlay(),
     theme,
     behindS,
     fitRequests,

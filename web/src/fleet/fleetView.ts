@@ -6,8 +6,10 @@ import type {
   FleetReturnView,
   GroundImageView,
   LinkView,
+  ShadeLineView,
   SiteView,
   StationView,
+  SurveyView,
   VehicleView,
 } from "../protocol";
 import type { StationSource } from "../source/stationSource";
@@ -28,6 +30,8 @@ interface Contents {
   site: SiteView | null;
   groundImage: GroundImageView | null;
   fleetReturn: FleetReturnView | null;
+  shade: ShadeLineView | null;
+  surveys: SurveyView[];
 }
 
 const NOTHING: Contents = {
@@ -40,6 +44,8 @@ const NOTHING: Contents = {
   site: null,
   groundImage: null,
   fleetReturn: null,
+  shade: null,
+  surveys: [],
 };
 
 /**
@@ -64,6 +70,8 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("station", reconcile(state.station));
     setView("site", reconcile(state.site));
     setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
+    setView("shade", reconcile(state.shade));
+    setView("surveys", reconcile([...state.surveys], { key: "id" }));
     setView("groundImage", reconcile(state.ground_image));
   });
   return view;

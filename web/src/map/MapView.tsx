@@ -10,6 +10,7 @@ import { BoundaryLayer } from "./boundaryLayer";
 import { readColours } from "./colours";
 import { createGroundOnMap } from "./createGroundOnMap";
 import { FlyHereLayer } from "./flyHereLayer";
+import { ForecastLayer } from "./forecastLayer";
 import { GroundImageNote } from "./GroundImageNote";
 import { GhostLayer } from "./ghostLayer";
 import { GraticuleLayer } from "./graticuleLayer";
@@ -20,8 +21,11 @@ import type { Layer } from "./layer";
 import type { Box } from "./localGrid";
 import { PadLayer } from "./padLayer";
 import { type Meant, positionOf, wholeView } from "./scene";
+import { ShadeLayer } from "./shadeLayer";
 import { SteeringLayer } from "./steeringLayer";
+import { SurveyCellsLayer } from "./surveyCellsLayer";
 import { SurveyLayer } from "./surveyLayer";
+import { SurveyRowsLayer } from "./surveyRowsLayer";
 import { TrailLayer } from "./trailLayer";
 import { VehicleLayer } from "./vehicleLayer";
 
@@ -33,7 +37,8 @@ const LATE_STEP_S = 0.2;
 
 /** The map with everything that has a place. */
 export function MapView() {
-  const { source, selection, theme, behindS, fitRequests, flyHere, setMiddle } = useConsole();
+  const { source, selection, theme, behindS, fitRequests, flyHere, overlay, setMiddle } =
+    useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createGroundOnMap(source);
   let holder!: HTMLDivElement;
@@ -47,8 +52,12 @@ export function MapView() {
     const made = createMap(holder, readColours(document).ground);
     layers = [
       new GroundImageLayer((frameId) => source.groundImage(frameId), ground),
+      new ShadeLayer(overlay, source),
+      new ForecastLayer(overlay, source),
+      new SurveyCellsLayer(overlay, source),
       new GraticuleLayer(labels, scaleBar),
       new SurveyLayer(),
+      new SurveyRowsLayer(source),
       new HeightZoneLayer(),
       new KeepOutLayer(),
       new BoundaryLayer(),

@@ -4,7 +4,7 @@ import type { Clock, Instant } from "./clock";
 import { newHolder } from "./holder";
 import { StreamLag } from "./lag";
 import { Requests } from "./requests";
-import type { Connection, NamedOrder, StationSource } from "./stationSource";
+import type { Connection, NamedOrder, NewSurvey, StationSource } from "./stationSource";
 import { type Socket, Stream } from "./stream";
 
 /** What a live source needs from its surroundings; tests bring false ones. */
@@ -124,6 +124,34 @@ export class LiveSource implements StationSource {
 
   groundImageFile() {
     return this.requests.picture("/api/ground-image.tif");
+  }
+
+  askSurvey(survey: NewSurvey) {
+    return this.requests.askSurvey(survey);
+  }
+
+  startSurvey(id: number, serials: readonly string[], mayTakeOff: boolean) {
+    return this.requests.startSurvey(id, serials, mayTakeOff);
+  }
+
+  stopSurvey(id: number, word: "pause" | "abort") {
+    return this.requests.stopSurvey(id, word);
+  }
+
+  surveyWays(id: number) {
+    return this.requests.surveyWays(id);
+  }
+
+  surveyCells(id: number, number: number) {
+    return this.requests.picture(`/api/surveys/${id}/cells.png?id=${number}`);
+  }
+
+  shadePicture(number: number) {
+    return this.requests.picture(`/api/shade.png?id=${number}`);
+  }
+
+  forecastPicture(number: number, lead_s: number) {
+    return this.requests.picture(`/api/forecast.png?id=${number}&lead_s=${lead_s}`);
   }
 
   close(): void {

@@ -1,10 +1,21 @@
 import createClient from "openapi-fetch";
-import type { Leader, OrderResult, PreflightView, WordResponse } from "../protocol";
+import type {
+  Leader,
+  OrderResult,
+  PreflightView,
+  SurveyRequest,
+  SurveyResponse,
+  SurveyWays,
+  WordResponse,
+} from "../protocol";
 import type { paths } from "../protocol/schema";
-import type { NamedOrder, Outcome, Picture } from "./stationSource";
+import type { NamedOrder, NewSurvey, Outcome, Picture } from "./stationSource";
 
 /** A request older than this is given up: an order must not arrive when nobody thinks of it any more. */
 export const REQUEST_MS = 3_000;
+
+/** Rows are worked out behind the pictures that the station reads just then; nothing flies by it. */
+const PLANNED_MS = 12_000;
 
 /** What the page asks of the station over HTTP. Failures are values with a sentence for the operator. */
 export class Requests {
@@ -60,6 +71,35 @@ export class Requests {
     return answered(
       () => this.client.POST("/api/vehicles/{serial}/preflight/override", options),
       same,
+    );
+  }
+
+  askSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>> {
+    // What is left out has its default at the station; the generated type cannot say so.
+    const options = { body: survey as SurveyRequest, signal: AbortSignal.timeout(PLANNED_MS) };
+    return answered(() => this.client.POST("/api/surveys", options), asSurvey);
+  }
+
+  startSurvey(
+    survey_id: number,
+    serials: readonly string[],
+    takeoff: boolean,
+  ): Promise<Outcome<SurveyResponse>> {
+    const body = { serials: [...serials], takeoff };
+    const options = { params: { path: { survey_id } }, body, signal: soon() };
+    return answered(() => this.client.POST("/api/surveys/{survey_id}/start", options), asSurvey);
+  }
+
+  stopSurvey(survey_id: number, word: "pause" | "abort"): Promise<Outcome<SurveyResponse>> {
+    const options = { params: { path: { survey_id, word } }, signal: soon() };
+    return answered(() => this.client.POST("/api/surveys/{survey_id}/{word}", options), asSurvey);
+  }
+
+  surveyWays(survey_id: number): Promise<Outcome<SurveyWays>> {
+    const options = { params: { path: { survey_id } }, signal: soon() };
+    return answered(
+      () => this.client.GET("/api/surveys/{survey_id}/ways", options),
+      (data) => data as SurveyWays,
     );
   }
 
@@ -124,6 +164,11 @@ function orderBody({ serials, order }: NamedOrder, holder: string) {
 
 function soon(): AbortSignal {
   return AbortSignal.timeout(REQUEST_MS);
+}
+
+/** The request library widens pairs to lists; the station's are pairs. */
+function asSurvey(data: unknown): SurveyResponse {
+  return data as SurveyResponse;
 }
 
 function same<T>(value: T): T {

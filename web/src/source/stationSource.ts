@@ -5,6 +5,9 @@ import type {
   OrderResult,
   PreflightView,
   StationState,
+  SurveyRequest,
+  SurveyResponse,
+  SurveyWays,
   WordResponse,
 } from "../protocol";
 import type { Instant } from "./clock";
@@ -32,6 +35,10 @@ export interface NamedOrder {
   readonly order: Order;
 }
 
+/** A survey to plan; what is left out is as the station has it. */
+export type NewSurvey = Pick<SurveyRequest, "height_above_takeoff_m" | "speed_mps"> &
+  Partial<SurveyRequest>;
+
 /** Where the screens get their states from and bring their orders to: live now, a recording later. */
 export interface StationSource {
   /** The newest whole state; null before the first. */
@@ -57,5 +64,18 @@ export interface StationSource {
   vehicleFrame(serial: string, frameId: number): Promise<Outcome<Picture>>;
   groundImage(frameId: number): Promise<Outcome<Picture>>;
   groundImageFile(): Promise<Outcome<Picture>>;
+  /** Plans a survey; nothing flies by it. */
+  askSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>>;
+  /** Flies a survey with these vehicles: they are given to the station's guidance by it. */
+  startSurvey(
+    id: number,
+    serials: readonly string[],
+    mayTakeOff: boolean,
+  ): Promise<Outcome<SurveyResponse>>;
+  stopSurvey(id: number, word: "pause" | "abort"): Promise<Outcome<SurveyResponse>>;
+  surveyWays(id: number): Promise<Outcome<SurveyWays>>;
+  surveyCells(id: number, number: number): Promise<Outcome<Picture>>;
+  shadePicture(number: number): Promise<Outcome<Picture>>;
+  forecastPicture(number: number, lead_s: number): Promise<Outcome<Picture>>;
   close(): void;
 }

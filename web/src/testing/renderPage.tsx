@@ -3,7 +3,13 @@ import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
 import type { ThemeSwitch } from "../look/theme";
 import type { Leader, OrderResult, PreflightView, StationState, WordResponse } from "../protocol";
-import type { Connection, NamedOrder, Outcome, StationSource } from "../source/stationSource";
+import type {
+  Connection,
+  NamedOrder,
+  NewSurvey,
+  Outcome,
+  StationSource,
+} from "../source/stationSource";
 import { FakeClock } from "./fakeClock";
 
 /** A part of the page with a source, a clock and a hand on both. */
@@ -39,7 +45,14 @@ export type Said =
   | { readonly override: string; readonly serial: string }
   | { readonly dismissed: string }
   | { readonly separationHold: boolean }
-  | { readonly fleetReturn: readonly string[] | null };
+  | { readonly fleetReturn: readonly string[] | null }
+  | { readonly askedSurvey: NewSurvey }
+  | {
+      readonly startedSurvey: number;
+      readonly serials: readonly string[];
+      readonly takeoff: boolean;
+    }
+  | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" };
 
 /** What the page asked for, and what every order is answered with. */
 interface Asked {
@@ -173,6 +186,22 @@ function fakeSource(
     vehicleFrame: (serial, frameId) => asked.bringFrame(serial, frameId),
     groundImage: noPicture,
     groundImageFile: noPicture,
+    askSurvey: async (askedSurvey) => {
+      asked.said.push({ askedSurvey });
+      return { kind: "answered", value: { ...asked.word, survey: null } };
+    },
+    startSurvey: async (startedSurvey, serials, takeoff) => {
+      asked.said.push({ startedSurvey, serials, takeoff });
+      return { kind: "answered", value: { ...asked.word, survey: null } };
+    },
+    stopSurvey: async (stoppedSurvey, word) => {
+      asked.said.push({ stoppedSurvey, word });
+      return { kind: "answered", value: { ...asked.word, survey: null } };
+    },
+    surveyWays: noPicture,
+    surveyCells: noPicture,
+    shadePicture: noPicture,
+    forecastPicture: noPicture,
     close: () => {},
   };
 }

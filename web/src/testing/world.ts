@@ -5,7 +5,9 @@ import type {
   GhostView,
   LinkView,
   OrderResult,
+  ShadeLineView,
   StationState,
+  SurveyView,
   VehicleView,
 } from "../protocol";
 
@@ -249,4 +251,92 @@ export function ghost(
     corridor_half_width_m: 12,
     ...changes,
   };
+}
+
+/** A survey of two hectares that one vehicle flies, with `changes` made to it. */
+export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyView {
+  return {
+    id,
+    name: "south field",
+    phase: "running",
+    reason: "round 1",
+    asked_by: "api 127.0.0.1",
+    age_s: 95,
+    started_by: "api 127.0.0.1",
+    planner: "lawnmower_again",
+    height_above_takeoff_m: 50,
+    speed_mps: 5,
+    round: 1,
+    missions: 2,
+    flown_m: 420,
+    vehicles: [
+      {
+        serial: "SN-001",
+        vehicle_name: "Alder",
+        is_flying_rows: true,
+        waits_for: null,
+        refused: null,
+        mission_command_id: -3,
+      },
+      {
+        serial: "SN-002",
+        vehicle_name: "Birch",
+        is_flying_rows: false,
+        waits_for: "its battery does not last",
+        refused: null,
+        mission_command_id: null,
+      },
+    ],
+    figures: {
+      region_m2: 20_000,
+      reached_m2: 20_000,
+      not_yet_m2: 10_000,
+      in_shade_m2: 2_000,
+      in_sun_m2: 8_000,
+      sun_unknown_m2: 0,
+      time_to_95_imaged_s: null,
+      time_to_95_in_sun_s: null,
+    },
+    cells: { number: 1200, ...fieldGrid() },
+    rows: 8,
+    ways: 40,
+    ...changes,
+  };
+}
+
+/** A line from frames to forecasts at work, with `changes` made to it. */
+export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
+  return {
+    detection: "brightness_ratio",
+    forecaster: "global_shift",
+    frames_rejected: 0,
+    frames_dropped: 0,
+    rejected: null,
+    error: null,
+    map: {
+      number: 3,
+      captured_age_s: 1.5,
+      known_share: 0.9,
+      sunlit_share: 0.62,
+      mean_confidence: 0.8,
+      ...fieldGrid(),
+    },
+    forecast: {
+      number: 3,
+      issued_age_s: 1.5,
+      method: "global_shift",
+      lead_s: [0, 30, 60],
+      foreseen_share: [0.9, 0.5, 0.2],
+      prior_sunlit: 0.6,
+      shadows_east_mps: 5,
+      shadows_north_mps: 1,
+      ...fieldGrid(),
+    },
+    ...changes,
+  };
+}
+
+function fieldGrid() {
+  const corners = [at(-80, 80), at(80, 80), at(80, -80), at(-80, -80)];
+  return { corners, cell_m: 4, rows: 40, cols: 40 };
 }

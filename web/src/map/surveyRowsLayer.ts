@@ -1,0 +1,97 @@
+import type { Feature } from "geojson";
+import type { Map as MapLibre } from "maplibre-gl";
+import type { SurveyWays } from "../protocol";
+import type { StationSource } from "../source/stationSource";
+import { shownSurvey } from "../words/survey";
+import type { Colours } from "./colours";
+import type { Layer } from "./layer";
+import { addFeatures, lineFeature, type Point, setFeatures } from "./lines";
+import type { Scene } from "./scene";
+
+const SOURCE = "survey-rows";
+const PLANNED = "survey-rows-planned";
+const FLYING = "survey-rows-flying";
+const FLOWN = "survey-rows-flown";
+/** Ways are asked for this often at most (station time): they grow by some metres a second. */
+const AGAIN_NS = 2e9;
+
+/** A survey's rows: planned thin and dotted, the missions flown now dashed, what is flown whole. */
+export class SurveyRowsLayer implements Layer {
+  private map: MapLibre | null = null;
+  private shown = "";
+  private isFetching = false;
+  private notBefore_ns = 0;
+
+  constructor(private readonly source: Pick<StationSource, "surveyWays">) {}
+
+  add(map: MapLibre, colours: Colours): void {
+    this.map = map;
+    addFeatures(map, SOURCE);
+    const look = (id: string, width: number, dash: number[] | null) =>
+      map.addLayer({
+        id,
+        type: "line",
+        source: SOURCE,
+        filter: ["==", ["get", "kind"], id],
+        paint: {
+          "line-color": colours.survey,
+          "line-width": width,
+          ...(dash === null ? {} : { "line-dasharray": dash }),
+        },
+      });
+    look(PLANNED, 1.5, [1, 3]);
+    look(FLYING, 2, [4, 2]);
+    look(FLOWN, 3.5, null);
+  }
+
+  update(scene: Scene): void {
+    const survey = shownSurvey(scene.state.surveys);
+    if (survey === null) {
+      this.draw("", null);
+      return;
+    }
+    const key = `${survey.id}:${survey.phase}:${survey.missions}:${survey.ways}`;
+    const isNew = key !== this.shown;
+    if (!isNew || this.isFetching || scene.state.time_ns < this.notBefore_ns) return;
+    this.isFetching = true;
+    this.notBefore_ns = scene.state.time_ns + AGAIN_NS;
+    void this.source
+      .surveyWays(survey.id)
+      .then((outcome) => {
+        if (outcome.kind === "answered") this.draw(key, outcome.value);
+      })
+      .finally(() => {
+        this.isFetching = false;
+      });
+  }
+
+  recolour(colours: Colours): void {
+    for (const id of [PLANNED, FLYING, FLOWN]) {
+      this.map?.setPaintProperty(id, "line-color", colours.survey);
+    }
+  }
+
+  private draw(key: string, ways: SurveyWays | null): void {
+    if (this.map === null || key === this.shown) return;
+    this.shown = key;
+    setFeatures(this.map, SOURCE, ways === null ? [] : wayFeatures(ways));
+  }
+}
+
+/** The lines of a survey's ways, each with what it is. */
+export function wayFeatures(ways: SurveyWays): Feature[] {
+  const line = (places: readonly (readonly [number, number])[], kind: string): Feature[] =>
+    places.length < 2
+      ? []
+      : [
+          lineFeature(
+            places.map(([lon, lat]): Point => [lon, lat]),
+            { kind },
+          ),
+        ];
+  return [
+    ...ways.rows.flatMap((row) => line(row, PLANNED)),
+    ...ways.flying.flatMap(({ places }) => line(places, FLYING)),
+    ...ways.flown.flatMap(({ places }) => line(places, FLOWN)),
+  ];
+}

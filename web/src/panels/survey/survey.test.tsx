@@ -1,0 +1,114 @@
+import { afterEach, describe, expect, it } from "vitest";
+import type { SurveyView } from "../../protocol";
+import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { area, station, survey, vehicle } from "../../testing/world";
+import { sharePercent, shownSurvey } from "../../words/survey";
+import { SurveyPanel } from "./SurveyPanel";
+
+let page: RenderedPage;
+afterEach(() => page?.dispose());
+
+function show(...surveys: SurveyView[]) {
+  page = renderPage(SurveyPanel, station([vehicle(1), vehicle(2)], { surveys }));
+}
+
+function hold(name: string, ms: number) {
+  const button = find(page.root, `[aria-label^='${name}']`);
+  button.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+  page.clock.advance(ms);
+  button.dispatchEvent(new PointerEvent("pointerup", { bubbles: true, button: 0 }));
+}
+
+describe("a survey in the list", () => {
+  it("tells how much is imaged in sun, in shade and not yet", () => {
+    show(survey(7));
+    const text = find(page.root, "[data-testid=survey-7]").textContent;
+    expect(text).toContain("south field is being flown");
+    expect(text).toContain("in sun 40 %, in shade 10 %, not yet 1.00\u00a0ha of 2.00\u00a0ha");
+    expect(text).toContain("Alder flies rows");
+    expect(text).toContain("its battery does not last");
+  });
+
+  it("is started by a long press with those selected, and takes off only when that is said", () => {
+    show(survey(7, { phase: "created", vehicles: [] }));
+    hold("Start with selected", 2000);
+    expect(page.said).toEqual([]);
+    page.shared.selection.only(2);
+    hold("Start with selected: 2 Birch", 1400);
+    expect(page.said).toEqual([]);
+    hold("Start with selected: 2 Birch", 1600);
+    find<HTMLInputElement>(page.root, "input[type=checkbox]").click();
+    hold("Start with selected: 2 Birch", 1600);
+    expect(page.said).toEqual([
+      { startedSurvey: 7, serials: ["SN-002"], takeoff: false },
+      { startedSurvey: 7, serials: ["SN-002"], takeoff: true },
+    ]);
+  });
+
+  it("is paused by a short press and aborted by a long one", () => {
+    show(survey(7));
+    hold("Pause survey south field", 500);
+    hold("Abort survey south field", 500);
+    expect(page.said).toEqual([{ stoppedSurvey: 7, word: "pause" }]);
+    hold("Abort survey south field", 1600);
+    expect(page.said[1]).toEqual({ stoppedSurvey: 7, word: "abort" });
+  });
+
+  it("says why a word was refused", async () => {
+    show(survey(7));
+    page.answerWordsWith({ accepted: false, rule: "survey", reason: "it has ended already" });
+    hold("Pause survey south field", 500);
+    await Promise.resolve();
+    await Promise.resolve();
+    expect(page.root.textContent).toContain("it has ended already");
+  });
+
+  it("that is over has no buttons", () => {
+    show(survey(7, { phase: "done" }));
+    expect(page.root.querySelectorAll("[data-testid=survey-7] .guard")).toHaveLength(0);
+  });
+});
+
+describe("a new survey", () => {
+  it("is asked for with the region and the numbers of the form", () => {
+    const regions = [area("survey", [0, 0], 50, { name: "south field" })];
+    const base = station([vehicle(1)]);
+    const site = base.site === null ? null : { ...base.site, areas: regions };
+    page = renderPage(SurveyPanel, { ...base, site });
+    find<HTMLFormElement>(page.root, "form").dispatchEvent(
+      new SubmitEvent("submit", { bubbles: true, cancelable: true }),
+    );
+    expect(page.said).toEqual([
+      {
+        askedSurvey: {
+          region: "south field",
+          height_above_takeoff_m: 50,
+          speed_mps: 5,
+          planner: "lawnmower_once",
+        },
+      },
+    ]);
+  });
+
+  it("cannot be asked for where the site has no regions", () => {
+    show();
+    expect(page.root.textContent).toContain("The site has no survey regions");
+  });
+});
+
+describe("the survey on the map", () => {
+  it("is one that flies, before one that may, before the newest", () => {
+    const done = survey(9, { phase: "done" });
+    const paused = survey(8, { phase: "paused" });
+    const running = survey(7);
+    expect(shownSurvey([done, paused, running])?.id).toBe(7);
+    expect(shownSurvey([done, paused])?.id).toBe(8);
+    expect(shownSurvey([done])?.id).toBe(9);
+    expect(shownSurvey([survey(3, { phase: "refused", cells: null })])).toBeNull();
+  });
+
+  it("is never shown as more than it is", () => {
+    expect(sharePercent(99.9, 100)).toBe(99);
+    expect(sharePercent(0, 0)).toBe(0);
+  });
+});
