@@ -23,6 +23,7 @@ from recon.model.command import (
     Hover,
     LandNow,
     Nudge,
+    Refusal,
     ReturnHome,
     StartCamera,
     StopCamera,
@@ -128,3 +129,68 @@ class TestRivals:
     def test_a_rival_whose_old_telemetry_says_flying_opens_no_door(self) -> None:
         now = situation(vehicle(flying=False), Stamped(True, NOW - 4 * S))
         assert refused_by(approve(command(Hover()), now)) == "flying"
+
+
+class TestWhatItSays:
+    """Word for word, and whether an order is told apart that only waits to be heard of again."""
+
+    @pytest.mark.parametrize(
+        ("flying_said", "age_s", "reason", "is_unheard"),
+        [
+            (False, 0.1, "it is on the ground, and the order does not say takeoff", False),
+            (False, 3.0, "it is on the ground, and the order does not say takeoff", False),
+            (
+                None,
+                0.1,
+                "its app does not say whether it flies, and the order could start a takeoff",
+                False,
+            ),
+            (
+                True,
+                3.5,
+                "telemetry is 3.5 s old; if it has landed, the order would start a takeoff. "
+                "Land is always sent",
+                True,
+            ),
+            (
+                False,
+                3.5,
+                "telemetry is 3.5 s old; if it has landed, the order would start a takeoff. "
+                "Land is always sent",
+                False,
+            ),
+        ],
+    )
+    def test_without_takeoff(
+        self, flying_said: bool | None, age_s: float, reason: str, is_unheard: bool
+    ) -> None:
+        answer = flying(command(Hover()), situation(vehicle(flying=flying_said, age_s=age_s)))
+        assert answer == Refusal("flying", f"A: {reason}", is_unheard=is_unheard)
+        assert answer.is_unheard is is_unheard
+
+    def test_before_any_telemetry(self) -> None:
+        unheard = vehicle(is_flying=Stamped(None, None))
+        assert flying(command(Hover()), situation(unheard)) == Refusal(
+            "flying", "A: no telemetry says that it flies, and the order could start a takeoff"
+        )
+
+    def test_telemetry_of_just_the_age_is_not_too_old_to_be_heard(self) -> None:
+        answer = flying(command(Hover()), replace(situation(vehicle(age_s=3.0)), claimants=()))
+        assert answer is not None
+        assert answer.is_unheard is False
+
+    def test_a_takeoff_of_an_app_that_does_not_say_whether_it_flies(self) -> None:
+        asked = command(Hover(), takeoff=True)
+        assert flying(asked, situation(vehicle(flying=None))) == Refusal(
+            "flying",
+            "A: its app does not say whether it flies, so not whether it would take off: "
+            "look at the app",
+        )
+
+    def test_a_takeoff_by_an_order_that_never_takes_off(self) -> None:
+        asked = command(LandNow(), takeoff=True)
+        assert flying(asked, situation()) == Refusal(
+            "flying",
+            "takeoff was said with land, which never takes off; it goes with hover, mission, "
+            "stick only. Give the order again without it",
+        )
