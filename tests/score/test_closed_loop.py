@@ -148,3 +148,11 @@ def test_an_encounter_counts_once_and_only_in_the_air() -> None:
     up = np.ones(6, dtype=np.bool_)
     assert encounters([still, passing], [up, up], 10.0) == 2
     assert encounters([still, passing], [up, ~up], 10.0) == 0
+
+
+def test_rows_longer_than_shade_maps_are_kept_count_in_sun(folder: Path) -> None:
+    text = CLEAR.replace("200.0, 0.0", "1200.0, 0.0").replace("200.0, 150.0", "1200.0, 150.0")
+    text = text.replace("radius_m = 160.0", "radius_m = 700.0\ncell_m = 20.0")
+    found = run(ends_soon(small(folder, text)), 0)
+    assert found.end == "all that the rows reach is imaged in sun"
+    assert found.missions == 2

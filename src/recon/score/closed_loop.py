@@ -52,6 +52,7 @@ class _Run:
         self._mishaps: list[Mishap] = mishaps_of(scenario)
         self._looks = 0
         self._now_s = 0.0
+        self._carried_s = 0.0
 
     def score(self) -> RunScore:
         """Run to the end and sum up."""
@@ -84,7 +85,7 @@ class _Run:
         for drone in self._drones:
             drone.advance(self._now_s)
         self._look()
-        if self._state.phase is SurveyPhase.RUNNING:
+        if self._state.phase is SurveyPhase.RUNNING and self._is_due():
             self._carry_on()
         self._send_home()
 
@@ -96,7 +97,13 @@ class _Run:
         if shade is not None:
             self._state = observe_shade(self._state, shade)
 
+    def _is_due(self) -> bool:
+        """Whether the survey is to be looked at: rarely while all fly missions."""
+        is_calm = all(drone.doing is Doing.MISSION for drone in self._drones)
+        return not is_calm or self._now_s >= self._carried_s + RUN.calm_s
+
     def _carry_on(self) -> None:
+        self._carried_s = self._now_s
         for drone in self._drones:
             self._state = observe(self._state, drone.serial, drone.seen(self._now_s))
         crew = [drone.surveyor(self._now_s) for drone in self._drones]

@@ -47,7 +47,9 @@ class Drone:
     hops: list[Hop] = field(default_factory=list)
     """All that was flown and is to be flown, in order."""
     told: int = 0
-    """Of the hops, whose positions were told."""
+    """Of the hops, all of whose positions were told."""
+    told_s: float = -inf
+    """When the newest position was that was told."""
     flown_s: float = 0.0
     low_landings: int = 0
     unheard_s: list[tuple[float, float]] = field(default_factory=list)
@@ -176,21 +178,29 @@ class Drone:
         )
 
     def seen(self, now_s: float) -> list[Seen]:
-        """Return the positions told since the last time, oldest first; on rows alone."""
+        """Return the positions since the last time, oldest first; on rows alone."""
         found: list[Seen] = []
-        while self.told < len(self.hops) and self.hops[self.told].end_s <= now_s:
-            hop = self.hops[self.told]
-            self.told += 1
-            if not hop.is_row:
-                continue
-            times_s = hop.samples_s(self.settings.sample_s)
-            places = hop.places_m(times_s).tolist()
-            found += [
-                Seen(seconds_to_ns(at_s), east_m, north_m, self.height_m)
-                for at_s, (east_m, north_m) in zip(times_s.tolist(), places, strict=True)
-                if not self._is_unheard(at_s)
-            ]
+        for hop in self.hops[self.told :]:
+            if hop.start_s > now_s:
+                break
+            if hop.is_row:
+                found += self._on(hop, now_s)
+            self.told += hop.end_s <= now_s
         return found
+
+    def _on(self, hop: Hop, now_s: float) -> list[Seen]:
+        """The positions on a hop that were not told yet."""
+        times_s = hop.samples_s(self.settings.sample_s)
+        times_s = times_s[(times_s > self.told_s) & (times_s <= now_s)]
+        if times_s.size == 0:
+            return []
+        self.told_s = float(times_s[-1])
+        places = hop.places_m(times_s).tolist()
+        return [
+            Seen(seconds_to_ns(at_s), east_m, north_m, self.height_m)
+            for at_s, (east_m, north_m) in zip(times_s.tolist(), places, strict=True)
+            if not self._is_unheard(at_s)
+        ]
 
     def _is_unheard(self, at_s: float) -> bool:
         return any(from_s <= at_s < until_s for from_s, until_s in self.unheard_s)

@@ -4,15 +4,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.geo import GroundGrid
-from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap, SunForecast
+from recon.model.shade import (
+    SUNLIT_TRANSMITTANCE,
+    FloatArray,
+    FloatMap,
+    MaskMap,
+    ShadeMap,
+    SunForecast,
+)
 from recon.model.units import seconds_to_ns
 from recon.score.forecast_metrics import Ahead, LeadScore, score_lead
 from recon.score.ground import CoarseEye
-from recon.score.scenario import Scenario
+from recon.score.scenario import Methods, Scenario
 from recon.score.scenario_schema import IDEAL, NO_FORECAST
 from recon.score.settings import RUN, RunSettings
 from recon.score.shade_metrics import Overlap, boundary_error_m, overlap, told_shade
@@ -42,6 +50,7 @@ class Eye:
     ) -> None:
         self._scenario, self._sky, self._settings = scenario, sky, settings
         self.grid, self.footprint = _footprint(scenario)
+        self._middles_m = _middles_m(self.grid, self.footprint)
         over_m = scenario.eye.over_m
         place_m = (over_m[0], over_m[1], scenario.eye.height_m)
         self._camera = CoarseEye(self.grid, self.footprint, place_m, seed)
@@ -55,7 +64,7 @@ class Eye:
 
         Times are whole multiples of the eye's period, each after the one before.
         """
-        truth = self._sky.on_grid(self.grid, time_s)
+        truth = self._truth(time_s)
         is_shade = truth < SUNLIT_TRANSMITTANCE
         self._check(time_s, ~is_shade)
         shade = self._detected(time_s, truth)
@@ -64,6 +73,12 @@ class Eye:
         if shade is not None and _is_due(time_s, self._settings.forecast_every_s):
             self._foresee(time_s, shade)
         return shade
+
+    def _truth(self, time_s: float) -> FloatMap:
+        """What reaches the cells of the footprint; 1 outside, where nobody looks."""
+        truth = np.ones(self.footprint.shape, dtype=np.float32)
+        truth[self.footprint] = self._sky.transmittance(*self._middles_m, time_s)
+        return truth
 
     def _detected(self, time_s: float, truth: FloatMap) -> ShadeMap | None:
         self._number += 1
@@ -124,14 +139,36 @@ class Eye:
 
 
 def _footprint(scenario: Scenario) -> tuple[GroundGrid, MaskMap]:
-    """The grid around what the eye sees, and the circle in it."""
-    eye = scenario.eye
+    """The grid around what the eye sees, and the circle in it.
+
+    An ideal eye for no forecast looks at the region alone, for nothing else would be used: studies
+    of guidance are fast by that.
+    """
+    eye, methods = scenario.eye, scenario.methods
     half = int(np.ceil(eye.radius_m / eye.cell_m))
     side_m = half * eye.cell_m
     west_m, north_m = eye.over_m[0] - side_m, eye.over_m[1] + side_m
     grid = GroundGrid(scenario.frame, west_m, north_m, eye.cell_m, 2 * half, 2 * half)
     off_m = (np.arange(2 * half) + 0.5) * eye.cell_m - side_m
-    return grid, np.hypot.outer(off_m, off_m) <= eye.radius_m
+    circle: MaskMap = np.hypot.outer(off_m, off_m) <= eye.radius_m
+    if methods == Methods(IDEAL, NO_FORECAST):
+        circle &= _region_cells(scenario, grid)
+    return grid, circle
+
+
+def _region_cells(scenario: Scenario, grid: GroundGrid) -> MaskMap:
+    """The cells that hold any of the region, and some beside it."""
+    region = scenario.survey.region
+    area = shapely.Polygon(region.outline_m, list(region.holes_m)).buffer(grid.cell_m)
+    east_m, north_m = _middles_m(grid, np.ones((grid.rows, grid.cols), dtype=np.bool_))
+    inside = shapely.contains_xy(area, east_m, north_m)
+    return np.asarray(inside, dtype=np.bool_).reshape(grid.rows, grid.cols)
+
+
+def _middles_m(grid: GroundGrid, cells: MaskMap) -> tuple[FloatArray, FloatArray]:
+    """East and north of the middles of the chosen cells, (N,) each, by rows."""
+    row, col = (axis.astype(np.float64) for axis in np.nonzero(cells))
+    return grid.west_m + (col + 0.5) * grid.cell_m, grid.north_m - (row + 0.5) * grid.cell_m
 
 
 def _is_due(time_s: float, every_s: float) -> bool:

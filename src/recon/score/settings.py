@@ -59,6 +59,10 @@ class RunSettings:
     """The eye watches this long at least, whenever the survey is done: else a sky that lets it end
     early would be scored on fewer maps."""
 
+    calm_s: float = 10.0
+    """The survey is looked at this often while all fly missions, for nothing else is to be given;
+    well within the time for which it keeps shade maps."""
+
     longest_way_home_s: float = 1_800.0
     """After the limit: a run ends then even if somebody is still in the air."""
 

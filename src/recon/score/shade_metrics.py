@@ -57,6 +57,8 @@ def boundary_error_m(
         return None
     if not (edges[0].any() and edges[1].any()):
         return FARTHEST_EDGE_M
+    if np.array_equal(*edges):
+        return 0.0
     far_m = [_from_m(edges[1], cell_m)[edges[0]], _from_m(edges[0], cell_m)[edges[1]]]
     return float(np.minimum(np.concatenate(far_m), FARTHEST_EDGE_M).mean())
 
