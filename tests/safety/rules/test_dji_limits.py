@@ -13,10 +13,11 @@ from tests.safety.cases import (
     waypoint,
 )
 
-from recon.model.command import Body, GoTo, HoldPosition, Nudge, StartCamera
+from recon.model.command import Body, GoTo, HoldPosition, Nudge, Refusal, StartCamera
 from recon.model.geo import LatLon
 from recon.model.mission import Waypoint
 from recon.safety.rules.dji_limits import dji_limits
+from recon.safety.settings import SafetySettings
 
 
 def is_taken(body: Body, max_waypoints: int = 99) -> bool:
@@ -175,3 +176,163 @@ class TestSteered:
 
     def test_holding_asks_for_nothing(self) -> None:
         assert is_taken(HoldPosition())
+
+
+def upright(*heights_m: float) -> tuple[Waypoint, ...]:
+    """Waypoints one above the other: their distances are exact."""
+    return tuple(waypoint(0.0, height_above_takeoff_m=height_m) for height_m in heights_m)
+
+
+class TestAtTheLimitItself:
+    """The last accepted value and the first refused one, with round limits in place of DJI's."""
+
+    def is_taken(self, body: Body, **limits: float) -> bool:
+        settings = SafetySettings(**limits)  # type: ignore[arg-type]
+        return dji_limits(command(body), replace(situation(), settings=settings)) is None
+
+    @pytest.mark.parametrize(("top_m", "taken"), [(0.5, True), (0.4999, False)])
+    def test_the_shortest_leg(self, top_m: float, taken: bool) -> None:
+        assert self.is_taken(mission(*upright(0.0, top_m))) is taken
+
+    @pytest.mark.parametrize(("top_m", "taken"), [(100.0, True), (100.01, False)])
+    def test_the_longest_leg(self, top_m: float, taken: bool) -> None:
+        assert self.is_taken(mission(*upright(0.0, top_m)), max_leg_m=100.0) is taken
+
+    @pytest.mark.parametrize(("back_m", "taken"), [(0.5, True), (0.4999, False)])
+    def test_the_nearest_end(self, back_m: float, taken: bool) -> None:
+        assert self.is_taken(mission(*upright(0.0, 50.0, back_m))) is taken
+
+    @pytest.mark.parametrize(("end_m", "taken"), [(100.0, True), (100.01, False)])
+    def test_the_farthest_end(self, end_m: float, taken: bool) -> None:
+        assert self.is_taken(mission(*upright(0.0, 50.0, end_m)), max_leg_m=100.0) is taken
+
+    @pytest.mark.parametrize(("end_m", "taken"), [(20.0, True), (19.99, False)])
+    def test_the_longest_path(self, end_m: float, taken: bool) -> None:
+        assert self.is_taken(mission(*upright(0.0, 50.0, end_m)), max_path_m=80.0) is taken
+
+    @pytest.mark.parametrize(
+        ("radius_m", "taken"), [(1e-6, True), (-1e-6, True), (1.1e-6, False), (-1.1e-6, False)]
+    )
+    def test_the_tolerance_of_an_end_radius(self, radius_m: float, taken: bool) -> None:
+        ends = (waypoint(0.0, corner_radius_m=0.0), waypoint(50.0, corner_radius_m=radius_m))
+        body = mission(*ends, curved=True)
+        assert self.is_taken(body, min_corner_radius_m=0.0) is taken
+
+    def test_the_largest_radius(self) -> None:
+        between = waypoint(1500.0, corner_radius_m=1000.0)
+        assert self.is_taken(mission(waypoint(0.0), between, waypoint(100.0), curved=True))
+
+    @pytest.mark.parametrize(("top_m", "taken"), [(10.0, False), (10.01, True)])
+    def test_corners_that_fill_their_leg(self, top_m: float, taken: bool) -> None:
+        low, high, end = upright(0.0, top_m, 100.0)
+        body = mission(low, replace(high, corner_radius_m=9.8), end, curved=True)
+        assert self.is_taken(body) is taken
+
+
+class TestWhatItSays:
+    """Word for word: which value, of which waypoint, and what would be accepted."""
+
+    def reason(self, body: Body) -> str:
+        answer = dji_limits(command(body), situation())
+        assert isinstance(answer, Refusal)
+        assert answer.rule == "dji_limits"
+        return answer.reason
+
+    @pytest.mark.parametrize(
+        ("changes", "reason"),
+        [
+            (
+                {"velocity_x_mps": -16.0},
+                "velocity x is -16 m/s, at most 15 m/s either way is accepted",
+            ),
+            (
+                {"velocity_y_mps": 16.0},
+                "velocity y is 16 m/s, at most 15 m/s either way is accepted",
+            ),
+            (
+                {"height_above_takeoff_m": 501.0},
+                "height 501 m: 0 to 500 m above takeoff are accepted",
+            ),
+            (
+                {"timeout_s": 6.0},
+                "timeout 6 s: more than 0 and up to 5 s are allowed, for the app flies on by "
+                "itself so long",
+            ),
+        ],
+    )
+    def test_of_a_stick(self, changes: dict[str, float], reason: str) -> None:
+        assert self.reason(replace(STICK, **changes)) == reason  # type: ignore[arg-type]
+
+    @pytest.mark.parametrize(
+        ("body", "reason"),
+        [
+            (StartCamera(31.0), "31 frames per second: more than 0 and up to 30 are possible"),
+            (Nudge(101.0, 0.0, 0.0), "101 m north: a nudge is 100 m at most; farther is a goto"),
+            (Nudge(0.0, -101.0, 0.0), "-101 m east: a nudge is 100 m at most; farther is a goto"),
+            (Nudge(0.0, 0.0, 101.0), "101 m up: a nudge is 100 m at most; farther is a goto"),
+            (Nudge(1.0, 0.0, 0.0, 16.0), "speed 16 m/s: 0.1 to 15 m/s are accepted"),
+            (GoTo(LatLon(91.0, 2.0), 40.0, 5.0), "91, 2 is no place on the globe"),
+            (
+                GoTo(LatLon(42.0, -93.6), 501.0, 5.0),
+                "height 501 m: 0 to 500 m above takeoff are accepted",
+            ),
+        ],
+    )
+    def test_of_other_orders(self, body: Body, reason: str) -> None:
+        assert self.reason(body) == reason
+
+    @pytest.mark.parametrize(
+        ("changes", "reason"),
+        [
+            ({"latitude_deg": 91.0}, "91, -93.6 is no place on the globe"),
+            (
+                {"height_above_takeoff_m": 501.0},
+                "height 501 m: -200 to 500 m above takeoff are accepted",
+            ),
+            ({"speed_mps": 16.0}, "speed 16 m/s: more than 0 and up to 15 m/s are accepted"),
+            ({"loiter_s": 33.0}, "loiter 33 s: 0 to 32.767 s are accepted"),
+            ({"gimbal_pitch_deg": 1.0}, "gimbal pitch 1 deg: -90 to 0 deg are accepted"),
+        ],
+    )
+    def test_of_a_waypoint(self, changes: dict[str, float], reason: str) -> None:
+        body = mission(waypoint(0.0), waypoint(50.0, **changes))
+        assert self.reason(body) == f"waypoint 2: {reason}"
+
+    def test_of_the_whole_mission(self) -> None:
+        assert self.reason(mission(*line(100))) == (
+            "100 waypoints: this vehicle's app takes 2 to 99"
+        )
+        assert self.reason(mission(*upright(0.0, 50.0, 50.25))) == (
+            "waypoints 2 and 3 are 0.25 m apart: 0.5 m to 2 km are accepted"
+        )
+        assert self.reason(mission(*upright(0.0, 50.0, 0.25))) == (
+            "the first and the last waypoint are 0.25 m apart: 0.5 m to 2 km are accepted"
+        )
+        assert self.reason(mission(*(waypoint(1900.0 * (n % 2) + n) for n in range(18)))) == (
+            "the path is 32.3 km long: 30 km at most are accepted"
+        )
+
+    def test_of_a_curved_one(self) -> None:
+        turned = mission(waypoint(0.0), waypoint(50.0, gimbal_pitch_deg=0.0), curved=True)
+        assert self.reason(turned) == (
+            "waypoint 2: a curved mission carries no loiter or gimbal action (the SDK ignores them)"
+        )
+
+    @pytest.mark.parametrize(
+        ("radii_m", "reason"),
+        [
+            ((0.3, 0.2, 0.2), "waypoint 1: the first and last corner radius must be 0.2 m"),
+            ((0.2, 0.2, 0.3), "waypoint 3: the first and last corner radius must be 0.2 m"),
+            ((0.2, 0.1, 0.2), "waypoint 2: corner radius 0.1 m: 0.2 to 1000 m are accepted"),
+            ((0.2, 15.0, 15.0, 0.2), "waypoints 2 and 3: their corners are wider than their leg"),
+        ],
+    )
+    def test_of_its_corners(self, radii_m: tuple[float, ...], reason: str) -> None:
+        assert self.reason(TestCurved().corners(*radii_m)) == reason
+
+    def test_a_vehicle_nobody_knows_takes_what_the_protocol_carries(self) -> None:
+        for known in (replace(situation(), vehicle=None), situation(vehicle(None))):
+            assert dji_limits(command(mission(*line(99))), known) is None
+            answer = dji_limits(command(mission(*line(100))), known)
+            assert answer is not None
+            assert answer.reason.endswith("takes 2 to 99")
