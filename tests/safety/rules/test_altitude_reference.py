@@ -23,6 +23,7 @@ from recon.model.command import Hover, Refusal
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety import ApprovedCommand, approve
+from recon.safety.rules.altitude_reference import altitude_reference
 from recon.vehicles.packets import to_packet
 
 
@@ -40,8 +41,11 @@ def test_unset_is_refused_and_says_how_to_set_it(profile: VehicleProfile | None)
     answer = judged(vehicle(profile))
     assert refused_by(answer) == "altitude_reference"
     assert isinstance(answer, Refusal)
-    for word in ("waypoint_altitude", '"takeoff"', '"wgs84"', "site.toml"):
-        assert word in answer.reason
+    assert answer.reason == (
+        "A: what its app takes a waypoint's altitude for is not set; write waypoint_altitude = "
+        '"takeoff" (the public iOS app) or "wgs84" (an app built to the first ICD) under '
+        '[[vehicles]] serial = "A" in site.toml'
+    )
 
 
 def test_unset_concerns_missions_only() -> None:
@@ -78,6 +82,38 @@ class TestWgs84:
     def test_an_offset_that_is_no_altitude_is_refused(self, offset_m: float) -> None:
         state = vehicle(WGS84, offset_m=offset_m, offset_at_takeoff_m=offset_m)
         assert refused_by(judged(state)) == "altitude_reference"
+
+    def test_10_km_is_still_an_altitude(self) -> None:
+        state = vehicle(WGS84, offset_m=10_000.0, offset_at_takeoff_m=10_000.0)
+        assert approved(judged(state))
+
+    @pytest.mark.parametrize(
+        ("state", "reason"),
+        [
+            (
+                vehicle(WGS84, offset_m=None),
+                "A reports no altitude to relate WGS84 to its takeoff point",
+            ),
+            (
+                vehicle(WGS84, altitude_offset_m=aged(2.5)),
+                "A: its altitude is 2.5 s old, 2 s at most is needed",
+            ),
+            (
+                vehicle(WGS84, offset_m=-12_000.0),
+                "A reports an altitude -12000 m from its height above takeoff: no altitude on "
+                "earth; wait until it reports a sound one",
+            ),
+            (
+                vehicle(WGS84, offset_m=257.0),
+                "A: its WGS84 altitude has jumped by 3.0 m against its height above takeoff since "
+                "takeoff; land and take off again",
+            ),
+        ],
+    )
+    def test_what_it_says(self, state: VehicleState, reason: str) -> None:
+        assert altitude_reference(command(mission()), situation(state)) == Refusal(
+            "altitude_reference", reason
+        )
 
     def test_from_the_ground_no_takeoff_is_there_to_compare_with(self) -> None:
         state = vehicle(WGS84, flying=False, offset_at_takeoff_m=None)

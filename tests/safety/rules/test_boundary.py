@@ -201,6 +201,30 @@ class TestAlreadyOutside:
         margin_m = float(fence.room_m(path.here)[0])
         exact = airspace(boundary=L_SHAPE, limits=replace(WIDE, boundary_margin_m=margin_m))
         assert asked(boundary, stick(0.0, -1.0), exact, state) is None
+        assert reason(asked(boundary, stick(0.0, 1.0), exact, state)).endswith(
+            "; it is 5.00 m inside now and may not be sent farther out, only back in"
+        )
+
+    def test_the_edge_itself_is_called_inside(self) -> None:
+        state = flier(0.0, 0.0)
+        path = flown(command(stick(0.0, -1.0)), here(WHOLE, state))
+        assert isinstance(path, FlownPath)
+        east = airspace(boundary=square(float(path.here_m[0]), -400.0, 400.0, 400.0))
+        assert reason(asked(boundary, stick(0.0, -1.0), east, state)).endswith(
+            "; it is 0.00 m inside now and may not be sent farther out, only back in"
+        )
+
+    def test_a_path_that_touches_the_edge_is_not_beyond_it(self) -> None:
+        touches = mission((0.0, 0.0, 40.0), (100.0, 100.0, 40.0))
+        away = flier(100.0, 0.0, takeoff_point=flier(100.0, 0.0).position.value)
+        path = flown(command(touches), here(WHOLE, away))
+        assert isinstance(path, FlownPath)
+        west_m = float(path.pieces.triangles_m[..., 0].min())
+        east = airspace(boundary=square(west_m, -400.0, 400.0, 400.0))
+        assert reason(asked(boundary, touches, east, away)) == (
+            "A: the way to waypoint 1 comes within 0.00 m of the site's boundary; it must stay "
+            "inside, 5 m from the edge"
+        )
 
     def test_a_stick_that_crosses_an_arm_may_not_leave_it_on_the_other_side(self) -> None:
         assert is_allowed(stick(0.0, -15.0, timeout_s=2.0), self.out)

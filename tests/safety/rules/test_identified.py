@@ -14,7 +14,7 @@ from tests.safety.cases import (
     vehicle,
 )
 
-from recon.model.command import Body, Hover, LandNow, ReturnHome, StartCamera, StopCamera
+from recon.model.command import Body, Hover, LandNow, Refusal, ReturnHome, StartCamera, StopCamera
 from recon.model.stamped import Stamped
 from recon.safety import Claimant, Situation, approve
 
@@ -30,7 +30,10 @@ def unidentified() -> Situation:
 @pytest.mark.parametrize("body", OTHERS)
 def test_a_link_without_identity_gets_nothing_else(body: Body) -> None:
     order = replace(command(body), serial=None, link_id=1)
-    assert refused_by(approve(order, unidentified())) == "identified"
+    assert approve(order, unidentified()) == Refusal(
+        "identified",
+        "link 1 has not said its serial: it takes emergency orders without takeoff only",
+    )
 
 
 @pytest.mark.parametrize("body", EMERGENCIES)
@@ -42,7 +45,11 @@ def test_a_link_without_identity_gets_emergency_orders(body: Body) -> None:
 @pytest.mark.parametrize("body", OTHERS)
 def test_a_vehicle_with_rivals_gets_nothing_else(body: Body) -> None:
     now = situation(vehicle(), Stamped(True, NOW))
-    assert refused_by(approve(command(body), now)) == "identified"
+    assert approve(command(body), now) == Refusal(
+        "identified",
+        "A: links 1 and 2 claim this serial; only hold, land and return, none with takeoff, are "
+        "sent until one of them closes or falls silent",
+    )
 
 
 @pytest.mark.parametrize("body", EMERGENCIES)
