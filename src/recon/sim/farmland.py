@@ -42,6 +42,9 @@ ROOFS: tuple[Colour, ...] = ((176, 178, 180), (134, 66, 54), (92, 94, 98), (188,
 FIRST_FARM_M = (154.0, 66.0)
 """South-west corner of a farm near the origin: where the demonstration keeps out of a farmyard."""
 YARD_M = 50.0
+CREEK_FROM_FARM_M = 95.0
+CREEK_BEND_M = 160.0
+"""Over which a creek bends around the farm."""
 FARMS_PER_CROSSING = 0.4
 PONDS = 60
 POND_EDGE_M = 5.0
@@ -155,10 +158,11 @@ def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
         for south, north in pairwise(roads_north):
             _divide(random, (west + 9, south + 9, east - 9, north - 9), plots, tracks)
     creek = _creek(random, half_width_m)
-    trees = (*_creek_trees(random, creek), *_hedges(random, plots), *_groves(random))
+    grown = (*_creek_trees(random, creek), *_hedges(random, plots), *_groves(random))
     # Farms and ponds have numbers of their own, so that more of them move no field.
     farms = np.random.default_rng((seed, 1))
     yards, buildings = _farms(farms, roads_east, roads_north)
+    trees = _beside(yards, grown)
     return Farmland(
         tuple(plots),
         tuple(tracks),
@@ -271,7 +275,29 @@ def _creek(random: np.random.Generator, half_width_m: float) -> FloatArray:
         amplitude * np.sin(along * 2.0 * np.pi / length + random.uniform(0.0, 6.28))
         for amplitude, length in ((170.0, 2900.0), (55.0, 760.0), (16.0, 210.0))
     )
-    return np.stack([along, 0.35 * along + 190.0 + bends], axis=1)
+    return _around_the_first_farm(np.stack([along, 0.35 * along + 190.0 + bends], axis=1))
+
+
+def _around_the_first_farm(creek_m: FloatArray) -> FloatArray:
+    """Return the creek, bent away from the farm near the origin where it would run through."""
+    east_m, north_m = (corner + YARD_M / 2.0 for corner in FIRST_FARM_M)
+    passes_m = float(np.interp(east_m, creek_m[:, 0], creek_m[:, 1])) - north_m
+    if abs(passes_m) >= CREEK_FROM_FARM_M:
+        return creek_m
+    away_m = (CREEK_FROM_FARM_M if passes_m >= 0.0 else -CREEK_FROM_FARM_M) - passes_m
+    bend = away_m * np.exp(-(((creek_m[:, 0] - east_m) / CREEK_BEND_M) ** 2))
+    return creek_m + np.stack([np.zeros_like(bend), bend], axis=1)
+
+
+def _beside(yards: tuple[Box, ...], trees: tuple[Tree, ...]) -> tuple[Tree, ...]:
+    """Return the trees that stand on no yard."""
+    places = np.array([(tree.east_m, tree.north_m, tree.radius_m) for tree in trees])
+    stands = np.ones(len(trees), dtype=bool)
+    for west, south, east, north in yards:
+        aside = np.maximum(west - places[:, 0], places[:, 0] - east)
+        ahead = np.maximum(south - places[:, 1], places[:, 1] - north)
+        stands &= np.maximum(aside, ahead) > places[:, 2]
+    return tuple(trees[number] for number in np.flatnonzero(stands).tolist())
 
 
 def _creek_trees(random: np.random.Generator, creek_m: FloatArray) -> list[Tree]:

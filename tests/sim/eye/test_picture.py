@@ -122,8 +122,8 @@ def test_tiles_lie_side_by_side_as_one_drawing() -> None:
         for row in (-256, 0)
     ]
     four = np.vstack(parts).astype(int)
-    assert np.abs(one - four).mean() < 0.01
-    assert np.abs(one - four).max() <= 12
+    # Where OpenCV cuts a bank or a crown at a tile's edge, its outline may move by a pixel.
+    assert (np.abs(one - four).max(axis=2) > 2).mean() < 2e-4
 
 
 def test_few_tiles_are_kept_however_far_it_flies() -> None:
@@ -163,6 +163,16 @@ def test_the_land_has_what_land_has() -> None:
     assert min(len(land.plots), len(land.trees)) > 1_000
     assert min(len(land.tracks), len(land.buildings), len(land.ponds)) > 20
     assert any(plot.bareness == 1.0 for plot in land.plots)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_creek_and_no_tree_stand_in_the_farm_near_the_origin(seed: int) -> None:
+    land = lay_out(seed)
+    west, south, east, north = land.yards[0]
+    creek_east = np.arange(west, east, 1.0)
+    creek_north = np.interp(creek_east, land.creek_m[:, 0], land.creek_m[:, 1])
+    assert ((creek_north < south - 15.0) | (creek_north > north + 15.0)).all()
+    assert not [t for t in land.trees if west < t.east_m < east and south < t.north_m < north]
 
 
 def test_wet_soil_is_darker_than_dry() -> None:
