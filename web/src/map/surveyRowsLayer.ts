@@ -9,6 +9,8 @@ import { addFeatures, lineFeature, type Point, setFeatures } from "./lines";
 import type { Scene } from "./scene";
 
 const SOURCE = "survey-rows";
+/** So that the rows stand out on a picture of the ground too. */
+const CASING = "survey-rows-casing";
 const PLANNED = "survey-rows-planned";
 const FLYING = "survey-rows-flying";
 const FLOWN = "survey-rows-flown";
@@ -39,7 +41,13 @@ export class SurveyRowsLayer implements Layer {
           ...(dash === null ? {} : { "line-dasharray": dash }),
         },
       });
-    look(PLANNED, 1.5, [1, 3]);
+    map.addLayer({
+      id: CASING,
+      type: "line",
+      source: SOURCE,
+      paint: { "line-color": colours.casing, "line-width": 5, "line-opacity": 0.55 },
+    });
+    look(PLANNED, 2, [1, 2]);
     look(FLYING, 2, [4, 2]);
     look(FLOWN, 3.5, null);
   }
@@ -66,6 +74,7 @@ export class SurveyRowsLayer implements Layer {
   }
 
   recolour(colours: Colours): void {
+    this.map?.setPaintProperty(CASING, "line-color", colours.casing);
     for (const id of [PLANNED, FLYING, FLOWN]) {
       this.map?.setPaintProperty(id, "line-color", colours.survey);
     }
