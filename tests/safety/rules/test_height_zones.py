@@ -1,6 +1,9 @@
 """Floors and ceilings inside height zones, and who may be below and above them."""
 
+from dataclasses import replace
+
 import pytest
+from tests.safety.cases import command
 from tests.safety.fenced import (
     ORIGIN,
     airspace,
@@ -8,6 +11,7 @@ from tests.safety.fenced import (
     flier,
     goto,
     height_zone,
+    here,
     hills,
     keep_out_zone,
     mission,
@@ -23,7 +27,9 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.model.zone import HeightDatum, LandingPad
 from recon.safety import PreparedAirspace
+from recon.safety.fence_settings import FenceSettings
 from recon.safety.rules.height_zones import height_zones
+from recon.safety.settings import SafetySettings
 
 FARM = square(100.0, -50.0, 200.0, 50.0)
 FLOOR = airspace(height_zone(FARM, floor_m=50.0))
@@ -213,6 +219,21 @@ class TestAsked:
         assert is_allowed(stick(0.0, 0.0, 20.0), FLOOR, flier(99.5, 0.0, 20.0))
         assert is_allowed(stick(0.0, 0.0, 20.0), FLOOR, flier(97.0, 0.0, 20.0))
         assert not is_allowed(stick(0.1, 0.0, 20.0), FLOOR, flier(97.0, 0.0, 60.0))
+
+    @pytest.mark.parametrize(("east_m", "allowed"), [(97.0, True), (99.5, True), (100.5, False)])
+    def test_nor_held_to_its_ceiling_there(self, east_m: float, allowed: bool) -> None:
+        body, state = stick(0.0, 0.0, 52.4), flier(east_m, 0.0, 51.5)
+        assert is_allowed(body, CEILING, state) is allowed
+
+    @pytest.mark.parametrize(("height_m", "allowed"), [(48.1, True), (47.9, False)])
+    def test_a_zero_far_below_its_place_has_its_slack_below_the_floor(
+        self, height_m: float, allowed: bool
+    ) -> None:
+        """Where barometers are trusted less: what is asked for is no column of its own."""
+        settings = SafetySettings(fences=FenceSettings(same_height_m=5.0))
+        now = replace(here(FLOOR, flier(150.0, 0.0, 51.0)), settings=settings)
+        refusal = height_zones(command(stick(0.0, 0.0, height_m)), now)
+        assert (refusal is None) is allowed
 
     def test_a_zero_that_holds_a_low_place_stays(self) -> None:
         assert is_allowed(stick(0.0, 0.0, 19.6), FLOOR, flier(150.0, 0.0, 20.5))

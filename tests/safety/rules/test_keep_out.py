@@ -238,6 +238,11 @@ class TestSticks:
         assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(99.5, 0.0, 20.0))
         assert is_allowed(stick(0.0, 0.0, 20.0), LOW, flier(97.0, 0.0, 20.0))
 
+    @pytest.mark.parametrize(("east_m", "allowed"), [(97.0, True), (99.5, True), (100.5, False)])
+    def test_a_zero_beside_it_may_sink_to_its_heights(self, east_m: float, allowed: bool) -> None:
+        body, state = stick(0.0, 0.0, 37.6), flier(east_m, 0.0, 38.5)
+        assert is_allowed(body, LOW, state) is allowed
+
 
 class TestAlreadyInside:
     """30 m inside the west edge of the yard."""
@@ -314,6 +319,7 @@ class TestAlreadyInside:
         assert is_allowed(Nudge(0.0, -10.0, 0.0), LOW, flier(110.0, 0.0, 43.0, go_home_m=43.0))
         assert not is_allowed(Nudge(0.0, 10.0, 0.0), HIGH, flier(110.0, 0.0, 57.0))
         assert is_allowed(stick(0.0, -1.0, 57.0), HIGH, flier(110.0, 0.0, 57.0))
+        assert not is_allowed(stick(0.0, 1.0, 57.0), HIGH, flier(110.0, 0.0, 57.0))
 
     def test_a_centimetre_is_rounding(self) -> None:
         assert is_allowed(Nudge(0.0, 0.0, -0.01), LOW, over(43.0))

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.safety.cases import vehicle
+from tests.safety.cases import command, vehicle
 from tests.safety.fenced import (
     WIDE,
     airspace,
     asked,
     flier,
+    here,
     hills,
     mission,
     reason,
@@ -184,3 +185,16 @@ class TestZeroAndUnknown:
         nowhere = flier(position=Stamped())
         assert "where it is" in told(level(40.0), state=nowhere)
         assert "where it is" in told(stick(0.1, 0.0), state=nowhere)
+
+    @pytest.mark.parametrize(("height_m", "allowed"), [(102.0, True), (103.0, False)])
+    def test_a_zero_of_one_whose_height_is_unknown_too(
+        self, height_m: float, allowed: bool
+    ) -> None:
+        """It stops when it asks for the height of the stick before; the limit holds all the same"""
+        lost = flier(position=Stamped(), height_above_takeoff_m=Stamped())
+        now = replace(here(FLAT, lost), stick_height_above_takeoff_m=height_m)
+        refusal = max_height(command(stick(0.0, 0.0, height_m)), now)
+        assert (refusal is None) is allowed
+        assert allowed or reason(refusal) == (
+            "103.0 m above takeoff: at most 100 m is allowed here"
+        )
