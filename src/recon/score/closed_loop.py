@@ -56,7 +56,8 @@ class _Run:
 
     def score(self) -> RunScore:
         """Run to the end and sum up."""
-        watch_s = min(RUN.watch_s, self._scenario.limit_s)
+        is_watched = not self._scenario.methods.is_guidance_alone
+        watch_s = min(RUN.watch_s, self._scenario.limit_s) if is_watched else 0.0
         landed_s: float | None = None
         while landed_s is None or self._now_s < watch_s:
             self._tick()

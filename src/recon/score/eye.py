@@ -20,8 +20,7 @@ from recon.model.shade import (
 from recon.model.units import seconds_to_ns
 from recon.score.forecast_metrics import Ahead, LeadScore, score_lead
 from recon.score.ground import CoarseEye
-from recon.score.scenario import Methods, Scenario
-from recon.score.scenario_schema import IDEAL, NO_FORECAST
+from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.settings import RUN, RunSettings
 from recon.score.shade_metrics import Overlap, boundary_error_m, overlap, told_shade
 from recon.sim.world import Sky
@@ -139,19 +138,15 @@ class Eye:
 
 
 def _footprint(scenario: Scenario) -> tuple[GroundGrid, MaskMap]:
-    """The grid around what the eye sees, and the circle in it.
-
-    An ideal eye for no forecast looks at the region alone, for nothing else would be used: studies
-    of guidance are fast by that.
-    """
-    eye, methods = scenario.eye, scenario.methods
+    """The grid around what the eye sees, and the circle in it; or the region's part of that."""
+    eye = scenario.eye
     half = int(np.ceil(eye.radius_m / eye.cell_m))
     side_m = half * eye.cell_m
     west_m, north_m = eye.over_m[0] - side_m, eye.over_m[1] + side_m
     grid = GroundGrid(scenario.frame, west_m, north_m, eye.cell_m, 2 * half, 2 * half)
     off_m = (np.arange(2 * half) + 0.5) * eye.cell_m - side_m
     circle: MaskMap = np.hypot.outer(off_m, off_m) <= eye.radius_m
-    if methods == Methods(IDEAL, NO_FORECAST):
+    if scenario.methods.is_guidance_alone:
         circle &= _region_cells(scenario, grid)
     return grid, circle
 

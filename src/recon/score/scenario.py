@@ -7,6 +7,8 @@ from recon.model.survey import Survey
 from recon.sim.faults import Fault
 from recon.sim.world import LightSettings, SkySettings, WindSettings
 
+IDEAL, NO_FORECAST = "ideal", "none"
+
 Place = tuple[float, float]
 """East and north metres of the site."""
 
@@ -49,8 +51,14 @@ class Methods:
     `none` or a forecaster's name.
     """
 
-    detection: str = "ideal"
+    detection: str = IDEAL
     forecast: str = "global_shift"
+
+    @property
+    def is_guidance_alone(self) -> bool:
+        """Whether neither detection nor forecast is scored: then the eye looks only at the region,
+        and only until the survey is over. Studies of guidance are fast by that."""
+        return self.detection == IDEAL and self.forecast == NO_FORECAST
 
 
 @dataclass(frozen=True, slots=True, eq=False)

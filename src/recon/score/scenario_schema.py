@@ -9,8 +9,7 @@ from msgspec import Meta
 from recon.detection import DETECTORS
 from recon.forecast import FORECASTERS
 from recon.guidance.survey import PLANNERS
-
-IDEAL, NO_FORECAST = "ideal", "none"
+from recon.score.scenario import IDEAL, NO_FORECAST
 
 DetectionName = Literal["ideal", "brightness_ratio", "otsu"]
 ForecastName = Literal["none", "global_shift", "persistence"]
