@@ -5,6 +5,10 @@
 Runs mutmut (configured in pyproject.toml), lists the mutants no test notices, and ends with 1 when
 one of them has no written reason in studies/survivors.toml, or a reason stands there for nothing.
 A reason is found again by the function and the changed lines, not by mutmut's numbering.
+
+A mutant whose tests run out of time is not counted as noticed: on a busy machine any of them does,
+an unnoticed one too. It is run once more, by itself; what runs out of time again loops for ever, or
+the machine is too busy to tell, and stands among the survivors until a reason is written.
 """
 
 import subprocess
@@ -17,6 +21,7 @@ from pathlib import Path
 
 REASONS = Path(__file__).with_name("survivors.toml")
 KILLED = ("killed", "caught by type check")
+TIMEOUT = "timeout"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +41,11 @@ class Mutant:
 
 def main() -> int:
     """Run everything; print the tally and the survivors without a reason."""
-    subprocess.run([sys.executable, "-m", "mutmut", "run"], check=True)
-    states = dict(_states(_ask("results", "--all", "true")))
+    _run()
+    late = [name for name, state in _all_states().items() if state == TIMEOUT]
+    if late:
+        _run("--max-children", "1", *late)
+    states = _all_states()
     print(", ".join(f"{count} {state}" for state, count in Counter(states.values()).items()))
     survivors = [_read(name) for name, state in states.items() if state not in KILLED]
     reasons = _reasons()
@@ -50,6 +58,14 @@ def main() -> int:
         print(f"\na reason is written for {function} ({before}), and no such mutant survives")
     print(f"{len(survivors)} survivors, {len(unexplained)} without a written reason")
     return 1 if unexplained or unneeded else 0
+
+
+def _run(*arguments: str) -> None:
+    subprocess.run([sys.executable, "-m", "mutmut", "run", *arguments], check=True)
+
+
+def _all_states() -> dict[str, str]:
+    return dict(_states(_ask("results", "--all", "true")))
 
 
 def _ask(*arguments: str) -> str:

@@ -308,8 +308,9 @@ class TestWhatItSays:
         assert self.reason(mission(*upright(0.0, 50.0, 0.25))) == (
             "the first and the last waypoint are 0.25 m apart: 0.5 m to 2 km are accepted"
         )
-        assert self.reason(mission(*(waypoint(1900.0 * (n % 2) + n) for n in range(18)))) == (
-            "the path is 32.3 km long: 30 km at most are accepted"
+        to_and_fro = (waypoint(1999.0 * (n % 2) + n / 10) for n in range(27))
+        assert self.reason(mission(*to_and_fro)) == (
+            "the path is 52.0 km long: 30 km at most are accepted"
         )
 
     def test_of_a_curved_one(self) -> None:
