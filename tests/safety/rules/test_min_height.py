@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.safety.cases import command
 from tests.safety.fenced import (
     WIDE,
     airspace,
     asked,
     flier,
     goto,
+    here,
     hills,
     mission,
     place,
@@ -23,7 +25,9 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.model.zone import LandingPad
 from recon.safety import PreparedAirspace
+from recon.safety.fence_settings import FenceSettings
 from recon.safety.rules.min_height import min_height
+from recon.safety.settings import SafetySettings
 
 FLAT = airspace(limits=replace(WIDE, min_height_above_ground_m=10.0))
 
@@ -181,6 +185,16 @@ class TestZeroAndUnknown:
 
     def test_a_zero_has_slack(self) -> None:
         assert is_allowed(stick(0.0, 0.0, 9.5), state=flier(200.0, 0.0, 10.4))
+
+    @pytest.mark.parametrize(("height_m", "allowed"), [(8.1, True), (7.9, False)])
+    def test_a_zero_far_below_its_place_has_its_slack_below_the_limit(
+        self, height_m: float, allowed: bool
+    ) -> None:
+        """Where barometers are trusted less: what is asked for is no column of its own."""
+        settings = SafetySettings(fences=FenceSettings(same_height_m=5.0))
+        now = replace(here(FLAT, flier(200.0, 0.0, 11.0)), settings=settings)
+        refusal = min_height(command(stick(0.0, 0.0, height_m)), now)
+        assert (refusal is None) is allowed
 
     def test_a_zero_that_holds_a_low_place_stays(self) -> None:
         assert is_allowed(stick(0.0, 0.0, 2.6), state=flier(200.0, 0.0, 3.5))
