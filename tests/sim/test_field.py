@@ -14,7 +14,9 @@ from recon.sim.camera_feed import View
 from recon.sim.errors import FrameSourceError
 from recon.sim.eye import EyeSettings
 from recon.sim.farmland import lay_out
-from recon.sim.farmland_raster import Part, draw, draw_shadows
+from recon.sim.farmland_raster import draw
+from recon.sim.farmland_shadows import draw_shadows
+from recon.sim.land_part import Part
 from recon.sim.noise import tileable_noise
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.sim.world.sky_light import light_under

@@ -1,12 +1,7 @@
-"""Drawing farmland into pixels: part by part, each the same whatever else is drawn.
+"""Drawing farmland into pixels: part by part, each the same whatever else is drawn."""
 
-Pixels of a size `cell_m` are numbered over the whole land: column j covers east from j to j + 1
-cells, row i covers north from -i - 1 to -i cells, so the origin is a corner of four.
-"""
-
-from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, radians, sin, tan
+from math import cos, radians, sin
 
 import cv2
 import numpy as np
@@ -19,14 +14,20 @@ from recon.sim.farmland import (
     Box,
     Building,
     Farmland,
-    FloatArray,
     Plot,
     Pond,
     Tree,
 )
-from recon.sim.land_index import LandIndex, index_of
+from recon.sim.land_index import index_of
+from recon.sim.land_part import (
+    FRACTION_BITS,
+    MARGIN_PX,
+    Part,
+    fixed_point,
+    seen_trees,
+    slices,
+)
 from recon.sim.noise import FloatImage, tileable_noise
-from recon.sim.world import SunPosition
 
 GRAVEL = (168.0, 160.0, 145.0)
 DIRT = (150.0, 133.0, 106.0)
@@ -43,41 +44,10 @@ WETTEST_DARKENS = 0.34
 WET_ABOVE, WET_OVER = 0.5, 1.1
 """Deviations of a field 400 m coarse: where the ground begins to be wet, and until it is wet."""
 
-LOWEST_SHADOW_SUN_DEG = 12.0
-"""Shadows of trees are drawn as if the sun stood here at least: lower, they cover all."""
-SMALLEST_CROWN_PX = 0.6
-CROWN_SHADES_ITSELF = 70
-"""Of 255: leaves shade leaves."""
 POND_CORNERS = 40
 DARKER_SLOPE = 0.88
 """Of a roof: the slope that faces away from the noon's sun."""
 NOISE_CELLS = 512
-MARGIN_PX = 6
-"""Blurred edges look this far beyond a part's own pixels."""
-FRACTION_BITS = 4
-"""OpenCV draws at sixteenths of a pixel."""
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """A square of the land's pixels: its first row and column, and its size."""
-
-    row: int
-    col: int
-    size: int
-    cell_m: float
-
-    def with_margin(self) -> "Part":
-        """Return the part with what lies around it."""
-        return Part(
-            self.row - MARGIN_PX, self.col - MARGIN_PX, self.size + 2 * MARGIN_PX, self.cell_m
-        )
-
-    @property
-    def box_m(self) -> Box:
-        """West, south, east, north."""
-        west, north = self.col * self.cell_m, -self.row * self.cell_m
-        return west, north - self.size * self.cell_m, west + self.size * self.cell_m, north
 
 
 def draw(land: Farmland, part: Part, seed: int) -> RgbImage:
@@ -99,90 +69,9 @@ def draw(land: Farmland, part: Part, seed: int) -> RgbImage:
     canvas.add_grain()
     for building in index.buildings.within(box):
         canvas.draw_roof(building)
-    canvas.draw_trees(_seen_trees(index, canvas.part))
+    canvas.draw_trees(seen_trees(index, canvas.part))
     inner = canvas.pixels[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX]
     return np.clip(inner, 0.0, 255.0).astype(np.uint8)
-
-
-def draw_shadows(land: Farmland, part: Part, sun: SunPosition) -> npt.NDArray[np.uint8]:
-    """Return how much of the sun's beam trees and roofs keep off the ground, (size, size), /255."""
-    index, wide = index_of(land), part.with_margin()
-    image = np.zeros((wide.size, wide.size), dtype=np.uint8)
-    elevation = radians(max(sun.elevation_deg, LOWEST_SHADOW_SUN_DEG))
-    azimuth = radians(sun.azimuth_deg)
-    per_height = np.array([-sin(azimuth), -cos(azimuth)]) / tan(elevation)
-    buildings, trees = index.buildings.within(wide.box_m), _seen_trees(index, wide)
-    for building in buildings:
-        _shade_of_roof(image, wide, building, per_height)
-    for tree in trees:
-        _shade_of_tree(image, wide, tree, per_height)
-    # What is seen of a roof or a crown from above is its lit top.
-    for building in buildings:
-        rows, cols = _slices(wide, building.box_m)
-        image[rows, cols] = 0
-    for tree in trees:
-        _light_on_crown(image, wide, tree)
-    soft = cv2.GaussianBlur(image, (0, 0), 0.9)
-    return soft[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX].astype(np.uint8, copy=True)
-
-
-def _seen_trees(index: LandIndex, part: Part) -> list[Tree]:
-    """Return the trees large enough for a pixel that stand in a part or shade it."""
-    trees = index.trees.within(part.box_m)
-    return [tree for tree in trees if tree.radius_m > SMALLEST_CROWN_PX * part.cell_m]
-
-
-def _shade_of_roof(
-    image: npt.NDArray[np.uint8], part: Part, building: Building, per_height: FloatArray
-) -> None:
-    at = building
-    base = np.array([(e, n) for e in (at.west_m, at.east_m) for n in (at.south_m, at.north_m)])
-    ends = np.concatenate([base, base + at.height_m * per_height]).astype(np.float32)
-    hull = cv2.convexHull(ends).reshape(-1, 2).astype(np.float64)
-    corners = _fixed_point(part, hull)
-    if _is_near(corners, part):
-        cv2.fillConvexPoly(image, corners, 255, cv2.LINE_AA, FRACTION_BITS)
-
-
-def _shade_of_tree(
-    image: npt.NDArray[np.uint8], part: Part, tree: Tree, per_height: FloatArray
-) -> None:
-    """Draw a crown's shadow: a disc from the crown's foot to its top."""
-    foot = np.array([tree.east_m, tree.north_m])
-    shifts = np.outer([0.3, 0.7], tree.height_m * per_height)
-    points = _fixed_point(part, foot + shifts)
-    width = max(1, round(1.7 * tree.radius_m / part.cell_m))
-    if _is_near(points, part, width):
-        ends = [tuple(point) for point in points.tolist()]
-        cv2.line(image, ends[0], ends[1], 255, width, cv2.LINE_AA, FRACTION_BITS)
-
-
-def _light_on_crown(image: npt.NDArray[np.uint8], part: Part, tree: Tree) -> None:
-    points = _fixed_point(part, np.array([(tree.east_m, tree.north_m)]))
-    radius = max(1, round(tree.radius_m / part.cell_m * 2**FRACTION_BITS))
-    if _is_near(points, part, 2 + radius // 2**FRACTION_BITS):
-        at = (int(points[0, 0]), int(points[0, 1]))
-        cv2.circle(image, at, radius, CROWN_SHADES_ITSELF, -1, cv2.LINE_AA, FRACTION_BITS)
-
-
-def _slices(part: Part, box: Box) -> tuple[slice, slice]:
-    """Return the part's rows and columns that a box covers."""
-    west, south, east, north = (round(edge / part.cell_m) for edge in box)
-    row, col, size = part.row, part.col, part.size
-    rows = slice(min(size, max(0, -north - row)), min(size, max(0, -south - row)))
-    return rows, slice(min(size, max(0, west - col)), min(size, max(0, east - col)))
-
-
-def _fixed_point(part: Part, points_m: FloatArray) -> npt.NDArray[np.int32]:
-    """Return (N, 2) column and row in sixteenths of the part's pixels."""
-    cols = points_m[:, 0] / part.cell_m - 0.5 - part.col
-    rows = -points_m[:, 1] / part.cell_m - 0.5 - part.row
-    return np.rint(np.stack([cols, rows], axis=1) * 2**FRACTION_BITS).astype(np.int32)
-
-
-def _is_near(points: npt.NDArray[np.int32], part: Part, reach_px: int = 2) -> bool:
-    low, high = points.min(axis=0) / 2**FRACTION_BITS, points.max(axis=0) / 2**FRACTION_BITS
-    return bool((low < part.size + reach_px).all() and (high > -reach_px).all())
 
 
 @lru_cache(maxsize=32)
@@ -191,9 +80,10 @@ def _noise_tile(seed: int, smallest_cells: float, slope: float, blur_px: int) ->
     tile = tileable_noise(NOISE_CELLS, seed, smallest_cells, slope)
     if blur_px <= 1:
         return tile
-    wrapped = cv2.copyMakeBorder(tile, *[blur_px] * 4, cv2.BORDER_WRAP)
+    wrapped = np.pad(tile, blur_px, mode="wrap")
     blurred = cv2.blur(wrapped, (blur_px, blur_px))[blur_px:-blur_px, blur_px:-blur_px]
-    return blurred.astype(np.float32, copy=True)
+    inner: FloatImage = blurred.astype(np.float32, copy=True)
+    return inner
 
 
 class _Canvas:
@@ -226,10 +116,10 @@ class _Canvas:
         return sampled.astype(np.float32, copy=False)
 
     def fill(self, box: Box, colour: tuple[float, ...]) -> None:
-        self.pixels[_slices(self.part, box)] = colour
+        self.pixels[slices(self.part, box)] = colour
 
     def draw_plot(self, plot: Plot) -> None:
-        rows, cols = _slices(self.part, plot.box_m)
+        rows, cols = slices(self.part, plot.box_m)
         area = self.pixels[rows, cols]
         if area.size == 0:
             return
@@ -269,7 +159,8 @@ class _Canvas:
             return np.zeros((1, 1), dtype=np.float32)
         wave = np.float32(2.0 * np.pi / spacing_m)
         across, along = visible * np.sin(wave * v), visible * np.sin(wave * u)
-        return np.where(is_headland, across, along).astype(np.float32)
+        stripes: FloatImage = np.where(is_headland, across, along).astype(np.float32)
+        return stripes
 
     def draw_roads(self, land: Farmland) -> None:
         far = land.half_width_m
@@ -282,7 +173,7 @@ class _Canvas:
     def draw_creek(self, land: Farmland) -> None:
         west, _, east, _ = self.part.box_m
         near = (land.creek_m[:, 0] > west - 60.0) & (land.creek_m[:, 0] < east + 60.0)
-        points = _fixed_point(self.part, land.creek_m[near])
+        points = fixed_point(self.part, land.creek_m[near])
         for width_m, colour in ((46.0, MEADOW), (8.0, WATER)):
             thickness = max(1, round(width_m / self.cell_m))
             cv2.polylines(
@@ -297,7 +188,7 @@ class _Canvas:
             aside = (pond.along_m + wider_m) * np.sin(angles)
             east = pond.east_m + along * cos(turned) + aside * sin(turned)
             north = pond.north_m - along * sin(turned) + aside * cos(turned)
-            outline = _fixed_point(self.part, np.stack([east, north], axis=1))
+            outline = fixed_point(self.part, np.stack([east, north], axis=1))
             cv2.fillConvexPoly(self.pixels, outline, colour, cv2.LINE_8, FRACTION_BITS)
 
     def draw_roof(self, building: Building) -> None:
@@ -321,7 +212,7 @@ class _Canvas:
     def _discs(self, trees: list[Tree], shades: bool = False) -> FloatImage:
         """Return an image with a disc per crown, of 1 or of its shade."""
         image = np.zeros((self.part.size, self.part.size), dtype=np.float32)
-        points = _fixed_point(self.part, np.array([(t.east_m, t.north_m) for t in trees]))
+        points = fixed_point(self.part, np.array([(t.east_m, t.north_m) for t in trees]))
         for tree, point in zip(trees, points.tolist(), strict=True):
             radius = max(1, round(tree.radius_m / self.cell_m * 2**FRACTION_BITS))
             value = tree.shade if shades else 1.0

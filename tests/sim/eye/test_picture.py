@@ -14,8 +14,10 @@ from recon.sim.eye import land_tiles as tiles_module
 from recon.sim.eye.land_tiles import TILES_KEPT, LandTiles, land_of
 from recon.sim.eye.sensor import light_of_value
 from recon.sim.farmland import lay_out
-from recon.sim.farmland_raster import Part, draw, draw_shadows
+from recon.sim.farmland_raster import draw
+from recon.sim.farmland_shadows import draw_shadows
 from recon.sim.field import FieldFrames
+from recon.sim.land_part import Part
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunPosition
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.sim.world.sky_light import light_under

@@ -16,7 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.sim.farmland import Farmland, lay_out
-from recon.sim.farmland_raster import Part, draw, draw_shadows
+from recon.sim.farmland_raster import draw
+from recon.sim.farmland_shadows import draw_shadows
+from recon.sim.land_part import Part
 from recon.sim.world import SunPosition
 
 CELLS_M = (0.25, 1.0, 4.0, 16.0)
