@@ -76,4 +76,19 @@ FaultOption = Annotated[
         + ", ".join(kind.value for kind in FaultKind)
     ),
 ]
+FaultsOption = Annotated[
+    Path | None, typer.Option(help="TOML file with faults by script and by chance.")
+]
+WindMpsOption = Annotated[
+    float, typer.Option(help="Mean wind ten metres up, with its gusts; 0 is calm.")
+]
+WindToDegOption = Annotated[
+    float, typer.Option(help="Where the wind goes, clockwise from north: 50 is to the north-east.")
+]
+MissionIdsOption = Annotated[
+    bool,
+    typer.Option(
+        "--mission-ids/--no-mission-ids", help="Whether apps tell MissionID, or 0 always."
+    ),
+]
 SeedOption = Annotated[int, typer.Option(help="The same seed behaves the same way.")]

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
-from math import isfinite
 from random import Random
 
 from recon import wire
@@ -19,16 +18,14 @@ from recon.model.geo import GeoPoint
 from recon.model.imagery import CameraPose
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.aircraft import Aircraft
+from recon.sim.aircraft_faults import AircraftFaults
 from recon.sim.camera_feed import CameraFeed, Shot
 from recon.sim.commands import AppHabits, CommandReader, Reaction
-from recon.sim.faults import (
-    AIRCRAFT_FAULTS,
-    FAILED_CELL_FRACTION,
-    LINK_FAULTS,
-    PLACEHOLDER_SERIAL,
-    Fault,
-    FaultKind,
-)
+from recon.sim.fault_plan import FaultPlan
+from recon.sim.faults import AIRCRAFT_FAULTS, LINK_FAULTS, PLACEHOLDER_SERIAL, Fault, FaultKind
+from recon.sim.frame_flaws import Black, FrameFlaw, exposed, torn
+from recon.sim.inbox import Inbox
+from recon.sim.outbox import Outbox
 from recon.sim.rig import EyeRig
 from recon.sim.telemetry import HomeAltitude, Sensors, SensorSettings, position_deg
 
@@ -39,9 +36,6 @@ ACTION_DELAY_NS = 120_000_000
 
 HELLO = b"recon-sim simulated vehicle"
 MESSAGE_INFO = 1
-MOST_PACKETS_WAITING = 256
-"""Per link; then the oldest is dropped: nobody reads."""
-
 MAIN_LINK = 0
 
 
@@ -70,11 +64,6 @@ _LINK_ORDERS = {
     FaultKind.SECOND_LINK: LinkOrderKind.SECOND,
 }
 
-_ENDS: dict[FaultKind, Callable[[Aircraft], None]] = {
-    FaultKind.PILOT_TAKES: Aircraft.pilot_gives_back,
-    FaultKind.GNSS_LOSS: Aircraft.find_gnss,
-}
-
 
 @dataclass(frozen=True, slots=True)
 class AppSettings:
@@ -93,7 +82,8 @@ class AppSettings:
 @dataclass(slots=True)
 class _Link:
     deframer: wire.Deframer = field(default_factory=wire.Deframer)
-    outbox: deque[bytes] = field(default_factory=lambda: deque(maxlen=MOST_PACKETS_WAITING))
+    inbox: Inbox = field(default_factory=Inbox)
+    outbox: Outbox = field(default_factory=Outbox)
 
 
 class SimulatedApp:
@@ -120,6 +110,12 @@ class SimulatedApp:
         self._links: dict[int, _Link] = {}
         self._acts: deque[tuple[int, Reaction]] = deque()
         self._link_orders: deque[LinkOrder] = deque()
+        name = f"{settings.seed}/{settings.serial}/faults"
+        self._plan = FaultPlan(settings.faults, name, self._start_ns)
+        self._flaws = Random(f"{name}/frames")
+        self._aircraft_faults = AircraftFaults(aircraft, self._altitude, name)
+        self._is_silent = False
+        self._now_ns = self._start_ns
         self._fault_moments = sorted(self._moments_of_faults(), key=lambda moment: moment[0])
         self._lines: deque[str] = deque(maxlen=64)
         # Apps do not speak in step: each starts at its own part of the first period.
@@ -134,7 +130,7 @@ class SimulatedApp:
         if self.feed is not None and link == MAIN_LINK:
             # Nobody takes pictures for nobody: those of the time without a link are left out.
             self.feed.skip_to(now_ns)
-        self._send(wire.MessageString(type=MESSAGE_INFO, text=HELLO), link)
+        self._send(wire.encode(wire.MessageString(type=MESSAGE_INFO, text=HELLO)), link, now_ns)
 
     def disconnected(self, link: int = MAIN_LINK) -> None:
         """A connection is gone."""
@@ -143,10 +139,11 @@ class SimulatedApp:
     def receive(self, data: bytes, now_ns: int, link: int = MAIN_LINK) -> None:
         """Take what was read from a connection: answer now, act a little later."""
         self._run_until(now_ns)
-        if link not in self._links:
+        if link not in self._links or self._is_silent:
             return
-        for packet in self._links[link].deframer.feed(data, now_ns):
-            self._answer(packet, link, now_ns)
+        self._links[link].inbox.keep(data, now_ns)
+        if not self._plan.has(FaultKind.SLOW_READER, now_ns):
+            self._read(link, now_ns)
 
     def advance(self, now_ns: int, link: int = MAIN_LINK) -> list[bytes]:
         """Let time pass and return the packets to send on a connection, in order."""
@@ -154,14 +151,19 @@ class SimulatedApp:
         waiting = self._links.get(link)
         if waiting is None:
             return []
-        packets = list(waiting.outbox)
-        waiting.outbox.clear()
-        return packets
+        return waiting.outbox.pop_due(now_ns)
+
+    def takes_more(self, link: int = MAIN_LINK) -> bool:
+        """Return whether a connection is to be read on; if not, TCP makes the station wait."""
+        waiting = self._links.get(link)
+        return waiting is None or (not self._is_silent and waiting.inbox.has_room)
 
     @property
     def next_due_ns(self) -> int:
         """When `advance` has something to do next, as far as is known."""
-        return min(due_ns for due_ns, _ in self._timetable())
+        held = (link.outbox.next_after_ns(self._now_ns) for link in self._links.values())
+        dues = [due_ns for due_ns, _ in self._timetable()]
+        return min([*dues, *(due_ns for due_ns in held if due_ns is not None)])
 
     def take_shots(self) -> list[Shot]:
         """Return the shots to render (only when not rendered inline); see `add_image`."""
@@ -208,6 +210,9 @@ class SimulatedApp:
             rows.append((self._acts[0][0], self._act))
         if self._fault_moments:
             rows.append((self._fault_moments[0][0], self._happen))
+        for number, link in self._links.items():
+            if link.inbox.next_read_ns is not None:
+                rows.append((link.inbox.next_read_ns, partial(self._read_on, number)))
         rows.append((self._next_core_ns, self._say_core))
         rows.append((self._next_extended_ns, self._say_extended))
         feed = self.feed
@@ -224,6 +229,7 @@ class SimulatedApp:
                 break
             self._advance_aircraft(due_ns)
             happen(due_ns)
+        self._now_ns = max(self._now_ns, now_ns)
         self._advance_aircraft(now_ns)
 
     def _advance_aircraft(self, now_ns: int) -> None:
@@ -231,6 +237,15 @@ class SimulatedApp:
         self.aircraft.advance(now_ns)
         if self.aircraft.flight_mode is not mode:
             self._lines.append(f"mode {self.aircraft.flight_mode.name}")
+
+    def _read_on(self, link: int, now_ns: int) -> None:
+        """Read a little of what waits, or all of it once the fault is over."""
+        self._read(link, now_ns, self._plan.has(FaultKind.SLOW_READER, now_ns))
+
+    def _read(self, link: int, now_ns: int, slowly: bool = False) -> None:
+        waiting = self._links[link]
+        for packet in waiting.deframer.feed(waiting.inbox.read(slowly), now_ns):
+            self._answer(packet, link, now_ns)
 
     def _answer(self, packet: wire.Packet, link: int, now_ns: int) -> None:
         reaction = self._commands.reaction(packet)
@@ -241,8 +256,10 @@ class SimulatedApp:
         if not self._has(FaultKind.NO_ACK, now_ns):
             positive = reaction.is_positive and not refuses
             answer = wire.Acknowledgment(positive=int(positive), source_pid=reaction.source_pid)
-            self._send(answer, link)
-        if refuses or self._has(FaultKind.ACK_THEN_NOTHING, now_ns):
+            self._send(wire.encode(answer), link, now_ns, self._plan.answered_ns(now_ns))
+        is_mission = isinstance(packet, wire.ExecuteWaypointMission)
+        ignores = is_mission and self._has(FaultKind.IGNORED_MISSIONS, now_ns)
+        if refuses or ignores or self._has(FaultKind.ACK_THEN_NOTHING, now_ns):
             self._lines.append(f"command {reaction.source_pid}: not carried out (fault)")
         else:
             self._acts.append((now_ns + ACTION_DELAY_NS, reaction))
@@ -268,10 +285,22 @@ class SimulatedApp:
         self._broadcast(packet, now_ns)
 
     def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
-        feed.take(self._camera_pose())
+        if self._has(FaultKind.CAMERA_STOPS, now_ns):
+            feed.miss()
+            return
+        repeats = self._has(FaultKind.FRAMES_REPEATED, now_ns)
+        feed.take(self._camera_pose(), self._flaw(now_ns), repeats)
         if self.settings.renders_inline:
             for shot in feed.take_shots():
                 feed.add(shot, shot.packet())
+
+    def _flaw(self, now_ns: int) -> FrameFlaw | None:
+        """Return what is wrong with a picture of this moment."""
+        if self._has(FaultKind.FRAMES_BLACK, now_ns):
+            return Black()
+        if self._has(FaultKind.FRAMES_TORN, now_ns):
+            return torn(self._flaws)
+        return exposed(self._flaws) if self._has(FaultKind.EXPOSURE_JUMPS, now_ns) else None
 
     def _camera_pose(self) -> CameraPose | None:
         return None if self.rig is None else self.rig.pose_at(self.true_reference())
@@ -279,7 +308,8 @@ class SimulatedApp:
     def _say_images(self, feed: CameraFeed, now_ns: int) -> None:
         packets = feed.due(now_ns)
         if MAIN_LINK in self._links and not self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
-            self._links[MAIN_LINK].outbox.extend(packets)
+            for packet in packets:
+                self._send(packet, MAIN_LINK, now_ns)
 
     def _moments_of_faults(self) -> Iterator[tuple[int, Callable[[], None]]]:
         """Return when faults that happen once do so, and what they then do."""
@@ -289,9 +319,9 @@ class SimulatedApp:
                 yield begin_ns, partial(self._begin_link_fault, fault)
             elif fault.kind in AIRCRAFT_FAULTS:
                 yield begin_ns, partial(self._begin_aircraft_fault, fault)
-            end = _ENDS.get(fault.kind)
-            if end is not None and isfinite(fault.duration_s):
-                yield begin_ns + seconds_to_ns(fault.duration_s), partial(end, self.aircraft)
+                end_ns = fault.end_ns(self._start_ns)
+                if end_ns is not None:
+                    yield end_ns, partial(self._aircraft_faults.end, fault.kind)
 
     def _happen(self, now_ns: int) -> None:
         _due_ns, happen = self._fault_moments.pop(0)
@@ -299,12 +329,8 @@ class SimulatedApp:
 
     def _begin_aircraft_fault(self, fault: Fault) -> None:
         self._lines.append(f"fault {fault.kind.value}")
-        if fault.kind is FaultKind.PILOT_TAKES:
-            self.aircraft.pilot_takes()
-        elif fault.kind is FaultKind.GNSS_LOSS:
-            self.aircraft.lose_gnss()
-        else:
-            self.aircraft.battery.lose_a_cell(FAILED_CELL_FRACTION)
+        self._aircraft_faults.begin(fault.kind)
+        self._is_silent = self._is_silent or fault.kind is FaultKind.FALLS_SILENT
 
     def _begin_link_fault(self, fault: Fault) -> None:
         self._lines.append(f"fault {fault.kind.value}")
@@ -317,15 +343,18 @@ class SimulatedApp:
             self.aircraft.forget_mission_numbers()
 
     def _has(self, kind: FaultKind, now_ns: int) -> bool:
-        elapsed_ns = now_ns - self._start_ns
-        return any(f.kind is kind and f.is_active(elapsed_ns) for f in self.settings.faults)
+        return self._plan.has(kind, now_ns)
 
     def _broadcast(self, packet: wire.Packet, now_ns: int) -> None:
         if self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
             return
         encoded = wire.encode(packet)
-        for link in self._links.values():
-            link.outbox.append(encoded)
+        for link in self._links:
+            self._send(encoded, link, now_ns)
 
-    def _send(self, packet: wire.Packet, link: int) -> None:
-        self._links[link].outbox.append(wire.encode(packet))
+    def _send(self, packet: bytes, link: int, now_ns: int, due_ns: int | None = None) -> None:
+        """Send a packet at a time, by default now; in whole or damaged, as the faults want it."""
+        if self._is_silent:
+            return
+        due_ns = self._plan.sent_ns(now_ns) if due_ns is None else due_ns
+        self._links[link].outbox.add(self._plan.on_the_way(packet, now_ns), due_ns)

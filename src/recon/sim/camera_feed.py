@@ -17,6 +17,7 @@ from recon import wire
 from recon.model.imagery import CameraPose, RgbImage
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.errors import FrameSourceError
+from recon.sim.frame_flaws import FrameFlaw
 
 MOST_SHOTS_IN_HAND = 4
 """Slower rendering than this skips pictures, as a phone does."""
@@ -77,10 +78,13 @@ class Shot:
     send_at_ns: int
     source: FrameSource
     settings: FeedSettings
+    flaw: FrameFlaw | None = None
 
     def packet(self) -> bytes:
         """Render and encode: the slow part. Depends on nothing but this shot."""
         rgb = self.source.render(self.view)
+        if self.flaw is not None:
+            rgb = self.flaw.applied(rgb)
         if self.settings.image_format is ImageFormat.RAW:
             return wire.encode(wire.Image(target_fps_hz=self.target_fps_hz, pixels=rgb))
         jpeg = _jpeg(rgb, self.settings.jpeg_quality)
@@ -111,6 +115,7 @@ class CameraFeed:
     _latency_s: float = 0.0
     _jitter_seed: int = 0
     _shot_count: int = 0
+    _shown: View | None = None
     _taken: deque[Shot] = field(default_factory=deque)
     _in_hand: int = 0
     _ready: list[tuple[int, int, bytes]] = field(default_factory=list)
@@ -139,8 +144,13 @@ class CameraFeed:
         self._taken.clear()
         self._ready.clear()
 
-    def take(self, pose: CameraPose | None) -> None:
-        """Take the picture that is due at `next_shot_ns`."""
+    def take(
+        self,
+        pose: CameraPose | None,
+        flaw: FrameFlaw | None = None,
+        is_repeated: bool = False,
+    ) -> None:
+        """Take the picture that is due at `next_shot_ns`, or send the last one once more."""
         now_ns = self.next_shot_ns
         self.next_shot_ns = self._after(now_ns)
         if self._in_hand >= MOST_SHOTS_IN_HAND:
@@ -150,12 +160,19 @@ class CameraFeed:
         self._in_hand += 1
         send_at_ns = now_ns + seconds_to_ns(self._latency_at(now_ns))
         self.captures.append(Capture(view, now_ns, send_at_ns))
-        self._taken.append(Shot(view, self.target_fps_hz, send_at_ns, self.source, self.settings))
+        self._shown = self._shown if is_repeated and self._shown is not None else view
+        self._taken.append(
+            Shot(self._shown, self.target_fps_hz, send_at_ns, self.source, self.settings, flaw)
+        )
 
     def _latency_at(self, taken_at_ns: int) -> float:
         """Return the seconds from taking to sending: a function of the time it was taken at."""
         jitter = Random(f"{self._jitter_seed}/{taken_at_ns - self.start_ns}")
         return max(0.0, self._latency_s + jitter.uniform(-JITTER_S, JITTER_S))
+
+    def miss(self) -> None:
+        """Leave out the picture that is due at `next_shot_ns`."""
+        self.next_shot_ns = self._after(self.next_shot_ns)
 
     def skip_to(self, now_ns: int) -> None:
         """Take the next picture at this moment, and none before."""

@@ -1,14 +1,14 @@
-"""Faults by name: what companion apps in the field get wrong, on order.
+"""Faults by name: what companion apps, links and aircraft in the field get wrong, on order.
 
 A fault is written `NAME[:vehicle[:start_s[:duration_s]]]`; the vehicle is a serial, its number in
 the fleet (1 is the first), or `*` for all; times count from the start of the simulation.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from math import inf, isfinite
 
-from recon.model.units import NS_PER_S
+from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.errors import FaultError
 
 
@@ -34,6 +34,37 @@ class FaultKind(Enum):
     PLACEHOLDER_SERIAL = "placeholder-serial"
     """The serial is `00000`, as apps send it before they know, as long as the fault lasts."""
 
+    BURSTS = "bursts"
+    """What the app says is held back and goes out all at once, every one and a half seconds."""
+    DELAYED_ACKS = "delayed-acks"
+    """Acknowledgments come half a second to three seconds late; the acts come at once."""
+    IGNORED_MISSIONS = "ignored-missions"
+    """Missions are acknowledged and not flown; everything else works."""
+    CORRUPTED_BYTES = "corrupted-bytes"
+    """One in ten of the app's packets has one to three bytes changed."""
+    SLOW_READER = "slow-reader"
+    """The app reads 32 bytes each tenth of a second: commands wait, then the socket is full."""
+    FALLS_SILENT = "falls-silent"
+    """The drone falls from the sky and its app says nothing any more; the socket stays open. It
+    does not end."""
+    TAKEOFF_ALTITUDE_LOST = "takeoff-altitude-lost"
+    """DJI tells no takeoff altitude: absolute altitudes are NaN, as long as the fault lasts."""
+    TAKEOFF_ALTITUDE_STALE = "takeoff-altitude-stale"
+    """DJI tells another flight's takeoff altitude, 47 m higher: it jumps at begin and end."""
+
+    CAMERA_STOPS = "camera-stops"
+    """No pictures come, though the feed says that it is on, as long as the fault lasts."""
+    FRAMES_REPEATED = "frames-repeated"
+    """The picture of the fault's begin is sent again and again."""
+    FRAMES_BLACK = "frames-black"
+    """Pictures are black."""
+    FRAMES_TORN = "frames-torn"
+    """Pictures are parts of two, one shifted sideways."""
+    EXPOSURE_JUMPS = "exposure-jumps"
+    """Each picture is exposed for another scene."""
+
+    GUSTS = "gusts"
+    """A squall on top of the wind: gusts up to 9 m/s every 8 s, from a direction of its own."""
     PILOT_TAKES = "pilot-takes"
     """The pilot flips the mode switch to sport and holds; missions and sticks of the app do nothing
     until he flips it back, after the duration."""
@@ -57,6 +88,20 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
     FaultKind.SECOND_LINK: (5.0, 10.0),
     FaultKind.RESTART: (5.0, 2.0),
     FaultKind.PLACEHOLDER_SERIAL: (0.0, inf),
+    FaultKind.BURSTS: (0.0, inf),
+    FaultKind.DELAYED_ACKS: (0.0, inf),
+    FaultKind.IGNORED_MISSIONS: (0.0, inf),
+    FaultKind.CORRUPTED_BYTES: (0.0, inf),
+    FaultKind.SLOW_READER: (5.0, 30.0),
+    FaultKind.FALLS_SILENT: (30.0, inf),
+    FaultKind.TAKEOFF_ALTITUDE_LOST: (0.0, inf),
+    FaultKind.TAKEOFF_ALTITUDE_STALE: (0.0, 30.0),
+    FaultKind.CAMERA_STOPS: (5.0, 20.0),
+    FaultKind.FRAMES_REPEATED: (5.0, 20.0),
+    FaultKind.FRAMES_BLACK: (5.0, 3.0),
+    FaultKind.FRAMES_TORN: (5.0, 10.0),
+    FaultKind.EXPOSURE_JUMPS: (5.0, 30.0),
+    FaultKind.GUSTS: (5.0, 40.0),
     FaultKind.PILOT_TAKES: (5.0, inf),
     FaultKind.GNSS_LOSS: (5.0, inf),
     FaultKind.LOW_BATTERY: (5.0, inf),
@@ -65,8 +110,18 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
 
 LINK_FAULTS = (FaultKind.HALF_OPEN, FaultKind.SECOND_LINK, FaultKind.RESTART)
 """Faults that happen once, to the connection."""
-AIRCRAFT_FAULTS = (FaultKind.PILOT_TAKES, FaultKind.LOW_BATTERY, FaultKind.GNSS_LOSS)
-"""Faults that happen once, to the aircraft."""
+AIRCRAFT_FAULTS = (
+    FaultKind.PILOT_TAKES,
+    FaultKind.LOW_BATTERY,
+    FaultKind.GNSS_LOSS,
+    FaultKind.GUSTS,
+    FaultKind.FALLS_SILENT,
+    FaultKind.TAKEOFF_ALTITUDE_LOST,
+    FaultKind.TAKEOFF_ALTITUDE_STALE,
+)
+"""Faults that begin and end once, and do something to the aircraft then."""
+STALE_BY_M = 47.0
+"""Two pads of one farm's valley and hill."""
 
 ALL_VEHICLES = "*"
 
@@ -79,10 +134,17 @@ class Fault:
     vehicle: str = ALL_VEHICLES
     start_s: float = 0.0
     duration_s: float = inf
+    told_at: str = field(default="", compare=False)
+    """Where it stands in a file, for messages: `FILE: line N: `."""
 
     def is_for(self, serial: str, number: int) -> bool:
         """Return whether the vehicle with this serial, `number` of the fleet, has the fault."""
-        return self.vehicle in (ALL_VEHICLES, serial, str(number))
+        return is_for(self.vehicle, serial, number)
+
+    def end_ns(self, start_ns: int) -> int | None:
+        """Return when it ends in a simulation that started then; None: never."""
+        end_s = self.start_s + self.duration_s
+        return start_ns + seconds_to_ns(end_s) if isfinite(end_s) else None
 
     def is_active(self, since_start_ns: int) -> bool:
         """Return whether the fault is on at a time since the simulation's start."""
@@ -100,13 +162,23 @@ def parse_fault(text: str) -> Fault:
             f"got {len(rest) + 1} parts"
         )
     vehicle, start, duration = (*rest, "", "", "")[:3]
-    default_start_s, default_duration_s = _DEFAULT_TIMES_S[kind]
+    default_start_s, default_duration_s = default_times_s(kind)
     return Fault(
         kind,
         vehicle or ALL_VEHICLES,
         _seconds(start, default_start_s, "start", text),
         _seconds(duration, default_duration_s, "duration", text),
     )
+
+
+def is_for(vehicle: str, serial: str, number: int) -> bool:
+    """Return whether a fault's `vehicle` means the one with this serial, `number` of the fleet."""
+    return vehicle in (ALL_VEHICLES, serial, str(number))
+
+
+def default_times_s(kind: FaultKind) -> tuple[float, float]:
+    """Return start and duration when a description leaves them out."""
+    return _DEFAULT_TIMES_S[kind]
 
 
 def _kind(name: str) -> FaultKind:

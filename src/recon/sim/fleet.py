@@ -15,6 +15,7 @@ from recon.sim.battery import Battery
 from recon.sim.camera_feed import CameraFeed, FeedSettings, FrameSource
 from recon.sim.commands import AppHabits, HoverOnGround
 from recon.sim.errors import FaultError
+from recon.sim.fault_chance import Chance, drawn_faults
 from recon.sim.faults import Fault
 from recon.sim.kinematics import Motion
 from recon.sim.manoeuvres import Grounded, Hold, Manoeuvre, TakeOff, Wander
@@ -70,6 +71,8 @@ class SimulationConfig:
     """False: the apps tell MissionID 0 always."""
     seed: int = 0
     faults: tuple[Fault, ...] = ()
+    chances: tuple[Chance, ...] = ()
+    """Faults drawn from the seed for each vehicle."""
     pads: Mapping[str, GeoPoint] = field(default_factory=dict)
     """Start positions by serial; the others start in rows beside home."""
     go_home_heights_m: Mapping[str, float] = field(default_factory=dict)
@@ -88,11 +91,12 @@ def build_fleet(
 ) -> list[SimulatedApp]:
     """Return the apps, ready to be connected; raises `FaultError` for a fault of no vehicle."""
     serials = fleet_serials(config)
-    for fault in config.faults:
+    asked: list[Fault | Chance] = [*config.faults, *config.chances]
+    for fault in asked:
         if not any(fault.is_for(serial, n) for n, serial in enumerate(serials, 1)):
             raise FaultError(
-                f"fault {fault.kind.value}: expected a vehicle of {', '.join(serials)} or its "
-                f"number, got {fault.vehicle!r}"
+                f"{fault.told_at}fault {fault.kind.value}: expected a vehicle of "
+                f"{', '.join(serials)} or its number, got {fault.vehicle!r}"
             )
     return [
         _build_app(config, serial, number, start_ns, renders_inline)
@@ -118,7 +122,10 @@ def _build_app(
             config.tells_mission_id,
         ),
         sensors=config.sensors,
-        faults=tuple(f for f in config.faults if f.is_for(serial, number)),
+        faults=(
+            *(f for f in config.faults if f.is_for(serial, number)),
+            *drawn_faults(config.chances, config.seed, serial, number),
+        ),
         renders_inline=renders_inline,
     )
     is_eye = serial == EYE_SERIAL

@@ -94,26 +94,36 @@ class _AppShell:
         """Read and write until the connection ends (None) or a fault wants something of it."""
         writer.transport.set_write_buffer_limits(high=WRITE_BUFFER_BYTES)
         self.app.connected(time.monotonic_ns(), link)
-        receiving = asyncio.ensure_future(reader.read(READ_BYTES))
+        receiving: asyncio.Future[bytes] | None = None
         try:
             while True:
                 order = self._send_due(writer, link)
                 if order is not None:
                     return order
-                await asyncio.wait({receiving}, timeout=self._pause_s())
-                if not receiving.done():
+                if receiving is None and self.app.takes_more(link):
+                    receiving = asyncio.ensure_future(reader.read(READ_BYTES))
+                data = await self._wait_for(receiving)
+                if data is None:
                     continue
-                data = receiving.result()
+                receiving = None
                 if not data:
                     return None
                 self.app.receive(data, time.monotonic_ns(), link)
-                receiving = asyncio.ensure_future(reader.read(READ_BYTES))
         except OSError:
             return None
         finally:
-            receiving.cancel()
-            with contextlib.suppress(asyncio.CancelledError, OSError):
-                await receiving
+            if receiving is not None:
+                receiving.cancel()
+                with contextlib.suppress(asyncio.CancelledError, OSError):
+                    await receiving
+
+    async def _wait_for(self, receiving: "asyncio.Future[bytes] | None") -> bytes | None:
+        """Return what was read, or None when something else is due first."""
+        if receiving is None:
+            await asyncio.sleep(self._pause_s())
+            return None
+        await asyncio.wait({receiving}, timeout=self._pause_s())
+        return receiving.result() if receiving.done() else None
 
     def _send_due(self, writer: asyncio.StreamWriter, link: int) -> LinkOrder | None:
         """Write what is due, one packet per send; return what a fault wants of this link."""
