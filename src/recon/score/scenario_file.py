@@ -2,7 +2,8 @@
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from math import isnan
 from pathlib import Path
 from typing import TypeVar
 
@@ -53,6 +54,8 @@ def load_scenario(path: Path) -> Scenario:
         where = f"{path}:{line[1]}" if line else f"{path}"
         raise ScenarioError(f"{where}: expected a TOML file, got: {problem}") from problem
     complain = _Complaints(path, key_lines(text))
+    for key in _nans(data, ""):
+        raise complain.about(f"{key}: expected a number, got nan")
     try:
         file = msgspec.convert(data, ScenarioFile, strict=True)
     except msgspec.ValidationError as problem:
@@ -84,6 +87,18 @@ class _Complaints:
         except SimulationError as problem:
             said = str(problem).removeprefix("wind: ").removeprefix("wind shift: ")
             raise self.about(said, within) from problem
+
+
+def _nans(value: object, key: str) -> Iterator[str]:
+    """Yield the keys of what is no number: ranges let it pass."""
+    if isinstance(value, float) and isnan(value):
+        yield key
+    elif isinstance(value, dict):
+        for name, item in value.items():
+            yield from _nans(item, f"{key}.{name}" if key else name)
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            yield from _nans(item, f"{key}[{index}]")
 
 
 def _text(path: Path) -> str:
