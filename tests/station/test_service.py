@@ -196,16 +196,23 @@ class TestView:
         assert all(a.is_acknowledged for a in bench.state().alarms)
 
 
+WITHOUT_EYE = {"plan_fleet_return", "read_shade", "plan_survey", "step_survey"}
+
+
 class TestBuild:
     def test_the_demonstration_site_becomes_a_station(self) -> None:
         site = load_site(demo_site_folder())
         station = first_state(site)
         assert station.imaging.eye_serial == "SIM-EYE"
-        assert list(worker_tasks(site)) == ["lay_frame", "plan_fleet_return"]
+        assert set(worker_tasks(site)) == {"lay_frame", *WITHOUT_EYE}
+        pixels = station.settings.detection.pixels_per_radian
+        assert site.eye is not None
+        at_axis = -site.eye.camera.direct[0]
+        assert pixels == pytest.approx(at_axis, rel=0.15), "the eye's own lens, not the default"
         driver = AsyncioDriver(station, lambda: 0)
         site_view = Service.around(driver, site, None).state().site
         assert site_view is not None
         assert site_view.pose_rms_px is not None
 
     def test_without_an_eye_nobody_lays_frames(self) -> None:
-        assert list(worker_tasks(Site(name="bare"))) == ["plan_fleet_return"]
+        assert set(worker_tasks(Site(name="bare"))) == WITHOUT_EYE
