@@ -200,8 +200,10 @@ class TestWhatComesBetween:
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     def test_one_that_is_silent_for_a_moment_in_flight_lands_all_the_same(self) -> None:
-        world = four_in_the_air(faults=("telemetry-dropout:SIM-2:25:4",))
+        world = four_in_the_air(faults=("telemetry-dropout:SIM-2:20:4",))
         world.call(*FOUR)
+        world.runs(19.0)
+        assert world.member("SIM-2").stage is Stage.FLYING
         assert world.runs_until_over(900.0)
         assert set(world.stages().values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
