@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from tests.safety.cases import STICK, command, mission, refused_by, situation, waypoint
 
-from recon.model.command import Body, StartCamera
+from recon.model.command import Body, Refusal, StartCamera
 from recon.safety import approve
+from recon.safety.rules.finite_numbers import finite_numbers
 
 BAD = [nan, inf, -inf, np.float32("nan"), np.float64("inf"), 10**400]
 MISSION_FIELDS = [
@@ -48,3 +49,23 @@ def test_in_any_field_of_a_stick_command(name: str, value: float) -> None:
 @pytest.mark.parametrize("value", BAD)
 def test_in_a_frame_rate(value: float) -> None:
     assert rule(StartCamera(value)) == "finite_numbers"
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        (
+            mission(waypoint(0.0), waypoint(50.0, speed_mps=nan)),
+            "mission waypoints 2 speed_mps is nan: a finite number is needed",
+        ),
+        (replace(STICK, yaw_deg=-inf), "yaw_deg is -inf: a finite number is needed"),
+        (StartCamera(10**400), f"fps_hz is {10**400}: a finite number is needed"),
+    ],
+)
+def test_a_refusal_says_where_it_is(body: Body, reason: str) -> None:
+    assert finite_numbers(command(body), situation()) == Refusal("finite_numbers", reason)
+
+
+@pytest.mark.parametrize("body", [mission(), STICK, StartCamera(1.0)])
+def test_finite_ones_pass(body: Body) -> None:
+    assert finite_numbers(command(body), situation()) is None

@@ -1,14 +1,41 @@
 """A command needs a known vehicle and an open link."""
 
-from tests.safety.cases import NOW, command, refused_by, vehicle
+from dataclasses import replace
 
-from recon.model.command import LandNow
+import pytest
+from tests.safety.cases import NOW, command, situation, vehicle
+
+from recon.model.command import LandNow, Refusal
 from recon.safety import Situation, approve
+from recon.safety.rules.reachable import reachable
+
+LAND = command(LandNow())
 
 
 def test_nobody_of_that_serial() -> None:
-    assert refused_by(approve(command(LandNow()), Situation(NOW, None, ()))) == "reachable"
+    assert approve(LAND, Situation(NOW, None, ())) == Refusal(
+        "reachable", "A is not known: no app has said this serial"
+    )
 
 
-def test_a_vehicle_without_a_connection() -> None:
-    assert refused_by(approve(command(LandNow()), Situation(NOW, vehicle(), ()))) == "reachable"
+def test_nobody_on_that_link() -> None:
+    unsaid = replace(LAND, serial=None, link_id=7)
+    assert approve(unsaid, Situation(NOW, None, ())) == Refusal(
+        "reachable", "link 7 is not known: no app has said this serial"
+    )
+
+
+@pytest.mark.parametrize(("flying", "is_unheard"), [(True, True), (False, False), (None, False)])
+def test_a_vehicle_without_a_connection(flying: bool | None, is_unheard: bool) -> None:
+    """One that was last known to fly is waited for; it is not called unknown."""
+    answer = approve(LAND, Situation(NOW, vehicle(flying=flying), ()))
+    assert isinstance(answer, Refusal)
+    assert (answer.rule, answer.reason) == (
+        "reachable",
+        "A has no connection: its app must connect first",
+    )
+    assert answer.is_unheard is is_unheard
+
+
+def test_one_that_is_connected() -> None:
+    assert reachable(LAND, situation()) is None
