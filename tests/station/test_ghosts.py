@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import pytest
 from tests.fleet.said import PLACE, core, extended
 from tests.station.commanded import Told
 
@@ -103,6 +104,30 @@ class TestWithoutASerial:
         view = ghost_view(told.station, told.station.watch.lost["link-7"], told.now_ns)
         assert view is not None
         assert view.dismissed_as == "link-7"
+
+    @pytest.mark.parametrize(
+        ("changes", "is_kept"),
+        [
+            ({}, False),
+            ({"position": moved_m(PLACE, 4.0, 0.0)}, False),
+            ({"position": moved_m(PLACE, 8.0, 0.0)}, True),
+            ({"position": None}, True),
+            ({"height_m": 43.0}, True),
+            ({"height_m": None}, True),
+        ],
+    )
+    def test_a_second_connection_of_a_phone_that_is_heard_leaves_nothing_behind(
+        self, changes: dict[str, object], is_kept: bool
+    ) -> None:
+        told = Told().opens(1, extended("A"), core(height_m=40.0))
+        told.opens(2, core(**{"height_m": 40.0, **changes}))  # type: ignore[arg-type]
+        told.closes(2)
+        assert bool(told.station.watch.lost) is is_kept
+
+    def test_nor_is_one_forgotten_that_tells_of_what_is_not_heard_now(self) -> None:
+        told = Told().opens(1, extended("A"), core(height_m=40.0)).passes(1.5)
+        told.opens(2, core(height_m=40.0)).closes(2)
+        assert set(told.station.watch.lost) == {"link-2"}
 
     def test_a_person_takes_it_out(self) -> None:
         told = self.lost()

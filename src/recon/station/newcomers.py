@@ -6,10 +6,42 @@ vehicle in the air is. Nothing would be found but that each is near itself.
 """
 
 from dataclasses import replace
+from math import hypot
 
-from recon.model.units import seconds_to_ns
+from recon.geo.distance import horizontal_distance_m
+from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.station.state import Station
+
+SAME_TIME_S = 1.0
+SAME_PLACE_M = 5.0
+SAME_HEIGHT_M = 2.0
+"""Two aircraft this near would have met: it is one, told by two connections of its phone."""
+
+
+def is_heard_by_serial(station: Station, nameless: VehicleState) -> bool:
+    """Return whether what a link without a serial told of is heard by its serial at that moment."""
+    return any(_is_same(nameless, vehicle) for vehicle in station.fleet.vehicles.values())
+
+
+def _is_same(nameless: VehicleState, vehicle: VehicleState) -> bool:
+    """In doubt it is another one."""
+    here, there = nameless.position.value, vehicle.position.value
+    high_m, other_m = nameless.height_above_takeoff_m.value, vehicle.height_above_takeoff_m.value
+    heard_ns, other_ns = nameless.core_received_at_ns, vehicle.core_received_at_ns
+    velocity = vehicle.velocity_ned.value
+    if here is None or there is None or high_m is None or other_m is None or velocity is None:
+        return False
+    if heard_ns is None or other_ns is None or vehicle.is_flying.value is not True:
+        return False
+    between_s = abs(heard_ns - other_ns) / NS_PER_S
+    flown_m = hypot(velocity.north_mps, velocity.east_mps) * between_s
+    climbed_m = abs(velocity.down_mps) * between_s
+    return (
+        between_s <= SAME_TIME_S
+        and horizontal_distance_m(here, there) <= SAME_PLACE_M + flown_m
+        and abs(high_m - other_m) <= SAME_HEIGHT_M + climbed_m
+    )
 
 
 def is_settling(station: Station, now_ns: int) -> bool:

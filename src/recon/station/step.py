@@ -43,6 +43,7 @@ from recon.station import (
     commanding,
     faults,
     imaging,
+    newcomers,
     preflight,
     restart,
     watch,
@@ -123,6 +124,8 @@ def _lost_unidentified(station: Station, link_id: int) -> Station:
     """What flew without ever saying its serial is gone from the fleet, not from the air."""
     link = station.fleet.links.get(link_id)
     if link is None or link.claimed_serial is not None or not link.own_state.is_flying.value:
+        return station
+    if newcomers.is_heard_by_serial(station, link.own_state):
         return station
     return air.keep_lost(station, link_id)
 
