@@ -37,9 +37,7 @@ def written(path: Path, *features: dict[str, object]) -> Path:
 def audited(here: Flown) -> list[Any]:
     """All that the audit has, page by page."""
     entries: list[Any] = []
-    while page := here.get(f"/api/audit?after={entries[-1]['n'] if entries else 0}")[
-        "entries"
-    ]:
+    while page := here.get(f"/api/audit?after={entries[-1]['n'] if entries else 0}")["entries"]:
         entries += page
     return entries
 
