@@ -98,7 +98,7 @@ def test_the_methods_that_may_be_named_are_those_that_are_there() -> None:
         ("[200.0, 0.0],", "[200.0],", "task.region_m[1]: expected [east, north] in metres, got a"),
         ("[200.0, 0.0],\n    [200.0, 150.0]", "[200.0, 150.0],\n    [200.0, 0.0]", "cannot be sur"),
         ('"pilot-takes:1:40:30"', '"gremlins"', "faults[0]: fault 'gremlins': expected one of"),
-        ('"pilot-takes:1:40:30"', '"pilot-takes:7"', "faults[0]: expected a vehicle of S-1, S-2"),
+        ('"pilot-takes:1:40:30"', '"pilot-takes:7"', "faults[0]: expected a vehicle of SIM-1, S"),
         ("radius_m = 160.0", "radius_m = 160.0\nperiod_s = 3", "expected 1 or 2 or 5, got 3"),
         (
             "speed_10m_mps = 4.0",

@@ -6,6 +6,7 @@ from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.sim.faults import Fault
 from recon.sim.world import LightSettings, SkySettings, WindSettings
+from recon.site import Site
 
 IDEAL, NO_FORECAST = "ideal", "none"
 
@@ -28,7 +29,7 @@ class Fleet:
     @property
     def serials(self) -> tuple[str, ...]:
         """One for each drone."""
-        return tuple(f"S-{number + 1}" for number in range(len(self.pads_m)))
+        return tuple(f"SIM-{number + 1}" for number in range(len(self.pads_m)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,8 @@ class Scenario:
 
     name: str
     about: str
-    frame: LocalFrame
+    site: Site
+    """A folder's, or made up around the task; it has a frame and an eye."""
     fleet: Fleet
     eye: ScenarioEye
     sky: SkySettings
@@ -78,3 +80,9 @@ class Scenario:
     methods: Methods
     limit_s: float
     """When the run ends at the latest."""
+
+    @property
+    def frame(self) -> LocalFrame:
+        """The site's local frame, which all places are in."""
+        assert self.site.frame is not None  # or it would not have been read
+        return self.site.frame

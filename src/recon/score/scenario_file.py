@@ -2,24 +2,25 @@
 
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from math import isnan
 from pathlib import Path
-from typing import TypeVar
 
 import msgspec
 import numpy as np
 
 from recon.guidance.survey import SurveyPlan, plan_survey
-from recon.model.geo import GeoPoint, LatLon, LocalFrame
+from recon.model.geo import GeoPoint, LatLon
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
 from recon.model.zone import Region
+from recon.score.complaints import Complaints
 from recon.score.errors import ScenarioError
-from recon.score.scenario import Fleet, Methods, Scenario, ScenarioEye
+from recon.score.scenario import Methods, Scenario
 from recon.score.scenario_schema import CloudsTable, ScenarioFile, TaskTable
-from recon.score.toml_lines import key_lines, line_of
-from recon.sim.errors import SimulationError
+from recon.score.staging import staged
+from recon.score.toml_lines import key_lines
 from recon.sim.faults import parse_fault
+from recon.sim.fleet import EYE_SERIAL
 from recon.sim.world import (
     LayerSettings,
     LightSettings,
@@ -30,15 +31,8 @@ from recon.sim.world import (
 )
 from recon.site.complaints import complaint
 
-Made = TypeVar("Made")
-
 LARGEST_BYTES = 1_000_000
-PADS_APART_M = 20.0
-PADS_OFF_M = 30.0
-"""South of the region."""
-PLACE = re.compile(r"((?:\w+(?:\[\d+\])*\.?)+): expected")
 AT_LINE = re.compile(r"at line (\d+)")
-UNKNOWN = re.compile(r"expected only the keys .*, got '(\w+)'")
 
 
 def load_scenario(path: Path) -> Scenario:
@@ -53,40 +47,14 @@ def load_scenario(path: Path) -> Scenario:
         line = AT_LINE.search(str(problem))
         where = f"{path}:{line[1]}" if line else f"{path}"
         raise ScenarioError(f"{where}: expected a TOML file, got: {problem}") from problem
-    complain = _Complaints(path, key_lines(text))
+    complain = Complaints(path, key_lines(text))
     for key in _nans(data, ""):
         raise complain.about(f"{key}: expected a number, got nan")
     try:
         file = msgspec.convert(data, ScenarioFile, strict=True)
     except msgspec.ValidationError as problem:
         raise complain.about(complaint(problem, data, ScenarioFile, "")) from problem
-    return _scenario(path.stem, file, complain)
-
-
-class _Complaints:
-    """Makes errors that name the file and the line of a key."""
-
-    def __init__(self, path: Path, lines: Mapping[str, int]) -> None:
-        self._path, self._lines = path, lines
-
-    def about(self, said: str, within: str = "") -> ScenarioError:
-        """Return the error; what is said begins with a key, inside `within` if that is given."""
-        place = PLACE.match(said)
-        key = place[1] if place else ""
-        unknown = UNKNOWN.search(said)
-        path = ".".join(part for part in (within, key, unknown[1] if unknown else "") if part)
-        line = line_of(self._lines, path)
-        where = f"{self._path}:{line}" if line is not None else f"{self._path}"
-        lead = within + ("." if place else ": ") if within else ""
-        return ScenarioError(f"{where}: {lead}{said}")
-
-    def made(self, within: str, make: Callable[[], Made]) -> Made:
-        """Return what is made of a table, its complaint in the file's words."""
-        try:
-            return make()
-        except SimulationError as problem:
-            said = str(problem).removeprefix("wind: ").removeprefix("wind shift: ")
-            raise self.about(said, within) from problem
+    return _scenario(path, file, complain)
 
 
 def _nans(value: object, key: str) -> Iterator[str]:
@@ -117,26 +85,19 @@ def _text(path: Path) -> str:
     return text
 
 
-def _scenario(name: str, file: ScenarioFile, complain: _Complaints) -> Scenario:
-    site = file.site
-    origin = GeoPoint(site.latitude_deg, site.longitude_deg, site.ground_altitude_m)
-    survey = _survey(name, file.task, file.methods.planner)
+def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
+    survey = _survey(path.stem, file.task, file.methods.planner)
+    place = staged(path, file, survey, complain)
+    origin = place.frame.origin
     scenario = Scenario(
-        name=name,
+        name=path.stem,
         about=file.about,
-        frame=LocalFrame(origin),
-        fleet=_fleet(file, survey.region, complain),
-        eye=_eye(file, survey.region),
+        site=place.site,
+        fleet=place.fleet,
+        eye=place.eye,
         sky=_sky(file, origin, complain),
-        light=LightSettings(altitude_m=site.ground_altitude_m),
-        wind=complain.made(
-            "wind",
-            lambda: WindSettings(
-                speed_10m_mps=file.wind.speed_10m_mps,
-                heading_deg=file.wind.heading_deg,
-                gust_intensity=file.wind.gust_intensity,
-            ),
-        ),
+        light=LightSettings(altitude_m=origin.ellipsoid_height_m),
+        wind=_wind(file, complain),
         faults=tuple(
             complain.made(f"faults[{i}]", lambda text=text: parse_fault(text))  # type: ignore[misc]
             for i, text in enumerate(file.faults)
@@ -150,6 +111,18 @@ def _scenario(name: str, file: ScenarioFile, complain: _Complaints) -> Scenario:
         raise complain.about(f"expected a survey that can be flown, got: {plan.reason}", "task")
     _check_faulty(scenario, complain)
     return scenario
+
+
+def _wind(file: ScenarioFile, complain: Complaints) -> WindSettings:
+    wind = file.wind
+    return complain.made(
+        "wind",
+        lambda: WindSettings(
+            speed_10m_mps=wind.speed_10m_mps,
+            heading_deg=wind.heading_deg,
+            gust_intensity=wind.gust_intensity,
+        ),
+    )
 
 
 def _survey(name: str, task: TaskTable, planner: str) -> Survey:
@@ -168,40 +141,14 @@ def _survey(name: str, task: TaskTable, planner: str) -> Survey:
     )
 
 
-def _fleet(file: ScenarioFile, region: Region, complain: _Complaints) -> Fleet:
-    fleet = file.fleet
-    if fleet.pads_m is None:
-        middle_m = float(region.outline_m[:, 0].mean())
-        south_m = float(region.outline_m[:, 1].min()) - PADS_OFF_M
-        first_m = middle_m - PADS_APART_M * (fleet.survey_drones - 1) / 2.0
-        pads = [(first_m + PADS_APART_M * i, south_m) for i in range(fleet.survey_drones)]
-    else:
-        pads = [(pad[0], pad[1]) for pad in fleet.pads_m]
-    if len(pads) != fleet.survey_drones:
-        said = f"pads_m: expected {fleet.survey_drones} places, one a drone, got {len(pads)}"
-        raise complain.about(said, "fleet")
-    return Fleet(
-        tuple(pads), 60.0 * fleet.endurance_min, fleet.reserve_share, 60.0 * fleet.swap_min
-    )
-
-
-def _eye(file: ScenarioFile, region: Region) -> ScenarioEye:
-    eye = file.eye
-    least, most = region.outline_m.min(axis=0), region.outline_m.max(axis=0)
-    middle = ((least + most) / 2.0).tolist() if eye.over_m is None else eye.over_m
-    return ScenarioEye(
-        (middle[0], middle[1]), eye.height_m, eye.radius_m, float(eye.period_s), eye.cell_m
-    )
-
-
-def _sky(file: ScenarioFile, origin: GeoPoint, complain: _Complaints) -> SkySettings:
+def _sky(file: ScenarioFile, origin: GeoPoint, complain: Complaints) -> SkySettings:
     place = LatLon(origin.latitude_deg, origin.longitude_deg)
     sun = SunSettings(place, file.start_utc.timestamp())
     layers = tuple(_layer(i, clouds, complain) for i, clouds in enumerate(file.clouds))
     return complain.made("clouds", lambda: SkySettings(sun=sun, layers=layers))
 
 
-def _layer(number: int, clouds: CloudsTable, complain: _Complaints) -> LayerSettings:
+def _layer(number: int, clouds: CloudsTable, complain: Complaints) -> LayerSettings:
     within = f"clouds[{number}]"
     values = {name: getattr(clouds, name) for name in clouds.__struct_fields__ if name != "shifts"}
 
@@ -216,8 +163,8 @@ def _layer(number: int, clouds: CloudsTable, complain: _Complaints) -> LayerSett
     return complain.made(within, lambda: LayerSettings(**values, shifts=shifts))
 
 
-def _check_faulty(scenario: Scenario, complain: _Complaints) -> None:
-    serials = scenario.fleet.serials
+def _check_faulty(scenario: Scenario, complain: Complaints) -> None:
+    serials = (*scenario.fleet.serials, EYE_SERIAL)
     for index, fault in enumerate(scenario.faults):
         if not any(fault.is_for(serial, i + 1) for i, serial in enumerate(serials)):
             known = ", ".join(serials)

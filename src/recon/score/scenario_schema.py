@@ -34,11 +34,12 @@ class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class SiteTable(Table, frozen=True):
-    """Where the local frame's origin lies."""
+    """A site's folder, beside the scenario's file; or where a made-up one's origin lies."""
 
-    latitude_deg: Annotated[float, Meta(ge=-89.0, le=89.0)]
-    longitude_deg: Annotated[float, Meta(ge=-180.0, le=180.0)]
-    ground_altitude_m: Annotated[float, Meta(ge=-500.0, le=6000.0)]
+    folder: Annotated[str, Meta(min_length=1, description="a folder's name")] | None = None
+    latitude_deg: Annotated[float, Meta(ge=-89.0, le=89.0)] | None = None
+    longitude_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] | None = None
+    ground_altitude_m: Annotated[float, Meta(ge=-500.0, le=6000.0)] | None = None
 
 
 class TaskTable(Table, frozen=True):
@@ -56,7 +57,10 @@ class TaskTable(Table, frozen=True):
 
 
 class FleetTable(Table, frozen=True):
-    """The survey drones; without pads they stand in a line south of the region."""
+    """The survey drones; without pads they stand in a line south of the region.
+
+    With a site's folder they are its SIM-1, SIM-2, ... and stand on its pads.
+    """
 
     survey_drones: Annotated[int, Meta(ge=1, le=16)]
     pads_m: list[PlacePair] | None = None
@@ -66,10 +70,13 @@ class FleetTable(Table, frozen=True):
 
 
 class EyeTable(Table, frozen=True):
-    """The eye; without a place it hovers over the middle of the region."""
+    """The eye; without a place it hovers over the middle of the region, 120 m high.
+
+    With a site's folder it hovers where the site's marked frame was taken.
+    """
 
     over_m: PlacePair | None = None
-    height_m: Annotated[float, Meta(ge=10.0, le=500.0)] = 120.0
+    height_m: Annotated[float, Meta(ge=10.0, le=500.0)] | None = None
     radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 300.0
     period_s: Literal[1, 2, 5] = 5
     cell_m: Annotated[float, Meta(ge=1.0, le=50.0)] = 4.0

@@ -1,0 +1,132 @@
+"""The site of a scenario that names no folder: a fence, pads, a lens and limits around its task."""
+
+from collections.abc import Iterable
+from math import ceil, hypot
+
+import numpy as np
+
+from recon.camera import ImageCircle, PoseSolution, TelemetryReference, level_pose
+from recon.geo import point_from_enu
+from recon.model.airspace import FlightLimits
+from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
+from recon.model.zone import LandingPad, Region
+from recon.score.scenario import Fleet, Place, ScenarioEye
+from recon.sim.fleet import EYE_SERIAL, PADS_TO_A_ROW
+from recon.site import Eye, Site
+from recon.site.demo_site import (
+    CENTRE_COL_PX,
+    CENTRE_ROW_PX,
+    RADIUS_AT_HALF_FIELD_PX,
+    demo_camera,
+)
+from recon.site.site import Layers
+
+FENCE_OFF_M = 80.0
+"""Of all that is flown over: turns, gusts and the margin to the fence."""
+BEYOND_HOME_M = 150.0
+"""A distance limit this much past the farthest corner is not what a study is about."""
+ABOVE_EYE_M = 10.0
+USUAL_CEILING_M = 120.0
+LOWEST_WAY_HOME_M, WAYS_HOME_APART_M = 40.0, 8.0
+EYE_PRIORITY = 10
+"""Of two in conflict the eye is held last: it sees the whole field."""
+IMAGE_CELL_M = 1.0
+
+
+def made_up_site(
+    name: str,
+    frame: LocalFrame,
+    region: Region,
+    fleet: Fleet,
+    eye: ScenarioEye,
+    photo_interval_s: float,
+) -> Site:
+    """Return a site on level ground where a task can be flown and nothing else is in the way."""
+    return Site(
+        name=name,
+        frame=frame,
+        ground_grid=_grid(frame, eye),
+        eye=_eye(frame, eye),
+        profiles=_profiles(frame, fleet, photo_interval_s),
+        layers=Layers(
+            boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, eye.over_m]),
+            landing_pads=tuple(
+                LandingPad(serial, serial, point_from_enu(frame, (*pad_m, 0.0)))
+                for serial, pad_m in zip(fleet.serials, fleet.pads_m, strict=True)
+            ),
+            survey_regions={name: region},
+        ),
+        limits=FlightLimits(
+            max_height_above_ground_m=max(USUAL_CEILING_M, eye.height_m + ABOVE_EYE_M),
+            max_distance_from_home_m=_farthest_m(fleet.pads_m, region) + BEYOND_HOME_M,
+            battery_reserve_fraction=fleet.reserve_share,
+        ),
+    )
+
+
+def _boundary(places_m: Iterable[Place | list[float]]) -> Region:
+    places = np.array(list(places_m), dtype=np.float64)
+    (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
+    off = FENCE_OFF_M
+    corners = ((west, south), (east, south), (east, north), (west, north))
+    outward = ((-off, -off), (off, -off), (off, off), (-off, off))
+    return Region(np.array(corners) + np.array(outward))
+
+
+def _farthest_m(pads_m: tuple[Place, ...], region: Region) -> float:
+    corners = region.outline_m.tolist()
+    return max(hypot(east - e, north - n) for e, n in pads_m for east, north in corners)
+
+
+def _grid(frame: LocalFrame, eye: ScenarioEye) -> GroundGrid:
+    half = ceil(eye.radius_m / IMAGE_CELL_M)
+    west_m, north_m = eye.over_m[0] - half * IMAGE_CELL_M, eye.over_m[1] + half * IMAGE_CELL_M
+    return GroundGrid(frame, west_m, north_m, IMAGE_CELL_M, 2 * half, 2 * half)
+
+
+def _eye(frame: LocalFrame, eye: ScenarioEye) -> Eye:
+    """The demonstration's lens, looking straight down; its pose is known without control points."""
+    beneath = point_from_enu(frame, (*eye.over_m, 0.0))
+    marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, eye.height_m, 0.0)
+    camera = demo_camera()
+    pose = level_pose(marked, np.array([*eye.over_m, eye.height_m]))
+    return Eye(
+        serial=EYE_SERIAL,
+        camera=camera,
+        control_points=(),
+        control_points_image_size_px=(camera.cols, camera.rows),
+        solution=PoseSolution(pose, 0.0, (), eye.height_m, 0.0, 0.0, 0.0),
+        marked_frame=marked,
+        image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, RADIUS_AT_HALF_FIELD_PX),
+    )
+
+
+def _profiles(
+    frame: LocalFrame, fleet: Fleet, photo_interval_s: float
+) -> dict[str, VehicleProfile]:
+    drones = {
+        serial: VehicleProfile(
+            serial,
+            name=f"Drone {number + 1}",
+            model="simulated",
+            waypoint_altitude=AltitudeReference.TAKEOFF,
+            pad=point_from_enu(frame, (*pad_m, 0.0)),
+            endurance_s=fleet.endurance_s,
+            go_home_height_m=LOWEST_WAY_HOME_M + WAYS_HOME_APART_M * (number % PADS_TO_A_ROW),
+            failsafe=Failsafe.GO_HOME,
+            camera_interval_s=photo_interval_s,
+        )
+        for number, (serial, pad_m) in enumerate(zip(fleet.serials, fleet.pads_m, strict=True))
+    }
+    eye = VehicleProfile(
+        EYE_SERIAL,
+        name="Eye",
+        model="simulated",
+        waypoint_altitude=AltitudeReference.TAKEOFF,
+        endurance_s=fleet.endurance_s,
+        go_home_height_m=LOWEST_WAY_HOME_M,
+        failsafe=Failsafe.GO_HOME,
+        priority=EYE_PRIORITY,
+    )
+    return {**drones, EYE_SERIAL: eye}
