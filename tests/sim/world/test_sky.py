@@ -12,8 +12,7 @@ from scipy.special import j0
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.sim.errors import SimulationError
-from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindShift
-from recon.sim.world import fractal_field as field_module
+from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindShift, field_tiles
 from recon.sim.world.drift import drift_m
 from recon.sim.world.keyframes import gaussian
 from recon.sim.world.penumbra import extinction, penumbra
@@ -46,7 +45,7 @@ def test_a_point_has_one_value_to_the_bit(points) -> None:
 
 def test_a_sky_made_anew_with_nothing_remembered_is_the_same(ground) -> None:
     first = sky(LOW, HIGH).transmittance(*ground, 1234.5)
-    field_module._tile.cache_clear()
+    field_tiles.tile.cache_clear()
     assert np.array_equal(first, sky(LOW, HIGH).transmittance(*ground, 1234.5))
     assert not np.array_equal(first, sky(LOW, HIGH, seed=5).transmittance(*ground, 1234.5))
 

@@ -7,41 +7,27 @@ same place and time, same bits.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from math import log
 
 import cv2
 import numpy as np
 import numpy.typing as npt
-from scipy.fft import irfft2
 
 from recon.sim.noise import FloatImage
-from recon.sim.world.keyframes import FloatArray, blend, generator, phase
+from recon.sim.world.field_tiles import (
+    BAND_RATIO,
+    CELLS_PER_WAVE,
+    TILE_CELLS,
+    Band,
+    tile,
+    wave_power,
+)
+from recon.sim.world.keyframes import FloatArray, blend, phase
 
-BAND_RATIO = 4.0
-TILE_CELLS = 256
-CELLS_PER_WAVE = 32.0
-"""At a band's middle; its shortest waves have 8 cells, its strongest 16 and more."""
-PADDING = 2
-"""Columns and rows repeated at a tile's end, so that no point lies between its two edges."""
 ROW_POINTS = 256
 """Points are sampled in rows of this many, the last one filled up: all go the same way."""
 FIRST_ZERO_SQUARED = 3.8317**2
-TILES_KEPT = 64
-"""A megabyte each; two layers of five bands need 20 at any moment."""
-
-
-@dataclass(frozen=True, slots=True)
-class Band:
-    """One band of a field: waves around `scale_m`, of deviation `strength`."""
-
-    stream: tuple[int, ...]
-    scale_m: float
-    outer_share: float
-    """Its scale over the field's outer scale."""
-    strength: float
-    lifetime_s: float
-    slope: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,8 +57,7 @@ class FractalField:
         octaves = log(self.outer_scale_m / self.finest_scale_m, BAND_RATIO)
         shares = [BAND_RATIO**-k for k in range(int(octaves + 0.5) + 1)]
         powers = [
-            (share * self.outer_scale_m) ** (self.slope - 2.0)
-            * _wave_power(self.slope, share).sum()
+            (share * self.outer_scale_m) ** (self.slope - 2.0) * wave_power(self.slope, share).sum()
             for share in shares
         ]
         return tuple(
@@ -97,84 +82,107 @@ class FractalField:
 
         Waves are weakened as by a disk of diameter squared `blur_m2`: those much longer not at all.
         """
-        total = np.zeros((_rows(x_m.size), ROW_POINTS, 4), dtype=np.float32)
-        x_tiles, y_tiles = x_m / self.period_m, y_m / self.period_m
-        for band in self.bands:
-            x_tiles, y_tiles = _within_tile(x_tiles), _within_tile(y_tiles)
-            weight = band.strength * disk_weight(band.scale_m, blur_m2)
-            _add_band(total, band, weight, _cells(x_tiles), _cells(y_tiles), time_s)
-            x_tiles *= BAND_RATIO
-            y_tiles *= BAND_RATIO
+        places = _Places(x_m / self.period_m, y_m / self.period_m)
+        total = np.zeros((*places.shape, 4), dtype=np.float32)
+        columns = self._columns
+        blended = blend(time_s, columns.lifetime_s, columns.phase)
+        weights = columns.strength * disk_weight(columns.scale_m, blur_m2)
+        for k, band in enumerate(self.bands):
+            places.enter_tile()
+            for later, share in enumerate((blended.share[k], blended.next_share[k])):
+                _add(total, band, blended.number[k] + later, weights[k] * share, places)
+            places.refine()
         points = total.reshape(-1, 4)[: x_m.size]
         return Sample(points[:, 0], points[:, 1], points[:, 2])
 
+    @cached_property
+    def _columns(self) -> "_BandColumns":
+        rows = [(b.scale_m, b.strength, b.lifetime_s, phase(b.stream)) for b in self.bands]
+        return _BandColumns(*(column[:, np.newaxis] for column in np.array(rows).T))
 
-def disk_weight(wave_m: float, blur_m2: FloatArray) -> FloatArray:
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _BandColumns:
+    """What bands are, (bands, 1) each: all are worked out at once."""
+
+    scale_m: FloatArray
+    strength: FloatArray
+    lifetime_s: FloatArray
+    phase: FloatArray
+
+
+class _Places:
+    """Points by rows, the last one filled up, in parts of the present band's tile."""
+
+    def __init__(self, x_tiles: FloatArray, y_tiles: FloatArray) -> None:
+        self._tiles = [_filled(tiles) for tiles in (x_tiles, y_tiles)]
+        self.shape = self._tiles[0].shape
+        self._spare = np.empty(self.shape)
+        self.cols, self.rows = (np.empty(self.shape, dtype=np.float32) for _ in self._tiles)
+        """In cells."""
+
+    def enter_tile(self) -> None:
+        """Keep the part beyond the last whole tile: no digit is lost by this."""
+        for tiles, cells in zip(self._tiles, (self.cols, self.rows), strict=True):
+            np.subtract(tiles, np.floor(tiles, out=self._spare), out=tiles)
+            np.multiply(tiles, TILE_CELLS, out=cells, casting="same_kind")
+
+    def refine(self) -> None:
+        """Go on to the next band."""
+        for tiles in self._tiles:
+            tiles *= BAND_RATIO
+
+
+def disk_weight(wave_m: float | FloatArray, blur_m2: FloatArray) -> FloatArray:
     """Return what is left of a wave averaged over disks of diameter squared `blur_m2`.
 
     That is 2 J1(x) / x of x = pi diameter / wave, by its series up to its first zero, then nothing.
+    Waves and blurs are broadcast together.
     """
     y = np.minimum(np.pi * np.pi * blur_m2 / (wave_m * wave_m), FIRST_ZERO_SQUARED)
     series = 1.0 - y * (1.0 / 8.0 - y * (1.0 / 192.0 - y * (1.0 / 9216.0 - y / 737280.0)))
     return np.where(y < FIRST_ZERO_SQUARED, series, 0.0)
 
 
-def _add_band(
+def _add(
     total: FloatImage,
     band: Band,
+    number: npt.NDArray[np.int64],
     weight: FloatArray,
-    cols: FloatImage,
-    rows: FloatImage,
-    time_s: FloatArray,
+    places: _Places,
 ) -> None:
-    """Add value and slopes of one band at N points to rows (R, ROW_POINTS, 4)."""
-    blended = blend(time_s, band.lifetime_s, phase(band.stream))
-    numbers = np.unique(blended.number)
-    for step, share in enumerate((blended.share, blended.next_share)):
-        if numbers.size == 1:
-            found = _remap(band, int(numbers[0]) + step, cols, rows)
-        else:
-            found = _remap_each(band, blended.number + step, cols, rows)
-        found *= _by_rows(weight * share)
-        total += found
+    """Add one keyframe's value and slopes to rows (R, ROW_POINTS, 4); for each point its own."""
+    numbers = number[:1] if number.size == 1 else np.unique(number)
+    if numbers.size == 1:
+        found = _remap(band, int(numbers[0]), places.cols, places.rows)
+    else:
+        found = _remap_each(band, number, numbers, places)
+    found *= _by_rows(weight)
+    total += found
 
 
 def _remap_each(
-    band: Band, number: npt.NDArray[np.int64], cols: FloatImage, rows: FloatImage
+    band: Band, number: npt.NDArray[np.int64], numbers: npt.NDArray[np.int64], places: _Places
 ) -> FloatImage:
     """Sample each point from the keyframe of its own number (N,)."""
-    flat_cols, flat_rows = cols.ravel(), rows.ravel()
+    flat_cols, flat_rows = places.cols.ravel(), places.rows.ravel()
     found = np.zeros((flat_cols.size, 4), dtype=np.float32)
-    for one in np.unique(number):
-        places = np.flatnonzero(number == one)
-        part = [_filled(values[places]) for values in (flat_cols, flat_rows)]
-        found[places] = _remap(band, int(one), *part).reshape(-1, 4)[: places.size]
-    return found.reshape(*cols.shape, 4)
+    for one in numbers:
+        here = np.flatnonzero(number == one)
+        part = [_filled(values[here]) for values in (flat_cols, flat_rows)]
+        found[here] = _remap(band, int(one), *part).reshape(-1, 4)[: here.size]
+    return found.reshape(*places.shape, 4)
 
 
 def _remap(band: Band, number: int, cols: FloatImage, rows: FloatImage) -> FloatImage:
-    tile = _tile(band, number)
-    found = cv2.remap(tile, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    keyframe = tile(band, number)
+    found = cv2.remap(keyframe, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return found.astype(np.float32, copy=False)
 
 
-def _within_tile(tiles: FloatArray) -> FloatArray:
-    """Return the part of a tile beyond the last whole one: no digit is lost by this."""
-    return tiles - np.floor(tiles)
-
-
-def _cells(tiles: FloatArray) -> FloatImage:
-    """Return places within the tile in cells, by rows."""
-    return _filled((tiles * TILE_CELLS).astype(np.float32))
-
-
-def _rows(count: int) -> int:
-    return -(-count // ROW_POINTS)
-
-
-def _filled(values: FloatImage) -> FloatImage:
-    """Return (N,) values as full rows, zeros at the end."""
-    full = np.zeros(_rows(values.size) * ROW_POINTS, dtype=np.float32)
+def _filled(values: npt.NDArray[np.floating]) -> npt.NDArray[np.floating]:
+    """Return (N,) values as full rows of their own, zeros at the end."""
+    full = np.zeros(-(-values.size // ROW_POINTS) * ROW_POINTS, dtype=values.dtype)
     full[: values.size] = values
     return full.reshape(-1, ROW_POINTS)
 
@@ -184,59 +192,3 @@ def _by_rows(share: FloatArray) -> FloatImage:
     if share.size == 1:
         return share.astype(np.float32).reshape(1, 1, 1)
     return _filled(share.astype(np.float32))[:, :, np.newaxis]
-
-
-@lru_cache(maxsize=TILES_KEPT)
-def _tile(band: Band, number: int) -> FloatImage:
-    """Return one keyframe of a band: value, slope along x, along y, and a zero, as float32."""
-    shape = (TILE_CELLS, TILE_CELLS // 2 + 1, 2)
-    drawn = generator(band.stream, number).standard_normal(shape, dtype=np.float32)
-    spectrum = drawn.view(np.complex64)[:, :, 0] * _amplitude(band.slope, band.outer_share)
-    tile = np.zeros((TILE_CELLS, TILE_CELLS, 4), dtype=np.float32)
-    per_m = np.complex64(2j * np.pi * CELLS_PER_WAVE / band.scale_m)
-    cycles_x, cycles_y = (cycles.astype(np.float32) for cycles in _cycles_per_cell())
-    spectra = (spectrum, spectrum * (per_m * cycles_x), spectrum * (per_m * cycles_y))
-    for channel, part in enumerate(spectra):
-        tile[:, :, channel] = irfft2(part, (TILE_CELLS, TILE_CELLS))
-    return np.pad(tile, ((0, PADDING), (0, PADDING), (0, 0)), mode="wrap")
-
-
-@lru_cache(maxsize=64)
-def _amplitude(slope: float, outer_share: float) -> FloatImage:
-    """Return the waves' strengths that give a tile the variance one."""
-    power = _wave_power(slope, outer_share)
-    # A wave and its mirror image: 2 Re(a (n1 + i n2) e^..) has the power 4 a^2; a wave that is its
-    # own column's mirror image keeps only its real part: a^2. irfft2 divides by the cells' number.
-    amplitude: FloatArray = np.sqrt(power / power.sum()) / _sides() * TILE_CELLS**2
-    return amplitude.astype(np.float32)
-
-
-def _wave_power(slope: float, outer_share: float) -> FloatArray:
-    """Return each wave's power (its mirror image's too) in a band, up to a common factor.
-
-    Beyond the outer scale the spectrum is flat, below it falls with the slope. Each band has a
-    window of one band to each side; neighbouring windows add up to one, the first is open to long
-    waves.
-    """
-    cycles_x, cycles_y = _cycles_per_cell()
-    waves = np.hypot(cycles_y, cycles_x) * CELLS_PER_WAVE
-    waves[0, 0] = 1e-9
-    bands_off = np.clip(np.log(waves) / log(BAND_RATIO), -1.0, 1.0)
-    if outer_share == 1.0:
-        bands_off = np.maximum(bands_off, 0.0)
-    window = np.cos(0.5 * np.pi * bands_off) ** 2
-    power: FloatArray = (waves**2 + outer_share**2) ** (-0.5 * slope) * window
-    power[0, 0] = 0.0
-    return power * _sides()
-
-
-def _cycles_per_cell() -> tuple[FloatArray, FloatArray]:
-    cycles_x = np.fft.rfftfreq(TILE_CELLS)[np.newaxis, :].astype(np.float64)
-    return cycles_x, np.fft.fftfreq(TILE_CELLS)[:, np.newaxis].astype(np.float64)
-
-
-def _sides() -> FloatArray:
-    """Return how many waves each of a half spectrum's stands for, (1, columns)."""
-    sides = np.full((1, TILE_CELLS // 2 + 1), 2.0)
-    sides[0, [0, -1]] = 1.0
-    return sides

@@ -29,10 +29,13 @@ class Blend:
     next_share: FloatArray
 
 
-def blend(time_s: FloatArray, lifetime_s: float, shift: float) -> Blend:
-    """Return the keyframes of times; `shift` in 0..1 moves them; an infinite lifetime: frozen."""
-    period_s = lifetime_s * PERIODS_PER_LIFETIME
-    position = time_s / period_s + shift if period_s < inf else np.zeros_like(time_s)
+def blend(time_s: FloatArray, lifetime_s: float | FloatArray, shift: float | FloatArray) -> Blend:
+    """Return the keyframes of times; `shift` in 0..1 moves them; an infinite lifetime: frozen.
+
+    All are broadcast together.
+    """
+    period_s = np.asarray(lifetime_s) * PERIODS_PER_LIFETIME
+    position = np.where(period_s < inf, time_s / period_s + shift, 0.0)
     number = np.floor(position)
     along = position - number
     norm = np.sqrt((1.0 - along) * (1.0 - along) + along * along)
@@ -42,7 +45,7 @@ def blend(time_s: FloatArray, lifetime_s: float, shift: float) -> Blend:
 def gaussian(stream: tuple[int, ...], time_s: FloatArray, lifetime_s: float) -> FloatArray:
     """Return values of mean 0 and deviation 1 at times (any shape), changing over `lifetime_s`."""
     blended = blend(time_s, lifetime_s, phase(stream))
-    numbers = np.unique(blended.number)
+    numbers = blended.number.ravel() if time_s.size == 1 else np.unique(blended.number)
     drawn = np.array([[number(stream, int(n) + step) for n in numbers] for step in (0, 1)])
     place = np.searchsorted(numbers, blended.number)
     value: FloatArray = blended.share * drawn[0][place] + blended.next_share * drawn[1][place]

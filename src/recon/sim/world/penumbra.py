@@ -7,6 +7,7 @@ even across the ellipse, so only its slope matters: a straight edge comes out ex
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import cos, log, radians, sin, tan
 
 import cv2
@@ -91,6 +92,7 @@ def extinction(excess: FloatArray, largest_depth: float) -> FloatArray:
     return share
 
 
+@lru_cache(maxsize=8)
 def extinction_table(largest_depth: float) -> FloatImage:
     """Return the extinction averaged over the sun's disk: a row per excess, a column per spread.
 

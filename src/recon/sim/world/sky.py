@@ -61,7 +61,7 @@ class Sky:
 
     def _piece(self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray) -> FloatImage:
         """Return the direct beam's share (N,) at N points; times are (N,) or (1,)."""
-        moments, numbers = np.unique(time_s, return_inverse=True)
+        moments, numbers = _distinct(time_s)
         suns = [self.sun_at(float(moment)) for moment in moments]
         share = np.ones(east_m.size, dtype=np.float32)
         for layer in self.layers:
@@ -74,3 +74,10 @@ class Sky:
         east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
         north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
         return self.transmittance(east_m[np.newaxis, :], north_m[:, np.newaxis], time_s)
+
+
+def _distinct(time_s: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intp]]:
+    """Return the moments among times (N,), and of each time the number of its moment."""
+    if time_s.size == 1:
+        return time_s, np.zeros(1, dtype=np.intp)
+    return np.unique(time_s, return_inverse=True)
