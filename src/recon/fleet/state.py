@@ -7,7 +7,7 @@ from recon.fleet.settings import FleetSettings
 from recon.model.vehicle import Staleness, VehicleProfile, VehicleState
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class LinkRecord:
     """One connection. `own_state` is what it reported while it was not a vehicle's link."""
 
@@ -35,7 +35,7 @@ class LinkRecord:
         return self.closed_at_ns is None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Fleet:
     """All links (open and lately closed) and all vehicles identified in this run.
 

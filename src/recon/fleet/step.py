@@ -1,11 +1,12 @@
 """The fleet's step: links come and go, reports are folded in, identities are settled."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from recon.fleet import identity
 from recon.fleet.state import Fleet, LinkRecord
 from recon.fleet.telemetry import fold_core, fold_extended
 from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived, Tick
+from recon.model.replacing import replace
 from recon.model.report import (
     CoreReport,
     ExtendedReport,

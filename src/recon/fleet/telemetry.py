@@ -1,12 +1,13 @@
 """Reports folded into a vehicle's state."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from math import isfinite
 from typing import Any
 
 from recon.fleet.settings import FleetSettings
 from recon.geo.distance import horizontal_distance_m
 from recon.model.geo import LatLon
+from recon.model.replacing import replace
 from recon.model.report import CoreReport, ExtendedReport
 from recon.model.stamped import Stamped
 from recon.model.units import seconds_to_ns

@@ -155,7 +155,7 @@ class TrackPoint:
     height_above_takeoff_m: float | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class VehicleState:
     """What is known of one vehicle, each value with the moment it was received.
 

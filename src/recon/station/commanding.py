@@ -1,7 +1,6 @@
 """Orders carried out: judged by the gate, superseded, repeated, confirmed, timed out."""
 
 from collections.abc import Collection
-from dataclasses import replace
 
 from recon.fleet.confirmation import Progress, SentContext, progress, reading_of_sent
 from recon.fleet.flight_table import Verdict
@@ -19,6 +18,7 @@ from recon.model.command import (
 )
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
 from recon.model.intent import Intent
+from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand, Claimant, Situation, Traffic, approve, judge

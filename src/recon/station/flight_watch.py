@@ -5,11 +5,11 @@ or ended by the aircraft's own failsafe. So is a vehicle that has been told noth
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from recon.fleet.flight_table import ModeKind, Reading, Told, Verdict, kind_of, read
 from recon.model.command import STEERED_BODIES, Command, LandNow, Phase, Refusal
 from recon.model.intent import Commanded, Intent
+from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety import ApprovedCommand

@@ -7,7 +7,7 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import FlightMode
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Following:
     """What the flight table is asked with, beside the intent itself.
 

@@ -1,9 +1,10 @@
 """Frames of the eye, sent to be laid on the ground with the telemetry that held at capture."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from recon.camera.motion import TelemetryReference
 from recon.model.imagery import Frame, GroundImage
+from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 

@@ -5,7 +5,6 @@ landing, the pilot's takeover, a failsafe or an order that came to nothing, the 
 nothing.
 """
 
-from dataclasses import replace
 
 from recon.fleet.confirmation import STANDING_SPEED_MPS, SentContext
 from recon.fleet.flight_table import AT_END_M, GOOD_GNSS_LEVEL, ModeKind, Place, Told
@@ -13,6 +12,7 @@ from recon.fleet.mission_progress import distance_to_m, waypoints_passed
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import Body, FlyMission, Hover, LandNow, ReturnHome, VirtualStick
 from recon.model.intent import Commanded, Intent
+from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.following import Following

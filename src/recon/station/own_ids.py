@@ -3,8 +3,8 @@
 Orders of people and programs are numbered from 1 up, so the two never meet.
 """
 
-from dataclasses import replace
 
+from recon.model.replacing import replace
 from recon.station.state import Station
 
 

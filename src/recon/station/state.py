@@ -57,7 +57,7 @@ class Fault:
     at_ns: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Station:
     """The state that `step` turns into the next one."""
 

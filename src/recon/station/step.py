@@ -1,7 +1,6 @@
 """The station's step: one event in, the next state and what is to be done out. Pure."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
 from recon.fleet import step as fleet_step
 from recon.model.event import (
@@ -33,6 +32,7 @@ from recon.model.event import (
     WorkerResult,
 )
 from recon.model.imagery import Frame, GroundImage
+from recon.model.replacing import replace
 from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState

@@ -1,7 +1,7 @@
 """How a stream of sticks ends: let go in silence, or zero and then hold."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from recon.fleet.flight_table import Place, Told, Verdict, read
 from recon.guidance.steering import halted
@@ -9,6 +9,7 @@ from recon.model.authority import Lead, Leader
 from recon.model.command import Command, Hover, Phase, Refusal, StickFrame, VirtualStick
 from recon.model.event import OperatorOrder
 from recon.model.intent import Commanded, Intent
+from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import ApprovedCommand

@@ -7,12 +7,12 @@ Nothing resumes a lease that has ended: no reconnect, no restart.
 """
 
 from collections.abc import Collection
-from dataclasses import replace
 
 from recon.guidance.steering import Seen, begin, halted, has_arrived, steer
 from recon.model.command import STEERED_BODIES, Command, Phase, Refusal
 from recon.model.event import CommandSent, OperatorOrder
 from recon.model.intent import Commanded, Intent
+from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station import stream_ends

@@ -5,12 +5,12 @@ repeated until telemetry shows them.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 
 from recon.model.authority import Lead
 from recon.model.command import Hover
 from recon.model.event import OperatorOrder, SeparationHoldSwitched
 from recon.model.intent import Intent
+from recon.model.replacing import replace
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety.watchdogs import (

@@ -1,0 +1,46 @@
+"""`replace` for frozen values that are replaced with every packet.
+
+It does what `dataclasses.replace` does, which reads and sets each field by name: 10 us for a value
+of thirty fields. A value that keeps its fields in a dictionary (a dataclass without `slots`) is
+copied as one instead, in 1.5 us; any other goes to `dataclasses.replace`.
+"""
+
+import dataclasses
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from dataclasses import replace as replace  # checked field by field, as the original is
+else:
+
+    def replace(value: Any, /, **changes: Any) -> Any:
+        """Return a frozen value with some of its fields changed.
+
+        Raises TypeError for a field that there is none of.
+        """
+        kind = type(value)
+        names = _fields_copied(kind)
+        if names is None:
+            return dataclasses.replace(value, **changes)
+        if not names.issuperset(changes):
+            unknown = ", ".join(sorted(changes.keys() - names))
+            raise TypeError(f"{kind.__name__} has no field {unknown}")
+        copied = object.__new__(kind)
+        copied.__dict__.update(value.__dict__, **changes)
+        return copied
+
+
+@cache
+def _fields_copied(kind: type[Any]) -> frozenset[str] | None:
+    """Return the names of a type's fields if its values may be copied as dictionaries, else None.
+
+    Not where making one does more than set its fields, or where it keeps more than fields.
+    """
+    if not dataclasses.is_dataclass(kind) or hasattr(kind, "__slots__"):
+        return None
+    fields = dataclasses.fields(kind)
+    does_more = hasattr(kind, "__post_init__") or not all(field.init for field in fields)
+    keeps_more = any(isinstance(part, cached_property) for part in vars(kind).values())
+    if does_more or keeps_more:
+        return None
+    return frozenset(field.name for field in fields)
