@@ -71,9 +71,8 @@ def crossing(
     start_ns, end_ns = times_ns
 
     def at_ns(share: FloatArray) -> IntArray:
-        ns: IntArray = start_ns + np.round(np.clip(share, 0.0, 1.0) * (end_ns - start_ns)).astype(
-            np.int64
-        )
+        within = np.minimum(np.maximum(share, 0.0), 1.0)
+        ns: IntArray = start_ns + np.rint(within * (end_ns - start_ns)).astype(np.int64)
         return ns
 
     return Crossing(

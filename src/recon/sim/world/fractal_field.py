@@ -25,6 +25,9 @@ from recon.sim.world.field_tiles import (
 )
 from recon.sim.world.keyframes import FloatArray, blend, phase
 
+IndexArray = npt.NDArray[np.int64]
+AT_ONCE: IndexArray = np.zeros(1, dtype=np.int64)
+"""In place of the number of each point's moment where all have the first."""
 ROW_POINTS = 256
 """Points are sampled in rows of this many, the last one filled up: all go the same way."""
 FIRST_ZERO_SQUARED = 3.8317**2
@@ -76,10 +79,16 @@ class FractalField:
         return self.outer_scale_m * TILE_CELLS / CELLS_PER_WAVE
 
     def sample(
-        self, x_m: FloatArray, y_m: FloatArray, time_s: FloatArray, blur_m2: FloatArray
+        self,
+        x_m: FloatArray,
+        y_m: FloatArray,
+        time_s: FloatArray,
+        blur_m2: FloatArray,
+        moment: IndexArray = AT_ONCE,
     ) -> Sample:
-        """Return the field at N points; times and blurs are (N,) or (1,).
+        """Return the field at N points at K moments; times and blurs are (K,).
 
+        `moment` (N,) is the number of each point's moment; (1,) if that is one for all.
         Waves are weakened as by a disk of diameter squared `blur_m2`: those much longer not at all.
         """
         places = _Places(x_m / self.period_m, y_m / self.period_m)
@@ -90,7 +99,9 @@ class FractalField:
         for k, band in enumerate(self.bands):
             places.enter_tile()
             for later, share in enumerate((blended.share[k], blended.next_share[k])):
-                _add(total, band, blended.number[k] + later, weights[k] * share, places)
+                found = _remap_at(band, blended.number[k] + later, places, moment)
+                found *= _by_rows((weights[k] * share).astype(np.float32)[moment])
+                total += found
             places.refine()
         points = total.reshape(-1, 4)[: x_m.size]
         return Sample(points[:, 0], points[:, 1], points[:, 2])
@@ -144,31 +155,14 @@ def disk_weight(wave_m: float | FloatArray, blur_m2: FloatArray) -> FloatArray:
     return np.where(y < FIRST_ZERO_SQUARED, series, 0.0)
 
 
-def _add(
-    total: FloatImage,
-    band: Band,
-    number: npt.NDArray[np.int64],
-    weight: FloatArray,
-    places: _Places,
-) -> None:
-    """Add one keyframe's value and slopes to rows (R, ROW_POINTS, 4); for each point its own."""
-    numbers = number[:1] if number.size == 1 else np.unique(number)
-    if numbers.size == 1:
-        found = _remap(band, int(numbers[0]), places.cols, places.rows)
-    else:
-        found = _remap_each(band, number, numbers, places)
-    found *= _by_rows(weight)
-    total += found
-
-
-def _remap_each(
-    band: Band, number: npt.NDArray[np.int64], numbers: npt.NDArray[np.int64], places: _Places
-) -> FloatImage:
-    """Sample each point from the keyframe of its own number (N,)."""
+def _remap_at(band: Band, number: IndexArray, places: _Places, moment: IndexArray) -> FloatImage:
+    """Sample each point from the keyframe of its moment's number (K,)."""
+    if number.size == 1 or number.min() == number.max():
+        return _remap(band, int(number[0]), places.cols, places.rows)
     flat_cols, flat_rows = places.cols.ravel(), places.rows.ravel()
     found = np.zeros((flat_cols.size, 4), dtype=np.float32)
-    for one in numbers:
-        here = np.flatnonzero(number == one)
+    for one in np.unique(number):
+        here = np.flatnonzero((number == one)[moment])
         part = [_filled(values[here]) for values in (flat_cols, flat_rows)]
         found[here] = _remap(band, int(one), *part).reshape(-1, 4)[: here.size]
     return found.reshape(*places.shape, 4)
@@ -187,8 +181,8 @@ def _filled(values: npt.NDArray[np.floating]) -> npt.NDArray[np.floating]:
     return full.reshape(-1, ROW_POINTS)
 
 
-def _by_rows(share: FloatArray) -> FloatImage:
+def _by_rows(share: FloatImage) -> FloatImage:
     """Return shares, (N,) or (1,), so that they multiply rows of four channels."""
     if share.size == 1:
-        return share.astype(np.float32).reshape(1, 1, 1)
-    return _filled(share.astype(np.float32))[:, :, np.newaxis]
+        return share.reshape(1, 1, 1)
+    return _filled(share)[:, :, np.newaxis]

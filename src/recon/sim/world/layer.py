@@ -9,7 +9,7 @@ import numpy as np
 
 from recon.sim.noise import FloatImage
 from recon.sim.world.drift import drift_m
-from recon.sim.world.fractal_field import ROW_POINTS, FractalField
+from recon.sim.world.fractal_field import ROW_POINTS, FractalField, IndexArray
 from recon.sim.world.keyframes import FloatArray, gaussian, generator
 from recon.sim.world.penumbra import Penumbra, extinction_table, look_up, spread
 from recon.sim.world.settings import LayerSettings
@@ -39,19 +39,27 @@ class CloudLayer:
         )
 
     def transmittance(
-        self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray, edge: Penumbra
+        self,
+        east_m: FloatArray,
+        north_m: FloatArray,
+        time_s: FloatArray,
+        edge: Penumbra,
+        moment: IndexArray,
     ) -> FloatImage:
-        """Return the direct beam's share (N,) at N ground points.
+        """Return the direct beam's share (N,) at N ground points at K moments.
 
-        Times and penumbrae (those of this layer's height at these times) are (N,) or (1,).
+        Times and penumbrae (those of this layer's height at these times) are (K,); `moment` (N,) is
+        the number of each point's, or (1,) if that is one for all.
         """
         if self.settings.cover in (0.0, 1.0):
             return np.full(east_m.size, self._even_share, dtype=np.float32)
-        x_m, y_m = self._field_place(east_m, north_m, time_s, edge)
-        found = self.field.sample(x_m, y_m, time_s, edge.across_m * edge.along_m)
+        off_east_m, off_north_m = self._offset_m(time_s, edge)
+        x_m, y_m = self._field_place(east_m + off_east_m[moment], north_m + off_north_m[moment])
+        found = self.field.sample(x_m, y_m, time_s, edge.across_m * edge.along_m, moment)
         per_softness = np.float32(1.0 / self.settings.softness)
-        excess = (found.value - self._threshold(time_s).astype(np.float32)) * per_softness
-        spreads = spread(edge, self._axes_rad, found) * per_softness
+        threshold = self._threshold(time_s).astype(np.float32)
+        excess = (found.value - threshold[moment]) * per_softness
+        spreads = spread(edge.at(moment), self._axes_rad, found) * per_softness
         return _by_rows(self._table, excess, spreads)
 
     @property
@@ -59,13 +67,16 @@ class CloudLayer:
         """What a layer without edges lets through: all, or what its thickest cloud does."""
         return 1.0 if self.settings.cover == 0.0 else float(self._table[-1, 0])
 
-    def _field_place(
-        self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray, edge: Penumbra
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return where in the field the sun's ray to each point passes; its axes are turned."""
+    def _offset_m(self, time_s: FloatArray, edge: Penumbra) -> tuple[FloatArray, FloatArray]:
+        """Return how far from a point on the ground the cloud that shades it lay at time 0."""
         drift_east_m, drift_north_m = drift_m(self.settings, time_s)
-        east = east_m + edge.offset_m * edge.toward_east - drift_east_m
-        north = north_m + edge.offset_m * edge.toward_north - drift_north_m
+        return (
+            edge.offset_m * edge.toward_east - drift_east_m,
+            edge.offset_m * edge.toward_north - drift_north_m,
+        )
+
+    def _field_place(self, east: FloatArray, north: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the place along the field's own axes, which are turned."""
         to_x, to_y = cos(self._axes_rad), sin(self._axes_rad)
         return east * to_x - north * to_y, east * to_y + north * to_x
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from recon.model.geo import GroundGrid
 from recon.sim.noise import FloatImage
+from recon.sim.world.fractal_field import AT_ONCE, IndexArray
 from recon.sim.world.keyframes import FloatArray
 from recon.sim.world.layer import CloudLayer
 from recon.sim.world.penumbra import penumbra
@@ -61,12 +62,12 @@ class Sky:
 
     def _piece(self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray) -> FloatImage:
         """Return the direct beam's share (N,) at N points; times are (N,) or (1,)."""
-        moments, numbers = _distinct(time_s)
-        suns = [self.sun_at(float(moment)) for moment in moments]
+        times_s, moment = _moments(time_s)
+        suns = [self.sun_at(float(one_s)) for one_s in times_s]
         share = np.ones(east_m.size, dtype=np.float32)
         for layer in self.layers:
-            edge = penumbra(suns, layer.settings.base_height_m).at(numbers)
-            share *= layer.transmittance(east_m, north_m, time_s, edge)
+            edge = penumbra(suns, layer.settings.base_height_m)
+            share *= layer.transmittance(east_m, north_m, times_s, edge, moment)
         return share
 
     def on_grid(self, grid: GroundGrid, time_s: float) -> FloatImage:
@@ -76,8 +77,11 @@ class Sky:
         return self.transmittance(east_m[np.newaxis, :], north_m[:, np.newaxis], time_s)
 
 
-def _distinct(time_s: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-    """Return the moments among times (N,), and of each time the number of its moment."""
+def _moments(time_s: FloatArray) -> tuple[FloatArray, IndexArray]:
+    """Return the moments (K,) among times (N,), and for each time the number of its moment."""
     if time_s.size == 1:
-        return time_s, np.zeros(1, dtype=np.intp)
-    return np.unique(time_s, return_inverse=True)
+        return time_s, AT_ONCE
+    # Most who ask for many times ask for many points at each: those lie in a row.
+    heads = np.flatnonzero(np.diff(time_s, prepend=np.nan) != 0.0)
+    moments, of_head = np.unique(time_s[heads], return_inverse=True)
+    return moments, np.repeat(of_head, np.diff(heads, append=time_s.size))
