@@ -37,10 +37,10 @@ class Leg:
 
     def along_m(self, after_s: FloatArray) -> FloatArray:
         """Return how far along a vehicle is at times after the start, (N,)."""
-        up_s = np.clip(after_s, 0.0, self.up_s)
-        cruise_s = np.clip(after_s - self.up_s, 0.0, self.cruise_s)
-        brake_s = np.clip(after_s - self.up_s - self.cruise_s, 0.0, self.brake_s)
-        settle_s = np.clip(after_s - self.duration_s + self.settle_s, 0.0, self.settle_s)
+        up_s = _within(after_s, self.up_s)
+        cruise_s = _within(after_s - self.up_s, self.cruise_s)
+        brake_s = _within(after_s - self.up_s - self.cruise_s, self.brake_s)
+        settle_s = _within(after_s - self.duration_s + self.settle_s, self.settle_s)
         along_m = 0.5 * self.acceleration_mps2 * up_s**2 + self.top_mps * cruise_s
         along_m += self.top_mps * brake_s - 0.5 * self.braking_mps2 * brake_s**2
         along_m += self.settling_m * (1.0 - np.exp(-settle_s))
@@ -67,3 +67,7 @@ def leg(length_m: float, speed_mps: float, settings: FlightSettings) -> Leg:
     cruise_s = cruise_m / top_mps if top_mps > 0.0 else 0.0
     up_s = top_mps / up
     return Leg(length_m, top_mps, up, down, settling_m, up_s, cruise_s, braking_s, settle_s)
+
+
+def _within(at_s: FloatArray, most_s: float) -> FloatArray:
+    return np.minimum(np.maximum(at_s, 0.0), most_s)

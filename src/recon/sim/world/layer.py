@@ -9,7 +9,7 @@ import numpy as np
 
 from recon.sim.noise import FloatImage
 from recon.sim.world.drift import drift_m
-from recon.sim.world.fractal_field import ROW_POINTS, FractalField, IndexArray
+from recon.sim.world.fractal_field import AT_ONCE, ROW_POINTS, FractalField, IndexArray
 from recon.sim.world.keyframes import FloatArray, gaussian, generator
 from recon.sim.world.penumbra import Penumbra, extinction_table, look_up, spread
 from recon.sim.world.settings import LayerSettings
@@ -44,7 +44,7 @@ class CloudLayer:
         north_m: FloatArray,
         time_s: FloatArray,
         edge: Penumbra,
-        moment: IndexArray,
+        moment: IndexArray = AT_ONCE,
     ) -> FloatImage:
         """Return the direct beam's share (N,) at N ground points at K moments.
 
