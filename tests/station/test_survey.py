@@ -7,7 +7,7 @@ from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field,
 from recon.model.authority import Leader
 from recon.model.command import FlyMission, LandNow, Phase
 from recon.model.event import AuthorityTaken, SurveyStarted
-from recon.model.survey import SurveyPhase
+from recon.model.survey import SurveyPhase, WhenDone
 
 
 def two_ends() -> SurveyedWorld:
@@ -18,7 +18,7 @@ def two_ends() -> SurveyedWorld:
 @pytest.fixture(scope="module")
 def flown() -> SurveyedWorld:
     world = two_ends()
-    world.asks(asked(field(360.0)))
+    world.asks(asked(field(360.0), when_done=WhenDone.HOVER))
     world.starts("SIM-1", "SIM-2")
     assert world.runs_until(SurveyPhase.DONE, 400.0), world.record()
     return world

@@ -21,6 +21,7 @@ from recon.cli.naming import NamingError, serials_of
 from recon.cli.telling import say, say_json, table
 from recon.client import ClientError, Refusal, Station, Survey
 from recon.model.geo import GeoPoint
+from recon.model.survey import WhenDone
 
 HECTARE_M2 = 10_000.0
 NO_PLACE = "the station's site has no place: start the station with --site FOLDER"
@@ -56,6 +57,10 @@ def create_command(
         float, typer.Option("--interval", help="Seconds between photos, as the timer is set.")
     ] = 2.0,
     rounds: Annotated[int, typer.Option("--rounds", help="Flights over what is missing.")] = 6,
+    when_done: Annotated[
+        WhenDone,
+        typer.Option("--when-done", help="What its vehicles do then, or without battery."),
+    ] = WhenDone.RETURN_HOME,
     as_json: JsonOption = False,
     station: StationOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
@@ -70,6 +75,7 @@ def create_command(
         "row_bearing_deg": bearing,
         "camera": {"interval_s": interval},
         "budget": {"rounds": rounds},
+        "when_done": when_done.value,
     }
 
     async def work(at: Station) -> int:

@@ -9,6 +9,7 @@ from recon.client.http import Http
 from recon.model.command import Refusal
 
 SurveyPhaseWord = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
+WhenDoneWord = Literal["return_home", "hover"]
 
 
 class SurveyFigures(msgspec.Struct, frozen=True):
@@ -42,6 +43,7 @@ class Survey(msgspec.Struct, frozen=True):
     phase: SurveyPhaseWord
     reason: str
     planner: str
+    when_done: WhenDoneWord
     round: int
     missions: int
     flown_m: float

@@ -43,6 +43,15 @@ class SurveyBudget:
     """Planned metres of all missions together: batteries, said as a way."""
 
 
+class WhenDone(Enum):
+    """What a survey's vehicles do when there is nothing more for them to fly."""
+
+    RETURN_HOME = "return_home"
+    """They fly home in layers and land: when it is done, or no battery lasts for a row."""
+    HOVER = "hover"
+    """They stay where they are until somebody orders something."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Survey:
     """What is asked for; `region` is in east-north metres of the site's local frame.
@@ -70,6 +79,7 @@ class Survey:
     seen from nearly above; for counting or looking any photo does."""
     cell_m: float = 4.0
     """Progress is kept in cells of this size: finer than shadows' edges are known."""
+    when_done: WhenDone = WhenDone.RETURN_HOME
 
 
 class SurveyPhase(Enum):

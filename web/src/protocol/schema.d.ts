@@ -1777,6 +1777,13 @@ export interface components {
             side_overlap: number;
             /** Speed Mps */
             speed_mps: number;
+            /**
+             * When Done
+             * @description what its vehicles do when it is done, or no battery lasts for a row
+             * @default return_home
+             * @enum {string}
+             */
+            when_done: "return_home" | "hover";
         };
         /**
          * SurveyResponse
@@ -1854,6 +1861,11 @@ export interface components {
              * @description rises as flown ways grow
              */
             ways: number;
+            /**
+             * When Done
+             * @enum {string}
+             */
+            when_done: "return_home" | "hover";
         };
         /**
          * SurveyWay

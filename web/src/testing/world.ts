@@ -264,6 +264,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
     age_s: 95,
     started_by: "api 127.0.0.1",
     planner: "lawnmower_again",
+    when_done: "return_home",
     height_above_takeoff_m: 50,
     speed_mps: 5,
     round: 1,

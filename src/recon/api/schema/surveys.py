@@ -10,6 +10,9 @@ from recon.api.schema.message import Message
 SurveyPhaseWord = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 
 
+WhenDoneWord = Literal["return_home", "hover"]
+
+
 class SurveyCameraRequest(Asked):
     """The survey drones' camera: fields of view, and the interval its timer is set to."""
 
@@ -49,6 +52,10 @@ class SurveyRequest(Asked):
     planner: Annotated[str, Field(max_length=100)] = "lawnmower_once"
     counts_neighbours: bool = False
     cell_m: float = 4.0
+    when_done: WhenDoneWord = Field(
+        default="return_home",
+        description="what its vehicles do when it is done, or no battery lasts for a row",
+    )
     camera: SurveyCameraRequest = SurveyCameraRequest()
     budget: SurveyBudgetRequest = SurveyBudgetRequest()
 
@@ -108,6 +115,7 @@ class SurveyView(Message):
     age_s: float
     started_by: str | None
     planner: str
+    when_done: WhenDoneWord
     height_above_takeoff_m: float
     speed_mps: float
     round: int

@@ -19,6 +19,7 @@ from recon.guidance.survey.plan import Surroundings, SurveyPlan, plan_survey
 from recon.guidance.survey.planners import PLANNERS, Planner, lawnmower_again, lawnmower_once
 from recon.guidance.survey.progress import Progress, Seen
 from recon.guidance.survey.settings import SurveySettings
+from recon.guidance.survey.spent import spent
 from recon.guidance.survey.state import Flight, Surveyor, SurveyState
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
     "pause",
     "plan_survey",
     "refused",
+    "spent",
     "start",
     "step",
 ]

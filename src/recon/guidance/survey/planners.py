@@ -16,7 +16,7 @@ Planner = Callable[[SurveyState, Sequence[Surveyor], int], Step]
 
 def lawnmower_once(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
     """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
-    return fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
+    return fly_rounds(state, positions, now_ns, WANTED["lawnmower_once"])
 
 
 def lawnmower_again(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
@@ -24,8 +24,13 @@ def lawnmower_again(state: SurveyState, positions: Sequence[Surveyor], now_ns: i
 
     It does not wait for sun: the survey's budget ends it under a closed sky.
     """
-    return fly_rounds(state, positions, now_ns, CellState.IN_SUN)
+    return fly_rounds(state, positions, now_ns, WANTED["lawnmower_again"])
 
+
+WANTED: Mapping[str, CellState] = MappingProxyType(
+    {"lawnmower_once": CellState.IN_SHADE, "lawnmower_again": CellState.IN_SUN}
+)
+"""Up to which state of its cells each planner flies."""
 
 PLANNERS: Mapping[str, Planner] = MappingProxyType(
     {"lawnmower_once": lawnmower_once, "lawnmower_again": lawnmower_again}

@@ -227,12 +227,12 @@ def _sortie(plan: SurveyPlan, route: Route, surveyor: Surveyor) -> tuple[Track |
         return track_of(route[:count], plan.lattice, plan.swath.lead_m, plan.ways)
 
     too_many = range(1, len(route) + 1)
-    count = bisect_left(too_many, True, key=lambda n: not _lasts(plan, track(n), surveyor))
+    count = bisect_left(too_many, True, key=lambda n: not lasts(plan, track(n), surveyor))
     return (track(count) if count else None), count
 
 
-def _lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
-    """Whether there is a track and the battery lasts for it, and for the ways there and home."""
+def lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
+    """Return whether there is a track and the battery lasts for it, and the ways there and home."""
     if track is None or surveyor.time_left_s is None:
         return track is not None
     home_m = surveyor.home_m or surveyor.place_m

@@ -73,6 +73,9 @@ class SurveySettings:
     """A mission refused while others flew is asked for again after this: by then they are
     elsewhere."""
 
+    way_home_waits_s: float = 60.0
+    """Who waits for others' rows keeps this beside the way home: there too a turn is waited for."""
+
     enough_share: float = 0.99
     """Of the cells that rows reach: from here on a survey is done; a cell or two at an edge are not
     worth a flight."""

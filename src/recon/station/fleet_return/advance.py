@@ -14,15 +14,16 @@ from recon.guidance.fleet_return import (
     mission_of,
     whole_claim,
 )
+from recon.model.authority import Leader
 from recon.model.command import FlyMission, Hover, Phase, Refusal
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.safety import judge
-from recon.station import commanding
+from recon.station import authority, commanding
 from recon.station.commanding import Stepped
 from recon.station.fleet_return import places, planning
 from recon.station.fleet_return.places import is_same_pad
-from recon.station.fleet_return.record import UNDER_WAY, FleetReturn, Member, Stage
+from recon.station.fleet_return.record import ENDED, UNDER_WAY, FleetReturn, Member, Stage
 from recon.station.fleet_return.settings import SETTINGS, ReturnSettings
 from recon.station.fleet_return.watch import seen
 from recon.station.outputs import Output
@@ -37,6 +38,7 @@ MOVED = "it was moved from where it waited: its pilot has it, or it drifts"
 
 def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) -> Stepped:
     """Return the station after a fleet return has gone on as far as it can now."""
+    station = _handed_back(station, now_ns)
     running = station.fleet_return
     if running is None or running.is_over or now_ns < running.look_at_ns:
         return station, ()
@@ -51,6 +53,20 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) 
         return replace(station, fleet_return=running), (*stops, *work)
     station, begun = _begin_one(station, running, settings, now_ns)
     return station, (*stops, *begun)
+
+
+def _handed_back(station: Station, now_ns: int) -> Station:
+    """Whom guidance called home, and who is there or is not flown any further, is the operator's.
+
+    What somebody has given to guidance since is left to it.
+    """
+    running = station.fleet_return
+    for member in () if running is None else running.at(*ENDED):
+        led_since_ns = authority.lead_of(station, member.serial).since_ns
+        if member.asked_as is Leader.GUIDANCE and led_since_ns <= member.since_ns:
+            why = f"its way home has ended: {member.reason or 'it has landed'}"
+            station = authority.hand_back(station, member.serial, member.by, why, now_ns)
+    return station
 
 
 def _stop_what_may_begin_late(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
@@ -200,7 +216,11 @@ def _judged(
     speed_mps = station.airspace.airspace.limits.max_speed_mps
     mission = mission_of(flight, running.frame, flight.start_m, settings.plan, speed_mps)
     order = OperatorOrder(
-        0, FlyMission(mission), f"{running.by}: fleet return", serial=member.serial
+        0,
+        FlyMission(mission),
+        f"{member.by}: fleet return",
+        serial=member.serial,
+        asked_as=member.asked_as,
     )
     command = commanding.command_of(station, order, now_ns)
     refusal = judge(command, commanding.situation(station, command, now_ns))
@@ -225,4 +245,6 @@ def _may_end(
         return False
     if running.at(*UNDER_WAY) or member.refused_since_ns is None:
         return True
+    if member.asked_as is Leader.GUIDANCE:
+        return True  # others fly rows for minutes; its battery ends the waiting
     return now_ns - member.refused_since_ns < seconds_to_ns(settings.gate_waits_s)

@@ -25,19 +25,28 @@ def call(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
     outputs: list[Output] = []
     for command_id, serial in enumerate(event.serials, event.first_command_id):
         order = OperatorOrder(command_id, Hover(), f"{event.by}: fleet return", serial=serial)
-        refusal = _refusal(station, serial)
-        if refusal is not None:
-            station = commanding.refuse(station, order, refusal, now_ns)
+        why = refusal(station, serial)
+        if why is not None:
+            station = commanding.refuse(station, order, why, now_ns)
             continue
-        station, sent = commanding.place(station, order, now_ns)
+        station, sent = join(station, order, event.by, now_ns)
         outputs += sent
-        if station.orders.records[command_id].phase is not Phase.REFUSED_BY_STATION:
-            station = _joined(station, order, event.by, now_ns)
     return station, tuple(outputs)
 
 
-def _refusal(station: Station, serial: str) -> Refusal | None:
-    """Why a vehicle is not called at all; whether it flies is the gate's question.
+def join(station: Station, hold: OperatorOrder, by: str, now_ns: int) -> Stepped:
+    """Hold a vehicle, and let it join the return unless that is refused; see the hold's record.
+
+    The mission that follows is asked for as the hold is: as the operator's, or as guidance's.
+    """
+    station, sent = commanding.place(station, hold, now_ns)
+    if station.orders.records[hold.command_id].phase is not Phase.REFUSED_BY_STATION:
+        station = _joined(station, hold, by, now_ns)
+    return station, sent
+
+
+def refusal(station: Station, serial: str) -> Refusal | None:
+    """Return why a vehicle is not called at all; whether it flies is the gate's question.
 
     One that guidance leads is taken from it by its hold, as by any other.
     """
@@ -70,7 +79,16 @@ def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Sta
         running = FleetReturn(by, now_ns, frame, still)
     hold_id = order.command_id
     name = vehicle.display_name
-    member = Member(serial, name, vehicle.link_id, hold_id, Stage.STOPPING, now_ns)
+    member = Member(
+        serial,
+        name,
+        vehicle.link_id,
+        hold_id,
+        Stage.STOPPING,
+        now_ns,
+        by=by,
+        asked_as=order.asked_as,
+    )
     return replace(station, fleet_return=running.put(member))
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from recon.guidance.fleet_return import Flight
+from recon.model.authority import Leader
 from recon.model.geo import LocalFrame
 
 
@@ -52,6 +53,10 @@ class Member:
     refused_since_ns: int | None = None
     out_of_mission_since_ns: int | None = None
     clears: str | None = None
+    by: str = ""
+    """Who called it."""
+    asked_as: Leader = Leader.OPERATOR
+    """As whose its orders are given: it is the return's while that one leads it."""
 
     def at(self, stage: Stage, now_ns: int, reason: str = "") -> "Member":
         """Return the member at another stage."""

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 from recon.link.outbox import Lane, lane_of
-from recon.model.authority import Leader
 from recon.model.command import Hover, Phase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station import stick_zero
+from recon.station.authority import lead_of
 from recon.station.fleet_return.record import ENDED, UNDER_WAY, Member, Stage
 from recon.station.fleet_return.settings import ReturnSettings
 from recon.station.orders import OrderRecord
@@ -74,8 +74,8 @@ def is_still_left(station: Station, member: Member) -> bool:
 
 def _taken(station: Station, member: Member, now_ns: int) -> Member | None:
     """The pilot, or whoever ordered something newer, has the vehicle."""
-    lead = station.leads.get(member.serial)
-    if lead is not None and lead.leader is not Leader.OPERATOR:
+    lead = lead_of(station, member.serial)
+    if lead.leader is not member.asked_as:
         words = f"it is led by {lead.leader.value} now ({lead.reason})"
         return member.at(Stage.RELEASED, now_ns, words)
     newest = newest_motion(station, member.serial)

@@ -8,6 +8,7 @@ from recon.model.command import FlyMission, Hover, Phase
 from recon.model.event import OperatorOrder, WorkerResult
 from recon.model.survey import MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
+from recon.safety.rules.battery import RULE as BATTERY
 from recon.station import authority, commanding
 from recon.station.commanding import Stepped
 from recon.station.outputs import Output, StartWork
@@ -15,6 +16,14 @@ from recon.station.own_ids import take_id
 from recon.station.state import Station
 from recon.station.survey.approach import with_approach
 from recon.station.survey.crew import looked_at, surveyors
+from recon.station.survey.homeward import (
+    IS_DONE,
+    NO_BATTERY,
+    comes_home,
+    flies_home,
+    is_under_way,
+    send_home,
+)
 from recon.station.survey.planning import STEP_SURVEY, StepSurvey, SurveyStepped
 from recon.station.survey.record import Look, SurveyRecord
 from recon.station.survey.settings import SETTINGS, SurveyCarrying
@@ -64,7 +73,12 @@ def take_step(station: Station, result: WorkerResult, now_ns: int) -> Stepped:
     for mission in result.result.missions:
         station, sent = _give(station, record.survey.id, mission, now_ns)
         outputs += sent
-    return _handed_back(station, record.survey.id, now_ns), outputs
+    if comes_home(record):
+        for serial in result.result.spent:
+            station, sent = send_home(station, record.survey.id, serial, NO_BATTERY, now_ns)
+            outputs += sent
+    station, sent = _over(station, record.survey.id, now_ns)
+    return station, (*outputs, *sent)
 
 
 def lost_step(station: Station, job_id: int) -> Station:
@@ -134,18 +148,27 @@ def _give(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> S
     if placed.phase is Phase.REFUSED_BY_STATION:
         state = refused(state, given.serial, given.number, placed.note, now_ns)
         record = replace(record, state=state)
+        station = replace(station, surveys=station.surveys.put(record))
+        if comes_home(record) and placed.note.startswith(f"{BATTERY}: "):
+            return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     else:
         used = replace(member, number=given.number, command_id=number, may_take_off=False)
         record = record.put(used)
     return replace(station, surveys=station.surveys.put(record)), sent
 
 
-def _handed_back(station: Station, survey_id: int, now_ns: int) -> Station:
-    """A survey that has ended or paused by itself leads nobody any more; its vehicles hover."""
+def _over(station: Station, survey_id: int, now_ns: int) -> Stepped:
+    """A survey that has ended calls its vehicles home if it was asked to; one that is over, or has
+    paused by itself, leads nobody else any more: they hover."""
     record = station.surveys.records[survey_id]
     if record.is_running or record.state is None:
-        return station
+        return station, ()
+    outputs: tuple[Output, ...] = ()
     why = f"the survey {record.survey.name} is {record.state.phase.value}: {record.state.reason}"
-    for serial in record.members:
-        station = authority.hand_back(station, serial, record.started_by, why, now_ns)
-    return station
+    for member in record.members.values():
+        if flies_home(record) and member.stopped is None:
+            station, sent = send_home(station, survey_id, member.serial, IS_DONE, now_ns)
+            outputs += sent
+        if not is_under_way(station, station.surveys.records[survey_id].members[member.serial]):
+            station = authority.hand_back(station, member.serial, record.started_by, why, now_ns)
+    return station, outputs

@@ -42,6 +42,8 @@ def hindrance(station: Station, member: Member, now_ns: int) -> str | None:
     """Return why a vehicle flies nothing (more) for its survey now; None when it can or does."""
     if member.stopped is not None:
         return member.stopped
+    if member.homeward is not None:
+        return _homeward(station, member, member.homeward)
     lead = lead_of(station, member.serial)
     if lead.leader is not Leader.GUIDANCE:
         return f"it is led by the {lead.leader.value} ({lead.reason})"
@@ -55,6 +57,13 @@ def hindrance(station: Station, member: Member, now_ns: int) -> str | None:
     if vehicle.is_flying.value is not True and not member.may_take_off:
         return "it is on the ground, and nobody has said that it may take off (again)"
     return None
+
+
+def _homeward(station: Station, member: Member, why: str) -> str:
+    vehicle = station.fleet.vehicles.get(member.serial)
+    if vehicle is None or vehicle.is_flying.value is not False:
+        return f"it was called home: {why}"
+    return f"it has come home: {why}"
 
 
 def is_flown(station: Station, member: Member) -> bool:

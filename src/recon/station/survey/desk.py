@@ -8,7 +8,7 @@ from recon.api.port import SurveyCells
 from recon.guidance.survey.plan import RULE
 from recon.model.command import Refusal
 from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
-from recon.model.survey import Survey, SurveyBudget, SurveyCamera
+from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
 from recon.model.zone import Region
 from recon.site import Site
 from recon.site.errors import SiteError
@@ -117,6 +117,7 @@ def _survey(number: int, asked: schema.SurveyRequest, region: Region) -> Survey:
         budget=SurveyBudget(budget.rounds, budget.time_s, budget.flown_m),
         counts_neighbours=asked.counts_neighbours,
         cell_m=asked.cell_m,
+        when_done=WhenDone(asked.when_done),
     )
 
 

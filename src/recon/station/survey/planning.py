@@ -13,6 +13,7 @@ from recon.guidance.survey import (
     observe,
     observe_shade,
     plan_survey,
+    spent,
     step,
 )
 from recon.guidance.survey.plan import RULE
@@ -63,6 +64,8 @@ class SurveyStepped:
 
     state: SurveyState
     missions: tuple[MissionFor, ...]
+    spent: tuple[str, ...] = ()
+    """Who waits in the air, or on the ground, with a battery that lasts for no row."""
 
 
 def plan_task(payload: object) -> SurveyPlan | Refusal:
@@ -80,7 +83,7 @@ def step_task(payload: object) -> SurveyStepped:
     for serial, seen in _by_vehicle(payload.seen).items():
         state = observe(state, serial, seen)
     state, missions = step(state, payload.surveyors, payload.now_ns)
-    return SurveyStepped(state, missions)
+    return SurveyStepped(state, missions, spent(state, payload.surveyors))
 
 
 def ask(station: Station, event: SurveyAsked, now_ns: int) -> tuple[Station, tuple[Output, ...]]:

@@ -23,7 +23,7 @@ class Member:
 
     `number` and `command_id` are its newest mission's, as the survey and the station count.
     `may_take_off` is the operator's word, good for one takeoff. `stopped` says why it is given
-    nothing more until somebody starts it again.
+    nothing more until somebody starts it again; `homeward` why it was called home.
     """
 
     serial: str
@@ -31,6 +31,7 @@ class Member:
     number: int = 0
     command_id: int | None = None
     stopped: str | None = None
+    homeward: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,6 +20,9 @@ class SurveyCarrying:
     shade_kept: int = 16
     """Shade maps between two looks: what a survey keeps itself."""
 
+    home_waits_s: float = 60.0
+    """A turn home comes within a minute; who waits longer is told to people, with why."""
+
     track_step_m: float = 5.0
     """A flown way is drawn with corners this far apart."""
 

@@ -1,6 +1,7 @@
 """What is told of surveys: their alarms, and their views for consoles and programs."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import lru_cache
 
 from recon.api import schema
@@ -9,14 +10,18 @@ from recon.model.survey import SurveyPhase
 from recon.model.units import ns_to_seconds
 from recon.station.alarms import Condition, Severity
 from recon.station.corners import corners_lon_lat
+from recon.station.fleet_return.record import Stage
 from recon.station.fleet_return.watch import newest_motion
 from recon.station.state import Station
 from recon.station.survey.crew import hindrance, is_flown
+from recon.station.survey.homeward import is_under_way
 from recon.station.survey.places import lon_lat
 from recon.station.survey.record import SURVEYS_KEPT, Member, SurveyRecord
+from recon.station.survey.settings import SETTINGS
 
 RULE = "survey"
 RULE_LEFT = "survey_over"
+RULE_HOME = "survey_home"
 
 
 def conditions(station: Station) -> Iterator[Condition]:
@@ -40,6 +45,12 @@ def _of_member(station: Station, record: SurveyRecord, member: Member) -> Iterat
     if record.is_running and member.stopped is not None:
         text = f"flies no more rows of the survey {name}: {member.stopped}"
         yield _about(station, member, RULE, f"{text}; look, then start it again")
+    elif is_under_way(station, member):
+        yield from _waits_long(station, member)
+    elif record.is_running and member.homeward is not None and _stands(station, member):
+        text = f"has come home, {member.homeward}: change its battery, then let it join the survey"
+        again = f"recon survey start {record.survey.id} {member.serial} --takeoff"
+        yield _about(station, member, RULE, f"{text} {name} again ({again})")
     elif record.is_over and _hovers_since(station, member):
         text = f"hovers, for the survey {name} is over: call it home, or fly it on"
         yield _about(station, member, RULE_LEFT, text)
@@ -64,6 +75,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         age_s=ns_to_seconds(now_ns - record.asked_at_ns),
         started_by=record.started_by or None,
         planner=survey.planner,
+        when_done=survey.when_done.value,
         height_above_takeoff_m=survey.height_above_takeoff_m,
         speed_mps=survey.speed_mps,
         round=0 if state is None else state.round,
@@ -113,7 +125,8 @@ def _member(
     state = record.state
     assert state is not None  # members come with the start
     vehicle = station.fleet.vehicles.get(member.serial)
-    waits = hindrance(station, member, now_ns) if record.is_running else None
+    is_told = record.is_running or is_under_way(station, member)
+    waits = hindrance(station, member, now_ns) if is_told else None
     refused = state.refusals.get(member.serial)
     return schema.SurveyingView(
         serial=member.serial,
@@ -155,6 +168,21 @@ def _cells(state: SurveyState) -> schema.SurveyCellsView:
         rows=grid.rows,
         cols=grid.cols,
     )
+
+
+def _waits_long(station: Station, member: Member) -> Iterator[Condition]:
+    """A way home that is not free for long is told: its battery is what it waits with."""
+    running = station.fleet_return
+    returning = None if running is None else running.members.get(member.serial)
+    if returning is not None and returning.stage in (Stage.STOPPING, Stage.WAITING):
+        why = returning.reason or "its turn has not come"
+        condition = _about(station, member, RULE_HOME, f"still waits to fly home: {why}")
+        yield replace(condition, after_s=SETTINGS.home_waits_s)
+
+
+def _stands(station: Station, member: Member) -> bool:
+    vehicle = station.fleet.vehicles.get(member.serial)
+    return vehicle is not None and vehicle.is_flying.value is False
 
 
 def _hovers_since(station: Station, member: Member) -> bool:

@@ -20,6 +20,7 @@ from recon.station.outputs import Output
 from recon.station.own_ids import take_id
 from recon.station.state import Station
 from recon.station.survey.crew import is_flown
+from recon.station.survey.homeward import is_under_way
 from recon.station.survey.record import Member, SurveyRecord
 
 
@@ -53,11 +54,18 @@ def begin(station: Station, event: SurveyStarted, now_ns: int) -> Station:
         station = authority.take(station, taken, now_ns)
     named = {
         serial: replace(
-            record.members.get(serial, Member(serial)), may_take_off=event.takeoff, stopped=None
+            record.members.get(serial, Member(serial)),
+            may_take_off=event.takeoff,
+            stopped=None,
+            homeward=None,
         )
         for serial in serials
     }
-    kept = record.members if record.is_running else {}
+    kept = {
+        serial: member
+        for serial, member in record.members.items()
+        if record.is_running or is_under_way(station, member)
+    }
     fresh = {serial: _forgiven(station, member) for serial, member in named.items()}
     record = replace(
         record,
@@ -75,7 +83,7 @@ def stop_refusal(station: Station, event: SurveyStopped, now_ns: int) -> Refusal
     record = station.surveys.records.get(event.survey_id)
     if record is None:
         return _unknown(event.survey_id)
-    stopped = _stopped(record, event, now_ns)
+    stopped = _stopped(station, record, event, now_ns)
     return stopped if isinstance(stopped, Refusal) else None
 
 
@@ -87,7 +95,7 @@ def stop(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
     if stop_refusal(station, event, now_ns) is not None:
         return station, ()
     record = station.surveys.records[event.survey_id]
-    state = _stopped(record, event, now_ns)
+    state = _stopped(station, record, event, now_ns)
     assert isinstance(state, SurveyState)  # or it was refused
     surveys = station.surveys.without_look(event.survey_id)
     station = replace(station, surveys=surveys.put(replace(record, state=state)))
@@ -95,7 +103,8 @@ def stop(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
     outputs: tuple[Output, ...] = ()
     for member in record.members.values():
         lead = authority.lead_of(station, member.serial)
-        if record.is_running and lead.leader is Leader.GUIDANCE:
+        is_its = record.is_running or is_under_way(station, member)
+        if is_its and lead.leader is Leader.GUIDANCE:
             by = f"{event.by}: survey {record.survey.name} {word}"
             station, sent = _hold(station, member, by, now_ns)
             outputs += sent
@@ -145,11 +154,15 @@ def _started(
     )
 
 
-def _stopped(record: SurveyRecord, event: SurveyStopped, now_ns: int) -> SurveyState | Refusal:
+def _stopped(
+    station: Station, record: SurveyRecord, event: SurveyStopped, now_ns: int
+) -> SurveyState | Refusal:
     if record.refusal is not None:
         return record.refusal
     if record.state is None:
         return Refusal(RULE, f"the rows of the survey {record.survey.name} are being worked out")
+    if record.is_over and any(is_under_way(station, each) for each in record.members.values()):
+        return record.state  # it stays what it is; those on their way home are held
     if event.is_aborted:
         return abort(record.state, now_ns)
     return pause(record.state, now_ns)

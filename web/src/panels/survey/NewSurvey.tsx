@@ -8,6 +8,11 @@ const PLANNERS = [
   ["lawnmower_again", "until all is in sun"],
 ] as const;
 
+const WHEN_DONE = [
+  ["return_home", "they fly home"],
+  ["hover", "they hover"],
+] as const;
+
 /** A survey of one of the site's regions. Nothing flies by it, so a plain press asks for it. */
 export function NewSurvey(props: { onAnswer: (outcome: Outcome<SurveyResponse>) => void }) {
   const { source, fleet } = useConsole();
@@ -21,6 +26,7 @@ export function NewSurvey(props: { onAnswer: (outcome: Outcome<SurveyResponse>) 
       height_above_takeoff_m: Number(said.get("height")),
       speed_mps: Number(said.get("speed")),
       planner: String(said.get("planner")),
+      when_done: said.get("when_done") === "hover" ? "hover" : "return_home",
     });
     setAsking(false);
     props.onAnswer(outcome);
@@ -56,6 +62,12 @@ export function NewSurvey(props: { onAnswer: (outcome: Outcome<SurveyResponse>) 
           Flies
           <select name="planner">
             <For each={PLANNERS}>{([name, words]) => <option value={name}>{words}</option>}</For>
+          </select>
+        </label>
+        <label class="survey-then">
+          When nothing is left to fly
+          <select name="when_done">
+            <For each={WHEN_DONE}>{([name, words]) => <option value={name}>{words}</option>}</For>
           </select>
         </label>
         <button type="submit" class="button" disabled={isAsking()}>

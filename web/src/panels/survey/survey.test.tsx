@@ -85,6 +85,7 @@ describe("a new survey", () => {
           height_above_takeoff_m: 50,
           speed_mps: 5,
           planner: "lawnmower_once",
+          when_done: "return_home",
         },
       },
     ]);
