@@ -80,6 +80,11 @@ class CountingApp:
         said, self._outgoing = self._outgoing, []
         return said
 
+    @property
+    def next_due_ns(self) -> int:
+        """When it flies on and reports next."""
+        return self._next_core_ns
+
     def _obey(self, packet: wire.Packet, now_ns: int) -> None:
         refused = self.rng.random() < self.temper.refuses
         ignored = self.rng.random() < self.temper.ignores

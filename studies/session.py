@@ -44,7 +44,7 @@ from recon.site import Site
 from recon.station.build import first_state
 from recon.station.orders import OrderRecord
 from recon.station.state import Station
-from recon.station.virtual import FakeLink, VirtualDriver
+from recon.station.virtual import FAR_NS, FakeLink, VirtualDriver
 from studies.counting_app import CountingApp
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
@@ -88,6 +88,11 @@ class _Connection:
     def advance(self, now_ns: int) -> list[bytes]:
         """Return what the app says."""
         return self.app.advance(now_ns) if self.is_current else []
+
+    @property
+    def next_due_ns(self) -> int:
+        """When the app has something to say next."""
+        return self.app.next_due_ns if self.is_current else FAR_NS
 
 
 @dataclass(slots=True)

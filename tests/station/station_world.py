@@ -15,7 +15,7 @@ from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.station.build import first_state
 from recon.station.orders import OrderRecord
-from recon.station.virtual import FakeLink, VirtualDriver
+from recon.station.virtual import FAR_NS, FakeLink, VirtualDriver
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 SECOND_LINK = 1
@@ -35,6 +35,10 @@ class AppPeer:
 
     def advance(self, now_ns: int) -> list[bytes]:
         return [] if self.is_silent else self.app.advance(now_ns, self.link)
+
+    @property
+    def next_due_ns(self) -> int:
+        return FAR_NS if self.is_silent else self.app.next_due_ns
 
 
 @dataclass(slots=True)

@@ -40,6 +40,10 @@ class Tap:
     def advance(self, now_ns: int, link: int = MAIN_LINK) -> list[bytes]:
         return self.app.advance(now_ns, link)
 
+    @property
+    def next_due_ns(self) -> int:
+        return self.app.next_due_ns
+
 
 @dataclass
 class Steered:

@@ -1,7 +1,8 @@
 """The driver in virtual time: the same sessions, bytes and steps without sockets or clock.
 
-Used by tests and studies. Time moves in steps of 10 ms; every order of things is fixed, so that the
-same peers and seeds give the same run to the bit.
+Used by tests and studies. Things happen at whole steps of 10 ms, and steps at which nothing is due
+are left out; every order of things is fixed, so that the same peers and seeds give the same run to
+the bit.
 """
 
 import heapq
@@ -23,7 +24,8 @@ from recon.station.streams import next_due_ns
 from recon.station.worker import Task, do_work
 
 STEP_NS = 10_000_000
-TICK_EVERY_STEPS = 5
+TICK_EVERY_NS = 50_000_000
+FAR_NS = 2**63 - 1
 EPOCH_NS = 1_780_000_000_000_000_000
 """What the computer's clock says when virtual time begins: a day in 2026."""
 
@@ -36,6 +38,10 @@ class Peer(Protocol):
 
     def advance(self, now_ns: int) -> list[bytes]:
         """Return what it sends now."""
+
+    @property
+    def next_due_ns(self) -> int:
+        """When `advance` has something to do next, if nothing is received before then."""
 
 
 @dataclass(slots=True)
@@ -66,6 +72,7 @@ class _Wire:
     session: Session
     to_station_at_ns: int = 0
     to_app_at_ns: int = 0
+    peer_due_ns: int = 0
 
 
 class VirtualDriver:
@@ -94,7 +101,6 @@ class VirtualDriver:
         self._next_link_id = 1
         self._due: list[tuple[int, int, Callable[[], None]]] = []
         self._sequence = 0
-        self._steps = 0
         self._queue = EventQueue(self._step)
         self.handle(ClockRead(EPOCH_NS))
 
@@ -123,16 +129,19 @@ class VirtualDriver:
         self._queue.put(event)
 
     def run_for(self, seconds: float) -> None:
-        """Let virtual time pass."""
-        end_ns = self.now_ns + seconds_to_ns(seconds)
+        """Let virtual time pass, in whole steps; at its end every peer has come as far."""
+        end_ns = _step_from(self.now_ns + seconds_to_ns(seconds))
+        for wire in self._wires.values():  # somebody may have touched a peer meanwhile
+            wire.peer_due_ns = min(wire.peer_due_ns, wire.peer.next_due_ns)
         while self.now_ns < end_ns:
-            self._advance()
+            now_ns = min(end_ns, self._next_step_ns())
+            self._advance(now_ns, asks_all=now_ns == end_ns)
 
     def run_until(self, is_reached: Callable[[Station], bool], at_most_s: float) -> bool:
         """Let virtual time pass until a state is reached; return whether it was."""
         end_ns = self.now_ns + seconds_to_ns(at_most_s)
         while self.now_ns < end_ns and not is_reached(self.station):
-            self._advance()
+            self._advance(self.now_ns + STEP_NS, asks_all=True)
         return is_reached(self.station)
 
     def _step(self, event: Event) -> None:
@@ -145,18 +154,30 @@ class VirtualDriver:
         for output in outputs:
             self._carry_out(output)
 
-    def _advance(self) -> None:
-        self.now_ns += STEP_NS
-        self._steps += 1
+    def _next_step_ns(self) -> int:
+        """Return the next step at which anything is due."""
+        sticks_ns = next_due_ns(self.station)
+        due_ns = min(
+            (self.now_ns // TICK_EVERY_NS + 1) * TICK_EVERY_NS,
+            self._due[0][0] if self._due else FAR_NS,
+            FAR_NS if sticks_ns is None else sticks_ns,
+            *(wire.peer_due_ns for wire in self._wires.values()),
+        )
+        return max(_step_from(due_ns), self.now_ns + STEP_NS)
+
+    def _advance(self, now_ns: int, *, asks_all: bool) -> None:
+        self.now_ns = now_ns
         for link_id, wire in tuple(self._wires.items()):
-            for chunk in wire.peer.advance(self.now_ns):
-                self._post_to_station(link_id, wire, chunk)
-        while self._due and self._due[0][0] <= self.now_ns:
+            if asks_all or wire.peer_due_ns <= now_ns:
+                for chunk in wire.peer.advance(now_ns):
+                    self._post_to_station(link_id, wire, chunk)
+                wire.peer_due_ns = wire.peer.next_due_ns
+        while self._due and self._due[0][0] <= now_ns:
             heapq.heappop(self._due)[2]()
-        due_ns = next_due_ns(self.station)
-        if due_ns is not None and due_ns <= self.now_ns:
+        sticks_ns = next_due_ns(self.station)
+        if sticks_ns is not None and sticks_ns <= now_ns:
             self.handle(SticksDue())
-        if self._steps % TICK_EVERY_STEPS == 0:
+        if now_ns % TICK_EVERY_NS == 0:
             self._tick()
 
     def _tick(self) -> None:
@@ -196,6 +217,7 @@ class VirtualDriver:
         # What was on its way when a connection ended must not come out of the peer's next one.
         if self._wires.get(wire.session.link_id) is wire and not wire.link.is_dead:
             wire.peer.receive(data, self.now_ns)
+            wire.peer_due_ns = self.now_ns  # it may have an answer
 
     def _carry_out(self, output: Output) -> None:
         match output:
@@ -226,3 +248,8 @@ class VirtualDriver:
     def _at(self, at_ns: int, action: Callable[[], None]) -> None:
         self._sequence += 1
         heapq.heappush(self._due, (at_ns, self._sequence, action))
+
+
+def _step_from(at_ns: int) -> int:
+    """Return the first whole step that is not before a time."""
+    return -(-at_ns // STEP_NS) * STEP_NS

@@ -1,0 +1,232 @@
+"""Eight vehicles over the demonstration's field in virtual time, flown by orders through the gate.
+
+The scene for measuring how fast virtual time runs and for showing that it runs the same again:
+seven survey drones and the eye, with a station, its sessions and every byte between them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from recon.geo import point_from_enu
+from recon.model.command import Body, FlyMission, GoTo, Hover
+from recon.model.event import HolderCame, OperatorOrder
+from recon.model.geo import LatLon
+from recon.model.mission import Mission, Waypoint
+from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.sim.camera_feed import FeedSettings
+from recon.sim.eye.settings import EyeSettings
+from recon.sim.faults import parse_fault
+from recon.sim.field import FieldFrames
+from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig, build_fleet
+from recon.sim.rig import EyeRig
+from recon.sim.telemetry import FIELD_SENSORS
+from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
+from recon.site import Site, demo_site_folder, load_site
+from recon.station.build import first_state, worker_tasks
+from recon.station.virtual import FAR_NS, FakeLink, VirtualDriver
+
+VEHICLES = 8
+HOLDER = "the study"
+MISSION_EVERY_S = 60.0
+HOVER_AFTER_S, GOTO_AFTER_S = 40.0, 48.0
+"""Of each minute: first a mission, then a hover breaks it off, then a stream of sticks."""
+APART_S = 3.0
+"""From one vehicle's orders to the next one's."""
+SPEED_MPS = 6.0
+PICTURES_HZ = 1.0
+
+PLACES_M: dict[str, tuple[float, float]] = {
+    "SIM-1": (-150.0, 20.0),
+    "SIM-2": (-20.0, -190.0),
+    "SIM-3": (60.0, 150.0),
+    "SIM-4": (-180.0, -60.0),
+    "SIM-5": (-150.0, -180.0),
+    "SIM-6": (90.0, -180.0),
+    "SIM-7": (190.0, -60.0),
+}
+"""East and north of the origin: the middle of what each drone flies over, away from the others'
+ways home."""
+HALF_ROW_M = 20.0
+ROWS_NORTH_M = (-20.0, 0.0, 20.0)
+LOWEST_M, LAYERS_APART_M = 40.0, 8.0
+
+SECOND_LINK = 1
+WATCHED_EVERY_S = 0.2
+"""So often it is asked what faults want of connections."""
+
+
+@dataclass(slots=True)
+class AppConnection:
+    """One of an app's connections; an abandoned one neither reads nor writes any more."""
+
+    app: SimulatedApp
+    link: int = MAIN_LINK
+    is_abandoned: bool = False
+
+    def receive(self, data: bytes, now_ns: int) -> None:
+        """Pass on what the station says."""
+        if not self.is_abandoned:
+            self.app.receive(data, now_ns, self.link)
+
+    def advance(self, now_ns: int) -> list[bytes]:
+        """Return what the app says."""
+        return [] if self.is_abandoned else self.app.advance(now_ns, self.link)
+
+    @property
+    def next_due_ns(self) -> int:
+        """When the app has something to do next."""
+        return FAR_NS if self.is_abandoned else self.app.next_due_ns
+
+
+@dataclass(slots=True)
+class EightVehicles:
+    """The station and its apps; what faults ask of connections is done."""
+
+    driver: VirtualDriver
+    apps: Sequence[SimulatedApp]
+    site: Site
+    make_link: Callable[[], FakeLink] = FakeLink
+    connections: dict[str, tuple[AppConnection, int]] = field(default_factory=dict)
+    orders: list[int] = field(default_factory=list)
+    _later: list[tuple[int, Callable[[], object]]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        for app in self.apps:
+            self._connect(app)
+        for number, serial in enumerate(PLACES_M):
+            self._after(3.0 + APART_S * number, lambda serial=serial: self._fly(serial))
+
+    def run_for(self, seconds: float) -> None:
+        """Let virtual time pass."""
+        end_ns = self.driver.now_ns + seconds_to_ns(seconds)
+        while self.driver.now_ns < end_ns:
+            next_ns = min([end_ns, *(at_ns for at_ns, _ in self._later)])
+            self.driver.run_for(min(WATCHED_EVERY_S, (next_ns - self.driver.now_ns) / NS_PER_S))
+            self._do_what_is_due()
+
+    def order(self, serial: str, body: Body, holder: str | None = None) -> None:
+        """Say a word to the station as an operator does."""
+        number = len(self.orders) + 1
+        self.orders.append(number)
+        self.driver.handle(OperatorOrder(number, body, "study", serial, holder=holder))
+
+    def _fly(self, serial: str) -> None:
+        """A minute of one vehicle, and then the next."""
+        self.order(serial, FlyMission(self._rows(serial)))
+        self._after(HOVER_AFTER_S, lambda: self.order(serial, Hover()))
+        self._after(GOTO_AFTER_S, lambda: self._steer(serial))
+        self._after(MISSION_EVERY_S, lambda: self._fly(serial))
+
+    def _steer(self, serial: str) -> None:
+        self.driver.handle(HolderCame(HOLDER))
+        place, height_m = self._place(PLACES_M[serial]), self._height_m(serial)
+        self.order(serial, GoTo(place, height_m, SPEED_MPS), HOLDER)
+
+    def _rows(self, serial: str) -> Mission:
+        east_m, north_m = PLACES_M[serial]
+        corners = []
+        for row, offset_m in enumerate(ROWS_NORTH_M):
+            ends = [
+                (east_m - HALF_ROW_M, north_m + offset_m),
+                (east_m + HALF_ROW_M, north_m + offset_m),
+            ]
+            corners += ends if row % 2 == 0 else ends[::-1]
+        places = [self._place(corner) for corner in corners]
+        height_m = self._height_m(serial)
+        return Mission(
+            tuple(Waypoint(p.latitude_deg, p.longitude_deg, height_m, SPEED_MPS) for p in places)
+        )
+
+    def _height_m(self, serial: str) -> float:
+        return LOWEST_M + LAYERS_APART_M * list(PLACES_M).index(serial)
+
+    def _place(self, east_north_m: tuple[float, float]) -> LatLon:
+        assert self.site.frame is not None
+        point = point_from_enu(self.site.frame, (*east_north_m, 0.0))
+        return LatLon(point.latitude_deg, point.longitude_deg)
+
+    def _do_what_is_due(self) -> None:
+        due = [action for at_ns, action in self._later if at_ns <= self.driver.now_ns]
+        self._later = [item for item in self._later if item[0] > self.driver.now_ns]
+        for action in due:
+            action()
+        for app in self.apps:
+            for order in app.take_link_orders():
+                self._carry_out(app, order)
+
+    def _connect(self, app: SimulatedApp) -> None:
+        app.connected(self.driver.now_ns)
+        connection = AppConnection(app)
+        link_id = self.driver.connect(connection, self.make_link())
+        self.connections[app.settings.serial] = connection, link_id
+
+    def _carry_out(self, app: SimulatedApp, order: LinkOrder) -> None:
+        connection, link_id = self.connections[app.settings.serial]
+        match order.kind:
+            case LinkOrderKind.RECONNECT:
+                self.driver.disconnect(link_id)
+                self._after(order.seconds, lambda: self._connect(app))
+            case LinkOrderKind.ABANDON:
+                connection.is_abandoned = True
+                self._after(order.seconds, lambda: self.driver.disconnect(link_id))
+                self._connect(app)
+            case LinkOrderKind.SECOND:
+                app.connected(self.driver.now_ns, SECOND_LINK)
+                second = AppConnection(app, SECOND_LINK)
+                second_id = self.driver.connect(second, self.make_link())
+                self._after(order.seconds, lambda: self._end_second(app, second_id))
+
+    def _end_second(self, app: SimulatedApp, link_id: int) -> None:
+        app.disconnected(SECOND_LINK)
+        self.driver.disconnect(link_id)
+
+    def _after(self, seconds: float, action: Callable[[], object]) -> None:
+        self._later.append((self.driver.now_ns + seconds_to_ns(seconds), action))
+
+
+def eight_vehicles(
+    seed: int = 1,
+    *,
+    sees: bool = False,
+    faults: Sequence[str] = (),
+    make_link: Callable[[], FakeLink] = FakeLink,
+    keeps_log: bool = False,
+) -> EightVehicles:
+    """Return the scene; with `sees` the eye sends rendered pictures, which the station reads."""
+    site = load_site(demo_site_folder())
+    driver = VirtualDriver(first_state(site), tasks=worker_tasks(site), keeps_log=keeps_log)
+    fleet = build_fleet(_config(site, seed, sees, faults), driver.now_ns)
+    return EightVehicles(driver, fleet, site, make_link)
+
+
+def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> SimulationConfig:
+    assert site.frame is not None
+    assert site.eye is not None
+    assert site.eye.marked_frame is not None
+    marked = site.eye.marked_frame
+    rig = EyeRig(site.eye.camera, site.frame, site.eye.solution.pose, marked)
+    origin = site.frame.origin
+    sun = SunSettings(LatLon(origin.latitude_deg, origin.longitude_deg))
+    clouds = LayerSettings(cover=0.35, outer_scale_m=2_500.0, softness=0.15)
+    source = FieldFrames(
+        rig.camera,
+        site.eye.image_circle,
+        seed,
+        Sky(SkySettings(seed, sun, (clouds,))),
+        EyeSettings(seed),
+    )
+    pads = {s: profile.pad for s, profile in site.profiles.items() if profile.pad is not None}
+    return SimulationConfig(
+        home=origin,
+        vehicle_count=VEHICLES,
+        eye=EyeSetup(source, FeedSettings(PICTURES_HZ, starts_on=sees), rig),
+        airborne=Airborne.ALL,
+        sensors=FIELD_SENSORS,
+        seed=seed,
+        faults=tuple(parse_fault(text) for text in faults),
+        pads=pads,
+        go_home_heights_m={
+            s: p.go_home_height_m for s, p in site.profiles.items() if p.go_home_height_m
+        },
+    )
