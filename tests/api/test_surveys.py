@@ -122,7 +122,7 @@ class TestWords:
         assert answer == {
             "accepted": False,
             "rule": "survey",
-            "reason": "there is no survey 77",
+            "reason": "there is no survey 77; none was created",
             "survey": None,
         }
 
@@ -136,6 +136,17 @@ class TestLooks:
         response = client.get(f"/api/surveys/77{path}")
         assert response.status_code == 404
         assert "no survey 77" in response.json()["error"]
+
+    def test_those_there_are_are_named(self, client: Client) -> None:
+        number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
+        told = client.get("/api/surveys/77").json()["error"]
+        assert told == f"there is no survey 77; there are: {number} field (created)"
+
+    def test_one_without_rows_says_why(self, client: Client) -> None:
+        asked = {**ASKED, "speed_mps": 14.0}
+        number = client.post("/api/surveys", json=asked).json()["survey"]["id"]
+        told = client.get(f"/api/surveys/{number}/ways").json()["error"]
+        assert told.startswith(f"the survey {number} has no rows: ")
 
     def test_rows_lie_in_the_field(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]

@@ -113,6 +113,9 @@ class TestWrongUse:
             (("hold", "SIM-9"), "expected a vehicle's serial or name, got 'SIM-9'"),
             (("fly", "SIM-1", "/nowhere.json"), "/nowhere.json: cannot be read"),
             (("goto", "SIM-1", "41.9"), "LON"),
+            (("goto", "SIM-1", "91", "200"), "'LAT': expected degrees from -90 to 90, got 91"),
+            (("goto", "SIM-1", "-91", "-93"), "'LAT': expected degrees from -90 to 90, got -91"),
+            (("goto", "SIM-1", "41", "200"), "'LON': expected degrees from -180 to 180, got 200"),
             (("hold", "--nonsense"), "--nonsense"),
         ],
     )

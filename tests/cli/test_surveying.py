@@ -46,8 +46,9 @@ class TestCreate:
     def test_a_region_of_the_site_is_planned_and_nothing_flies(self, here: Flown) -> None:
         said = here.recon("survey", "create", "west field", *FLOWN)
         assert said.code == 0
-        assert "west field" in said.out
-        assert "created" in said.out
+        number = here.recon("survey", "status", "--json").json[0]["id"]
+        assert said.out.startswith(f"survey {number}: planned, west field. Nothing flies by this")
+        assert f"recon survey start {number} VEHICLE" in said.out
         assert not any(v["is_flying"]["value"] for v in here.get("/api/vehicles"))
 
     def test_a_file_is_planned_under_its_features_name(self, here: Flown, tmp_path: Path) -> None:
@@ -140,7 +141,17 @@ class TestStart:
         leads = [e["details"]["leader"] for e in entries if e["kind"] == "authority.taken"]
         assert leads[-2:] == ["guidance", "operator"]
 
+    def test_what_its_vehicles_do_then_is_said(self, here: Flown) -> None:
+        asked = ("survey", "create", "west field", *FLOWN, "--json")
+        assert here.recon(*asked).json["when_done"] == "return_home"
+        assert here.recon(*asked, "--when-done", "hover").json["when_done"] == "hover"
+        assert here.recon(*asked, "--when-done", "dance").code == 2
 
-def test_a_survey_that_is_not_there(here: Flown) -> None:
-    assert here.recon("survey", "status", 9_999).code == 2
-    assert here.recon("survey", "pause", 9_999).code == 1
+
+def test_a_survey_that_is_not_there_is_told_with_those_there_are(here: Flown) -> None:
+    made = here.recon("survey", "create", "west field", *FLOWN, "--json").json["id"]
+    looked, paused = here.recon("survey", "status", 9_999), here.recon("survey", "pause", 9_999)
+    assert (looked.code, paused.code) == (2, 1)
+    for told in (looked.err, paused.out):
+        assert "there is no survey 9999; there are: " in told
+        assert f"{made} west field (created)" in told

@@ -9,6 +9,7 @@ from recon.api import schema, sun_pictures
 from recon.api.answering import PNG, PROBLEMS, found, who
 from recon.api.port import StationPort
 from recon.api.sun_routes import Form
+from recon.model.survey import none_such
 
 PLANNED_WITHIN_S = 10.0
 """Rows are worked out in tens of milliseconds, behind a frame's work or two."""
@@ -58,19 +59,22 @@ def _add_looks(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/surveys/{survey_id}", responses=PROBLEMS)
     async def survey(survey_id: int) -> schema.SurveyView:
         """One survey with its figures."""
-        return found(port.survey(survey_id), _nobody(survey_id))
+        known = port.survey(survey_id)
+        return found(known, "" if known is not None else _none_such(port, survey_id))
 
     @app.get("/api/surveys/{survey_id}/ways", responses=PROBLEMS)
     async def ways(survey_id: int) -> schema.SurveyWays:
         """A survey's planned rows, the missions flown now, and the ways flown so far."""
-        return found(port.survey_ways(survey_id), f"{_nobody(survey_id)} with rows")
+        rows = port.survey_ways(survey_id)
+        return found(rows, "" if rows is not None else _no_rows(port, survey_id))
 
     @app.get(
         "/api/surveys/{survey_id}/cells.png", response_class=Response, responses=PROBLEMS | PNG
     )
     async def cells(survey_id: int, form: Form = "picture") -> Response:
         """A survey's cells: not yet, in shade, in sun; its corners are in the survey."""
-        seen = found(port.survey_cells(survey_id), f"{_nobody(survey_id)} with rows")
+        cells = port.survey_cells(survey_id)
+        seen = found(cells, "" if cells is not None else _no_rows(port, survey_id))
         is_picture = form == "picture"
         draw = sun_pictures.cells_png if is_picture else sun_pictures.cells_values_png
         data = await asyncio.to_thread(draw, seen.state, seen.inside)
@@ -97,5 +101,12 @@ def _planned(survey: schema.SurveyView) -> schema.SurveyResponse:
     return schema.SurveyResponse(accepted=True, rule=None, reason=None, survey=survey)
 
 
-def _nobody(survey_id: int) -> str:
-    return f"there is no survey {survey_id}"
+def _no_rows(port: StationPort, survey_id: int) -> str:
+    survey = port.survey(survey_id)
+    if survey is None:
+        return _none_such(port, survey_id)
+    return f"the survey {survey_id} has no rows: {survey.reason}"
+
+
+def _none_such(port: StationPort, survey_id: int) -> str:
+    return none_such(survey_id, ((s.id, s.name, s.phase) for s in port.state().surveys))

@@ -29,10 +29,29 @@ WithinOption = Annotated[
 Give = Callable[[Vehicle], Awaitable[Order | Refusal]]
 
 
+def _latitude(degrees: float) -> float:
+    return _within(degrees, 90.0)
+
+
+def _longitude(degrees: float) -> float:
+    return _within(degrees, 180.0)
+
+
+def _within(degrees: float, most: float) -> float:
+    """Refuse what is on no map, before anybody is asked; whose it is, the error says by itself."""
+    if -most <= degrees <= most:
+        return degrees
+    raise typer.BadParameter(f"expected degrees from -{most:g} to {most:g}, got {degrees:g}")
+
+
 def goto_command(
     vehicle: NameArgument,
-    latitude: Annotated[float, typer.Argument(metavar="LAT", help="Degrees, WGS84.")],
-    longitude: Annotated[float, typer.Argument(metavar="LON", help="Degrees, WGS84.")],
+    latitude: Annotated[
+        float, typer.Argument(metavar="LAT", help="Degrees, WGS84.", callback=_latitude)
+    ],
+    longitude: Annotated[
+        float, typer.Argument(metavar="LON", help="Degrees, WGS84.", callback=_longitude)
+    ],
     height: Annotated[float, typer.Option("--height", help="Metres above its takeoff point.")],
     speed: SpeedOption = 5.0,
     within: WithinOption = ARRIVED_WITHIN_S,

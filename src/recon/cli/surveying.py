@@ -21,16 +21,20 @@ from recon.cli.naming import NamingError, serials_of
 from recon.cli.telling import say, say_json, table
 from recon.client import ClientError, Refusal, Station, Survey
 from recon.model.geo import GeoPoint
-from recon.model.survey import WhenDone
+from recon.model.survey import WhenDone, none_such
 
 HECTARE_M2 = 10_000.0
+PHASES = {"created": "planned"}
+"""What the station calls otherwise than a person would."""
 NO_PLACE = "the station's site has no place: start the station with --site FOLDER"
 
 survey_app = typer.Typer(
     help="Survey a region: create, start, pause, abort, status.", no_args_is_help=True
 )
 
-NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
+NumberArgument = Annotated[
+    int, typer.Argument(metavar="ID", help="The survey's number.")
+]
 
 
 @survey_app.command("create")
@@ -156,9 +160,10 @@ def status_command(
 
 def _status(number: int | None, as_json: bool) -> Work:
     async def work(at: Station) -> int:
-        surveys = [s for s in await at.surveys.list() if number in (None, s.id)]
+        known = await at.surveys.list()
+        surveys = [survey for survey in known if number in (None, survey.id)]
         if number is not None and not surveys:
-            raise NamingError(f"there is no survey {number}")
+            raise NamingError(none_such(number, ((s.id, s.name, s.phase) for s in known)))
         if as_json:
             say_json(msgspec.to_builtins(surveys))
         else:
@@ -189,13 +194,33 @@ def _told(answer: Survey | Refusal, as_json: bool) -> int:
     if as_json:
         say_json(msgspec.to_builtins(answer))
     else:
+        say(_sentence(answer))
         _tell_all([answer])
     return DONE
 
 
+def _sentence(survey: Survey) -> str:
+    """The survey's number first: it is what every later word on the survey names."""
+    number, phase = survey.id, PHASES.get(survey.phase, survey.phase)
+    said = f"survey {number}: {phase}, {survey.name}"
+    if survey.phase != "created":
+        return said
+    return f"{said}. Nothing flies by this: `recon survey start {number} VEHICLE...` does that"
+
+
 def _tell_all(surveys: list[Survey]) -> None:
-    rows = [(str(s.id), s.name, s.phase, f"{s.rows} rows", *_areas(s), s.reason) for s in surveys]
-    columns = ("id", "survey", "is", "rows", "region", "not yet", "in shade", "in sun", "why")
+    rows = [
+        (
+            f"survey {s.id}",
+            s.name,
+            PHASES.get(s.phase, s.phase),
+            f"{s.rows} rows",
+            *_areas(s),
+            s.reason,
+        )
+        for s in surveys
+    ]
+    columns = ("number", "name", "is", "rows", "region", "not yet", "in shade", "in sun", "why")
     table("surveys", columns, rows)
     members = [
         (v.vehicle_name, "flies rows" if v.is_flying_rows else v.waits_for or v.refused or "waits")

@@ -1,5 +1,6 @@
 """A survey: which region is to be imaged, from where, how dense; and how far it has come."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, IntEnum
 from math import radians, tan
@@ -95,6 +96,14 @@ class SurveyPhase(Enum):
     def is_final(self) -> bool:
         """Whether it never flies again."""
         return self in (SurveyPhase.ABORTED, SurveyPhase.DONE)
+
+
+def none_such(survey_id: int, known: Iterable[tuple[int, str, str]]) -> str:
+    """Return the sentence for a survey that is not there; `known` are (id, name, phase)."""
+    there = ", ".join(f"{number} {name} ({phase})" for number, name, phase in known)
+    return f"there is no survey {survey_id}; " + (
+        f"there are: {there}" if there else "none was created"
+    )
 
 
 class CellState(IntEnum):

@@ -8,7 +8,6 @@ from recon.model.event import Event, SurveyAsked, SurveyStarted, SurveyStopped
 from recon.record.audit import AuditEntry
 from recon.station.state import Station
 from recon.station.survey.planning import refusal_of
-from recon.station.survey.record import SurveyRecord
 from recon.station.survey.words import start_refusal, stop_refusal
 
 
@@ -50,21 +49,13 @@ def _changes(before: Station, event: Event, after: Station) -> Iterator[AuditEnt
     if isinstance(event, SurveyStarted | SurveyStopped | SurveyAsked):
         return
     for number, record in after.surveys.records.items():
-        phase, reason = _phase(record)
+        phase, reason = record.phase
         old = before.surveys.records.get(number)
-        if old is None or old is record or _phase(old)[0] == phase:
+        if old is None or old is record or old.phase[0] == phase:
             continue
         text = f"survey {record.survey.name} is {phase}: {reason}"
         details = {"id": number, "phase": phase, "reason": reason}
         yield AuditEntry(f"survey.is_{phase}", text, "station", details=details)
-
-
-def _phase(record: SurveyRecord) -> tuple[str, str]:
-    if record.refusal is not None:
-        return "refused", record.refusal.reason
-    if record.state is None:
-        return "planning", ""
-    return record.state.phase.value, record.state.reason
 
 
 def _name(station: Station, number: int) -> str:

@@ -3,15 +3,18 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Literal
 
 from recon.guidance.survey import Seen, SurveyState
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
-from recon.model.survey import Survey, SurveyPhase
+from recon.model.survey import Survey, SurveyPhase, none_such
 from recon.station.survey.tail import Tail
 
 SURVEYS_KEPT = 16
 """Each has its cells, up to a few MB; the oldest that has ended is forgotten for a new one."""
+
+PhaseWord = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 
 Place = tuple[float, float]
 """East-north metres of the site."""
@@ -59,6 +62,15 @@ class SurveyRecord:
     )
 
     @property
+    def phase(self) -> tuple[PhaseWord, str]:
+        """How far it has come, and why, in words."""
+        if self.refusal is not None:
+            return "refused", self.refusal.reason
+        if self.state is None:
+            return "planning", "its rows are being worked out"
+        return self.state.phase.value, self.state.reason
+
+    @property
     def is_over(self) -> bool:
         """Whether it will never fly (again)."""
         return self.refusal is not None or (self.state is not None and self.state.phase.is_final)
@@ -100,6 +112,11 @@ class Surveys:
         for key in over[: max(0, len(records) - SURVEYS_KEPT)]:
             del records[key]
         return replace(self, records=MappingProxyType(records))
+
+    def none_such(self, survey_id: int) -> str:
+        """Return the sentence for a survey that is not there: it names those there are."""
+        known = ((key, each.survey.name, each.phase[0]) for key, each in self.records.items())
+        return none_such(survey_id, known)
 
     def without_look(self, survey_id: int) -> "Surveys":
         """Return them with a look at one survey counted as never asked for: a word changed it."""

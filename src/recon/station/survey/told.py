@@ -65,7 +65,7 @@ def view(station: Station, now_ns: int) -> list[schema.SurveyView]:
 def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.SurveyView:
     """Return one survey as the API says it."""
     state, survey = record.state, record.survey
-    phase, reason = _phase(record)
+    phase, reason = record.phase
     return schema.SurveyView(
         id=survey.id,
         name=survey.name,
@@ -109,14 +109,6 @@ def ways(record: SurveyRecord) -> schema.SurveyWays | None:
             for (serial, number), way in record.flown.items()
         ],
     )
-
-
-def _phase(record: SurveyRecord) -> tuple[schema.SurveyPhaseWord, str]:
-    if record.refusal is not None:
-        return "refused", record.refusal.reason
-    if record.state is None:
-        return "planning", "its rows are being worked out"
-    return record.state.phase.value, record.state.reason
 
 
 def _member(

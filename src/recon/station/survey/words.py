@@ -27,9 +27,11 @@ from recon.station.survey.record import Member, SurveyRecord
 def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusal | None:
     """Return why a survey cannot be started with these vehicles, else None."""
     record = station.surveys.records.get(event.survey_id)
+    if record is None:
+        return _unknown(station, event.survey_id)
     started = _started(record, event, now_ns)
-    if record is None or isinstance(started, Refusal):
-        return started if isinstance(started, Refusal) else _unknown(event.survey_id)
+    if isinstance(started, Refusal):
+        return started
     for serial in event.serials:
         refusal = _vehicle_refusal(station, record, serial, event.by)
         if refusal is not None:
@@ -82,7 +84,7 @@ def stop_refusal(station: Station, event: SurveyStopped, now_ns: int) -> Refusal
     """Return why a survey cannot be paused or aborted, else None."""
     record = station.surveys.records.get(event.survey_id)
     if record is None:
-        return _unknown(event.survey_id)
+        return _unknown(station, event.survey_id)
     stopped = _stopped(station, record, event, now_ns)
     return stopped if isinstance(stopped, Refusal) else None
 
@@ -134,11 +136,7 @@ def _forgiven(station: Station, member: Member) -> Member:
     return member if is_flown(station, member) else replace(member, command_id=None)
 
 
-def _started(
-    record: SurveyRecord | None, event: SurveyStarted, now_ns: int
-) -> SurveyState | Refusal:
-    if record is None:
-        return _unknown(event.survey_id)
+def _started(record: SurveyRecord, event: SurveyStarted, now_ns: int) -> SurveyState | Refusal:
     if record.refusal is not None:
         return record.refusal
     state = record.state
@@ -187,5 +185,5 @@ def _vehicle_refusal(
     return None
 
 
-def _unknown(survey_id: int) -> Refusal:
-    return Refusal(RULE, f"there is no survey {survey_id}")
+def _unknown(station: Station, survey_id: int) -> Refusal:
+    return Refusal(RULE, station.surveys.none_such(survey_id))

@@ -80,12 +80,13 @@ function Ahead(props: { forecast: ForecastView }) {
     return at < 0 ? 0 : at;
   };
   const lead_s = () => props.forecast.lead_s[index()] ?? 0;
+  const when = () => (lead_s() === 0 ? "Sun now" : `Sun in ${formatAge(lead_s())}`);
   const foreseen = () => props.forecast.foreseen_share[index()] ?? 0;
   return (
     <label class="sun-lead">
       <span>
-        Sun in <strong>{formatAge(lead_s())}</strong>: {formatFraction(foreseen())} of the view
-        foreseen, by {props.forecast.method}
+        <strong>{when()}</strong>: {formatFraction(foreseen())} of the view foreseen, by{" "}
+        {props.forecast.method}
       </span>
       <input
         type="range"
@@ -93,7 +94,7 @@ function Ahead(props: { forecast: ForecastView }) {
         max={props.forecast.lead_s.length - 1}
         step={1}
         value={index()}
-        aria-valuetext={`in ${formatAge(lead_s())}`}
+        aria-valuetext={when()}
         onInput={(event) => {
           overlay.lookAhead(props.forecast.lead_s[Number(event.currentTarget.value)] ?? 0);
           overlay.show("forecast");

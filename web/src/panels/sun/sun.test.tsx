@@ -28,10 +28,12 @@ describe("sun and shade", () => {
 
   it("looks ahead by the forecast's own leads", () => {
     show();
+    expect(page.root.textContent).toContain("Sun now: ");
     const slider = find<HTMLInputElement>(page.root, "input[type=range]");
     slider.value = "2";
     slider.dispatchEvent(new InputEvent("input", { bubbles: true }));
     expect(page.shared.overlay.lead_s()).toBe(60);
+    expect(page.root.textContent).toContain("Sun in 1 min 0 s: ");
     expect(page.shared.overlay.kind()).toBe("forecast");
     expect(page.root.textContent).toContain("20\u00a0% of the view foreseen");
   });
