@@ -13,6 +13,7 @@ from recon.geo.local_frame import (
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
 from recon.geo.polygon import Polygon, region_fault
 from recon.geo.surface import Surface
+from recon.geo.tangent_plane import TangentPlane, tangent_plane
 from recon.geo.thinning import thinned_ring
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Path",
     "Polygon",
     "Surface",
+    "TangentPlane",
     "corner_hulls",
     "enu_from_geo",
     "enu_from_point",
@@ -32,5 +34,6 @@ __all__ = [
     "rounded_path",
     "shift_east_north_m",
     "straight_path",
+    "tangent_plane",
     "thinned_ring",
 ]

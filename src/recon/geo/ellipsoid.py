@@ -11,7 +11,7 @@ SEMI_MINOR_AXIS_M = SEMI_MAJOR_AXIS_M * (1.0 - FLATTENING)
 ECCENTRICITY_SQUARED = FLATTENING * (2.0 - FLATTENING)
 SECOND_ECCENTRICITY_SQUARED = ECCENTRICITY_SQUARED / (1.0 - ECCENTRICITY_SQUARED)
 
-_LATITUDE_ITERATIONS = 3
+LATITUDE_ITERATIONS = 3
 """Bowring's formula is off by under a nanometre near the ground after two; one to spare."""
 
 
@@ -52,7 +52,7 @@ def geodetic_from_ecef(ecef_m: FloatArray) -> tuple[FloatArray, FloatArray, Floa
     across = np.hypot(x, y)
     # The parametric latitude, as sine and cosine so that the poles need no special case.
     sine, cosine = _unit(z * SEMI_MAJOR_AXIS_M, across * SEMI_MINOR_AXIS_M)
-    for _ in range(_LATITUDE_ITERATIONS):
+    for _ in range(LATITUDE_ITERATIONS):
         rise = z + SECOND_ECCENTRICITY_SQUARED * SEMI_MINOR_AXIS_M * sine**3
         run = across - ECCENTRICITY_SQUARED * SEMI_MAJOR_AXIS_M * cosine**3
         sine, cosine = _unit((1.0 - FLATTENING) * rise, run)

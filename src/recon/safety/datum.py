@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from recon.geo import OnGlobe, enu_from_geo
+from recon.geo import OnGlobe, enu_from_geo, tangent_plane
 from recon.geo.distance import horizontal_distance_m
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleState
@@ -26,6 +26,9 @@ FloatArray = npt.NDArray[np.float64]
 NEAR_PAD_M = 10.0
 """Where a vehicle took off and where its pad is are both known by GNSS: twice 2.5 m off, and a
 pilot steps aside."""
+
+FEW_PLACES = 16
+"""So many are sooner worked out one by one than all at once."""
 
 TAKEOFF_POINTS_KEPT = 256
 """Their heights, more than vehicles fly: they are asked for with every stick and every look."""
@@ -43,10 +46,16 @@ def frame_for(airspace: PreparedAirspace, vehicle: VehicleState) -> LocalFrame |
 
 def places_m(frame: LocalFrame, places: Iterable[OnGlobe]) -> FloatArray:
     """Return east and north (N, 2) of N places; (0, 2) for none."""
-    degrees = np.array(
-        [(place.latitude_deg, place.longitude_deg) for place in places], dtype=np.float64
-    ).reshape(-1, 2)
-    return enu_from_geo(frame, degrees[:, 0], degrees[:, 1], frame.origin.ellipsoid_height_m)[:, :2]
+    height_m, degrees = (
+        frame.origin.ellipsoid_height_m,
+        [(place.latitude_deg, place.longitude_deg) for place in places],
+    )
+    if len(degrees) <= FEW_PLACES:
+        plane = tangent_plane(frame)
+        points = [plane.enu_m(latitude, longitude, height_m)[:2] for latitude, longitude in degrees]
+        return np.array(points, dtype=np.float64).reshape(-1, 2)
+    latitudes, longitudes = np.array(degrees, dtype=np.float64).T
+    return enu_from_geo(frame, latitudes, longitudes, height_m)[:, :2]
 
 
 def home(vehicle: VehicleState) -> LatLon | None:

@@ -5,7 +5,7 @@ from math import exp, sqrt
 from random import Random
 
 from recon import wire
-from recon.geo import geo_from_enu
+from recon.geo import tangent_plane
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import CameraState
 from recon.sim.aircraft import Aircraft
@@ -158,8 +158,8 @@ class Sensors:
 
 def position_deg(home: GeoPoint, north_m: float, east_m: float) -> tuple[float, float]:
     """Return latitude and longitude of a place in home metres."""
-    latitude, longitude, _ = geo_from_enu(LocalFrame(home), (east_m, north_m, 0.0))
-    return float(latitude[0]), float(longitude[0])
+    latitude_deg, longitude_deg, _ = tangent_plane(LocalFrame(home)).place(east_m, north_m, 0.0)
+    return latitude_deg, longitude_deg
 
 
 def _camera_state(feed: CameraFeed | None) -> CameraState:
