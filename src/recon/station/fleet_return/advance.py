@@ -26,6 +26,7 @@ from recon.station.fleet_return.places import is_same_pad
 from recon.station.fleet_return.record import ENDED, UNDER_WAY, FleetReturn, Member, Stage
 from recon.station.fleet_return.settings import SETTINGS, ReturnSettings
 from recon.station.fleet_return.watch import seen
+from recon.station.judging import command_of, situation
 from recon.station.outputs import Output
 from recon.station.own_ids import take_id
 from recon.station.state import Station
@@ -222,8 +223,8 @@ def _judged(
         serial=member.serial,
         asked_as=member.asked_as,
     )
-    command = commanding.command_of(station, order, now_ns)
-    refusal = judge(command, commanding.situation(station, command, now_ns))
+    command = command_of(station, order, now_ns)
+    refusal = judge(command, situation(station, command, now_ns))
     if refusal is not None and _may_end(running, member, refusal, settings, now_ns):
         since_ns = now_ns if member.refused_since_ns is None else member.refused_since_ns
         waits = replace(
