@@ -5,7 +5,6 @@ landing, the pilot's takeover, a failsafe or an order that came to nothing, the 
 nothing.
 """
 
-
 from recon.fleet.confirmation import STANDING_SPEED_MPS, SentContext
 from recon.fleet.flight_table import AT_END_M, GOOD_GNSS_LEVEL, ModeKind, Place, Told
 from recon.fleet.mission_progress import distance_to_m, waypoints_passed

@@ -3,7 +3,6 @@
 Orders of people and programs are numbered from 1 up, so the two never meet.
 """
 
-
 from recon.model.replacing import replace
 from recon.station.state import Station
 
