@@ -143,11 +143,12 @@ def test_time_to_a_share_is_when_the_last_needed_cell_came() -> None:
 
 
 def test_an_encounter_counts_once_and_only_in_the_air() -> None:
-    still = np.zeros((6, 2))
-    passing = np.array([[x, 0.0] for x in (50.0, 5.0, 5.0, 50.0, 5.0, 50.0)])
+    still = np.zeros((6, 3))
+    passing = np.array([[x, 0.0, 0.0] for x in (50.0, 5.0, 5.0, 50.0, 5.0, 50.0)])
     up = np.ones(6, dtype=np.bool_)
-    assert encounters([still, passing], [up, up], 10.0) == 2
-    assert encounters([still, passing], [up, ~up], 10.0) == 0
+    assert encounters([still, passing], [up, up], 10.0, 6.0) == 2
+    assert encounters([still, passing], [up, ~up], 10.0, 6.0) == 0
+    assert encounters([still, passing + np.array((0.0, 0.0, 8.0))], [up, up], 10.0, 6.0) == 0
 
 
 def test_rows_longer_than_shade_maps_are_kept_count_in_sun(folder: Path) -> None:

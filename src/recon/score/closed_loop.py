@@ -21,6 +21,7 @@ from recon.score.drone import Doing, Drone
 from recon.score.eye import Eye
 from recon.score.flight import whereabouts
 from recon.score.mishaps import Mishap, mishaps_of
+from recon.score.missions import survey_points, way_home
 from recon.score.photos import Imaged, imaged, photos_of
 from recon.score.run_score import ENOUGH, RunScore, encounters, shares_by, time_to_share
 from recon.score.scenario import Scenario
@@ -110,9 +111,11 @@ class _Run:
         crew = [drone.surveyor(self._now_s) for drone in self._drones]
         self._state, missions = step(self._state, crew, seconds_to_ns(self._now_s))
         for mission in missions:
-            corners_m = self._state.flights[mission.serial].corners_m
-            drone = next(d for d in self._drones if d.serial == mission.serial)
-            drone.take(mission.number, corners_m, self._now_s)
+            number = self._scenario.fleet.serials.index(mission.serial)
+            drone = self._drones[number]
+            at_m = drone.spot_at(self._now_s)
+            points, rows_from = survey_points(mission.mission, at_m, number, self._scenario)
+            drone.take(mission.number, points, rows_from, self._now_s)
 
     def _send_home(self) -> None:
         """Who has nothing to do any more, or no battery for what is left, flies home."""
@@ -120,8 +123,12 @@ class _Run:
         for drone in self._drones:
             is_idle = drone.doing is Doing.HOVERING
             cannot = is_idle and drone.serial in self._state.waiting
-            if drone.must_go_home(self._now_s) or cannot or (is_idle and is_over):
+            if drone.must_go_home(self._now_s):
                 drone.go_home(self._now_s)
+            elif cannot or (is_idle and is_over):
+                layer = sum(other.doing is Doing.RETURNING for other in self._drones)
+                at_m = drone.spot_at(self._now_s)
+                drone.come_home(way_home(at_m, drone.pad_m, layer), self._now_s)
 
     def _summed_up(self, landed_s: float) -> RunScore:
         scenario, eye, plan = self._scenario, self._eye.score, self._plan
@@ -172,7 +179,8 @@ class _Run:
     def _encounters(self, until_s: float) -> int:
         at_s = np.arange(0.0, until_s + 1.0)
         ways = [whereabouts(drone.hops, at_s) for drone in self._drones]
-        return encounters([w[0] for w in ways], [w[1] for w in ways], FLIGHT.separation_m)
+        apart_m = (FLIGHT.separation_m, FLIGHT.separation_up_m)
+        return encounters([w[0] for w in ways], [w[1] for w in ways], *apart_m)
 
 
 def _begun(scenario: Scenario) -> tuple[SurveyPlan, SurveyState]:
@@ -188,15 +196,15 @@ def _drones(scenario: Scenario, seed: int) -> Sequence[Drone]:
     survey, fleet = scenario.survey, scenario.fleet
     wind = Wind(replace(scenario.wind, seed=seed))
     east_mps, north_mps, _up = wind.mean_mps(survey.height_above_takeoff_m)
-    wind_mps = float(np.hypot(east_mps, north_mps))
+    profiles = scenario.site.profiles
     return [
         Drone(
             serial,
             pad_m,
             fleet,
-            survey.height_above_takeoff_m,
             survey.speed_mps,
-            wind_mps,
+            profiles[serial].go_home_height_m or survey.height_above_takeoff_m,
+            (east_mps, north_mps),
             FLIGHT,
         )
         for serial, pad_m in zip(fleet.serials, fleet.pads_m, strict=True)

@@ -1,5 +1,6 @@
 """A survey drone that flies by events: missions, the way home, fresh batteries, what goes wrong."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from math import hypot, inf
@@ -8,9 +9,12 @@ import numpy as np
 
 from recon.guidance.survey import Seen, Surveyor
 from recon.model.units import seconds_to_ns
-from recon.score.flight import Hop, climb, fly, land
+from recon.score.autopilot import Air, Autopilot, Point
+from recon.score.flight import Hop, Spot
 from recon.score.scenario import Fleet, Place
 from recon.score.settings import FlightSettings
+from recon.sim.kinematics import Motion
+from recon.sim.power import flying_load
 
 
 class Doing(Enum):
@@ -31,11 +35,12 @@ class Drone:
     serial: str
     pad_m: Place
     fleet: Fleet
-    height_m: float
     speed_mps: float
-    wind_mps: float
+    go_home_height_m: float
+    air: Air
     settings: FlightSettings
-    place_m: Place = (0.0, 0.0)
+    spot_m: Spot = (0.0, 0.0, 0.0)
+    """Where it is when it flies nothing."""
     doing: Doing = Doing.STANDING
     free_at_s: float = 0.0
     """When what it does ends; infinite for hovering."""
@@ -55,9 +60,12 @@ class Drone:
     unheard_s: list[tuple[float, float]] = field(default_factory=list)
     """From when to when nobody hears it."""
     held_until_s: float = 0.0
+    _reach_m: float = 0.0
+    """No place of all its flights is farther from its pad, or higher."""
+    _ceiling_m: float = 0.0
 
     def __post_init__(self) -> None:
-        self.place_m = self.pad_m
+        self.spot_m = (*self.pad_m, 0.0)
 
     @property
     def is_airborne(self) -> bool:
@@ -67,30 +75,31 @@ class Drone:
     @property
     def level_load(self) -> float:
         """What level flight takes of the battery, in hovering, wind from the side counted."""
-        air_mps = hypot(self.speed_mps, self.wind_mps)
-        return 1.0 + self.settings.fast_load * min(1.0, air_mps / 15.0)
+        moving = Motion(velocity_north_mps=hypot(self.speed_mps, *self.air))
+        return flying_load(moving, (0.0, 0.0))
 
-    def take(self, number: int, corners_m: tuple[Place, ...], now_s: float) -> None:
-        """Begin a mission, from the ground or from where it is in the air."""
-        place_m = self.stop(now_s)
-        hops: list[Hop] = []
+    def take(self, number: int, points: Sequence[Point], rows_from: int, now_s: float) -> None:
+        """Begin a mission, from the ground or from where it is in the air; its rows begin at the
+        `rows_from`th of its points."""
+        autopilot = self._ordered(now_s)
         if not self.is_airborne:
-            climb_s = self.height_m / self.settings.climb_mps + self.settings.vertical_s
-            hops.append(climb(now_s, climb_s, place_m, self.settings.climb_load))
-        start_s = hops[-1].end_s if hops else now_s
-        way = [place_m, *corners_m]
-        hops += fly(start_s, way, self.speed_mps, self.level_load, self.settings, rows_from=1)
-        self._begin(Doing.MISSION, hops, hops[-1].end_s)
+            autopilot.take_off()
+        autopilot.fly(points, rows_from)
+        self._begin(Doing.MISSION, autopilot.hops, autopilot.now_s)
         self.number = number
 
+    def come_home(self, points: Sequence[Point], now_s: float) -> None:
+        """Fly a mission that ends over the pad, land, and stand until the battery is changed."""
+        autopilot = self._ordered(now_s)
+        autopilot.fly(points)
+        autopilot.land()
+        self._begin(Doing.RETURNING, autopilot.hops, autopilot.now_s)
+
     def go_home(self, now_s: float) -> None:
-        """Fly home, land, and stand until the battery is changed."""
-        place_m = self.stop(now_s)
-        settings = self.settings
-        hops = fly(now_s, [place_m, self.pad_m], settings.home_mps, self.level_load, settings)
-        down_s = self.height_m / settings.descent_mps + settings.landing_s
-        hops.append(land(hops[-1].end_s, down_s, self.pad_m))
-        self._begin(Doing.RETURNING, hops, hops[-1].end_s)
+        """As `come_home`, the aircraft's own way: at its go-home height."""
+        autopilot = self._ordered(now_s)
+        autopilot.go_home(self.pad_m, self.go_home_height_m)
+        self._begin(Doing.RETURNING, autopilot.hops, autopilot.now_s)
 
     def hold(self, now_s: float, until_s: float) -> None:
         """Stop what it does and hover, not to be had until then; on the ground it stands."""
@@ -117,7 +126,7 @@ class Drone:
         ended_s = self.free_at_s
         if self.doing is Doing.MISSION:
             self._end_mission()
-            self.place_m = self.hops[-1].end_m
+            self.spot_m = self.hops[-1].end_m
             self._begin(Doing.HOVERING, [], inf)
         elif self.doing is Doing.HELD:
             self._begin(Doing.HOVERING, [], inf)
@@ -125,26 +134,30 @@ class Drone:
             self._settle(ended_s)
             self.low_landings += self.charge < self.fleet.reserve_share
             self.charge, self.charged_at_s = 1.0, ended_s + self.fleet.swap_s
-            self.place_m, self.doing = self.pad_m, Doing.STANDING
+            self.spot_m, self.doing = (*self.pad_m, 0.0), Doing.STANDING
             self.free_at_s = max(ended_s + self.fleet.swap_s, self.held_until_s)
 
-    def stop(self, now_s: float) -> Place:
+    def stop(self, now_s: float) -> Spot:
         """Cut short what it flies, and return where it is; a mission under way has ended."""
         self._settle(now_s)
-        self.place_m = self.place_at(now_s)
+        self.spot_m = self.spot_at(now_s)
         if self.doing is Doing.MISSION:
             self._end_mission()
         self.hops = [_cut(hop, now_s) for hop in self.hops if hop.start_s < now_s]
         self.told = min(self.told, len(self.hops))
-        return self.place_m
+        return self.spot_m
 
-    def place_at(self, now_s: float) -> Place:
+    def spot_at(self, now_s: float) -> Spot:
         """Return where it is now."""
         for hop in reversed(self.hops):
             if hop.start_s <= now_s:
-                east_m, north_m = hop.places_m(np.array([now_s]))[0].tolist()
-                return east_m, north_m
-        return self.place_m
+                east_m, north_m, up_m = hop.places_m(np.array([now_s]))[0].tolist()
+                return east_m, north_m, up_m
+        return self.spot_m
+
+    def place_at(self, now_s: float) -> Place:
+        """Return over which place it is now."""
+        return self.spot_at(now_s)[:2]
 
     def time_left_s(self, now_s: float) -> float:
         """Return how long it can fly level, the reserve taken off."""
@@ -158,11 +171,17 @@ class Drone:
         """
         if self.doing not in (Doing.MISSION, Doing.HOVERING, Doing.HELD):
             return False
-        place_m = self.place_at(now_s)
-        way_m = hypot(place_m[0] - self.pad_m[0], place_m[1] - self.pad_m[1])
-        needed_s = way_m / self.settings.home_mps + self.height_m / self.settings.descent_mps
-        needed_s += self.settings.landing_s
-        return self.time_left_s(now_s) < self.settings.home_slack * needed_s
+        left_s = self.time_left_s(now_s)
+        if left_s >= self._needed_s((self._reach_m, 0.0, self._ceiling_m)):
+            return False
+        east_m, north_m, up_m = self.spot_at(now_s)
+        return left_s < self._needed_s((east_m - self.pad_m[0], north_m - self.pad_m[1], up_m))
+
+    def _needed_s(self, off_m: Spot) -> float:
+        """How long the battery must last for the way home from so far east, north, up of it."""
+        settings, height_m = self.settings, max(off_m[2], self.go_home_height_m)
+        way_s = hypot(off_m[0], off_m[1]) / settings.home_mps + height_m / settings.descent_mps
+        return settings.home_slack * (way_s + settings.landing_s)
 
     def surveyor(self, now_s: float) -> Surveyor:
         """Return what the planner is told of it."""
@@ -197,17 +216,26 @@ class Drone:
         self.told_s = float(times_s[-1])
         places = hop.places_m(times_s).tolist()
         return [
-            Seen(seconds_to_ns(at_s), east_m, north_m, self.height_m)
-            for at_s, (east_m, north_m) in zip(times_s.tolist(), places, strict=True)
+            Seen(seconds_to_ns(at_s), east_m, north_m, up_m)
+            for at_s, (east_m, north_m, up_m) in zip(times_s.tolist(), places, strict=True)
             if not self._is_unheard(at_s)
         ]
 
     def _is_unheard(self, at_s: float) -> bool:
         return any(from_s <= at_s < until_s for from_s, until_s in self.unheard_s)
 
+    def _ordered(self, now_s: float) -> Autopilot:
+        """What flies on from here, from when the order is there."""
+        return Autopilot(now_s + self.settings.acts_after_s, self.stop(now_s), self.air)
+
     def _begin(self, doing: Doing, hops: list[Hop], until_s: float) -> None:
         self.doing, self.free_at_s = doing, until_s
         self.hops += hops
+        for hop in hops:
+            east_m, north_m, up_m = hop.end_m
+            far_m = hypot(east_m - self.pad_m[0], north_m - self.pad_m[1])
+            self._reach_m = max(self._reach_m, far_m)
+            self._ceiling_m = max(self._ceiling_m, up_m)
 
     def _end_mission(self) -> None:
         if self.number is not None:

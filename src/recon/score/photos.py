@@ -56,7 +56,7 @@ def photos_of(hops: Sequence[Hop], phase_s: float, plan: SurveyPlan) -> Photos:
         after = ceil((hop.end_s - phase_s) / interval_s)
         at_s = phase_s + interval_s * np.arange(first, after, dtype=np.float64)
         times.append(at_s)
-        places.append(hop.places_m(at_s))
+        places.append(hop.places_m(at_s)[:, :2])
     if not times:
         return Photos(np.zeros(0), np.zeros((0, 2)))
     return Photos(np.concatenate(times), np.concatenate(places))
@@ -84,7 +84,7 @@ def imaged(photos: Sequence[Photos], plan: SurveyPlan, sky: Sky) -> Imaged:
 
 
 def _is_along(hop: Hop, plan: SurveyPlan) -> bool:
-    ends = plan.lattice.along_across_m([hop.start_m, hop.end_m])
+    ends = plan.lattice.along_across_m([hop.start_m[:2], hop.end_m[:2]])
     along_m, across_m = np.abs(ends[1] - ends[0]).tolist()
     return bool(along_m > 0.0 and across_m <= STEEPEST_COURSE * along_m)
 

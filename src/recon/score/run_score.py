@@ -67,14 +67,18 @@ def shares_by(first_s: FloatArray, at_s: FloatArray) -> tuple[float, ...]:
     return tuple((came / max(first_s.size, 1)).tolist())
 
 
-def encounters(places_m: list[FloatArray], is_level: list[BoolArray], nearer_than_m: float) -> int:
+def encounters(
+    places_m: list[FloatArray], in_air: list[BoolArray], level_m: float, up_m: float
+) -> int:
     """Return how often two of several vehicles came too near, both in the air, at common times.
 
-    Each item is one vehicle's (N, 2) places and whether it is in the air, (N,).
+    Each item is one vehicle's (N, 3) places and whether it is in the air, (N,). Too near is both
+    nearer than `level_m` over the ground and than `up_m` in height.
     """
     count = 0
     for i, j in combinations(range(len(places_m)), 2):
-        far_m = np.hypot(*(places_m[i] - places_m[j]).T)
-        near = (far_m < nearer_than_m) & is_level[i] & is_level[j]
+        east_m, north_m, height_m = (places_m[i] - places_m[j]).T
+        near = (np.hypot(east_m, north_m) < level_m) & (np.abs(height_m) < up_m)
+        near &= in_air[i] & in_air[j]
         count += int(near[:1].sum()) + int((near[1:] & ~near[:-1]).sum())
     return count

@@ -5,31 +5,17 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class FlightSettings:
-    """Speeds in m/s, times in seconds."""
+    """Speeds in m/s, times in seconds. What the airframe does is in `sim`, and in `autopilot`."""
 
-    acceleration_mps2: float = 2.5
-    braking_mps2: float = 2.0
-    """A fifth of the acceleration is kept for wind and for steering."""
-
-    stopped_mps: float = 0.4
-    """Slower than this, half a metre from it, a waypoint counts as reached."""
-
-    climb_mps: float = 2.6
-    descent_mps: float = 3.2
-    vertical_s: float = 3.0
-    """Spinning up, speeding up and slowing down, of a whole climb."""
-
-    landing_s: float = 9.0
-    """The last metres come down slowly, and a second goes by until the landing is confirmed."""
+    acts_after_s: float = 0.17
+    """From a word of the station until the aircraft does it: the link, the app, a step."""
 
     home_mps: float = 10.0
     """Go-home's usual speed."""
 
-    climb_load: float = 1.3
-    """Of a battery, in hovering; sinking counts as hovering."""
-
-    fast_load: float = 0.25
-    """What air that comes at 15 m/s adds to hovering."""
+    descent_mps: float = 3.0
+    landing_s: float = 9.0
+    """The last metres come down slowly, and a second goes by until the landing is confirmed."""
 
     home_slack: float = 1.2
     """A vehicle flies home while the battery still lasts for this many times the way."""
@@ -39,6 +25,9 @@ class FlightSettings:
 
     separation_m: float = 10.0
     """Two in the air nearer than this count as a violation: half of it is GNSS."""
+
+    separation_up_m: float = 6.0
+    """Farther apart in height they do not."""
 
 
 @dataclass(frozen=True, slots=True)
