@@ -5,12 +5,12 @@ order comes on record, `order_life` and `repeats` what becomes of it, `order_tar
 """
 
 from collections.abc import Collection
-from dataclasses import replace
 
 from recon.fleet.confirmation import Progress
 from recon.link.outbox import Lane, lane_of
 from recon.model.command import STEERED_BODIES, Command, Phase, Refusal
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
+from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
 from recon.safety import approve, judge
 from recon.station import (

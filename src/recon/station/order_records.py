@@ -1,9 +1,8 @@
 """How an order comes on record: refused, waiting, queued; and what it ends of older ones."""
 
-from dataclasses import replace
-
 from recon.link.outbox import Lane, lane_of
 from recon.model.command import Command, Hover, Phase, Refusal
+from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.safety import ApprovedCommand
 from recon.station import going_home, orders

@@ -1,8 +1,7 @@
 """Emergency orders are repeated until telemetry shows them, each time judged anew."""
 
-from dataclasses import replace
-
 from recon.model.command import Refusal
+from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.station.orders import OrderRecord
 from recon.station.outputs import Output, SendCommand
