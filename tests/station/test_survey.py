@@ -8,6 +8,7 @@ from recon.model.authority import Leader
 from recon.model.command import FlyMission, LandNow, Phase
 from recon.model.event import AuthorityTaken, SurveyStarted
 from recon.model.survey import SurveyPhase, WhenDone
+from recon.model.zone import HeightDatum, Zone, ZoneKind
 
 
 def two_ends() -> SurveyedWorld:
@@ -238,3 +239,45 @@ def test_the_survey_of_the_number_is_meant() -> None:
     world.asks()
     world.starts("SIM-1", number=SURVEY_ID + 1)
     assert world.phase() is SurveyPhase.CREATED
+
+
+class TestTheWayToTheRows:
+    """Pads lie south of the field; over the strip between them heights are bound."""
+
+    @staticmethod
+    def flown(*zones: Zone, count: int = 1) -> SurveyedWorld:
+        world = surveyed_world(count, zones=zones)
+        world.asks()
+        world.starts(*(f"SIM-{number + 1}" for number in range(count)))
+        world.runs(12.0)
+        return world
+
+    @staticmethod
+    def ways_m(world: SurveyedWorld) -> list[float]:
+        bodies = [
+            each.command.body
+            for each in world.missions()
+            if each.phase is not Phase.REFUSED_BY_STATION
+        ]
+        return [body.mission.waypoints[0].height_above_takeoff_m for body in bodies]  # type: ignore[union-attr]
+
+    def test_it_is_flown_at_the_nearest_height_that_the_zones_allow(self) -> None:
+        strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
+        wires = Zone("wires", ZoneKind.HEIGHT, strip, 50.0, None, HeightDatum.GROUND)
+        assert self.ways_m(self.flown()) == [48.0]
+        assert self.ways_m(self.flown(wires)) == [56.0]
+
+    def test_no_two_share_a_height_that_a_zone_moves_them_to(self) -> None:
+        strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
+        wires = Zone("wires", ZoneKind.HEIGHT, strip, 60.0, None, HeightDatum.GROUND)
+        heights_m = self.ways_m(self.flown(wires, count=2))
+        assert min(heights_m) > 60.0
+        assert len(set(heights_m)) == len(heights_m)
+
+    def test_where_no_height_is_allowed_the_zone_is_named(self) -> None:
+        strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
+        world = self.flown(Zone("school", ZoneKind.KEEP_OUT, strip))
+        assert world.missions()[-1].phase is Phase.REFUSED_BY_STATION
+        assert world.phase() is SurveyPhase.PAUSED
+        assert "school" in world.state().reason
+        assert "nor is another height of its way" in world.state().reason

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from recon.guidance.survey import refused
 from recon.model.authority import Leader
-from recon.model.command import FlyMission, Hover, Phase
+from recon.model.command import Hover, Phase
 from recon.model.event import OperatorOrder, WorkerResult
 from recon.model.survey import MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
@@ -14,8 +14,8 @@ from recon.station.commanding import Stepped
 from recon.station.outputs import Output, StartWork
 from recon.station.own_ids import take_id
 from recon.station.state import Station
-from recon.station.survey.approach import with_approach
 from recon.station.survey.crew import looked_at, surveyors
+from recon.station.survey.giving import order_of
 from recon.station.survey.homeward import (
     IS_DONE,
     NO_BATTERY,
@@ -133,20 +133,11 @@ def _give(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> S
     if member is None or state is None or vehicle is None:
         return station, ()
     station, number = take_id(station)
-    place_in_turn = tuple(record.members).index(given.serial)
-    limits = station.airspace.airspace.limits
-    order = OperatorOrder(
-        number,
-        FlyMission(with_approach(given.mission, vehicle, place_in_turn, limits)),
-        f"{record.started_by}: survey {record.survey.name}",
-        serial=given.serial,
-        takeoff=member.may_take_off and vehicle.is_flying.value is False,
-        asked_as=Leader.GUIDANCE,
-    )
-    station, sent = commanding.place(station, order, now_ns)
+    order, tried = order_of(station, record, given, vehicle, now_ns)
+    station, sent = commanding.place(station, replace(order, command_id=number), now_ns)
     placed = station.orders.records[number]
     if placed.phase is Phase.REFUSED_BY_STATION:
-        state = refused(state, given.serial, given.number, placed.note, now_ns)
+        state = refused(state, given.serial, given.number, placed.note + tried, now_ns)
         record = replace(record, state=state)
         station = replace(station, surveys=station.surveys.put(record))
         if comes_home(record) and placed.note.startswith(f"{BATTERY}: "):
