@@ -1,9 +1,11 @@
 """Recon as a process of its own: started, read, told to stop."""
 
+import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from queue import Empty, Queue
 from threading import Thread
 
@@ -19,6 +21,7 @@ class Started:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
+            start_new_session=True,
         )
         self.lines: list[str] = []
         self._arriving: Queue[str | None] = Queue()
@@ -52,9 +55,10 @@ class Started:
         return "\n".join(self.lines)
 
     def close(self) -> None:
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
+        # With all that it started: what lives on would hold its output open.
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
         self._thread.join()
         assert self.process.stdout is not None
         self.process.stdout.close()

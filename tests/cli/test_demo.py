@@ -1,4 +1,4 @@
-"""`recon demo`: four simulated vehicles are seen, and nothing stays behind."""
+"""`recon demo`: a scenario's drones survey its field by themselves, and nothing stays behind."""
 
 import json
 import signal
@@ -15,18 +15,51 @@ def children_of(pid: int) -> list[int]:
     return [int(word) for word in text.split()]
 
 
+FEW = """about = "a small field in sun"
+start_utc = 2025-06-20T16:00:00Z
+
+[site]
+latitude_deg = 41.9
+longitude_deg = -93.6
+ground_altitude_m = 280.0
+
+[task]
+region_m = [[0.0, 0.0], [120.0, 0.0], [120.0, 80.0], [0.0, 80.0]]
+limit_min = 10.0
+
+[fleet]
+survey_drones = 2
+
+[eye]
+radius_m = 100.0
+"""
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_vehicles_fly_and_the_simulator_ends_with_the_demo(number: int) -> None:
-    with started("demo", "--http-port", "0", "--link-port", "0", "--vehicles", "3") as demo:
+def test_vehicles_fly_and_the_simulator_ends_with_the_demo(number: int, tmp_path: Path) -> None:
+    scenario = tmp_path / "few.toml"
+    scenario.write_text(FEW, encoding="utf-8")
+    ports = ("--http-port", "0", "--link-port", "0")
+    with started("demo", *ports, "--scenario", str(scenario)) as demo:
         console = demo.line_with("console: ").partition(": ")[2]
         demo.line_with("Ctrl+C ends the demo")
         vehicles = await_vehicles(console, 3)
         assert all(v["is_simulated"] for v in vehicles)
+        demo.line_with("survey 1 is flown by SIM-1, SIM-2")
+        demo.line_with("mission: started")
         children = children_of(demo.process.pid)
         assert len(children) == 1
         assert demo.end(number) == 0
         assert "Traceback" not in demo.text
         assert not any(Path(f"/proc/{pid}").exists() for pid in children)
+
+
+def test_a_bad_scenario_is_told_and_nothing_is_started(tmp_path: Path) -> None:
+    scenario = tmp_path / "few.toml"
+    scenario.write_text(FEW.replace("survey_drones = 2", "survey_drones = 0"), encoding="utf-8")
+    with started("demo", "--scenario", str(scenario)) as demo:
+        assert demo.wait() == 2
+        assert f"{scenario}:14: fleet.survey_drones: expected a whole number" in demo.text
 
 
 def await_vehicles(console: str, count: int) -> list[dict[str, object]]:

@@ -172,6 +172,28 @@ def test_battery_drains_warns_and_lands_the_aircraft(flights) -> None:
     assert 0.0 <= aircraft.battery.fraction < 0.06
 
 
+def test_somebody_changes_the_battery_a_while_after_the_landing(flights) -> None:
+    aircraft = flights.hovering(height_m=5.0)
+    aircraft.settings = AircraftSettings(battery_swap_s=30.0)
+    aircraft.battery = Battery(0.4, endurance_s=1500.0)
+    aircraft.land()
+    flights.fly_until(aircraft, lambda a: a.is_on_ground, 60.0)
+    flights.fly_on(aircraft, 29.0)
+    assert aircraft.battery.fraction < 0.4
+    flights.fly_on(aircraft, 2.0)
+    assert aircraft.battery.fraction > 0.99
+
+
+@pytest.mark.parametrize("swap_s", [None, 30.0])
+def test_nobody_changes_the_battery_of_one_that_crashed_or_has_not_flown(flights, swap_s) -> None:
+    for aircraft in (flights.hovering(), Aircraft(0)):
+        aircraft.settings = AircraftSettings(battery_swap_s=swap_s)
+        aircraft.battery = Battery(0.4, endurance_s=1500.0)
+        aircraft.crash()
+        flights.fly_on(aircraft, 60.0)
+        assert aircraft.battery.fraction < 0.4
+
+
 def test_motion_does_not_depend_on_how_often_it_is_asked(flights) -> None:
     often, seldom = flights.hovering(), flights.hovering()
     for aircraft in (often, seldom):

@@ -61,6 +61,8 @@ def test_an_older_ground_image_never_replaces_a_newer_one() -> None:
 
 def test_failed_work_is_an_alarm_until_work_succeeds() -> None:
     told = Told().happens(WorkerResult(1, LAY_FRAME, None, "no pose")).passes(0.1)
+    assert told.alarms() == set()
+    told.passes(told.station.settings.imaging_trouble_after_s)
     assert told.alarms() == {"imaging"}
     told.happens(WorkerResult(2, LAY_FRAME, ground_image(1))).passes(0.1)
     assert told.alarms() == set()

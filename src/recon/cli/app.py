@@ -11,6 +11,7 @@ from recon.cli.run import run_command
 from recon.cli.score import score_command
 from recon.cli.sim import sim_command
 from recon.cli.sim_proxy import proxy_command
+from recon.cli.sim_scenario import scenario_command
 
 app = new_app()
 add_commands(app)
@@ -21,6 +22,7 @@ app.command("score")(score_command)
 sim_app = typer.Typer(pretty_exceptions_enable=False, add_completion=False)
 sim_app.callback(invoke_without_command=True)(sim_command)
 sim_app.command("proxy")(proxy_command)
+sim_app.command("scenario")(scenario_command)
 app.add_typer(sim_app, name="sim")
 app.command("inspect")(inspect_command)
 app.command("openapi")(openapi_command)

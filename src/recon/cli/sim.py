@@ -1,8 +1,6 @@
 """`recon sim`: simulated companion apps."""
 
 import asyncio
-import contextlib
-import signal
 import sys
 from pathlib import Path
 from typing import NamedTuple
@@ -37,9 +35,11 @@ from recon.cli.sim_options import (
     WindMpsOption,
     WindToDegOption,
 )
+from recon.cli.until_stopped import say_at_once, until_stopped
 from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
+from recon.score.simulation import rig_of
 from recon.sim.camera_feed import FeedSettings, FrameSource, ImageFormat
 from recon.sim.commands import HoverOnGround
 from recon.sim.errors import SimulationError
@@ -49,7 +49,7 @@ from recon.sim.faults import parse_fault
 from recon.sim.field import FieldFrames
 from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig
 from recon.sim.frame_files import folder_frames
-from recon.sim.replay import load_replay, rig_over
+from recon.sim.replay import load_replay
 from recon.sim.rig import EyeRig
 from recon.sim.run import run_fleet
 from recon.sim.telemetry import FIELD_SENSORS
@@ -135,7 +135,7 @@ def sim_command(
                 if profile.go_home_height_m is not None
             },
         )
-        asyncio.run(_run(config))
+        asyncio.run(until_stopped(run_fleet(config, say_at_once), "simulation ended"))
     except ReconError as problem:
         print(f"recon sim: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
@@ -210,7 +210,7 @@ def _eye_world(
     if replay is not None:
         return EyeWorld(*load_replay(replay))
     cols, rows = parse_size(frame_size)
-    rig = None if place.eye is None else _site_rig(place, place.eye)
+    rig = None if place.eye is None else _rig(place, place.eye)
     if frames is not None:
         return EyeWorld(rig, folder_frames(frames, rows, cols))
     if rig is None or place.eye is None:
@@ -227,24 +227,6 @@ def _sky(origin: GeoPoint, seed: int) -> Sky:
     return Sky(SkySettings(seed, sun, (clouds,)))
 
 
-def _site_rig(place: Site, eye: Eye) -> EyeRig:
+def _rig(place: Site, eye: Eye) -> EyeRig:
     assert place.frame is not None
-    pose = eye.solution.pose
-    if eye.marked_frame is None:
-        return rig_over(eye.camera, place.frame, pose)
-    return EyeRig(eye.camera, place.frame, pose, eye.marked_frame)
-
-
-async def _run(config: SimulationConfig) -> None:
-    """Fly until Ctrl+C or a polite kill; both end with closed connections."""
-    flying = asyncio.ensure_future(run_fleet(config, _say))
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, flying.cancel)
-    with contextlib.suppress(asyncio.CancelledError):
-        await flying
-    print("simulation ended", flush=True)
-
-
-def _say(line: str) -> None:
-    print(line, flush=True)
+    return rig_of(place.frame, eye)

@@ -1,14 +1,13 @@
 """`recon sim proxy`: a bad link on purpose, between any app and the station."""
 
 import asyncio
-import contextlib
-import signal
 import sys
 from typing import Annotated
 
 import typer
 
 from recon.cli.places import parse_place
+from recon.cli.until_stopped import say_at_once, until_stopped
 from recon.model.errors import ReconError
 from recon.sim.proxy import Damage, ProxyConfig, Towards, run_proxy
 
@@ -53,22 +52,7 @@ def proxy_command(
             towards=towards,
             seed=seed,
         )
-        asyncio.run(_run(config))
+        asyncio.run(until_stopped(run_proxy(config, say_at_once), "proxy ended"))
     except ReconError as problem:
         print(f"recon sim proxy: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
-
-
-async def _run(config: ProxyConfig) -> None:
-    """Pass on until Ctrl+C or a polite kill; both end with closed connections."""
-    passing = asyncio.ensure_future(run_proxy(config, _say))
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, passing.cancel)
-    with contextlib.suppress(asyncio.CancelledError):
-        await passing
-    print("proxy ended", flush=True)
-
-
-def _say(line: str) -> None:
-    print(line, flush=True)

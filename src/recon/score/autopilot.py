@@ -64,10 +64,10 @@ class Autopilot:
         self._up_mps = 0.0
         """The climb that goes on into the next hop."""
 
-    def wait(self, seconds: float) -> None:
+    def wait(self, seconds: float, waypoint: int | None = None) -> None:
         """Stay where it is."""
         if seconds > 0.0:
-            self._add(self.at_m, None, seconds, 0.0)
+            self._add(self.at_m, None, seconds, 0.0, waypoint=waypoint)
 
     def take_off(self) -> None:
         """Start the motors and lift off, to where missions begin."""
@@ -80,8 +80,8 @@ class Autopilot:
         for index, point in enumerate(points):
             speed_mps = points[max(0, index - 1)].speed_mps
             is_row = rows_from is not None and index > rows_from
-            self._go_to(point.at_m, speed_mps, index, is_row)
-            self.wait(STOP_S + point.loiter_s)
+            self._go_to(point.at_m, speed_mps, is_row)
+            self.wait(STOP_S + point.loiter_s, waypoint=index)
 
     def land(self) -> None:
         """Come down here, wait for the confirmation, touch down."""
@@ -97,7 +97,7 @@ class Autopilot:
         self._rise(height_m, RISEN_M)
         # The last metre of the climb is flown on the way.
         self.at_m, self._up_mps = (*self.at_m[:2], height_m), 0.0
-        self._go_to((*home_m, height_m), HOME_MPS, None, False)
+        self._go_to((*home_m, height_m), HOME_MPS, is_row=False)
         self.wait(start_s + SHORTEST_GO_HOME_S - self.now_s)
         self.land()
 
@@ -114,7 +114,7 @@ class Autopilot:
         self._add(to_m, motion, motion.duration_s, motion.top_mps)
         self._up_mps = motion.end_mps
 
-    def _go_to(self, to_m: Spot, speed_mps: float, waypoint: int | None, is_row: bool) -> None:
+    def _go_to(self, to_m: Spot, speed_mps: float, is_row: bool) -> None:
         """Fly straight at a place, and stop a little before it, where it counts as reached."""
         ways_m = [b - a for a, b in zip(self.at_m, to_m, strict=True)]
         level_m = hypot(ways_m[0], ways_m[1])
@@ -126,7 +126,7 @@ class Autopilot:
         reached = tuple(b - short * way for b, way in zip(to_m, ways_m, strict=True))
         end_m = (reached[0], reached[1], reached[2]) if motion.way_m > 0.0 else self.at_m
         climb_mps = up * motion.top_mps
-        self._add(end_m, motion, motion.duration_s, climb_mps, waypoint, is_row)
+        self._add(end_m, motion, motion.duration_s, climb_mps, is_row=is_row)
         self._up_mps = 0.0
 
     def _pace(self, ways_m: list[float], level: float, up: float, speed_mps: float) -> Pace:

@@ -54,7 +54,7 @@ class Hop:
     load: float
     """Of the battery, in hovering."""
     waypoint: int | None = None
-    """The one that is reached when it has ended, of its mission."""
+    """The one of its mission whose stop is over when this has ended."""
     is_row: bool = False
     """Between two waypoints that images are taken between."""
     lands: bool = False

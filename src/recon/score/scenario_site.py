@@ -12,7 +12,7 @@ from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.model.zone import LandingPad, Region
 from recon.score.scenario import Fleet, Place, ScenarioEye
-from recon.sim.fleet import EYE_SERIAL, PADS_TO_A_ROW
+from recon.sim.fleet import EYE_SERIAL
 from recon.site import Eye, Site
 from recon.site.demo_site import (
     CENTRE_COL_PX,
@@ -29,6 +29,8 @@ BEYOND_HOME_M = 150.0
 ABOVE_EYE_M = 10.0
 USUAL_CEILING_M = 120.0
 LOWEST_WAY_HOME_M, WAYS_HOME_APART_M = 40.0, 8.0
+"""The eye's, and so far above it the next one's; nearer to each other when they are many."""
+BELOW_CEILING_M = 5.0
 EYE_PRIORITY = 10
 """Of two in conflict the eye is held last: it sees the whole field."""
 IMAGE_CELL_M = 1.0
@@ -43,25 +45,31 @@ def made_up_site(
     photo_interval_s: float,
 ) -> Site:
     """Return a site on level ground where a task can be flown and nothing else is in the way."""
+    ceiling_m = max(USUAL_CEILING_M, eye.height_m + ABOVE_EYE_M)
     return Site(
         name=name,
         frame=frame,
         ground_grid=_grid(frame, eye),
         eye=_eye(frame, eye),
-        profiles=_profiles(frame, fleet, photo_interval_s),
+        profiles=_profiles(frame, fleet, eye, photo_interval_s, ceiling_m),
         layers=Layers(
             boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, eye.over_m]),
-            landing_pads=tuple(
-                LandingPad(serial, serial, point_from_enu(frame, (*pad_m, 0.0)))
-                for serial, pad_m in zip(fleet.serials, fleet.pads_m, strict=True)
-            ),
+            landing_pads=_pads(frame, fleet, eye),
             survey_regions={name: region},
         ),
         limits=FlightLimits(
-            max_height_above_ground_m=max(USUAL_CEILING_M, eye.height_m + ABOVE_EYE_M),
+            max_height_above_ground_m=ceiling_m,
             max_distance_from_home_m=_farthest_m(fleet.pads_m, region) + BEYOND_HOME_M,
             battery_reserve_fraction=fleet.reserve_share,
         ),
+    )
+
+
+def _pads(frame: LocalFrame, fleet: Fleet, eye: ScenarioEye) -> tuple[LandingPad, ...]:
+    serials, places_m = (*fleet.serials, EYE_SERIAL), (*fleet.pads_m, eye.over_m)
+    return tuple(
+        LandingPad(serial, serial, point_from_enu(frame, (*pad_m, 0.0)))
+        for serial, pad_m in zip(serials, places_m, strict=True)
     )
 
 
@@ -103,8 +111,14 @@ def _eye(frame: LocalFrame, eye: ScenarioEye) -> Eye:
 
 
 def _profiles(
-    frame: LocalFrame, fleet: Fleet, photo_interval_s: float
+    frame: LocalFrame,
+    fleet: Fleet,
+    over: ScenarioEye,
+    photo_interval_s: float,
+    ceiling_m: float,
 ) -> dict[str, VehicleProfile]:
+    room_m = ceiling_m - BELOW_CEILING_M - LOWEST_WAY_HOME_M
+    apart_m = min(WAYS_HOME_APART_M, room_m / len(fleet.serials))
     drones = {
         serial: VehicleProfile(
             serial,
@@ -113,7 +127,7 @@ def _profiles(
             waypoint_altitude=AltitudeReference.TAKEOFF,
             pad=point_from_enu(frame, (*pad_m, 0.0)),
             endurance_s=fleet.endurance_s,
-            go_home_height_m=LOWEST_WAY_HOME_M + WAYS_HOME_APART_M * (number % PADS_TO_A_ROW),
+            go_home_height_m=LOWEST_WAY_HOME_M + apart_m * (number + 1),
             failsafe=Failsafe.GO_HOME,
             camera_interval_s=photo_interval_s,
         )
@@ -124,6 +138,7 @@ def _profiles(
         name="Eye",
         model="simulated",
         waypoint_altitude=AltitudeReference.TAKEOFF,
+        pad=point_from_enu(frame, (*over.over_m, 0.0)),
         endurance_s=fleet.endurance_s,
         go_home_height_m=LOWEST_WAY_HOME_M,
         failsafe=Failsafe.GO_HOME,

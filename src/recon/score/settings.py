@@ -7,8 +7,8 @@ from dataclasses import dataclass
 class FlightSettings:
     """Speeds in m/s, times in seconds. What the airframe does is in `sim`, and in `autopilot`."""
 
-    acts_after_s: float = 0.17
-    """From a word of the station until the aircraft does it: the link, the app, a step."""
+    acts_after_s: float = 0.14
+    """From a word of the station until the aircraft does it: the link and the app."""
 
     home_mps: float = 10.0
     """Go-home's usual speed."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from math import hypot
 
-from recon.model.units import NS_PER_S
+from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import FlightMode
 from recon.sim.air import Air
 from recon.sim.battery import FORCED_LANDING_FRACTION, Battery
@@ -38,6 +38,8 @@ class AircraftSettings:
     """Above takeoff: the aircraft climbs no higher, and tells when it is there."""
     max_distance_m: float = 5_000.0
     """From home: told when it is reached; missions that lead farther are rejected."""
+    battery_swap_s: float | None = None
+    """So long after a landing somebody has put in a fresh battery; None: nobody does."""
 
 
 @dataclass(slots=True)
@@ -57,6 +59,8 @@ class Aircraft:
     home_north_m: float = 0.0
     home_east_m: float = 0.0
     _mission_count: int = 0
+    _landed_at_ns: int | None = None
+    """Since when a battery that has flown waits on the ground for somebody to change it."""
 
     @property
     def is_on_ground(self) -> bool:
@@ -193,6 +197,7 @@ class Aircraft:
         """Fall from where it is, and lie there."""
         self.manoeuvre = Grounded()
         self._lie_still()
+        self._landed_at_ns = None
 
     def _set_home(self) -> None:
         self.home_north_m, self.home_east_m = self.motion.north_m, self.motion.east_m
@@ -215,6 +220,8 @@ class Aircraft:
                 step(self.motion, demand, seconds, self.settings.limits, wind)
             )
             self._go_on()
+        else:
+            self._change_battery()
         self.gimbal.step(seconds)
         load = flying_load(self.motion, self.air.horizontal) if self.is_flying else GROUND_LOAD
         self.battery.drain(seconds, load)
@@ -250,6 +257,15 @@ class Aircraft:
         self.manoeuvre = following
         if isinstance(following, Grounded):
             self._lie_still()
+            self._landed_at_ns = self.now_ns
+
+    def _change_battery(self) -> None:
+        swap_s, landed_at_ns = self.settings.battery_swap_s, self._landed_at_ns
+        if swap_s is None or landed_at_ns is None:
+            return
+        if self.now_ns - landed_at_ns >= seconds_to_ns(swap_s):
+            self.battery = Battery(1.0, self.settings.endurance_s)
+            self._landed_at_ns = None
 
     def _lie_still(self) -> None:
         motion = self.motion

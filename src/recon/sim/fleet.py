@@ -64,6 +64,10 @@ class SimulationConfig:
     altitude_bias_m: float | None = None
     """None draws one per vehicle, up to 40 m either way."""
     endurance_s: float = 1500.0
+    endurances_s: Mapping[str, float] = field(default_factory=dict)
+    """By serial, of those that last otherwise."""
+    battery_swap_s: float | None = None
+    """How long after a landing somebody has changed the battery; None: nobody does."""
     sensors: SensorSettings = field(default_factory=SensorSettings)
     wind: WindSettings | None = None
     """None: calm."""
@@ -109,7 +113,8 @@ def _build_app(
 ) -> SimulatedApp:
     random = Random(f"{config.seed}/{serial}/setup")
     drawn_bias_m = random.uniform(-LARGEST_BIAS_M, LARGEST_BIAS_M)
-    battery = Battery(random.uniform(0.9, 1.0), config.endurance_s)
+    endurance_s = config.endurances_s.get(serial, config.endurance_s)
+    battery = Battery(random.uniform(0.9, 1.0), endurance_s)
     home = _home_of(config, serial, number)
     app = AppSettings(
         serial=serial,
@@ -131,7 +136,8 @@ def _build_app(
     is_eye = serial == EYE_SERIAL
     settings = AircraftSettings(
         go_home_height_m=config.go_home_heights_m.get(serial, _go_home_height_m(number)),
-        endurance_s=config.endurance_s,
+        endurance_s=endurance_s,
+        battery_swap_s=config.battery_swap_s,
     )
     motion = _eye_start(config) if is_eye else _survey_start(config, number)
     manoeuvre: Manoeuvre = Grounded() if motion.height_m == 0.0 else Hold()

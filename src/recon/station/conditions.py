@@ -236,8 +236,9 @@ def _imaging(station: Station) -> Iterator[Condition]:
             severity=Severity.WARNING,
             rule="imaging",
             vehicle_name=imaging.eye_serial or "",
-            text=f"the eye's frame was not laid on the ground: {imaging.latest_error}",
+            text=f"the eye's frames are not laid on the ground: {imaging.latest_error}",
             serial=imaging.eye_serial,
+            after_s=station.settings.imaging_trouble_after_s,
         )
 
 

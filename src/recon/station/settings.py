@@ -74,6 +74,9 @@ class StationSettings:
     frames_kept: int = 16
     """The newest frame of this many vehicles: 25 MB each at most."""
 
+    imaging_trouble_after_s: float = 3.0
+    """A first frame comes before the eye's first telemetry, and one lost frame is no trouble."""
+
     low_battery_fraction: float = 0.25
     serious_battery_fraction: float = 0.10
     """In flight; the aircraft's own warnings count as well, whichever says it first."""

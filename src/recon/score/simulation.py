@@ -1,0 +1,82 @@
+"""A scenario as the simulator flies it: the same sky, wind, places and faults, in real packets."""
+
+from dataclasses import replace
+
+from recon.model.geo import LocalFrame
+from recon.score.scenario import Scenario
+from recon.sim.camera_feed import FeedSettings
+from recon.sim.eye import EyeSettings
+from recon.sim.faults import Fault
+from recon.sim.field import FieldFrames
+from recon.sim.fleet import EYE_SERIAL, Airborne, EyeSetup, SimulationConfig
+from recon.sim.replay import rig_over
+from recon.sim.rig import EyeRig
+from recon.sim.telemetry import FIELD_SENSORS
+from recon.sim.world import Sky, Wind
+from recon.site import Eye
+
+EYE_ENDURANCE_S = 36_000.0
+"""The eye stays up for as long as a scenario lasts: its change of batteries is not looked at."""
+
+
+def simulation_of(
+    scenario: Scenario, seed: int, feed: FeedSettings | None = None
+) -> SimulationConfig:
+    """Return the fleet of a scenario, drones on their pads and the eye in the air, for a station
+    at the usual port; without a feed the eye sends no pictures."""
+    site = scenario.site
+    fleet = scenario.fleet
+    frame, eye = scenario.frame, site.eye
+    assert eye is not None  # or it would not have been read
+    rig = rig_of(frame, eye)
+    source = FieldFrames(
+        rig.camera, eye.image_circle, seed, sky_of(scenario, seed), EyeSettings(seed)
+    )
+    silent = FeedSettings(starts_on=False)
+    return SimulationConfig(
+        home=frame.origin,
+        vehicle_count=len(fleet.serials) + 1,
+        eye=EyeSetup(source, silent if feed is None else feed, rig),
+        airborne=Airborne.EYE,
+        endurance_s=fleet.endurance_s,
+        endurances_s={EYE_SERIAL: EYE_ENDURANCE_S},
+        battery_swap_s=fleet.swap_s,
+        sensors=FIELD_SENSORS,
+        wind=replace(scenario.wind, seed=seed),
+        seed=seed,
+        faults=tuple(_by_serial(fault, fleet.serials) for fault in scenario.faults),
+        pads={
+            serial: profile.pad
+            for serial, profile in site.profiles.items()
+            if profile.pad is not None
+        },
+        go_home_heights_m={
+            serial: profile.go_home_height_m
+            for serial, profile in site.profiles.items()
+            if profile.go_home_height_m is not None
+        },
+    )
+
+
+def sky_of(scenario: Scenario, seed: int) -> Sky:
+    """Return a run's sky."""
+    return Sky(replace(scenario.sky, seed=seed))
+
+
+def wind_of(scenario: Scenario, seed: int) -> Wind:
+    """Return a run's wind."""
+    return Wind(replace(scenario.wind, seed=seed))
+
+
+def rig_of(frame: LocalFrame, eye: Eye) -> EyeRig:
+    """Return the eye's camera on its aircraft, over a site's frame."""
+    pose = eye.solution.pose
+    if eye.marked_frame is None:
+        return rig_over(eye.camera, frame, pose)
+    return EyeRig(eye.camera, frame, pose, eye.marked_frame)
+
+
+def _by_serial(fault: Fault, serials: tuple[str, ...]) -> Fault:
+    """A scenario counts its survey drones alone, the simulator counts the eye as the first."""
+    named = dict(zip(map(str, range(1, len(serials) + 1)), serials, strict=True))
+    return replace(fault, vehicle=named.get(fault.vehicle, fault.vehicle))

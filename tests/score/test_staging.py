@@ -1,0 +1,98 @@
+"""Where a scenario is played: on a folder's site, or one made up around it; and by the simulator."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.score.scenes import SMALL, small
+
+from recon.geo import Polygon, enu_from_point
+from recon.score import Scenario, ScenarioError, load_scenario
+from recon.score.simulation import simulation_of
+from recon.sim.fleet import EYE_SERIAL, build_fleet
+
+FOLDER = Path(__file__).parents[2] / "scenarios"
+ON_DEMO = SMALL.replace(
+    "latitude_deg = 41.9\nlongitude_deg = -93.6\nground_altitude_m = 280.0",
+    f'folder = "{Path(__file__).parents[2]}/src/recon/site/demo"',
+)
+
+
+def every_scenario() -> list[Scenario]:
+    return [load_scenario(path) for path in sorted(FOLDER.glob("*.toml"))]
+
+
+@pytest.fixture(scope="module")
+def scenarios() -> list[Scenario]:
+    return every_scenario()
+
+
+def test_all_that_is_flown_over_lies_well_inside_the_fence(scenarios: list[Scenario]) -> None:
+    for scenario in scenarios:
+        boundary = scenario.site.layers.boundary
+        assert boundary is not None
+        places = [*scenario.survey.region.outline_m.tolist(), *scenario.fleet.pads_m]
+        inside_m = Polygon(boundary).distance_to_edge_m(np.array(places))
+        assert inside_m.min() > scenario.site.limits.boundary_margin_m
+
+
+def test_ways_home_are_in_layers_and_under_the_ceiling(scenarios: list[Scenario]) -> None:
+    for scenario in scenarios:
+        serials = (*scenario.fleet.serials, EYE_SERIAL)
+        told = [scenario.site.profiles[serial].go_home_height_m for serial in serials]
+        heights_m = sorted(height_m for height_m in told if height_m is not None)
+        assert len(heights_m) == len(serials)
+        limits = scenario.site.limits
+        assert np.diff(heights_m).min() >= limits.min_separation_vertical_m
+        assert heights_m[-1] < limits.max_height_above_ground_m
+
+
+def test_a_sites_folder_says_where_drones_and_eye_are(tmp_path: Path) -> None:
+    scenario = small(tmp_path, ON_DEMO)
+    assert scenario.fleet.pads_m[0] == pytest.approx((-24.0, -8.0), abs=0.01)
+    assert scenario.eye.over_m == pytest.approx((0.0, 0.0), abs=0.2)
+    assert scenario.eye.height_m == pytest.approx(120.0, abs=0.5)
+    assert scenario.frame.origin.ellipsoid_height_m == 275.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("/demo", "/none", "small.toml:6: site.folder: expected a site's folder, got: "),
+        ("[task]", "latitude_deg = 41.9\n[task]", "site: expected a folder alone, got an origin"),
+        ("radius_m", "over_m = [0.0, 0.0]\nradius_m", "eye.over_m: expected none, for the site"),
+        ("survey_drones = 2", "survey_drones = 9", "expected no more than have pads on the site"),
+        (
+            "survey_drones = 2",
+            "survey_drones = 2\npads_m = [[0.0, 0.0], [30.0, 0.0]]",
+            "fleet.pads_m: expected none, for the site has pads",
+        ),
+    ],
+)
+def test_what_a_folder_leaves_no_room_for_is_told(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    with pytest.raises(ScenarioError) as told:
+        small(tmp_path, ON_DEMO.replace(old, new))
+    assert words in str(told.value)
+
+
+def test_a_site_is_told_whole(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match="site: expected a folder, or latitude_deg, longitude"):
+        small(tmp_path, SMALL.replace("latitude_deg = 41.9\n", ""))
+
+
+def test_the_simulator_flies_the_scenarios_fleet_from_its_pads(tmp_path: Path) -> None:
+    scenario = small(tmp_path)
+    apps = build_fleet(simulation_of(scenario, 3), 0)
+    assert [app.settings.serial for app in apps] == [EYE_SERIAL, "SIM-1", "SIM-2"]
+    for app, pad_m in zip(apps[1:], scenario.fleet.pads_m, strict=True):
+        home_m = enu_from_point(scenario.frame, app.settings.home)
+        assert home_m[:2] == pytest.approx(pad_m, abs=0.01)
+        assert app.aircraft.is_on_ground
+    assert apps[0].aircraft.motion.height_m == pytest.approx(120.0)
+
+
+def test_a_fault_of_the_first_drone_is_not_the_eyes(tmp_path: Path) -> None:
+    apps = build_fleet(simulation_of(small(tmp_path), 0), 0)
+    assert [len(app.settings.faults) for app in apps] == [0, 1, 0]
