@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -106,3 +107,31 @@ def test_a_footprint_is_held_when_all_its_points_are(seed: int, inset_m: float) 
         assert inside_m.min() <= inset_m + 8.0
     if polygon.is_clear_of(footprint, -inset_m)[0]:
         assert inside_m.max() <= inset_m + 0.01
+
+
+@given(
+    st.lists(st.tuples(*[st.floats(-30.0, 130.0)] * 6), min_size=1, max_size=6),
+    st.sampled_from([0.0, 0.5, 5.0, 20.0]),
+)
+def test_what_is_seen_without_geos_is_what_geos_says(
+    corners: list[tuple[float, ...]], inset_m: float
+) -> None:
+    """The circle in the middle answers for most; it never says more than the exact question."""
+    outline = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 90.0], [55.0, 40.0], [0.0, 100.0]])
+    hole = np.array([[70.0, 10.0], [80.0, 10.0], [75.0, 20.0]])
+    triangles_m = np.array(corners).reshape(-1, 3, 2)
+    area = shapely.Polygon(outline, [hole])
+    hulls = shapely.convex_hull(shapely.multipoints(triangles_m))
+    exactly = shapely.covers(area, hulls)
+    if inset_m > 0.0:
+        exactly &= ~shapely.dwithin(shapely.boundary(area), hulls, inset_m)
+    held = Polygon(Region(outline, (hole,))).holds(Footprints(triangles_m), inset_m)
+    assert held.tolist() == exactly.tolist()
+
+
+def test_a_place_in_the_middle_and_places_near_the_edge() -> None:
+    square = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
+    places = [(50.0, 50.0), (50.0, 3.0), (50.0, -1.0), (np.nan, 50.0), (1.0, 1.0)]
+    triangles_m = np.array([[place] * 3 for place in places])
+    held = Polygon(Region(square)).holds(Footprints(triangles_m), 2.0)
+    assert held.tolist() == [True, True, False, False, False]

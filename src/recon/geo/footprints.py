@@ -25,19 +25,29 @@ class Footprints:
         points, is_finite = finite_points(triangles_m)
         corners = points.reshape(-1, 3, 2)
         self.is_finite: BoolArray = np.asarray(is_finite.reshape(-1, 3).all(axis=1))
-        self.shapes: ShapeArray = shapely.convex_hull(shapely.multipoints(corners))
+        self._corners = corners
+        self._shapes: ShapeArray | None = None
         self.least_m: FloatArray = corners.min(axis=1)
         self.most_m: FloatArray = corners.max(axis=1)
 
     def only(self, which: BoolArray | IntArray) -> "Footprints":
         """Return the footprints of a mask (N,), or at these indices."""
         chosen = Footprints.__new__(Footprints)
-        chosen.is_finite, chosen.shapes = self.is_finite[which], self.shapes[which]
+        chosen.is_finite, chosen._corners = self.is_finite[which], self._corners[which]
+        chosen._shapes = None if self._shapes is None else self._shapes[which]
         chosen.least_m, chosen.most_m = self.least_m[which], self.most_m[which]
         return chosen
 
     def __len__(self) -> int:
-        return len(self.shapes)
+        return len(self._corners)
+
+    @property
+    def shapes(self) -> ShapeArray:
+        """The footprints (N,) as GEOS takes them; made at the first question that needs them."""
+        shapes = self._shapes
+        if shapes is None:
+            self._shapes = shapes = shapely.convex_hull(shapely.multipoints(self._corners))
+        return shapes
 
 
 def is_on_earth(points_m: FloatArray) -> BoolArray:

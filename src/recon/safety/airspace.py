@@ -60,14 +60,11 @@ class PreparedAirspace:
         zones, least_m, most_m = self._zones[kind]
         if not zones or not footprints.is_finite.all():
             return list(zones)
-        is_apart = (footprints.least_m.min(axis=0) > most_m + gap_m).any(axis=1)
-        is_apart |= (footprints.most_m.max(axis=0) < least_m - gap_m).any(axis=1)
-        near = np.flatnonzero(~is_apart)
-        # Round them all at once is seldom near round each: vehicles fly all over a site.
-        beyond = footprints.least_m > (most_m[near] + gap_m)[:, np.newaxis]
-        before = footprints.most_m < (least_m[near] - gap_m)[:, np.newaxis]
-        is_apart_each: BoolArray = np.any(beyond | before, axis=2)
-        return [zones[index] for index in near[~np.all(is_apart_each, axis=1)]]
+        # Each for itself: round them all at once is seldom near, for vehicles fly all over a site.
+        reaches = footprints.least_m <= (most_m + gap_m)[:, np.newaxis]
+        reaches &= footprints.most_m >= (least_m - gap_m)[:, np.newaxis]
+        is_near = np.any(reaches.all(axis=2), axis=1)
+        return [zones[index] for index in np.flatnonzero(is_near)]
 
     def zones_of(self, kind: ZoneKind) -> tuple[PreparedZone, ...]:
         """Return the zones of one kind, in the site's order."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import hypot
 
@@ -46,26 +47,37 @@ class Braking:
     speed_mps: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Ahead:
     """V vehicles at K moments: `times_s` (K,), and where they are at each of them."""
 
     times_s: FloatArray
     as_it_flies: Samples
-    if_held: Samples
+    prediction: PredictionSettings
+
+    @cached_property
+    def if_held(self) -> Samples:
+        """Where they are when they are held now; asked only once something comes too near."""
+        return _held(self.as_it_flies, self.times_s, self.prediction)
 
 
 def look_ahead(
     rows: Sequence[Sequence[Row]], settings: WatchSettings, prediction: PredictionSettings
 ) -> Ahead:
     """Return the next seconds of courses; of none, arrays without vehicles."""
-    count = round(settings.horizon_s / settings.sample_s) + 1
-    times_s = np.linspace(0.0, settings.horizon_s, count)
+    times_s = _moments_s(settings)
     if not rows:
-        none = Samples(*(np.zeros((0, count)) for _ in range(5)))
-        return Ahead(times_s, none, none)
-    as_it_flies = sample(rows, times_s)
-    return Ahead(times_s, as_it_flies, _held(as_it_flies, times_s, prediction))
+        none = Samples(*(np.zeros((0, len(times_s))) for _ in range(5)))
+        return Ahead(times_s, none, prediction)
+    return Ahead(times_s, sample(rows, times_s), prediction)
+
+
+@lru_cache(maxsize=1)
+def _moments_s(settings: WatchSettings) -> FloatArray:
+    count = round(settings.horizon_s / settings.sample_s) + 1
+    moments_s = np.linspace(0.0, settings.horizon_s, count)
+    moments_s.setflags(write=False)
+    return moments_s
 
 
 def next_rows(

@@ -5,6 +5,7 @@ and its vertical gap over the vertical one. Below 1 both are violated.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +36,7 @@ def near_pairs(ahead: Samples, need: Separation) -> tuple[IntArray, IntArray]:
     reach_m = np.hypot(
         ahead.east_m - ahead.east_m[:, :1], ahead.north_m - ahead.north_m[:, :1]
     ).max(axis=1, initial=0.0) + ahead.radius_m.max(axis=1, initial=0.0)
-    first, second = np.triu_indices(len(reach_m), k=1)
+    first, second = _all_pairs(len(reach_m))
     apart_m = np.hypot(
         ahead.east_m[first, 0] - ahead.east_m[second, 0],
         ahead.north_m[first, 0] - ahead.north_m[second, 0],
@@ -48,6 +49,12 @@ def near_pairs(ahead: Samples, need: Separation) -> tuple[IntArray, IntArray]:
     is_near &= low_m[first] - high_m[second] < need.vertical_m
     is_near &= low_m[second] - high_m[first] < need.vertical_m
     return first[is_near], second[is_near]
+
+
+@lru_cache(maxsize=8)
+def _all_pairs(count: int) -> tuple[IntArray, IntArray]:
+    """Every pair of so many, the same at each look; as large as all of one look's arrays."""
+    return np.triu_indices(count, k=1)
 
 
 def closeness(

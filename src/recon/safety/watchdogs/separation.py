@@ -46,6 +46,8 @@ def separation(picture: Picture) -> Iterator[Finding]:
         return
     flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
     first, second = near_pairs(flies, need)
+    if len(first) == 0:
+        return
     close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need)
     for row in np.flatnonzero((close < 1.0).any(axis=1)):
         if min(first[row], second[row]) >= heard:

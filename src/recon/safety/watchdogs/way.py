@@ -1,6 +1,7 @@
 """The way right ahead of every vehicle: as far as it may still go when it is stopped, and more."""
 
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 import numpy.typing as npt
@@ -82,6 +83,6 @@ def _is_near_home(picture: Picture) -> BoolArray:
         if flyer is None or home_m is None:
             near.append(False)
             continue
-        far_m = np.hypot(flyer.east_m - home_m[0], flyer.north_m - home_m[1])
-        near.append(bool(far_m <= NEAR_HOME_M))
+        far_m = hypot(flyer.east_m - home_m[0], flyer.north_m - home_m[1])
+        near.append(far_m <= NEAR_HOME_M)
     return np.array(near, dtype=np.bool_)
