@@ -109,8 +109,11 @@ def test_a_footprint_is_held_when_all_its_points_are(seed: int, inset_m: float) 
         assert inside_m.max() <= inset_m + 0.01
 
 
+millimetres = st.floats(-30.0, 130.0).map(lambda value: round(value, 3))
+
+
 @given(
-    st.lists(st.tuples(*[st.floats(-30.0, 130.0)] * 6), min_size=1, max_size=6),
+    st.lists(st.tuples(*[millimetres] * 6), min_size=1, max_size=6),
     st.sampled_from([0.0, 0.5, 5.0, 20.0]),
 )
 def test_what_is_seen_without_geos_is_what_geos_says(
