@@ -1,4 +1,4 @@
-"""Where a scenario is played: on a folder's site, or one made up around it; and by the simulator."""
+"""Where a scenario is played: on a site of a folder or made up, and by the simulator."""
 
 from pathlib import Path
 

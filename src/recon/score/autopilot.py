@@ -10,7 +10,8 @@ from math import hypot, inf, log, sqrt
 
 from recon.score.flight import Hop, Motion, Spot, Steady
 from recon.score.legs import Pace, leg
-from recon.sim.kinematics import Limits
+from recon.sim.air import COMES_BACK_WITHIN_S, LEARNS_WITHIN_S
+from recon.sim.kinematics import DRAG_PER_S, Limits
 from recon.sim.kinematics import Motion as AirMotion
 from recon.sim.manoeuvres import (
     CONFIRM_HEIGHT_M,
@@ -23,6 +24,7 @@ from recon.sim.manoeuvres import (
 )
 from recon.sim.mission import ARRIVED_BELOW_MPS, ARRIVED_WITHIN_M
 from recon.sim.power import flying_load
+from recon.sim.world import Wind
 
 LIFTED_M = TAKEOFF_HEIGHT_M - 0.1
 """From this height on a takeoff is done."""
@@ -39,9 +41,6 @@ HELD_DOWN_S = 0.15
 LEAST_MPS = 0.5
 """Where the wind is too strong to get ahead, a leg takes for ever in truth."""
 
-Air = tuple[float, float]
-"""The mean wind east and north, where the air goes, in m/s."""
-
 
 @dataclass(frozen=True, slots=True)
 class Point:
@@ -56,11 +55,11 @@ class Autopilot:
     """Flies on from a place and a time; `hops` is what it flies."""
 
     def __init__(
-        self, start_s: float, at_m: Spot, air: Air = (0.0, 0.0), limits: Limits | None = None
+        self, start_s: float, at_m: Spot, wind: Wind | None = None, limits: Limits | None = None
     ) -> None:
         self.now_s, self.at_m = start_s, at_m
         self.hops: list[Hop] = []
-        self._air, self._limits = air, limits or Limits()
+        self._wind, self._limits = wind, limits or Limits()
         self._up_mps = 0.0
         """The climb that goes on into the next hop."""
 
@@ -110,9 +109,23 @@ class Autopilot:
         up_mps2 = limits.vertical_acceleration_mps2
         pace = Pace(limits.climb_mps, up_mps2, left_m, RISE_BRAKING * up_mps2, self._up_mps)
         motion = leg(climb_m, pace)
-        to_m = (*self.at_m[:2], height_m - left_m)
+        to_m = self._drifted(height_m - left_m)
         self._add(to_m, motion, motion.duration_s, motion.top_mps)
         self._up_mps = motion.end_mps
+
+    def _drifted(self, height_m: float) -> Spot:
+        """Where it comes out at a height: nothing holds its place in a rise, and the wind, which
+        grows with height, pushes while it is not known yet (`sim.air`)."""
+        before, after = self._air(self.at_m[2]), self._air(height_m)
+        east_m, north_m = (
+            at_m + DRAG_PER_S * LEARNS_WITHIN_S * COMES_BACK_WITHIN_S * (b - a)
+            for at_m, a, b in zip(self.at_m[:2], before, after, strict=True)
+        )
+        return east_m, north_m, height_m
+
+    def _air(self, height_m: float) -> tuple[float, float]:
+        """The mean wind east and north, where the air goes, in m/s."""
+        return (0.0, 0.0) if self._wind is None else self._wind.mean_mps(height_m)[:2]
 
     def _go_to(self, to_m: Spot, speed_mps: float, is_row: bool) -> None:
         """Fly straight at a place, and stop a little before it, where it counts as reached."""
@@ -151,8 +164,9 @@ class Autopilot:
         way_m, limits = hypot(east_m, north_m), self._limits
         if way_m <= 0.0:
             return limits.speed_mps
-        along = (self._air[0] * east_m + self._air[1] * north_m) / way_m
-        across_squared = self._air[0] ** 2 + self._air[1] ** 2 - along**2
+        air_east_mps, air_north_mps = self._air(self.at_m[2])
+        along = (air_east_mps * east_m + air_north_mps * north_m) / way_m
+        across_squared = air_east_mps**2 + air_north_mps**2 - along**2
         ahead_mps = along + sqrt(max(limits.airspeed_mps**2 - across_squared, 0.0))
         return max(min(limits.speed_mps, ahead_mps), LEAST_MPS)
 
@@ -188,7 +202,8 @@ class Autopilot:
         moving = AirMotion(
             velocity_east_mps=east_mps, velocity_north_mps=north_mps, velocity_up_mps=up_mps
         )
-        return flying_load(moving, (self._air[1], self._air[0]))
+        air_east_mps, air_north_mps = self._air(to_m[2])
+        return flying_load(moving, (air_north_mps, air_east_mps))
 
 
 def _fast_s(down_m: float, limits: Limits) -> float:

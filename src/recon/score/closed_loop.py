@@ -195,7 +195,6 @@ def _begun(scenario: Scenario) -> tuple[SurveyPlan, SurveyState]:
 def _drones(scenario: Scenario, seed: int) -> Sequence[Drone]:
     survey, fleet = scenario.survey, scenario.fleet
     wind = Wind(replace(scenario.wind, seed=seed))
-    east_mps, north_mps, _up = wind.mean_mps(survey.height_above_takeoff_m)
     profiles = scenario.site.profiles
     return [
         Drone(
@@ -204,7 +203,7 @@ def _drones(scenario: Scenario, seed: int) -> Sequence[Drone]:
             fleet,
             survey.speed_mps,
             profiles[serial].go_home_height_m or survey.height_above_takeoff_m,
-            (east_mps, north_mps),
+            wind,
             FLIGHT,
         )
         for serial, pad_m in zip(fleet.serials, fleet.pads_m, strict=True)

@@ -9,12 +9,13 @@ import numpy as np
 
 from recon.guidance.survey import Seen, Surveyor
 from recon.model.units import seconds_to_ns
-from recon.score.autopilot import Air, Autopilot, Point
+from recon.score.autopilot import Autopilot, Point
 from recon.score.flight import Hop, Spot
 from recon.score.scenario import Fleet, Place
 from recon.score.settings import FlightSettings
 from recon.sim.kinematics import Motion
 from recon.sim.power import flying_load
+from recon.sim.world import Wind
 
 
 class Doing(Enum):
@@ -37,7 +38,7 @@ class Drone:
     fleet: Fleet
     speed_mps: float
     go_home_height_m: float
-    air: Air
+    wind: Wind
     settings: FlightSettings
     spot_m: Spot = (0.0, 0.0, 0.0)
     """Where it is when it flies nothing."""
@@ -75,7 +76,8 @@ class Drone:
     @property
     def level_load(self) -> float:
         """What level flight takes of the battery, in hovering, wind from the side counted."""
-        moving = Motion(velocity_north_mps=hypot(self.speed_mps, *self.air))
+        air_mps = hypot(*self.wind.mean_mps(self.go_home_height_m))
+        moving = Motion(velocity_north_mps=hypot(self.speed_mps, air_mps))
         return flying_load(moving, (0.0, 0.0))
 
     def take(self, number: int, points: Sequence[Point], rows_from: int, now_s: float) -> None:
@@ -226,7 +228,7 @@ class Drone:
 
     def _ordered(self, now_s: float) -> Autopilot:
         """What flies on from here, from when the order is there."""
-        return Autopilot(now_s + self.settings.acts_after_s, self.stop(now_s), self.air)
+        return Autopilot(now_s + self.settings.acts_after_s, self.stop(now_s), self.wind)
 
     def _begin(self, doing: Doing, hops: list[Hop], until_s: float) -> None:
         self.doing, self.free_at_s = doing, until_s

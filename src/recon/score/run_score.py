@@ -45,6 +45,11 @@ class RunScore:
     """Landings with less than the reserve."""
     end: str
     """Why the survey ended."""
+    breaches: int | None = None
+    """Times that a drone in the air left the boundary or entered what is to be kept out of; None
+    where nobody looked: flights by events know no fence."""
+    refusals: int | None = None
+    """Orders that the gate refused; None where there was no gate."""
 
     @property
     def shaded_share(self) -> float | None:

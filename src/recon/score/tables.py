@@ -57,6 +57,8 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
         _row("of them in shade, %", _of(runs, "shaded_share"), _percent, 1.0),
         _row("violations: nearer than 10 m", _of(runs, "encounters"), _plain),
         _row("violations: landed under the reserve", _of(runs, "low_landings"), _plain),
+        _row("violations: out of the fence", _of(runs, "breaches"), _plain),
+        _row("orders that the gate refused", _of(runs, "refusals"), _plain),
     ]
     return _table(("survey", "mean", "95 %", "runs"), rows)
 
