@@ -6,8 +6,9 @@ since the position before, so that neighbouring rows are not mistaken for each o
 """
 
 from collections.abc import Sequence
-from math import hypot, sqrt
+from math import hypot
 
+from recon.geo import OnGlobe
 from recon.geo.distance import offset_north_east_m
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
@@ -79,29 +80,29 @@ def _onto_the_nearest_leg(
 
 def _to_leg_m(start: Waypoint, end: Waypoint, position: LatLon, height_m: float | None) -> float:
     a, b = _offset(position, height_m, start), _offset(position, height_m, end)
-    along = tuple(y - x for x, y in zip(a, b, strict=True))
-    length_squared = sum(part * part for part in along)
+    along = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    length_squared = _dot(along, along)
     if length_squared < 1e-9:
         return _norm(a)
-    share = -sum(x * d for x, d in zip(a, along, strict=True)) / length_squared
-    share = max(0.0, min(1.0, share))
-    nearest = tuple(x + share * d for x, d in zip(a, along, strict=True))
-    return sqrt(sum(part * part for part in nearest))
+    share = max(0.0, min(1.0, -_dot(a, along) / length_squared))
+    return _norm((a[0] + share * along[0], a[1] + share * along[1], a[2] + share * along[2]))
 
 
-def _distance_m(position: LatLon, height_m: float | None, waypoint: Waypoint) -> float:
+def _dot(a: Point, b: Point) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _distance_m(position: OnGlobe, height_m: float | None, waypoint: Waypoint) -> float:
     return _norm(_offset(position, height_m, waypoint))
 
 
-def _offset(position: LatLon, height_m: float | None, waypoint: Waypoint) -> Point:
-    place = LatLon(waypoint.latitude_deg, waypoint.longitude_deg)
+def _offset(position: OnGlobe, height_m: float | None, waypoint: Waypoint) -> Point:
     up_m = 0.0 if height_m is None else waypoint.height_above_takeoff_m - height_m
-    return (*offset_north_east_m(position, place), up_m)
+    return (*offset_north_east_m(position, waypoint), up_m)
 
 
 def _length_m(a: Waypoint, b: Waypoint) -> float:
-    place = LatLon(a.latitude_deg, a.longitude_deg)
-    return _distance_m(place, a.height_above_takeoff_m, b)
+    return _distance_m(a, a.height_above_takeoff_m, b)
 
 
 def _norm(point: Point) -> float:

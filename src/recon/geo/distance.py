@@ -4,17 +4,23 @@ The WGS84 radii of curvature at the first point make a tangent plane: within 10 
 under 0.2 % up to 60 degrees of latitude.
 """
 
+from functools import lru_cache
 from math import cos, degrees, hypot, radians, sin, sqrt
 
+from recon.geo.local_frame import OnGlobe
 from recon.model.geo import LatLon
 
 SEMI_MAJOR_AXIS_M = 6_378_137.0
 ECCENTRICITY_SQUARED = 6.694379990141317e-3
 
 
-def offset_north_east_m(origin: LatLon, point: LatLon) -> tuple[float, float]:
+LATITUDES_KEPT = 256
+"""One place is asked about many others in a row, and so are homes and waypoints again and again."""
+
+
+def offset_north_east_m(origin: OnGlobe, point: OnGlobe) -> tuple[float, float]:
     """Return how far north and east of `origin` a point lies, in metres."""
-    north_m, east_m = _metres_per_radian(origin)
+    north_m, east_m = _metres_per_radian(origin.latitude_deg)
     east_deg = (point.longitude_deg - origin.longitude_deg + 180.0) % 360.0 - 180.0
     return (
         radians(point.latitude_deg - origin.latitude_deg) * north_m,
@@ -27,7 +33,7 @@ def moved_m(origin: LatLon, north_m: float, east_m: float) -> LatLon:
 
     Not within metres of a pole, where there is no east.
     """
-    per_north_m, per_east_m = _metres_per_radian(origin)
+    per_north_m, per_east_m = _metres_per_radian(origin.latitude_deg)
     longitude_deg = origin.longitude_deg + degrees(east_m / per_east_m)
     return LatLon(
         origin.latitude_deg + degrees(north_m / per_north_m),
@@ -35,14 +41,15 @@ def moved_m(origin: LatLon, north_m: float, east_m: float) -> LatLon:
     )
 
 
-def horizontal_distance_m(a: LatLon, b: LatLon) -> float:
+def horizontal_distance_m(a: OnGlobe, b: OnGlobe) -> float:
     """Return the horizontal distance between two positions, in metres."""
     return hypot(*offset_north_east_m(a, b))
 
 
-def _metres_per_radian(origin: LatLon) -> tuple[float, float]:
+@lru_cache(maxsize=LATITUDES_KEPT)
+def _metres_per_radian(latitude_deg: float) -> tuple[float, float]:
     """How far a radian of latitude and of longitude reaches, north and east."""
-    latitude_rad = radians(origin.latitude_deg)
+    latitude_rad = radians(latitude_deg)
     w = sqrt(1.0 - ECCENTRICITY_SQUARED * sin(latitude_rad) ** 2)
     meridian_m = SEMI_MAJOR_AXIS_M * (1.0 - ECCENTRICITY_SQUARED) / w**3
     return meridian_m, SEMI_MAJOR_AXIS_M / w * cos(latitude_rad)

@@ -71,6 +71,8 @@ class Outbox:
 
     def take(self, may_go: Callable[[Lane, ApprovedCommand], bool]) -> ApprovedCommand | None:
         """Remove and return the most urgent order that may go now."""
+        if not self._places:
+            return None
         for lane in Lane:
             waiting = self._places.get(lane)
             if waiting is not None and may_go(lane, waiting):

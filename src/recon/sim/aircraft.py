@@ -1,6 +1,6 @@
 """One simulated aircraft: its flight controller's modes, battery, home and gimbal."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import hypot
 
 from recon.model.units import NS_PER_S, seconds_to_ns
@@ -275,8 +275,7 @@ class Aircraft:
 def _kept_above_ground(motion: Motion) -> Motion:
     if motion.height_m >= 0.0:
         return motion
-    return replace(
-        motion,
+    return motion._replace(
         height_m=0.0,
         velocity_north_mps=0.0,
         velocity_east_mps=0.0,

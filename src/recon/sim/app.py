@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
+from operator import itemgetter
 from random import Random
 
 from recon import wire
@@ -58,6 +59,7 @@ class LinkOrder:
     seconds: float
 
 
+_DUE_NS = itemgetter(0)
 _LINK_ORDERS = {
     FaultKind.RESTART: LinkOrderKind.RECONNECT,
     FaultKind.HALF_OPEN: LinkOrderKind.ABANDON,
@@ -224,7 +226,7 @@ class SimulatedApp:
 
     def _run_until(self, now_ns: int) -> None:
         while True:
-            due_ns, happen = min(self._timetable(), key=lambda row: row[0])
+            due_ns, happen = min(self._timetable(), key=_DUE_NS)
             if due_ns > now_ns:
                 break
             self._advance_aircraft(due_ns)

@@ -6,6 +6,7 @@ above that point. A step is pure: (motion, demand, seconds) -> motion.
 
 from dataclasses import dataclass
 from math import atan2, cos, degrees, hypot, radians, sin, sqrt
+from typing import NamedTuple
 
 from recon.model.units import wrap_degrees
 
@@ -36,8 +37,7 @@ class Limits:
     yaw_rate_dps: float = 60.0
 
 
-@dataclass(frozen=True, slots=True)
-class Motion:
+class Motion(NamedTuple):
     """Where the vehicle is, how fast, and which way it points."""
 
     north_m: float = 0.0
@@ -56,8 +56,7 @@ class Motion:
         return hypot(self.velocity_north_mps, self.velocity_east_mps)
 
 
-@dataclass(frozen=True, slots=True)
-class Demand:
+class Demand(NamedTuple):
     """What a pilot or autopilot asks for; `yaw_deg` None keeps the present heading."""
 
     velocity_north_mps: float = 0.0

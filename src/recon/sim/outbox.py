@@ -30,4 +30,6 @@ class Outbox:
 
     def next_after_ns(self, now_ns: int) -> int | None:
         """Return when the next packet is due that is held back, None without one."""
+        if not self._waiting or self._waiting[0][0] > now_ns:
+            return self._waiting[0][0] if self._waiting else None
         return min((due_ns for due_ns, _, _ in self._waiting if due_ns > now_ns), default=None)

@@ -6,7 +6,7 @@ may know it.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil, cos, radians, sin
 from random import Random
 
@@ -90,8 +90,7 @@ def photos(
     for number, time_ns in timer.between(*span_ns):
         motion = path(time_ns)
         if motion is not None and motion.height_m > 0.0:
-            moved = replace(
-                motion,
+            moved = motion._replace(
                 east_m=motion.east_m + home_m[0],
                 north_m=motion.north_m + home_m[1],
                 height_m=motion.height_m + home_m[2],
