@@ -19,9 +19,13 @@ export interface RunningStation {
   stop(): Promise<void>;
 }
 
-/** Starts `RECON_E2E_COMMAND` and waits until it prints the console's address. */
-export async function startStation(): Promise<RunningStation> {
-  const station = spawn(COMMAND, { cwd: PROJECT, shell: true, detached: true });
+/** Starts `RECON_E2E_COMMAND` with these words after it; waits until it prints the console's address. */
+export async function startStation(...words: string[]): Promise<RunningStation> {
+  const station = spawn([COMMAND, ...words].join(" "), {
+    cwd: PROJECT,
+    shell: true,
+    detached: true,
+  });
   try {
     return { url: await consoleAddress(station), stop: () => stop(station) };
   } catch (error) {

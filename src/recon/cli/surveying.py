@@ -32,9 +32,7 @@ survey_app = typer.Typer(
     help="Survey a region: create, start, pause, abort, status.", no_args_is_help=True
 )
 
-NumberArgument = Annotated[
-    int, typer.Argument(metavar="ID", help="The survey's number.")
-]
+NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
 
 
 @survey_app.command("create")

@@ -1,5 +1,11 @@
 import type { Page, WebSocketRoute } from "@playwright/test";
-import type { OrderRequest, OrderResult, PreflightView, StationState } from "../../src/protocol";
+import type {
+  OrderRequest,
+  OrderResult,
+  PreflightView,
+  StationState,
+  SurveyWays,
+} from "../../src/protocol";
 
 /** A station inside the browser: answers the page's requests, and says what a test lets it say. */
 export class FakeStation {
@@ -11,6 +17,8 @@ export class FakeStation {
   /** What the gate says to orders that are checked. */
   judgement: Partial<OrderResult> = {};
   preflight: PreflightView | null = null;
+  /** What is told of any survey's ways. */
+  ways: SurveyWays | null = null;
   private sockets: WebSocketRoute[] = [];
   private isReachable = true;
   private picture: Buffer | null = null;
@@ -69,6 +77,7 @@ export class FakeStation {
     if (path === "/api/orders") return this.order(JSON.parse(body ?? "{}") as OrderRequest);
     if (path === "/api/orders/check") return this.judge(JSON.parse(body ?? "{}") as OrderRequest);
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
+    if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
     const isWord = /\/(authority|override)$/.test(path);
     if (isWord || path === "/api/fleet-return") {
       this.said.push([path, JSON.parse(body ?? "{}")]);

@@ -13,8 +13,14 @@ const WHEN_DONE = [
   ["hover", "they hover"],
 ] as const;
 
-/** A survey of one of the site's regions. Nothing flies by it, so a plain press asks for it. */
-export function NewSurvey(props: { onAnswer: (outcome: Outcome<SurveyResponse>) => void }) {
+/**
+ * A survey of one of the site's regions. Nothing flies by it, so a plain press asks for it. Where there is
+ * one already, those that fly matter more: then it is asked for behind a press.
+ */
+export function NewSurvey(props: {
+  isFirst: boolean;
+  onAnswer: (outcome: Outcome<SurveyResponse>) => void;
+}) {
   const { source, fleet } = useConsole();
   const [isAsking, setAsking] = createSignal(false);
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
@@ -36,44 +42,47 @@ export function NewSurvey(props: { onAnswer: (outcome: Outcome<SurveyResponse>) 
       when={regions().length > 0}
       fallback={<p class="panel-empty">The site has no survey regions.</p>}
     >
-      <form
-        class="section survey-form"
-        aria-label="New survey"
-        onSubmit={(event) => {
-          event.preventDefault();
-          void ask(event.currentTarget);
-        }}
-      >
-        <label>
-          Region
-          <select name="region">
-            <For each={regions()}>{({ name }) => <option value={name}>{name}</option>}</For>
-          </select>
-        </label>
-        <label>
-          Height above takeoff, m
-          <input name="height" type="number" min={10} max={120} step={1} value={50} required />
-        </label>
-        <label>
-          Speed, m/s
-          <input name="speed" type="number" min={1} max={15} step={0.5} value={5} required />
-        </label>
-        <label>
-          Flies
-          <select name="planner">
-            <For each={PLANNERS}>{([name, words]) => <option value={name}>{words}</option>}</For>
-          </select>
-        </label>
-        <label class="survey-then">
-          When nothing is left to fly
-          <select name="when_done">
-            <For each={WHEN_DONE}>{([name, words]) => <option value={name}>{words}</option>}</For>
-          </select>
-        </label>
-        <button type="submit" class="button" disabled={isAsking()}>
-          Plan rows
-        </button>
-      </form>
+      <details class="section survey-new" open={props.isFirst}>
+        <summary>New survey</summary>
+        <form
+          class="survey-form"
+          aria-label="New survey"
+          onSubmit={(event) => {
+            event.preventDefault();
+            void ask(event.currentTarget);
+          }}
+        >
+          <label class="survey-wide">
+            Region
+            <select name="region">
+              <For each={regions()}>{({ name }) => <option value={name}>{name}</option>}</For>
+            </select>
+          </label>
+          <label>
+            Height above takeoff, m
+            <input name="height" type="number" min={10} max={120} step={1} value={50} required />
+          </label>
+          <label>
+            Speed, m/s
+            <input name="speed" type="number" min={1} max={15} step={0.5} value={5} required />
+          </label>
+          <label class="survey-wide">
+            Flies
+            <select name="planner">
+              <For each={PLANNERS}>{([name, words]) => <option value={name}>{words}</option>}</For>
+            </select>
+          </label>
+          <label class="survey-wide">
+            When nothing is left to fly
+            <select name="when_done">
+              <For each={WHEN_DONE}>{([name, words]) => <option value={name}>{words}</option>}</For>
+            </select>
+          </label>
+          <button type="submit" class="button" disabled={isAsking()}>
+            Plan rows
+          </button>
+        </form>
+      </details>
     </Show>
   );
 }

@@ -18,9 +18,9 @@ export function SurveyPanel() {
   const said = (outcome: Outcome<SurveyResponse>) => setProblem(problemOf(outcome));
   return (
     <Panel title="Surveys" count={fleet.surveys.length}>
-      <NewSurvey onAnswer={said} />
-      <Problem text={problem()} />
       <For each={fleet.surveys}>{(survey) => <One survey={survey} onAnswer={said} />}</For>
+      <Problem text={problem()} />
+      <NewSurvey isFirst={fleet.surveys.length === 0} onAnswer={said} />
     </Panel>
   );
 }
@@ -41,15 +41,18 @@ function One(props: Part) {
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
       <p class="wire-text">
-        <strong>{props.survey.name}</strong> {PHASES[props.survey.phase]}
+        <strong>
+          {props.survey.id} {props.survey.name}
+        </strong>{" "}
+        {PHASES[props.survey.phase]}
         <span class="muted survey-reason">{props.survey.reason}</span>
       </p>
       <Figures survey={props.survey} />
       <For each={props.survey.vehicles}>{(vehicle) => <Surveying vehicle={vehicle} />}</For>
+      <Show when={is("created", "paused", "running")}>
+        <Start survey={props.survey} onAnswer={props.onAnswer} />
+      </Show>
       <div class="section-buttons">
-        <Show when={is("created", "paused", "running")}>
-          <Start survey={props.survey} onAnswer={props.onAnswer} />
-        </Show>
         <Show when={is("running")}>
           <Stop survey={props.survey} onAnswer={props.onAnswer} word="pause" />
         </Show>
@@ -89,7 +92,7 @@ function Figures(props: { survey: SurveyView }) {
 }
 
 function Surveying(props: { vehicle: SurveyingView }) {
-  const does = () => (props.vehicle.is_flying_rows ? "flies rows" : "waits");
+  const does = () => (props.vehicle.is_flying_rows ? "flies rows" : "flies no row now");
   return (
     <p class="wire-text">
       <strong>{props.vehicle.vehicle_name}</strong> {does()}

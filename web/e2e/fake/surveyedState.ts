@@ -1,0 +1,77 @@
+import type { StationState, SurveyWays } from "../../src/protocol";
+import { area, at, shadeLine, station, survey, vehicle } from "../../src/testing/world";
+
+const ID = 4;
+const ROWS = [-60, -30, 0, 30, 60].map((east_m): [number, number][] => [
+  at(east_m, -70),
+  at(east_m, 70),
+]);
+
+/** A field that is surveyed: one vehicle flies rows, one goes home for a battery, one waits. */
+export function surveyedState(elapsed_s: number): StationState {
+  const lead = { leader: "guidance", holder: "survey", age_s: 64, reason: "it flies the survey" };
+  const vehicles = [
+    vehicle(1, { lead: { ...lead, leader: "guidance" } }),
+    vehicle(2, { lead: { ...lead, leader: "guidance" } }),
+    vehicle(3, { is_flying: { value: false, age_s: 0.1 } }),
+    vehicle(4, { is_eye: true }),
+  ];
+  const plain = station(vehicles, { time_ns: 1e9 * (1 + elapsed_s) });
+  const waits = { is_flying_rows: false, refused: null, mission_command_id: null };
+  return {
+    ...plain,
+    site: plain.site && {
+      ...plain.site,
+      areas: [
+        area("boundary", [0, 0], 190),
+        area("survey", [0, 0], 75, { name: "south-east field by the long brook" }),
+        area("survey", [-130, 120], 30, { name: "orchard" }),
+      ],
+    },
+    shade: shadeLine(),
+    surveys: [
+      survey(ID, {
+        name: "south-east field by the long brook",
+        vehicles: [
+          {
+            serial: "SN-001",
+            vehicle_name: "Alder",
+            is_flying_rows: true,
+            waits_for: null,
+            refused: null,
+            mission_command_id: -3,
+          },
+          {
+            ...waits,
+            serial: "SN-002",
+            vehicle_name: "Birch",
+            waits_for: "it was called home: its battery lasts for no row that is left",
+          },
+          {
+            ...waits,
+            serial: "SN-003",
+            vehicle_name: "Cedar",
+            waits_for: "it is on the ground, and nobody has said that it may take off (again)",
+          },
+        ],
+      }),
+      survey(3, {
+        name: "orchard",
+        phase: "paused",
+        reason:
+          "every mission was refused; SN-003: max_height: Cedar: its path would be 52 m above ground; the site allows 50 m",
+        vehicles: [],
+        figures: null,
+        cells: null,
+      }),
+    ],
+  };
+}
+
+/** Its rows, a mission that is flown now, and what has been flown. */
+export const WAYS: SurveyWays = {
+  survey_id: ID,
+  rows: ROWS,
+  flying: [{ serial: "SN-001", number: 2, places: [at(0, -70), at(0, 70), at(30, 70)] }],
+  flown: [{ serial: "SN-001", number: 1, places: [at(-60, -70), at(-60, 70), at(-30, 70)] }],
+};

@@ -1,0 +1,108 @@
+import { expect, type Locator, type Page, test } from "@playwright/test";
+import { fieldPicture } from "./fake/picture";
+import { FakeStation } from "./fake/station";
+import { surveyedState, WAYS } from "./fake/surveyedState";
+import { cornerFaults, overlaps } from "./layoutFaults";
+import { faintTexts, smallTargets, smallTexts } from "./legibility";
+import { LOOKS, wear } from "./looks";
+import { startStation } from "./runningStation";
+
+/** The eye draws its first frame before it connects, which takes a busy machine a while. */
+const CONNECT_WITHIN_MS = 60_000;
+/** Two that take off side by side wait for one another; a refused mission is asked for after 15 s. */
+const FLIES_WITHIN_MS = 60_000;
+
+async function hold(page: Page, button: Locator, until: () => Promise<void>): Promise<void> {
+  await button.focus();
+  await page.keyboard.down("Enter");
+  await until();
+  await page.keyboard.up("Enter");
+}
+
+test("plans a survey of the site's region, flies it with two vehicles, pauses and aborts it", async ({
+  page,
+}) => {
+  test.setTimeout(240_000);
+  const station = await startStation("--no-survey");
+  try {
+    await page.goto(station.url);
+    await expect(page.locator("button.craft")).toHaveCount(4, { timeout: CONNECT_WITHIN_MS });
+    const panel = page.getByRole("region", { name: "Surveys" });
+
+    await test.step("planned, nothing flies by it", async () => {
+      await panel.getByLabel("Region").selectOption("south-east field");
+      await panel.getByLabel("Height above takeoff, m").fill("40");
+      await panel.getByRole("button", { name: "Plan rows" }).click();
+      await expect(panel.getByText("is planned, and waits to be started")).toBeVisible();
+      await expect(page.getByText("1 of 4 flying")).toBeVisible();
+    });
+
+    const ways = page.waitForResponse(/\/api\/surveys\/\d+\/ways$/);
+    await test.step("two that may take off fly it", async () => {
+      for (const name of ["Drone 1", "Drone 2"]) {
+        await page.getByRole("checkbox", { name: new RegExp(name) }).check();
+      }
+      await panel.getByLabel("they may take off, once").check();
+      const start = panel.getByRole("button", { name: /^Start with selected: .*Drone 1.*Drone 2/ });
+      await hold(page, start, () => expect(panel.getByText("is being flown")).toBeVisible());
+      await expect(panel.getByText("flies rows")).toHaveCount(2, { timeout: FLIES_WITHIN_MS });
+      await expect(page.getByText("3 of 4 flying")).toBeVisible({ timeout: FLIES_WITHIN_MS });
+    });
+
+    await test.step("its rows and cells are on the map", async () => {
+      expect((await (await ways).json()).rows.length).toBeGreaterThan(3);
+      const cells = page.waitForResponse(/\/api\/surveys\/\d+\/cells\.png/);
+      await page.getByLabel("survey's cells").check();
+      expect((await cells).status()).toBe(200);
+      await page.screenshot({ path: "screens/survey-flown.png" });
+    });
+
+    await test.step("a short press pauses it, a long one aborts it", async () => {
+      await hold(page, panel.getByRole("button", { name: /^Pause survey/ }), () =>
+        expect(panel.getByText("is paused")).toBeVisible(),
+      );
+      await hold(page, panel.getByRole("button", { name: /^Abort survey/ }), () =>
+        expect(panel.getByText("is aborted")).toBeVisible(),
+      );
+      await expect(panel.getByRole("button", { name: /survey south-east field/ })).toHaveCount(0);
+    });
+  } finally {
+    await station.stop();
+  }
+});
+
+for (const look of LOOKS) {
+  for (const [width, height] of [
+    [1440, 900],
+    [360, 740],
+  ] as const) {
+    test(`is legible while surveys fly: ${look.name}, ${width} px wide`, async ({ page }) => {
+      await page.setViewportSize({ width, height });
+      await page.emulateMedia({ colorScheme: look.colorScheme });
+      const fake = await FakeStation.behind(page, surveyedState(0));
+      fake.ways = WAYS;
+      fake.showPicture(await fieldPicture(page));
+      await page.goto("/");
+      const begin_ms = performance.now();
+      const talk = setInterval(
+        () => fake.say(surveyedState((performance.now() - begin_ms) / 1000)),
+        100,
+      );
+      page.once("close", () => clearInterval(talk));
+      await wear(page, look);
+      await page.keyboard.press("3");
+      const panel = page.getByRole("region", { name: "Surveys" });
+      await expect(panel.getByText("it was called home")).toBeVisible();
+      await panel.getByText("New survey").click();
+      expect(await smallTexts(page)).toEqual([]);
+      expect(await smallTargets(page)).toEqual([]);
+      expect(await faintTexts(page)).toEqual([]);
+      expect(await cornerFaults(page)).toEqual([]);
+      expect(await overlaps(page, ".survey-form label, .section-buttons button")).toEqual([]);
+      await panel.evaluate((one) => one.scrollIntoView());
+      await page.screenshot({ path: `screens/survey-${look.name}-${width}.png` });
+      await panel.locator("form").evaluate((form) => form.scrollIntoView({ block: "end" }));
+      await page.screenshot({ path: `screens/survey-new-${look.name}-${width}.png` });
+    });
+  }
+}
