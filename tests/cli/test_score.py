@@ -8,7 +8,8 @@ from typer.testing import CliRunner
 
 from recon.cli.app import app
 
-FEW = ["--seeds", "2", "--first-seed", "7"]
+EVENTS = ["--gear", "events"]
+FEW = [*EVENTS, "--seeds", "2", "--first-seed", "7"]
 
 
 def test_tables_come_out_and_progress_goes_beside(tmp_path: Path) -> None:
@@ -23,8 +24,17 @@ def test_tables_come_out_and_progress_goes_beside(tmp_path: Path) -> None:
     assert [line.split(":")[0] for line in first.stderr.splitlines()] == ["seed 7", "seed 8"]
 
 
+def test_the_whole_station_flies_it_unless_told_otherwise(tmp_path: Path) -> None:
+    path = str(written(tmp_path, SMALL.replace("limit_min = 10.0", "limit_min = 2.0")))
+    done = CliRunner().invoke(app, ["score", path, "--seeds", "1", "--forecast", "none"])
+    assert done.exit_code == 0
+    assert "flown by the whole station" in done.stdout
+    assert "| violations: out of the fence | 0.0 |" in done.stdout
+    assert "times faster than real time" in done.stderr
+
+
 def test_methods_can_be_chosen(tmp_path: Path) -> None:
-    options = ["--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
+    options = [*EVENTS, "--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
     done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
     assert done.exit_code == 0
     assert "forecast none, planner lawnmower_once; 1 seeds" in done.stdout
@@ -33,7 +43,8 @@ def test_methods_can_be_chosen(tmp_path: Path) -> None:
 
 def test_faults_that_are_not_felt_are_told(tmp_path: Path) -> None:
     text = SMALL.replace("pilot-takes:1:40:30", "no-ack:1")
-    done = CliRunner().invoke(app, ["score", str(written(tmp_path, text)), "--seeds", "1"])
+    options = [*EVENTS, "--seeds", "1"]
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, text)), *options])
     assert "faults that flights by events do not feel: no-ack" in done.stderr
 
 

@@ -2,15 +2,18 @@
 
 import sys
 from dataclasses import replace
+from enum import Enum
 from pathlib import Path
+from time import process_time
 from typing import Annotated
 
 import typer
 
 from recon.model.errors import ReconError
-from recon.score import Methods, Scenario, ScenarioError, load_scenario, run, tables
+from recon.score import Methods, RunScore, Scenario, ScenarioError, load_scenario, run, tables
 from recon.score.mishaps import without_effect
 from recon.score.scenario_schema import METHOD_NAMES
+from recon.score.whole import run_whole
 
 MOST_SEEDS = 10_000
 
@@ -20,6 +23,20 @@ FirstOption = Annotated[int, typer.Option(help="The first run's seed; the others
 MethodOption = Annotated[str | None, typer.Option(help="Instead of the one in the scenario.")]
 
 
+class Gear(Enum):
+    """What flies a scenario."""
+
+    STATION = "station"
+    """The whole station in virtual time: packets, gate, watchdogs, rendered frames."""
+    EVENTS = "events"
+    """Flights worked out leg by leg, without a station: fast."""
+
+
+GearOption = Annotated[
+    Gear, typer.Option(help="The whole station in virtual time, or flights by events: faster.")
+]
+
+
 def score_command(
     scenario: ScenarioArgument,
     seeds: SeedsOption = 5,
@@ -27,8 +44,9 @@ def score_command(
     planner: MethodOption = None,
     detection: MethodOption = None,
     forecast: MethodOption = None,
+    gear: GearOption = Gear.STATION,
 ) -> None:
-    """Fly a scenario by events, once a seed, and print how good its methods are."""
+    """Fly a scenario in a closed loop, once a seed, and print how good its methods are."""
     try:
         if not (1 <= seeds <= MOST_SEEDS and first_seed >= 0):
             raise ScenarioError(
@@ -39,14 +57,27 @@ def score_command(
     except ReconError as problem:
         print(f"recon score: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
-    unfelt = without_effect(loaded)
+    unfelt = without_effect(loaded) if gear is Gear.EVENTS else []
     if unfelt:
         _say(f"faults that flights by events do not feel: {', '.join(unfelt)}")
     runs = []
     for number in range(first_seed, first_seed + seeds):
-        runs.append(run(loaded, number))
-        _say(f"seed {number}: {runs[-1].end}")
+        runs.append(_flown(loaded, number, gear))
     print(tables(loaded, runs))
+
+
+def _flown(scenario: Scenario, seed: int, gear: Gear) -> RunScore:
+    """Fly one seed, and say how that goes and how fast it was."""
+
+    def tell(minutes: int, in_sun: float) -> None:
+        _say(f"seed {seed}: {minutes} min, {100.0 * in_sun:.0f} % of the region seen in sun")
+
+    began_s = process_time()
+    done = run(scenario, seed) if gear is Gear.EVENTS else run_whole(scenario, seed, tell)
+    took_s = max(process_time() - began_s, 1e-3)
+    faster = done.simulated_s / took_s
+    _say(f"seed {seed}: {done.end}; {faster:.0f} times faster than real time")
+    return done
 
 
 def with_methods(

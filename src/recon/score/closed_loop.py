@@ -38,10 +38,10 @@ def run(scenario: Scenario, seed: int) -> RunScore:
 
     Raises `ValueError` for a scenario whose survey cannot be flown; one that was read can.
     """
-    return _Run(scenario, seed).score()
+    return EventRun(scenario, seed).score()
 
 
-class _Run:
+class EventRun:
     """One run; times are seconds since its start."""
 
     def __init__(self, scenario: Scenario, seed: int) -> None:
@@ -54,6 +54,11 @@ class _Run:
         self._looks = 0
         self._now_s = 0.0
         self._carried_s = 0.0
+
+    @property
+    def drones(self) -> Sequence[Drone]:
+        """The fleet, in its order."""
+        return self._drones
 
     def score(self) -> RunScore:
         """Run to the end and sum up."""
@@ -157,6 +162,7 @@ class _Run:
             encounters=self._encounters(landed_s),
             low_landings=sum(drone.low_landings for drone in self._drones),
             end=self._state.reason,
+            simulated_s=self._now_s,
         )
 
     def _imaged(self) -> Imaged:

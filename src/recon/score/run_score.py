@@ -45,6 +45,8 @@ class RunScore:
     """Landings with less than the reserve."""
     end: str
     """Why the survey ended."""
+    simulated_s: float = 0.0
+    """What was flown and watched."""
     breaches: int | None = None
     """Times that a drone in the air left the boundary or entered what is to be kept out of; None
     where nobody looked: flights by events know no fence."""

@@ -27,8 +27,9 @@ def tables(scenario: Scenario, runs: Sequence[RunScore]) -> str:
 
 def _head(scenario: Scenario, runs: Sequence[RunScore]) -> str:
     methods, survey = scenario.methods, scenario.survey
+    flown = "events" if any(run.refusals is None for run in runs) else "the whole station"
     return (
-        f"{scenario.name}: {scenario.about}\n"
+        f"{scenario.name}: {scenario.about}; flown by {flown}\n"
         f"detection {methods.detection}, forecast {methods.forecast}, planner {survey.planner}; "
         f"{len(runs)} seeds"
     )

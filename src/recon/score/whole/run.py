@@ -1,6 +1,6 @@
 """One scenario, one seed, the whole station: flown in virtual time and scored."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from recon.model.geo import GroundGrid
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
 from recon.score.closed_loop import CURVE_MIN, PHASE_STREAM
+from recon.score.errors import ScenarioError
 from recon.score.photos import Imaged, imaged
 from recon.score.run_score import ENOUGH, RunScore, shares_by, time_to_share
 from recon.score.scenario import Scenario
@@ -32,14 +33,19 @@ from recon.station.virtual import VirtualDriver
 
 SAMPLE_S = 0.1
 SAMPLES_TO_A_LOOK = 10
+TOLD_EVERY_S = 300
 
 
-def run_whole(scenario: Scenario, seed: int) -> RunScore:
+Tell = Callable[[int, float], None]
+"""Told minutes flown, and the share of the region that the survey counts as seen in sun."""
+
+
+def run_whole(scenario: Scenario, seed: int, tell: Tell | None = None) -> RunScore:
     """Return the score of one run; the same for the same scenario and seed, to the bit.
 
-    Raises `ValueError` for a scenario whose survey the station does not plan.
+    Raises `ScenarioError` for a scenario whose survey the station does not plan.
     """
-    return WholeRun(scenario, seed).score()
+    return WholeRun(scenario, seed).score(tell)
 
 
 class WholeRun:
@@ -66,8 +72,8 @@ class WholeRun:
         """Virtual time since the run's start."""
         return self.driver.now_ns / NS_PER_S
 
-    def score(self) -> RunScore:
-        """Run to the end and sum up."""
+    def score(self, tell: Tell | None = None) -> RunScore:
+        """Run to the end and sum up; how far it is, is told every few minutes."""
         watch_s = 0.0 if self.scenario.methods.is_guidance_alone else RUN.watch_s
         watch_s = min(watch_s, self.scenario.limit_s)
         landed_s: float | None = None
@@ -75,6 +81,8 @@ class WholeRun:
             self.pass_a_second()
             if landed_s is None and self._is_over():
                 landed_s = self.now_s
+            if tell is not None and round(self.now_s) % TOLD_EVERY_S == 0:
+                tell(round(self.now_s / 60.0), self.in_sun_share)
         return self._summed_up(landed_s)
 
     def pass_a_second(self) -> None:
@@ -94,6 +102,15 @@ class WholeRun:
         return self.driver.station.surveys.records.get(SURVEY_ID)
 
     @property
+    def in_sun_share(self) -> float:
+        """Of the region's cells, as the survey counts them."""
+        record = self.record
+        if record is None or record.state is None:
+            return 0.0
+        inside = record.state.plan.cells.is_inside
+        return float((record.state.progress.state[inside] == CellState.IN_SUN).mean())
+
+    @property
     def drones(self) -> Sequence[TrueWay]:
         """The survey drones' true ways."""
         return [way for serial, way in self._ways.items() if serial != EYE_SERIAL]
@@ -110,7 +127,7 @@ class WholeRun:
         record = self.record
         if record is not None and record.refusal is not None:
             name, reason = self.scenario.name, record.refusal.reason
-            raise ValueError(f"{name}: expected a survey that can be flown, got: {reason}")
+            raise ScenarioError(f"{name}: expected a survey that can be flown, got: {reason}")
         return record is not None and record.is_over and not any(w.is_up[-1] for w in self.drones)
 
     def _summed_up(self, landed_s: float) -> RunScore:
@@ -144,6 +161,7 @@ class WholeRun:
             encounters=encounters(list(self._ways.values())),
             low_landings=sum(left < reserve for w in self.drones for left in w.landed_with),
             end=record.state.reason,
+            simulated_s=self.now_s,
             breaches=breaches(self.drones, scenario.site),
             refusals=len(self._refused),
         )

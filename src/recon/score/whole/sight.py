@@ -10,7 +10,7 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, MaskMap, ShadeMap, SunForeca
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.score.eye import EyeScore
 from recon.score.forecast_metrics import LeadScore, score_lead
-from recon.score.scenario import Scenario
+from recon.score.scenario import NO_FORECAST, Scenario
 from recon.score.settings import RUN
 from recon.score.shade_metrics import boundary_error_m, overlap, told_shade
 from recon.sim.world import Sky
@@ -43,7 +43,8 @@ class Sight:
             shade = line.shade
             is_new = shade is not None and now_ns - shade.captured_at_ns <= seconds_to_ns(OLDEST_S)
             self._score_map(shade if is_new else None, now_s)
-        if now_s >= self._forecasts_due_s and line.sun is not None:
+        is_foreseen = self.scenario.methods.forecast != NO_FORECAST
+        if is_foreseen and now_s >= self._forecasts_due_s and line.sun is not None:
             self._forecasts_due_s = now_s + RUN.score_forecasts_every_s
             self._score_forecast(line.sun)
 
