@@ -86,6 +86,7 @@ class EightVehicles:
     driver: VirtualDriver
     apps: Sequence[SimulatedApp]
     site: Site
+    steers: bool = True
     make_link: Callable[[], FakeLink] = FakeLink
     connections: dict[str, tuple[AppConnection, int]] = field(default_factory=dict)
     orders: list[int] = field(default_factory=list)
@@ -113,9 +114,10 @@ class EightVehicles:
 
     def _fly(self, serial: str) -> None:
         """A minute of one vehicle, and then the next."""
-        self.order(serial, FlyMission(self._rows(serial)))
+        self.order(serial, self.mission(serial))
         self._after(HOVER_AFTER_S, lambda: self.order(serial, Hover()))
-        self._after(GOTO_AFTER_S, lambda: self._steer(serial))
+        if self.steers:
+            self._after(GOTO_AFTER_S, lambda: self._steer(serial))
         self._after(MISSION_EVERY_S, lambda: self._fly(serial))
 
     def _steer(self, serial: str) -> None:
@@ -123,7 +125,8 @@ class EightVehicles:
         place, height_m = self._place(PLACES_M[serial]), self._height_m(serial)
         self.order(serial, GoTo(place, height_m, SPEED_MPS), HOLDER)
 
-    def _rows(self, serial: str) -> Mission:
+    def mission(self, serial: str) -> FlyMission:
+        """Return the rows that a drone flies again and again."""
         east_m, north_m = PLACES_M[serial]
         corners = []
         for row, offset_m in enumerate(ROWS_NORTH_M):
@@ -134,8 +137,12 @@ class EightVehicles:
             corners += ends if row % 2 == 0 else ends[::-1]
         places = [self._place(corner) for corner in corners]
         height_m = self._height_m(serial)
-        return Mission(
-            tuple(Waypoint(p.latitude_deg, p.longitude_deg, height_m, SPEED_MPS) for p in places)
+        return FlyMission(
+            Mission(
+                tuple(
+                    Waypoint(p.latitude_deg, p.longitude_deg, height_m, SPEED_MPS) for p in places
+                )
+            )
         )
 
     def _height_m(self, serial: str) -> float:
@@ -188,16 +195,18 @@ class EightVehicles:
 def eight_vehicles(
     seed: int = 1,
     *,
+    steers: bool = True,
     sees: bool = False,
     faults: Sequence[str] = (),
     make_link: Callable[[], FakeLink] = FakeLink,
     keeps_log: bool = False,
 ) -> EightVehicles:
-    """Return the scene; with `sees` the eye sends rendered pictures, which the station reads."""
+    """Return the scene: with `steers` each drone is also led by sticks for a fifth of the time;
+    with `sees` the eye sends rendered pictures, which the station reads."""
     site = load_site(demo_site_folder())
     driver = VirtualDriver(first_state(site), tasks=worker_tasks(site), keeps_log=keeps_log)
     fleet = build_fleet(_config(site, seed, sees, faults), driver.now_ns)
-    return EightVehicles(driver, fleet, site, make_link)
+    return EightVehicles(driver, fleet, site, steers, make_link)
 
 
 def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> SimulationConfig:
