@@ -12,7 +12,7 @@ from recon.model.command import ReturnHome
 from recon.model.event import Event, OperatorOrder, SurveyAsked, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyPhase
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.model.vehicle import Staleness, VehicleState
+from recon.model.vehicle import FlightMode, Staleness, VehicleState
 from recon.station.state import Station
 from recon.station.survey.record import Member, SurveyRecord
 
@@ -45,7 +45,7 @@ class People:
             if self._all_heard(station, now_ns):
                 yield SurveyAsked(replace(self.survey, id=SURVEY_ID), BY)
         elif now_ns >= seconds_to_ns(self.limit_s):
-            yield from self._end(station, record)
+            yield from self._end(station, record, now_ns)
         elif record.state is not None and not self._is_begun:
             self._is_begun = True
             yield SurveyStarted(SURVEY_ID, self.serials, BY, takeoff=True)
@@ -82,18 +82,18 @@ class People:
             return False
         return self._lasts(member.serial, now_ns)
 
-    def _end(self, station: Station, record: SurveyRecord) -> Iterator[Event]:
-        """When the time is over: abort, and call everyone home."""
-        if self._is_ended:
-            return
-        self._is_ended = True
+    def _end(self, station: Station, record: SurveyRecord, now_ns: int) -> Iterator[Event]:
+        """When the time is over: abort, and call everyone home; and again, who was held since."""
         if not record.is_over:
             yield SurveyStopped(SURVEY_ID, BY, is_aborted=True)
-        for serial in self.serials:
-            vehicle = station.fleet.vehicles.get(serial)
-            if vehicle is not None and vehicle.is_flying.value is True:
-                self._next_order += 1
-                yield OperatorOrder(self._next_order, ReturnHome(), BY, serial=serial)
+        elif not self._is_ended or self._lasts("the way home", now_ns):
+            self._is_ended = True
+            vehicles = (station.fleet.vehicles.get(serial) for serial in self.serials)
+            for vehicle in vehicles:
+                if vehicle is not None and _hovers(vehicle):
+                    self._next_order += 1
+                    home = ReturnHome()
+                    yield OperatorOrder(self._next_order, home, BY, serial=vehicle.serial)
 
     def _lasts(self, what: str, now_ns: int) -> bool:
         """Whether something has gone on for as long as people need; it counts anew then."""
@@ -111,3 +111,9 @@ class People:
 
 def _is_paused(record: SurveyRecord) -> bool:
     return record.state is not None and record.state.phase is SurveyPhase.PAUSED
+
+
+def _hovers(vehicle: VehicleState) -> bool:
+    """Whether a vehicle is in the air and on no way anywhere."""
+    is_going = vehicle.flight_mode.value in (FlightMode.GO_HOME, FlightMode.AUTO_LANDING)
+    return vehicle.is_flying.value is True and not is_going
