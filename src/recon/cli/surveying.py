@@ -59,6 +59,9 @@ def create_command(
         float, typer.Option("--interval", help="Seconds between photos, as the timer is set.")
     ] = 2.0,
     rounds: Annotated[int, typer.Option("--rounds", help="Flights over what is missing.")] = 6,
+    minutes: Annotated[
+        float | None, typer.Option("--minutes", min=0.1, help="After these nothing new is flown.")
+    ] = None,
     when_done: Annotated[
         WhenDone,
         typer.Option("--when-done", help="What its vehicles do then, or without battery."),
@@ -76,7 +79,7 @@ def create_command(
         "side_overlap": side,
         "row_bearing_deg": bearing,
         "camera": {"interval_s": interval},
-        "budget": {"rounds": rounds},
+        "budget": {"rounds": rounds, "time_s": None if minutes is None else 60.0 * minutes},
         "when_done": when_done.value,
     }
 

@@ -114,7 +114,7 @@ class TestOnce:
         flyers = fleet(1, height_m=70.0)
         budget = SurveyBudget(rounds=1)
         end = Flights(begun(survey_of(rectangle(), budget=budget), flyers), flyers).run()
-        assert end.reason == "the 1 rounds allowed are flown; some is missing"
+        assert end.reason == "the one round allowed is flown; of 6.00 ha, 6.00 ha are not imaged"
         assert figures(end).not_yet_m2 == figures(end).region_m2
 
 

@@ -13,6 +13,7 @@ from types import MappingProxyType
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from recon.guidance.survey.endings import end_between_rounds, spent_budget
 from recon.guidance.survey.missions import Track, flight_time_s, mission_of, track_of
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.route import Place, Route, between_m, route_of
@@ -20,7 +21,7 @@ from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.share import Cost, shared
 from recon.guidance.survey.state import NO_ROUTES, Flight, Surveyor, SurveyState
 from recon.model.survey import CellState, MissionFor, SurveyPhase
-from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.model.units import seconds_to_ns
 
 Step = tuple[SurveyState, tuple[MissionFor, ...]]
 
@@ -34,7 +35,7 @@ def fly_rounds(
     """
     able = {each.serial: each for each in positions if each.is_able}
     state = _without_ended(state, able, now_ns)
-    spent = _spent(state, now_ns)
+    spent = spent_budget(state, wanted, now_ns)
     if spent is None:
         state, missions = _given(state, able, now_ns)
         if missions:
@@ -50,7 +51,7 @@ def fly_rounds(
         return _shared_anew(state, free, now_ns)
     if now_ns < state.quiet_since_ns + seconds_to_ns(state.plan.settings.settle_s):
         return state, ()
-    end = _end(state, wanted)
+    end = end_between_rounds(state, wanted)
     if end is not None:
         return ended(state, SurveyPhase.DONE, end, now_ns), ()
     pieces = state.plan.pieces_over(state.progress.state < wanted)
@@ -68,13 +69,6 @@ def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> S
         ended_at_ns=now_ns if phase.is_final else None,
         quiet_since_ns=now_ns,
     )
-
-
-def is_enough(state: SurveyState, wanted: CellState) -> bool:
-    """Return whether as many cells as are asked for are in the wanted state."""
-    reached = state.plan.cells.is_reached
-    share = float((state.progress.state[reached] >= wanted).mean())
-    return share >= state.plan.settings.enough_share
 
 
 def _without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
@@ -105,28 +99,6 @@ def _shared_anew(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) 
         return state, ()
     pieces = [leg.piece for route in state.waiting.values() for leg in route]
     return _handed_out(state, pieces, free, now_ns)
-
-
-def _spent(state: SurveyState, now_ns: int) -> str | None:
-    """Which budget is spent, so that no more missions are given; None: none is."""
-    budget = state.plan.survey.budget
-    since_s = 0.0 if state.started_at_ns is None else ns_to_seconds(now_ns - state.started_at_ns)
-    if budget.time_s is not None and since_s >= budget.time_s:
-        return f"the {budget.time_s:g} s allowed are over; some is missing"
-    if budget.flown_m is not None and state.flown_m >= budget.flown_m:
-        return f"the {budget.flown_m:g} m allowed are flown; some is missing"
-    return None
-
-
-def _end(state: SurveyState, wanted: CellState) -> str | None:
-    """Why the running survey is done, between two rounds; None: it goes on."""
-    if is_enough(state, wanted):
-        sun = " in sun" if wanted == CellState.IN_SUN else ""
-        return f"all that the rows reach is imaged{sun}"
-    rounds = state.plan.survey.budget.rounds
-    return (
-        f"the {rounds} rounds allowed are flown; some is missing" if state.round >= rounds else None
-    )
 
 
 def _begun(

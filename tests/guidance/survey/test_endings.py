@@ -1,0 +1,65 @@
+"""How a survey that wants sun ends where there is none, and what it says then."""
+
+import numpy as np
+import pytest
+from tests.guidance.survey.fields import rectangle, survey_of
+from tests.guidance.survey.flyers import BoolArray, Flights, FloatArray, clear, fleet
+from tests.guidance.survey.test_flown import begun
+
+from recon.guidance.survey import figures
+from recon.model.survey import SurveyBudget, SurveyPhase
+
+
+def closed(places_m: FloatArray, time_s: float) -> BoolArray:
+    """An overcast day."""
+    return np.zeros(len(places_m), dtype=np.bool_)
+
+
+def flown(tells_shade: bool = True, sky=closed, **budget: object) -> Flights:  # type: ignore[no-untyped-def]
+    flyers = fleet(2)
+    survey = survey_of(
+        rectangle(),
+        planner="lawnmower_again",
+        budget=SurveyBudget(**budget),  # type: ignore[arg-type]
+    )
+    flights = Flights(begun(survey, flyers), flyers, sky, tells_shade=tells_shade)
+    flights.run()
+    return flights
+
+
+@pytest.mark.parametrize(
+    ("rounds", "words"), [(1, "the one round allowed is"), (3, "all 3 rounds allowed are")]
+)
+def test_under_a_closed_sky_its_rounds_end_it(rounds: int, words: str) -> None:
+    end = flown(rounds=rounds).state
+    assert (end.phase, end.round) == (SurveyPhase.DONE, rounds)
+    assert end.reason == (
+        f"{words} flown; of 6.00 ha, 6.00 ha are imaged in shade only, 0.00 ha are not imaged"
+    )
+
+
+def test_under_a_closed_sky_its_time_ends_it_and_who_flies_flies_to_the_end() -> None:
+    flights = flown(time_s=300.0)
+    end = flights.state
+    assert end.phase is SurveyPhase.DONE
+    assert end.reason.startswith("the 300 s allowed are over; of 6.00 ha, ")
+    assert 300.0 <= flights.time_s < 600.0
+    assert all(not flyer.is_flying for flyer in flights.flyers)
+
+
+def test_its_metres_end_it() -> None:
+    end = flown(flown_m=100.0).state
+    assert end.reason.startswith("the 100 m allowed are flown; of 6.00 ha, ")
+    assert end.round == 1
+
+
+def test_where_nobody_sees_the_light_nothing_is_flown_again_for_it() -> None:
+    end = flown(tells_shade=False).state
+    assert (end.phase, end.round) == (SurveyPhase.DONE, 1)
+    assert "in light that nobody knows" in end.reason
+    assert figures(end).not_yet_m2 <= 0.01 * figures(end).region_m2
+
+
+def test_in_sun_it_ends_after_one_round() -> None:
+    end = flown(sky=clear).state
+    assert (end.round, end.reason) == (1, "all that the rows reach is imaged in sun")
