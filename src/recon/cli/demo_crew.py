@@ -64,16 +64,14 @@ async def _begun(
 
 async def _seen_to_its_end(station: Station, survey_id: int) -> Survey:
     """Follow a survey; who stands with a fresh battery is sent off again."""
-    away: set[str] = set()
     while True:
         survey = await _survey(station, survey_id)
         if survey.phase != "running":
             return survey
-        crew = _crew(station, [v.serial for v in survey.vehicles])
-        for serial in sorted(away.intersection(v.serial for v in crew if is_fresh(v) and v.serial)):
-            away.remove(serial)
-            await station.surveys.start(survey_id, [serial], takeoff=True)
-        away |= {v.serial for v in crew if v.is_flying.value is True and v.serial is not None}
+        at_home = [v.serial for v in survey.vehicles if v.has_come_home]
+        for vehicle in filter(is_fresh, _crew(station, at_home)):
+            if vehicle.serial is not None:
+                await station.surveys.start(survey_id, [vehicle.serial], takeoff=True)
         await asyncio.sleep(LOOK_EVERY_S)
 
 

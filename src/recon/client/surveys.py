@@ -33,6 +33,8 @@ class Surveying(msgspec.Struct, frozen=True):
     is_flying_rows: bool
     waits_for: str | None
     refused: str | None
+    has_come_home: bool
+    """Called home by the survey, it has landed: a fresh battery, and it can be started again."""
 
 
 class Survey(msgspec.Struct, frozen=True):

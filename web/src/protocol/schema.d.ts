@@ -1692,6 +1692,11 @@ export interface components {
          */
         SurveyingView: {
             /**
+             * Has Come Home
+             * @description called home by the survey, it has landed
+             */
+            has_come_home: boolean;
+            /**
              * Is Flying Rows
              * @description a mission of the survey is under way
              */

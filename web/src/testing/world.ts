@@ -278,6 +278,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         waits_for: null,
         refused: null,
         mission_command_id: -3,
+        has_come_home: false,
       },
       {
         serial: "SN-002",
@@ -286,6 +287,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         waits_for: "its battery does not last",
         refused: null,
         mission_command_id: null,
+        has_come_home: false,
       },
     ],
     figures: {

@@ -101,6 +101,7 @@ class SurveyingView(Message):
     is_flying_rows: bool = Field(description="a mission of the survey is under way")
     waits_for: str | None = Field(description="why it flies nothing (more) for the survey now")
     refused: str | None = Field(description="why its newest mission was refused, if it was")
+    has_come_home: bool = Field(description="called home by the survey, it has landed")
     mission_command_id: int | None
 
 

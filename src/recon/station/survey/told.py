@@ -126,6 +126,7 @@ def _member(
         is_flying_rows=is_flown(station, member),
         waits_for=waits,
         refused=None if refused is None else refused.reason,
+        has_come_home=member.homeward is not None and _stands(station, member),
         mission_command_id=member.command_id,
     )
 
