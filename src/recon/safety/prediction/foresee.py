@@ -30,6 +30,8 @@ from recon.safety.prediction.meetings import Separation
 from recon.safety.prediction.orders import write_order
 from recon.safety.prediction.settings import PredictionSettings
 
+ROUNDING_M = 1e-6
+
 
 def foresee_order(flyer: Flyer, body: Body, settings: PredictionSettings) -> Course:
     """Return the course an order to move would send its vehicle on."""
@@ -108,6 +110,30 @@ def may_enter(
         return False
     low_m, high_m = _band_m(flyer, intent, around.until_s, settings)
     return low_m < around.high_m and around.low_m < high_m
+
+
+def may_meet(course: Course, around: Surroundings) -> bool:
+    """Return whether any of a course comes into the surroundings, at whatever time: in doubt yes.
+
+    Before its pieces are compared one by one: most traffic is elsewhere, or at other heights.
+    """
+    least, most = course.rows.min(axis=0).tolist(), course.rows.max(axis=0).tolist()
+    far_m = hypot(
+        _outside_m(around.east_m, (least[EAST_0], least[EAST_1]), (most[EAST_0], most[EAST_1])),
+        _outside_m(
+            around.north_m, (least[NORTH_0], least[NORTH_1]), (most[NORTH_0], most[NORTH_1])
+        ),
+    )
+    if far_m > around.radius_m + max(most[RADIUS_0], most[RADIUS_1]) + ROUNDING_M:
+        return False
+    is_above = min(least[LOW_0], least[LOW_1]) > around.high_m + ROUNDING_M
+    is_below = max(most[HIGH_0], most[HIGH_1]) < around.low_m - ROUNDING_M
+    return not (is_above or is_below)
+
+
+def _outside_m(at_m: float, least_m: tuple[float, float], most_m: tuple[float, float]) -> float:
+    """How far a place is outside a span of places, along one axis."""
+    return max(min(least_m) - at_m, at_m - max(most_m), 0.0)
 
 
 def _reach_m(flyer: Flyer, intent: Intent, seconds: float, settings: PredictionSettings) -> float:

@@ -24,7 +24,7 @@ from recon.safety.prediction import (
     foresee_traffic,
     part_words,
 )
-from recon.safety.prediction.foresee import may_enter, surroundings
+from recon.safety.prediction.foresee import may_enter, may_meet, surroundings
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -78,7 +78,8 @@ def _others(
             text = f"{name} may be in the air and has never told where: land it or dismiss it"
             return _refusal(own.name, text)
         if may_enter(seen, other.intent, around, prediction):
-            courses += foresee_traffic(seen, other.intent, prediction, around.until_s)
+            foreseen = foresee_traffic(seen, other.intent, prediction, around.until_s)
+            courses += (course for course in foreseen if may_meet(course, around))
     return tuple(courses)
 
 
