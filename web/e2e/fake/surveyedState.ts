@@ -17,7 +17,12 @@ export function surveyedState(elapsed_s: number): StationState {
     vehicle(4, { is_eye: true }),
   ];
   const plain = station(vehicles, { time_ns: 1e9 * (1 + elapsed_s) });
-  const waits = { is_flying_rows: false, refused: null, has_come_home: false, mission_command_id: null };
+  const waits = {
+    is_flying_rows: false,
+    refused: null,
+    has_come_home: false,
+    mission_command_id: null,
+  };
   return {
     ...plain,
     site: plain.site && {
