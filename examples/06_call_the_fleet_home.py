@@ -7,7 +7,6 @@ Run: uv run python examples/06_call_the_fleet_home.py             (prints who la
 import sys
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -83,8 +82,7 @@ def main(picture: Path | None) -> None:
     config = SimulationConfig(home=HOME, vehicle_count=6, airborne=Airborne.ALL, pads=pads)
     apps = build_fleet(config, start_ns=driver.now_ns)
     for app, place, pad in zip(apps, FIELD_M, PADS_M, strict=True):
-        app.aircraft.motion = replace(
-            app.aircraft.motion,
+        app.aircraft.motion = app.aircraft.motion._replace(
             east_m=place[0] - pad[0],
             north_m=place[1] - pad[1],
             height_m=place[2],

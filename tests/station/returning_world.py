@@ -77,8 +77,7 @@ class ReturningWorld:
     def put(self, serial: str, place_m: tuple[float, float, float]) -> None:
         """Have it hover somewhere else, as if its pilot had flown it there meanwhile."""
         aircraft, pad = self.world.app(serial).aircraft, self.pads_m[serial]
-        aircraft.motion = replace(
-            aircraft.motion,
+        aircraft.motion = aircraft.motion._replace(
             east_m=place_m[0] - pad[0],
             north_m=place_m[1] - pad[1],
             height_m=place_m[2],
@@ -170,8 +169,8 @@ def returning_world(
     ]
     for app, place, pad in zip(apps, places_m, pads_m, strict=True):
         motion = app.aircraft.motion
-        app.aircraft.motion = replace(
-            motion, east_m=place[0] - pad[0], north_m=place[1] - pad[1], height_m=place[2]
+        app.aircraft.motion = motion._replace(
+            east_m=place[0] - pad[0], north_m=place[1] - pad[1], height_m=place[2]
         )
         if place[2] == 0.0:
             app.aircraft.manoeuvre = Grounded()
