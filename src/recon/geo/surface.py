@@ -20,6 +20,9 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 
+ROUNDING_M = 1e-6
+
+
 class Surface:
     """Heights (rows, cols) in the middles of `grid`'s cells; build one for each model and keep it.
 
@@ -36,6 +39,9 @@ class Surface:
             )
         self._grid = grid
         self._heights_m = heights
+        half_m = 0.5 * grid.cell_m + ROUNDING_M
+        self._least_m = np.array([grid.west_m, grid.north_m - grid.rows * grid.cell_m]) + half_m
+        self._most_m = np.array([grid.west_m + grid.cols * grid.cell_m, grid.north_m]) - half_m
 
     def heights_m(self, points_m: npt.ArrayLike) -> FloatArray:
         """Return the heights (N,) at (N, 2) east-north points."""
@@ -54,11 +60,26 @@ class Surface:
 
     def is_below(self, triangles_m: npt.ArrayLike, heights_m: FloatArray) -> BoolArray:
         """Return under which of (N, 3, 2) triangles all ground is at most as high as (N,)."""
+        if self._is_beyond_all(self._top, triangles_m, heights_m):
+            return np.ones(len(heights_m), dtype=np.bool_)
         return self._top.is_below(self._triangle_nodes(triangles_m), heights_m)
 
     def is_above(self, triangles_m: npt.ArrayLike, heights_m: FloatArray) -> BoolArray:
         """Return under which of (N, 3, 2) triangles all ground is at least as high as (N,)."""
+        if self._is_beyond_all(self._bottom, triangles_m, -heights_m):
+            return np.ones(len(heights_m), dtype=np.bool_)
         return self._bottom.is_below(self._triangle_nodes(triangles_m), -heights_m)
+
+    def _is_beyond_all(
+        self, side: "_Highest", triangles_m: npt.ArrayLike, heights_m: FloatArray
+    ) -> bool:
+        """Whether every height is over the highest of all ground, and none is beyond what is known:
+        so it is for nearly all that fly, and quickly seen."""
+        points = np.asarray(triangles_m, dtype=np.float64).reshape(-1, 2)
+        if len(points) == 0 or not heights_m.min() >= side.highest_of_all:
+            return False
+        is_known = (points.min(axis=0) >= self._least_m) & (points.max(axis=0) <= self._most_m)
+        return bool(is_known[0] and is_known[1])
 
     @cached_property
     def _top(self) -> "_Highest":
@@ -95,6 +116,7 @@ class _Highest:
     def __init__(self, heights: FloatArray) -> None:
         self._heights = heights
         self._pyramid = _pyramid(np.where(np.isnan(heights), np.inf, heights))
+        self.highest_of_all = float(self._pyramid[-1][0, 0])
 
     def along(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
         """Along straight legs between (N, 2) rows and columns, (N,)."""
@@ -129,8 +151,7 @@ class _Highest:
 
     def is_below(self, triangles: FloatArray, heights: FloatArray) -> BoolArray:
         """Whether the highest within each triangle is at most as high; the easy ones quickly."""
-        highest_of_all = float(self._pyramid[-1][0, 0])
-        below: BoolArray = self._are_known(triangles) & (heights >= highest_of_all)
+        below: BoolArray = self._are_known(triangles) & (heights >= self.highest_of_all)
         if not below.all():
             below = self._bounds(triangles) <= heights
         if not below.all():

@@ -63,7 +63,7 @@ class PreparedAirspace:
         # Each for itself: round them all at once is seldom near, for vehicles fly all over a site.
         reaches = footprints.least_m <= (most_m + gap_m)[:, np.newaxis]
         reaches &= footprints.most_m >= (least_m - gap_m)[:, np.newaxis]
-        is_near = np.any(reaches.all(axis=2), axis=1)
+        is_near = (reaches[..., 0] & reaches[..., 1]).any(axis=1)
         return [zones[index] for index in np.flatnonzero(is_near)]
 
     def zones_of(self, kind: ZoneKind) -> tuple[PreparedZone, ...]:

@@ -78,14 +78,13 @@ def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | N
     None when nobody knows where it took off, or the elevation model tells no ground there. Without
     a site it is always 0.
     """
-    frame = airspace.airspace.frame
-    if frame is None:
+    if airspace.airspace.frame is None:
         return 0.0
     point = home(vehicle)
     if point is None:
         return None
     own = None if vehicle.profile is None else vehicle.profile.pad
-    return _takeoff_up_m(airspace, frame, point, own, vehicle.serial)
+    return _takeoff_up_m(airspace, point, own, vehicle.serial)
 
 
 def is_ground_assumed_flat(airspace: PreparedAirspace) -> bool:
@@ -124,11 +123,12 @@ def home_enu_m(
 @lru_cache(maxsize=TAKEOFF_POINTS_KEPT)
 def _takeoff_up_m(
     airspace: PreparedAirspace,
-    frame: LocalFrame,
     point: LatLon,
     own_pad: GeoPoint | None,
     serial: str | None,
 ) -> float | None:
+    frame = airspace.airspace.frame
+    assert frame is not None, "without one nobody asks"
     pad = _pad_at(airspace, point, own_pad, serial)
     if pad is not None:
         return pad.ellipsoid_height_m - frame.origin.ellipsoid_height_m

@@ -46,16 +46,13 @@ def way_ahead(picture: Picture, frame: LocalFrame) -> Way:
     last = np.searchsorted(times_s, np.minimum(picture.settings.fence_factor * stop_s, times_s[-1]))
     here_m = places_m(frame, [_place(picture, number) for number in range(len(flyers))])
     last_known_m = np.array([(f.east_m, f.north_m) if f else (0.0, 0.0) for f in flyers])
+    at_m = _at_m(picture, np.stack([np.zeros_like(last), (last + 1) // 2, last], axis=1))
     # Exact where the vehicles were heard, and from there on in the plane, which is exact enough.
-    here_m, middle_m, there_m = (
-        here_m + _moved_m(picture, index) - last_known_m
-        for index in (np.zeros_like(last), (last + 1) // 2, last)
-    )
-    triangles_m = np.stack([here_m, middle_m, there_m], axis=1)
+    triangles_m = here_m[:, np.newaxis] + at_m - last_known_m[:, np.newaxis]
     flies, rows = picture.ahead.as_it_flies, np.arange(len(flyers))
     return Way(
-        here_m=here_m,
-        there_m=there_m,
+        here_m=triangles_m[:, 0],
+        there_m=triangles_m[:, 2],
         triangles_m=triangles_m,
         ahead=Footprints(triangles_m),
         low_m=np.minimum(flies.low_m[rows, 0], flies.low_m[rows, last]),
@@ -70,9 +67,10 @@ def _place(picture: Picture, number: int) -> LatLon:
     return place
 
 
-def _moved_m(picture: Picture, index: IntArray) -> FloatArray:
-    flies, rows = picture.ahead.as_it_flies, np.arange(len(index))
-    return np.column_stack([flies.east_m[rows, index], flies.north_m[rows, index]])
+def _at_m(picture: Picture, index: IntArray) -> FloatArray:
+    """Where each vehicle is at M of the moments (N, M): (N, M, 2) in the plane."""
+    flies, rows = picture.ahead.as_it_flies, np.arange(len(index))[:, np.newaxis]
+    return np.stack([flies.east_m[rows, index], flies.north_m[rows, index]], axis=2)
 
 
 def _is_near_home(picture: Picture) -> BoolArray:
