@@ -1,9 +1,12 @@
 """A survey drone that flies by events: missions, the way home, fresh batteries, what goes wrong."""
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import cached_property
 from math import hypot, inf
+from operator import attrgetter
 
 import numpy as np
 
@@ -17,6 +20,8 @@ from recon.sim.kinematics import Motion
 from recon.sim.power import flying_load
 from recon.sim.world import Wind
 
+_START_S = attrgetter("start_s")
+
 
 class Doing(Enum):
     """What a drone does."""
@@ -29,7 +34,7 @@ class Doing(Enum):
     """By its pilot, or by a fault."""
 
 
-@dataclass(slots=True)
+@dataclass
 class Drone:
     """One drone; all times are seconds since the run's start."""
 
@@ -73,7 +78,7 @@ class Drone:
         """Whether it is off the ground; standing still counts as on it."""
         return self.doing is not Doing.STANDING
 
-    @property
+    @cached_property
     def level_load(self) -> float:
         """What level flight takes of the battery, in hovering, wind from the side counted."""
         air_mps = hypot(*self.wind.mean_mps(self.go_home_height_m))
@@ -124,6 +129,7 @@ class Drone:
     def advance(self, now_s: float) -> None:
         """Let what has ended by now end."""
         if self.free_at_s > now_s:
+            self._settle(now_s)
             return
         ended_s = self.free_at_s
         if self.doing is Doing.MISSION:
@@ -151,11 +157,11 @@ class Drone:
 
     def spot_at(self, now_s: float) -> Spot:
         """Return where it is now."""
-        for hop in reversed(self.hops):
-            if hop.start_s <= now_s:
-                east_m, north_m, up_m = hop.places_m(np.array([now_s]))[0].tolist()
-                return east_m, north_m, up_m
-        return self.spot_m
+        index = bisect_right(self.hops, now_s, key=_START_S)
+        if index == 0:
+            return self.spot_m
+        east_m, north_m, up_m = self.hops[index - 1].places_m(np.array([now_s]))[0].tolist()
+        return east_m, north_m, up_m
 
     def place_at(self, now_s: float) -> Place:
         """Return over which place it is now."""
@@ -254,7 +260,8 @@ class Drone:
         if not self.is_airborne or now_s <= self.charged_at_s:
             return self.charge
         since_s, used_s = self.charged_at_s, now_s - self.charged_at_s
-        for hop in reversed(self.hops):
+        begun = bisect_right(self.hops, now_s, key=_START_S)
+        for hop in reversed(self.hops[:begun]):
             if hop.end_s <= since_s:
                 break
             lasted_s = min(hop.end_s, now_s) - max(hop.start_s, since_s)

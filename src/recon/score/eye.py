@@ -50,6 +50,9 @@ class Eye:
         self._scenario, self._sky, self._settings = scenario, sky, settings
         self.grid, self.footprint = _footprint(scenario)
         self._middles_m = _middles_m(self.grid, self.footprint)
+        fine_m = np.float32(scenario.eye.height_m / PIXELS_PER_RADIAN)
+        self._sure = self.footprint.astype(np.float32)
+        self._fine = np.where(self.footprint, fine_m, np.float32(np.nan))
         over_m = scenario.eye.over_m
         place_m = (over_m[0], over_m[1], scenario.eye.height_m)
         self._camera = CoarseEye(self.grid, self.footprint, place_m, seed)
@@ -93,17 +96,9 @@ class Eye:
     def _ideal(self, time_s: float, truth: FloatMap) -> ShadeMap:
         """The truth, as a map."""
         seen = self.footprint
-        nowhere = np.float32(np.nan)
-        fine = np.float32(self._scenario.eye.height_m / PIXELS_PER_RADIAN)
-        return ShadeMap(
-            self.grid,
-            seconds_to_ns(time_s),
-            ("EYE",),
-            np.where(seen, truth, nowhere),
-            seen,
-            seen.astype(np.float32),
-            np.where(seen, fine, nowhere),
-        )
+        told = np.where(seen, truth, np.float32(np.nan))
+        at_ns = seconds_to_ns(time_s)
+        return ShadeMap(self.grid, at_ns, ("EYE",), told, seen, self._sure, self._fine)
 
     def _score_map(self, shade: ShadeMap | None, is_shade: MaskMap) -> None:
         seen, score = self.footprint, self.score

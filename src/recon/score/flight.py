@@ -23,6 +23,11 @@ class Motion(Protocol):
         """From its start to its end."""
         ...
 
+    @property
+    def phases_s(self) -> Sequence[float]:
+        """How long it moves in each way: evenly, or speeding up, or slowing down."""
+        ...
+
     def along_m(self, after_s: FloatArray) -> FloatArray:
         """Return how far along it is at times after its start, (N,)."""
         ...
@@ -34,6 +39,11 @@ class Steady:
 
     way_m: float
     duration_s: float
+
+    @property
+    def phases_s(self) -> Sequence[float]:
+        """There is one."""
+        return (self.duration_s,)
 
     def along_m(self, after_s: FloatArray) -> FloatArray:
         """Return how far along it is at times after its start, (N,)."""
@@ -70,9 +80,17 @@ class Hop:
         return places
 
     def samples_s(self, every_s: float) -> FloatArray:
-        """Return evenly spaced times from start to end, at most so far apart."""
-        count = max(1, ceil((self.end_s - self.start_s) / every_s))
-        return np.linspace(self.start_s, self.end_s, count + 1)
+        """Return times from start to end, at most so far apart, one wherever the motion changes."""
+        if self.motion is None:
+            return np.array([self.start_s, self.end_s])
+        parts = [np.array([self.start_s])]
+        begin_s = self.start_s
+        for lasts_s in self.motion.phases_s:
+            end_s = min(begin_s + lasts_s, self.end_s)
+            count = ceil((end_s - begin_s) / every_s)
+            parts.append(np.linspace(begin_s, end_s, count + 1)[1:])
+            begin_s = end_s
+        return np.concatenate(parts)
 
 
 def whereabouts(hops: Sequence[Hop], at_s: FloatArray) -> tuple[FloatArray, BoolArray]:

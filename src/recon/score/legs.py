@@ -51,6 +51,11 @@ class Leg:
         return self.up_s + self.cruise_s + self.brake_s + self.settle_s
 
     @property
+    def phases_s(self) -> tuple[float, float, float, float]:
+        """How long each of them lasts."""
+        return self.up_s, self.cruise_s, self.brake_s, self.settle_s
+
+    @property
     def end_mps(self) -> float:
         """The speed at its end."""
         if self.settle_s > 0.0:
