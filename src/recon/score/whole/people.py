@@ -1,18 +1,28 @@
 """What people at a field say to the station while a survey is flown: nothing else is said by them.
 
 They plan it, start it when every vehicle is heard, send those with fresh batteries off again, look
-after one that was stopped for a while and start it again, and end it all when the time is over.
+after one that was stopped and start it again, call home whose battery an alarm is about, and end it
+all when the time is over.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from recon.fleet.state import staleness
+from recon.model.authority import Leader
 from recon.model.command import ReturnHome
-from recon.model.event import Event, OperatorOrder, SurveyAsked, SurveyStarted, SurveyStopped
-from recon.model.survey import Survey, SurveyPhase
+from recon.model.event import (
+    AuthorityTaken,
+    Event,
+    OperatorOrder,
+    SurveyAsked,
+    SurveyStarted,
+    SurveyStopped,
+)
+from recon.model.survey import Survey
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import FlightMode, Staleness, VehicleState
+from recon.station.authority import lead_of
 from recon.station.state import Station
 from recon.station.survey.record import Member, SurveyRecord
 
@@ -20,8 +30,11 @@ BY = "the crew"
 SURVEY_ID = 1
 SETTLED_S = 3.0
 """After the last vehicle was first heard: until battery and satellites are known."""
-LOOKED_S = 30.0
-"""Until somebody has looked why a vehicle was stopped, or a survey paused by itself."""
+LOOKED_S = 20.0
+"""Until somebody has seen an alarm, looked why a vehicle was stopped, and pressed a button."""
+WAY_HOME = "battery_home"
+"""The watchdog that compares a battery with its way home."""
+WAYS_DOWN = (FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)
 FRESH_FRACTION = 0.9
 
 
@@ -35,7 +48,7 @@ class People:
     _settled_ns: int | None = None
     _is_begun: bool = False
     _is_ended: bool = False
-    _since_ns: dict[str, int] | None = None
+    _since_ns: dict[str, int] = field(default_factory=dict)
     _next_order: int = 100
 
     def says(self, station: Station, now_ns: int) -> Iterator[Event]:
@@ -49,10 +62,10 @@ class People:
         elif record.state is not None and not self._is_begun:
             self._is_begun = True
             yield SurveyStarted(SURVEY_ID, self.serials, BY, takeoff=True)
-        elif record.state is not None and record.state.phase is SurveyPhase.RUNNING:
-            yield from self._look_after(station, record, now_ns)
-        elif _is_paused(record) and self._lasts("the survey", now_ns):
-            yield SurveyStarted(SURVEY_ID, self.serials, BY, takeoff=True)
+        elif record.state is not None and not record.is_over:
+            yield from self._save_batteries(station, now_ns)
+            for serial in self.serials:
+                yield from self._send_off(station, record, serial, now_ns)
 
     def _all_heard(self, station: Station, now_ns: int) -> bool:
         found = [station.fleet.vehicles.get(serial) for serial in self.serials]
@@ -60,27 +73,46 @@ class People:
         self._settled_ns = (self._settled_ns or now_ns) if heard else None
         return self._settled_ns is not None and now_ns - self._settled_ns >= SETTLED_S * NS_PER_S
 
-    def _look_after(
-        self, station: Station, record: SurveyRecord, now_ns: int
-    ) -> Iterator[SurveyStarted]:
-        for member in record.members.values():
-            vehicle = station.fleet.vehicles.get(member.serial)
-            if vehicle is None or staleness(vehicle, now_ns) is not Staleness.LIVE:
+    def _save_batteries(self, station: Station, now_ns: int) -> Iterator[OperatorOrder]:
+        """Call home whose battery an alarm is about, for as long as it is on no way home."""
+        for alarm in station.alarms.alarms.values():
+            about = alarm.condition
+            vehicle = station.fleet.vehicles.get(about.serial or "")
+            if about.rule != WAY_HOME or not alarm.is_active or vehicle is None:
                 continue
-            if self._is_to_fly_again(member, vehicle, now_ns):
-                yield SurveyStarted(SURVEY_ID, (member.serial,), BY, takeoff=True)
+            if _hovers_or_flies(vehicle) and self._lasts(f"{about.serial}: battery", now_ns):
+                yield self._home(about.serial or "")
 
-    def _is_to_fly_again(self, member: Member, vehicle: VehicleState, now_ns: int) -> bool:
-        """Whether somebody sends it off: its battery is fresh, or it was stopped and looked at."""
-        is_idle = member.homeward is not None or member.stopped is not None
-        is_down = vehicle.is_flying.value is False
+    def _send_off(
+        self, station: Station, record: SurveyRecord, serial: str, now_ns: int
+    ) -> Iterator[Event]:
+        """Let one fly for the survey (again), when it has been looked at."""
+        member = record.members.get(serial)
+        vehicle = station.fleet.vehicles.get(serial)
+        if vehicle is None or staleness(vehicle, now_ns) is not Staleness.LIVE:
+            return
+        if not self._is_to_fly(record, member, vehicle):
+            self._since_ns.pop(serial, None)
+        elif self._lasts(serial, now_ns):
+            if lead_of(station, serial).leader is Leader.PILOT:
+                yield AuthorityTaken(serial, Leader.OPERATOR, BY)
+            yield SurveyStarted(SURVEY_ID, (serial,), BY, takeoff=True)
+
+    def _is_to_fly(
+        self, record: SurveyRecord, member: Member | None, vehicle: VehicleState
+    ) -> bool:
+        """Whether it does nothing for the survey, and could: its battery is fresh, or it flies."""
+        is_called = member is not None and member.homeward is not None
+        is_idle = not record.is_running or member is None or member.stopped is not None
+        if vehicle.is_flying.value is True:
+            return is_idle and not is_called and vehicle.flight_mode.value not in WAYS_DOWN
         share = vehicle.battery_fraction.value
-        is_fit = not is_down or (share is not None and share >= FRESH_FRACTION)
-        is_coming_home = member.homeward is not None and not is_down
-        if not is_idle or not is_fit or is_coming_home:
-            self._forget(member.serial)
-            return False
-        return self._lasts(member.serial, now_ns)
+        is_fresh = share is not None and share >= FRESH_FRACTION
+        return (is_idle or is_called) and is_fresh
+
+    def _home(self, serial: str) -> OperatorOrder:
+        self._next_order += 1
+        return OperatorOrder(self._next_order, ReturnHome(), BY, serial=serial)
 
     def _end(self, station: Station, record: SurveyRecord, now_ns: int) -> Iterator[Event]:
         """When the time is over: abort, and call everyone home; and again, who was held since."""
@@ -90,30 +122,18 @@ class People:
             self._is_ended = True
             vehicles = (station.fleet.vehicles.get(serial) for serial in self.serials)
             for vehicle in vehicles:
-                if vehicle is not None and _hovers(vehicle):
-                    self._next_order += 1
-                    home = ReturnHome()
-                    yield OperatorOrder(self._next_order, home, BY, serial=vehicle.serial)
+                if vehicle is not None and _hovers_or_flies(vehicle):
+                    yield self._home(vehicle.serial or "")
 
     def _lasts(self, what: str, now_ns: int) -> bool:
         """Whether something has gone on for as long as people need; it counts anew then."""
-        since = self._since_ns = {} if self._since_ns is None else self._since_ns
-        began_ns = since.setdefault(what, now_ns)
+        began_ns = self._since_ns.setdefault(what, now_ns)
         if now_ns - began_ns < seconds_to_ns(LOOKED_S):
             return False
-        del since[what]
+        del self._since_ns[what]
         return True
 
-    def _forget(self, what: str) -> None:
-        if self._since_ns is not None:
-            self._since_ns.pop(what, None)
 
-
-def _is_paused(record: SurveyRecord) -> bool:
-    return record.state is not None and record.state.phase is SurveyPhase.PAUSED
-
-
-def _hovers(vehicle: VehicleState) -> bool:
-    """Whether a vehicle is in the air and on no way anywhere."""
-    is_going = vehicle.flight_mode.value in (FlightMode.GO_HOME, FlightMode.AUTO_LANDING)
-    return vehicle.is_flying.value is True and not is_going
+def _hovers_or_flies(vehicle: VehicleState) -> bool:
+    """Whether a vehicle is in the air and on no way down."""
+    return vehicle.is_flying.value is True and vehicle.flight_mode.value not in WAYS_DOWN
