@@ -101,3 +101,15 @@ def test_two_that_pass_each_other_level_meet_once_and_layers_never() -> None:
 def test_what_begins_is_counted_once_each_time() -> None:
     assert begins(np.array([True, True, False, True, False, False, True])) == 3
     assert begins(np.zeros(4, dtype=np.bool_)) == 0
+
+
+def test_people_see_to_what_goes_wrong_and_the_field_is_imaged(folder: Path) -> None:
+    faults = 'faults = ["pilot-takes:1:25:40", "low-battery:2:30"]\n'
+    text = CLEAR.replace("[site]", f"{faults}\n[site]").replace(
+        "[fleet]", "[fleet]\nswap_min = 1.0"
+    )
+    flown = run_whole(small(folder, text), 4)
+    assert flown.to_95_imaged_s is not None
+    assert flown.survey_s > flown.to_95_imaged_s
+    assert flown.low_landings == 1
+    assert (flown.encounters, flown.breaches) == (0, 0)
