@@ -33,7 +33,7 @@ class StickCount:
     changed_at_ns: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Watch:
     """The watch's memory; everything by serial, or by finding's key.
 
