@@ -14,7 +14,7 @@ WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.ht
 help: ## Show what can be made
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-demo: setup web ## Run the station, four simulated drones and the console at http://127.0.0.1:8080
+demo: setup web ## Show a survey under broken cloud: station, simulated drones, console at http://127.0.0.1:8080
 	$(RUN) recon demo
 
 test: test-rust test-safety test-python test-web test-e2e ## Set everything up and pass all tests
