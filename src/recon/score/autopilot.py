@@ -38,6 +38,8 @@ HOME_MPS = 10.0
 CONFIRMED_AFTER_S = 1.0
 HELD_DOWN_S = 0.15
 """Steps between the parts of a landing."""
+GUSTY_STOP_S = 0.65
+"""At each waypoint, until a gust lets it stand still: what the simulator's squalls cost."""
 LEAST_MPS = 0.5
 """Where the wind is too strong to get ahead, a leg takes for ever in truth."""
 
@@ -55,11 +57,16 @@ class Autopilot:
     """Flies on from a place and a time; `hops` is what it flies."""
 
     def __init__(
-        self, start_s: float, at_m: Spot, wind: Wind | None = None, limits: Limits | None = None
+        self,
+        start_s: float,
+        at_m: Spot,
+        wind: Wind | None = None,
+        gusty_s: Sequence[tuple[float, float]] = (),
     ) -> None:
+        """Begin somewhere; `gusty_s` are spans of time with squalls."""
         self.now_s, self.at_m = start_s, at_m
         self.hops: list[Hop] = []
-        self._wind, self._limits = wind, limits or Limits()
+        self._wind, self._gusty_s, self._limits = wind, gusty_s, Limits()
         self._up_mps = 0.0
         """The climb that goes on into the next hop."""
 
@@ -67,6 +74,16 @@ class Autopilot:
         """Stay where it is."""
         if seconds > 0.0:
             self._add(self.at_m, None, seconds, 0.0, waypoint=waypoint)
+
+    def drift(self, seconds: float) -> None:
+        """Be carried along by the mean wind."""
+        if seconds <= 0.0:
+            return
+        east_mps, north_mps = self._air(self.at_m[2])
+        east_m, north_m, up_m = self.at_m
+        to_m = (east_m + seconds * east_mps, north_m + seconds * north_mps, up_m)
+        way_m = seconds * hypot(east_mps, north_mps)
+        self._add(to_m, Steady(way_m, seconds), seconds, 0.0)
 
     def take_off(self) -> None:
         """Start the motors and lift off, to where missions begin."""
@@ -80,7 +97,9 @@ class Autopilot:
             speed_mps = points[max(0, index - 1)].speed_mps
             is_row = rows_from is not None and index > rows_from
             self._go_to(point.at_m, speed_mps, is_row)
-            self.wait(STOP_S + point.loiter_s, waypoint=index)
+            is_gusty = any(from_s <= self.now_s < until_s for from_s, until_s in self._gusty_s)
+            stop_s = STOP_S + GUSTY_STOP_S * is_gusty
+            self.wait(stop_s + point.loiter_s, waypoint=index)
 
     def land(self) -> None:
         """Come down here, wait for the confirmation, touch down."""

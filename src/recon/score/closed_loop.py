@@ -20,7 +20,7 @@ from recon.model.units import seconds_to_ns
 from recon.score.drone import Doing, Drone
 from recon.score.eye import Eye
 from recon.score.flight import whereabouts
-from recon.score.mishaps import Mishap, mishaps_of
+from recon.score.mishaps import Mishap, gusty_spans, mishaps_of
 from recon.score.missions import survey_points, way_home
 from recon.score.photos import Imaged, imaged, photos_of
 from recon.score.run_score import ENOUGH, RunScore, encounters, shares_by, time_to_share
@@ -211,6 +211,7 @@ def _drones(scenario: Scenario, seed: int) -> Sequence[Drone]:
             profiles[serial].go_home_height_m or survey.height_above_takeoff_m,
             wind,
             FLIGHT,
+            gusty_s=gusty_spans(scenario, serial),
         )
         for serial, pad_m in zip(fleet.serials, fleet.pads_m, strict=True)
     ]

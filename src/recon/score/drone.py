@@ -32,6 +32,8 @@ class Doing(Enum):
     RETURNING = "returning"
     HELD = "held"
     """By its pilot, or by a fault."""
+    LOST = "lost"
+    """It has fallen, and says nothing any more."""
 
 
 @dataclass
@@ -66,6 +68,13 @@ class Drone:
     unheard_s: list[tuple[float, float]] = field(default_factory=list)
     """From when to when nobody hears it."""
     held_until_s: float = 0.0
+    ignores_until_s: float = 0.0
+    gusty_s: tuple[tuple[float, float], ...] = ()
+    """From when to when there are squalls."""
+    _given: int = 0
+    """The newest mission that it was given."""
+    _told_ended: int = 0
+    """The newest mission of which it is known that it has ended."""
     _reach_m: float = 0.0
     """No place of all its flights is farther from its pad, or higher."""
     _ceiling_m: float = 0.0
@@ -76,7 +85,7 @@ class Drone:
     @property
     def is_airborne(self) -> bool:
         """Whether it is off the ground; standing still counts as on it."""
-        return self.doing is not Doing.STANDING
+        return self.doing not in (Doing.STANDING, Doing.LOST)
 
     @cached_property
     def level_load(self) -> float:
@@ -88,6 +97,11 @@ class Drone:
     def take(self, number: int, points: Sequence[Point], rows_from: int, now_s: float) -> None:
         """Begin a mission, from the ground or from where it is in the air; its rows begin at the
         `rows_from`th of its points."""
+        self._given = number
+        if now_s < self.ignores_until_s:
+            self.ended_mission = number
+            self.hold(now_s, now_s + self.settings.unheeded_s + self.settings.looked_s)
+            return
         autopilot = self._ordered(now_s)
         if not self.is_airborne:
             autopilot.take_off()
@@ -109,13 +123,38 @@ class Drone:
         self._begin(Doing.RETURNING, autopilot.hops, autopilot.now_s)
 
     def hold(self, now_s: float, until_s: float) -> None:
-        """Stop what it does and hover, not to be had until then; on the ground it stands."""
+        """Stop what it does and hover, not to be had until then; on the ground it stands.
+
+        Whoever was stopped is looked at before it is sent on.
+        """
+        self._hold(now_s, until_s, 0.0)
+
+    def drift(self, now_s: float, until_s: float) -> None:
+        """As `hold`, but the wind carries it along."""
+        self._hold(now_s, until_s, min(until_s - now_s, self.settings.drifts_s))
+
+    def _hold(self, now_s: float, until_s: float, drifts_s: float) -> None:
+        until_s = max(until_s, now_s + self.settings.looked_s)
         self.held_until_s = max(self.held_until_s, until_s)
+        if self.doing is Doing.LOST:
+            return
         if not self.is_airborne:
             self.free_at_s = max(self.free_at_s, until_s)
             return
-        self.stop(now_s)
-        self._begin(Doing.HELD, [], until_s)
+        autopilot = Autopilot(now_s, self.stop(now_s), self.wind)
+        autopilot.drift(drifts_s)
+        self._begin(Doing.HELD, autopilot.hops, until_s)
+
+    def fall(self, now_s: float) -> None:
+        """Fall from the sky, or die where it stands; nobody hears of it again."""
+        east_m, north_m, _up_m = self.stop(now_s)
+        lies_m = (east_m, north_m, 0.0)
+        self._begin(Doing.LOST, [Hop(now_s, now_s, lies_m, lies_m, None, 0.0, lands=True)], inf)
+        self.spot_m = lies_m
+
+    def ignore_missions(self, until_s: float) -> None:
+        """Fly no mission that is given until then; what is flown is flown on."""
+        self.ignores_until_s = max(self.ignores_until_s, until_s)
 
     def lose_word(self, now_s: float, until_s: float) -> None:
         """Fly on, heard by nobody until then."""
@@ -192,14 +231,19 @@ class Drone:
         return settings.home_slack * (way_s + settings.landing_s)
 
     def surveyor(self, now_s: float) -> Surveyor:
-        """Return what the planner is told of it."""
+        """Return what the planner is told of it; unheard, its mission counts as flown on."""
+        is_unheard = self._is_unheard(now_s)
+        if not is_unheard:
+            self._told_ended = self.ended_mission
         able = self.doing in (Doing.MISSION, Doing.HOVERING)
         able |= self.doing is Doing.STANDING and self.free_at_s <= now_s
+        if is_unheard:
+            able = self._told_ended < self._given and self.doing is not Doing.LOST
         return Surveyor(
             self.serial,
             self.place_at(now_s),
-            able and not self._is_unheard(now_s),
-            self.ended_mission,
+            able,
+            self._told_ended,
             max(self.time_left_s(now_s), 0.0),
             self.pad_m,
         )
@@ -234,7 +278,8 @@ class Drone:
 
     def _ordered(self, now_s: float) -> Autopilot:
         """What flies on from here, from when the order is there."""
-        return Autopilot(now_s + self.settings.acts_after_s, self.stop(now_s), self.wind)
+        start_s = now_s + self.settings.acts_after_s
+        return Autopilot(start_s, self.stop(now_s), self.wind, self.gusty_s)
 
     def _begin(self, doing: Doing, hops: list[Hop], until_s: float) -> None:
         self.doing, self.free_at_s = doing, until_s

@@ -20,6 +20,7 @@ from recon.model.shade import (
 from recon.model.units import seconds_to_ns
 from recon.score.forecast_metrics import Ahead, LeadScore, score_lead
 from recon.score.ground import CoarseEye
+from recon.score.mishaps import blind_spans
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.settings import RUN, RunSettings
 from recon.score.shade_metrics import Overlap, boundary_error_m, overlap, told_shade
@@ -55,6 +56,7 @@ class Eye:
         self._fine = np.where(self.footprint, fine_m, np.float32(np.nan))
         over_m = scenario.eye.over_m
         place_m = (over_m[0], over_m[1], scenario.eye.height_m)
+        self._blind_s = blind_spans(scenario)
         self._camera = CoarseEye(self.grid, self.footprint, place_m, seed)
         self._detection, self._forecast = DetectionState(), ForecastState()
         self._to_check: dict[float, list[tuple[float, SunForecast]]] = {}
@@ -62,19 +64,22 @@ class Eye:
         self.score = EyeScore()
 
     def look(self, time_s: float) -> ShadeMap | None:
-        """Return the shade map of a moment, None when the detector rejects its picture.
+        """Return the shade map of a moment; None when there is no picture, or it is rejected.
 
         Times are whole multiples of the eye's period, each after the one before.
         """
         truth = self._truth(time_s)
         is_shade = truth < SUNLIT_TRANSMITTANCE
         self._check(time_s, ~is_shade)
-        shade = self._detected(time_s, truth)
+        shade = None if self._is_blind(time_s) else self._detected(time_s, truth)
         if _is_due(time_s, self._settings.score_maps_every_s):
             self._score_map(shade, is_shade)
         if shade is not None and _is_due(time_s, self._settings.forecast_every_s):
             self._foresee(time_s, shade)
         return shade
+
+    def _is_blind(self, time_s: float) -> bool:
+        return any(from_s <= time_s < until_s for from_s, until_s in self._blind_s)
 
     def _truth(self, time_s: float) -> FloatMap:
         """What reaches the cells of the footprint; 1 outside, where nobody looks."""

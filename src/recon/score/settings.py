@@ -17,6 +17,15 @@ class FlightSettings:
     landing_s: float = 9.0
     """The last metres come down slowly, and a second goes by until the landing is confirmed."""
 
+    looked_s: float = 30.0
+    """Until somebody has looked why a drone was stopped, and sends it on."""
+
+    unheeded_s: float = 15.0
+    """Until a mission that was not begun counts as ignored."""
+
+    drifts_s: float = 60.0
+    """Without satellites the wind carries a drone along; by then its pilot holds it by sight."""
+
     home_slack: float = 1.2
     """A vehicle flies home while the battery still lasts for this many times the way."""
 
