@@ -22,13 +22,12 @@ from recon.score.eye import Eye
 from recon.score.flight import whereabouts
 from recon.score.mishaps import Mishap, gusty_spans, mishaps_of
 from recon.score.missions import survey_points, way_home
-from recon.score.photos import Imaged, imaged, photos_of
+from recon.score.photos import Imaged, imaged, phases_s, photos_of
 from recon.score.run_score import ENOUGH, RunScore, encounters, shares_by, time_to_share
 from recon.score.scenario import Scenario
 from recon.score.settings import FLIGHT, RUN
 from recon.sim.world import Sky, Wind
 
-PHASE_STREAM = 21
 CURVE_MIN = (5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0)
 """When the area in sun is told."""
 
@@ -167,12 +166,10 @@ class EventRun:
 
     def _imaged(self) -> Imaged:
         interval_s = self._plan.survey.camera.interval_s
-        phases = np.random.default_rng((self._seed, PHASE_STREAM)).uniform(
-            0.0, interval_s, len(self._drones)
-        )
+        phases = phases_s(self._seed, self._scenario.fleet.serials, interval_s)
         photos = [
             photos_of(drone.hops, phase_s, self._plan)
-            for drone, phase_s in zip(self._drones, phases.tolist(), strict=True)
+            for drone, phase_s in zip(self._drones, phases, strict=True)
         ]
         return imaged(photos, self._plan, self._sky)
 

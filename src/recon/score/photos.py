@@ -13,6 +13,7 @@ import numpy.typing as npt
 from recon.guidance.survey import SurveyPlan
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.score.flight import Hop
+from recon.sim.survey_shutter import IntervalTimer
 from recon.sim.world import Sky
 
 FloatArray = npt.NDArray[np.float64]
@@ -42,6 +43,11 @@ class Imaged:
     first_in_sun_s: FloatArray
     photos: int
     shaded_photos: int
+
+
+def phases_s(seed: int, serials: Sequence[str], interval_s: float) -> list[float]:
+    """Return when within each interval the timers of drones fire, as the simulator has it."""
+    return [IntervalTimer(seed, serial, interval_s).phase_s for serial in serials]
 
 
 def photos_of(hops: Sequence[Hop], phase_s: float, plan: SurveyPlan) -> Photos:

@@ -8,9 +8,9 @@ from recon.model.command import Phase
 from recon.model.geo import GroundGrid
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
-from recon.score.closed_loop import CURVE_MIN, PHASE_STREAM
+from recon.score.closed_loop import CURVE_MIN
 from recon.score.errors import ScenarioError
-from recon.score.photos import Imaged, imaged
+from recon.score.photos import Imaged, imaged, phases_s
 from recon.score.run_score import ENOUGH, RunScore, shares_by, time_to_share
 from recon.score.scenario import Scenario
 from recon.score.settings import RUN
@@ -170,12 +170,10 @@ class WholeRun:
         assert record.state is not None
         plan = record.state.plan
         interval_s = plan.survey.camera.interval_s
-        phases = np.random.default_rng((self.seed, PHASE_STREAM)).uniform(
-            0.0, interval_s, len(self.drones)
-        )
+        phases = phases_s(self.seed, self.scenario.fleet.serials, interval_s)
         photos = [
             photos_on_rows(way, phase_s, plan)
-            for way, phase_s in zip(self.drones, phases.tolist(), strict=True)
+            for way, phase_s in zip(self.drones, phases, strict=True)
         ]
         return imaged(photos, plan, self._sky)
 
