@@ -96,3 +96,61 @@ def test_the_simulator_flies_the_scenarios_fleet_from_its_pads(tmp_path: Path) -
 def test_a_fault_of_the_first_drone_is_not_the_eyes(tmp_path: Path) -> None:
     apps = build_fleet(simulation_of(small(tmp_path), 0), 0)
     assert [len(app.settings.faults) for app in apps] == [0, 1, 0]
+
+
+STORM = """[[fault]]
+name = "gusts"
+vehicle = "2"
+start_s = 60.0
+
+[[chance]]
+name = "telemetry-dropout"
+vehicle = "*"
+per_hour = 30.0
+duration_s = [2.0, 8.0]
+"""
+
+
+def with_storm(folder: Path, storm: str) -> Scenario:
+    (folder / "storm.toml").write_text(storm, encoding="utf-8")
+    return small(folder, SMALL.replace("[site]", 'fault_file = "storm.toml"\n\n[site]', 1))
+
+
+def test_a_file_of_faults_stands_beside_the_scenario(tmp_path: Path) -> None:
+    scenario = with_storm(tmp_path, STORM)
+    assert [fault.kind.value for fault in scenario.faults] == ["pilot-takes", "gusts"]
+    eye, first, second = build_fleet(simulation_of(scenario, 5), 0)
+    assert "gusts" in [fault.kind.value for fault in second.settings.faults]
+    assert "gusts" not in [fault.kind.value for fault in first.settings.faults]
+    assert "telemetry-dropout" in [fault.kind.value for fault in eye.settings.faults]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"gusts"', '"gremlins"', "storm.toml: line 2"),
+        ('vehicle = "2"', 'vehicle = "7"', "expected a vehicle of SIM-1, SIM-2, SIM-EYE, its numb"),
+        ("per_hour = 30.0", "per_hour = -1.0", "storm.toml: line 9"),
+    ],
+)
+def test_a_bad_file_of_faults_is_told_with_its_line(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    with pytest.raises(ScenarioError) as told:
+        with_storm(tmp_path, STORM.replace(old, new))
+    assert words in str(told.value)
+    assert "small.toml:5: fault_file" in str(told.value)
+
+
+def test_the_eye_may_have_faults_of_its_own(tmp_path: Path) -> None:
+    scenario = small(tmp_path, SMALL.replace("pilot-takes:1:40:30", "frames-black:SIM-EYE:5:5"))
+    eye, first, _second = build_fleet(simulation_of(scenario, 0), 0)
+    assert (len(eye.settings.faults), len(first.settings.faults)) == (1, 0)
+
+
+def test_the_land_rolls_when_that_is_asked_for(tmp_path: Path) -> None:
+    flat = simulation_of(small(tmp_path), 1)
+    text = SMALL.replace("ground_altitude_m = 280.0", "ground_altitude_m = 280.0\nrelief_m = 6.0")
+    rolling = simulation_of(small(tmp_path, text), 1)
+    sources = [config.eye.source for config in (flat, rolling) if config.eye is not None]
+    assert [getattr(source, "relief", None) is None for source in sources] == [True, False]

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
+from recon.sim.fault_chance import Chance
 from recon.sim.faults import Fault
 from recon.sim.world import LightSettings, SkySettings, WindSettings
 from recon.site import Site
@@ -75,7 +76,12 @@ class Scenario:
     sky: SkySettings
     light: LightSettings
     wind: WindSettings
+    relief_m: float
+    """Standard deviation of the heights of the land that the eye sees; the station takes a site
+    without an elevation model for flat, and drones fly above their takeoff point all the same."""
     faults: tuple[Fault, ...]
+    chances: tuple[Chance, ...]
+    """Faults that each run draws from its seed."""
     survey: Survey
     methods: Methods
     limit_s: float

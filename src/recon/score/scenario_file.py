@@ -19,7 +19,9 @@ from recon.score.scenario import Methods, Scenario
 from recon.score.scenario_schema import CloudsTable, ScenarioFile, TaskTable
 from recon.score.staging import staged
 from recon.score.toml_lines import key_lines
-from recon.sim.faults import parse_fault
+from recon.sim.fault_chance import Chance
+from recon.sim.fault_file import FaultScript, load_faults
+from recon.sim.faults import Fault, parse_fault
 from recon.sim.fleet import EYE_SERIAL
 from recon.sim.world import (
     LayerSettings,
@@ -88,6 +90,7 @@ def _text(path: Path) -> str:
 def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
     survey = _survey(path.stem, file.task, file.methods.planner)
     place = staged(path, file, survey, complain)
+    script = _script(path, file, complain)
     origin = place.frame.origin
     scenario = Scenario(
         name=path.stem,
@@ -98,10 +101,9 @@ def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
         sky=_sky(file, origin, complain),
         light=LightSettings(altitude_m=origin.ellipsoid_height_m),
         wind=_wind(file, complain),
-        faults=tuple(
-            complain.made(f"faults[{i}]", lambda text=text: parse_fault(text))  # type: ignore[misc]
-            for i, text in enumerate(file.faults)
-        ),
+        relief_m=file.site.relief_m,
+        faults=(*_faults(file, complain), *script.faults),
+        chances=script.chances,
         survey=survey,
         methods=Methods(file.methods.detection, file.methods.forecast),
         limit_s=60.0 * file.task.limit_min,
@@ -111,6 +113,21 @@ def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
         raise complain.about(f"expected a survey that can be flown, got: {plan.reason}", "task")
     _check_faulty(scenario, complain)
     return scenario
+
+
+def _faults(file: ScenarioFile, complain: Complaints) -> tuple[Fault, ...]:
+    return tuple(
+        complain.made(f"faults[{i}]", lambda text=text: parse_fault(text))  # type: ignore[misc]
+        for i, text in enumerate(file.faults)
+    )
+
+
+def _script(path: Path, file: ScenarioFile, complain: Complaints) -> FaultScript:
+    """The faults of a file of their own, beside the scenario's."""
+    name = file.fault_file
+    if name is None:
+        return FaultScript()
+    return complain.made("fault_file", lambda: load_faults(path.parent / name))
 
 
 def _wind(file: ScenarioFile, complain: Complaints) -> WindSettings:
@@ -164,9 +181,14 @@ def _layer(number: int, clouds: CloudsTable, complain: Complaints) -> LayerSetti
 
 
 def _check_faulty(scenario: Scenario, complain: Complaints) -> None:
-    serials = (*scenario.fleet.serials, EYE_SERIAL)
-    for index, fault in enumerate(scenario.faults):
+    serials = scenario.fleet.serials
+    asked: list[Fault | Chance] = [*scenario.faults, *scenario.chances]
+    for index, fault in enumerate(asked):
+        if fault.is_for(EYE_SERIAL, 0):
+            continue
         if not any(fault.is_for(serial, i + 1) for i, serial in enumerate(serials)):
-            known = ", ".join(serials)
+            known = ", ".join((*serials, EYE_SERIAL))
             said = f"expected a vehicle of {known}, its number or *, got {fault.vehicle!a}"
+            if fault.told_at:
+                raise complain.about(f"{fault.told_at}{said}", "fault_file")
             raise complain.about(said, f"faults[{index}]")

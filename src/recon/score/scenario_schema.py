@@ -40,6 +40,7 @@ class SiteTable(Table, frozen=True):
     latitude_deg: Annotated[float, Meta(ge=-89.0, le=89.0)] | None = None
     longitude_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] | None = None
     ground_altitude_m: Annotated[float, Meta(ge=-500.0, le=6000.0)] | None = None
+    relief_m: Annotated[float, Meta(ge=0.0, le=60.0)] = 0.0
 
 
 class TaskTable(Table, frozen=True):
@@ -136,3 +137,4 @@ class ScenarioFile(Table, frozen=True):
     clouds: list[CloudsTable] = []
     wind: WindTable = WindTable()
     faults: list[str] = []
+    fault_file: Annotated[str, Meta(min_length=1, description="a file's name")] | None = None

@@ -1,11 +1,13 @@
 """A scenario as the simulator flies it: the same sky, wind, places and faults, in real packets."""
 
 from dataclasses import replace
+from typing import TypeVar
 
 from recon.model.geo import LocalFrame
 from recon.score.scenario import Scenario
 from recon.sim.camera_feed import FeedSettings
 from recon.sim.eye import EyeSettings
+from recon.sim.fault_chance import Chance
 from recon.sim.faults import Fault
 from recon.sim.field import FieldFrames
 from recon.sim.fleet import EYE_SERIAL, Airborne, EyeSetup, SimulationConfig
@@ -13,7 +15,10 @@ from recon.sim.replay import rig_over
 from recon.sim.rig import EyeRig
 from recon.sim.telemetry import FIELD_SENSORS
 from recon.sim.world import Sky, Wind
+from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Eye
+
+Asked = TypeVar("Asked", Fault, Chance)
 
 EYE_ENDURANCE_S = 36_000.0
 """The eye stays up for as long as a scenario lasts: its change of batteries is not looked at."""
@@ -30,7 +35,12 @@ def simulation_of(
     assert eye is not None  # or it would not have been read
     rig = rig_of(frame, eye)
     source = FieldFrames(
-        rig.camera, eye.image_circle, seed, sky_of(scenario, seed), EyeSettings(seed)
+        rig.camera,
+        eye.image_circle,
+        seed,
+        sky_of(scenario, seed),
+        EyeSettings(seed),
+        _relief(scenario, seed),
     )
     silent = FeedSettings(starts_on=False)
     return SimulationConfig(
@@ -45,6 +55,7 @@ def simulation_of(
         wind=replace(scenario.wind, seed=seed),
         seed=seed,
         faults=tuple(_by_serial(fault, fleet.serials) for fault in scenario.faults),
+        chances=tuple(_by_serial(chance, fleet.serials) for chance in scenario.chances),
         pads={
             serial: profile.pad
             for serial, profile in site.profiles.items()
@@ -76,7 +87,13 @@ def rig_of(frame: LocalFrame, eye: Eye) -> EyeRig:
     return EyeRig(eye.camera, frame, pose, eye.marked_frame)
 
 
-def _by_serial(fault: Fault, serials: tuple[str, ...]) -> Fault:
+def _relief(scenario: Scenario, seed: int) -> Relief | None:
+    if scenario.relief_m == 0.0:
+        return None
+    return Relief(ReliefSettings(seed, scenario.relief_m))
+
+
+def _by_serial(fault: Asked, serials: tuple[str, ...]) -> Asked:
     """A scenario counts its survey drones alone, the simulator counts the eye as the first."""
     named = dict(zip(map(str, range(1, len(serials) + 1)), serials, strict=True))
     return replace(fault, vehicle=named.get(fault.vehicle, fault.vehicle))
