@@ -13,7 +13,8 @@ from recon.model.event import HolderCame, OperatorOrder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.score.whole.apps import ConnectedApps
+from recon.sim.app import SimulatedApp
 from recon.sim.camera_feed import FeedSettings
 from recon.sim.eye.settings import EyeSettings
 from recon.sim.faults import parse_fault
@@ -24,7 +25,7 @@ from recon.sim.telemetry import FIELD_SENSORS
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.build import first_state, worker_tasks
-from recon.station.virtual import FAR_NS, FakeLink, VirtualDriver
+from recon.station.virtual import FakeLink, VirtualDriver
 
 VEHICLES = 8
 HOLDER = "the study"
@@ -51,59 +52,41 @@ HALF_ROW_M = 20.0
 ROWS_NORTH_M = (-20.0, 0.0, 20.0)
 LOWEST_M, LAYERS_APART_M = 40.0, 8.0
 
-SECOND_LINK = 1
 WATCHED_EVERY_S = 0.2
 """So often it is asked what faults want of connections."""
 
 
 @dataclass(slots=True)
-class AppConnection:
-    """One of an app's connections; an abandoned one neither reads nor writes any more."""
-
-    app: SimulatedApp
-    link: int = MAIN_LINK
-    is_abandoned: bool = False
-
-    def receive(self, data: bytes, now_ns: int) -> None:
-        """Pass on what the station says."""
-        if not self.is_abandoned:
-            self.app.receive(data, now_ns, self.link)
-
-    def advance(self, now_ns: int) -> list[bytes]:
-        """Return what the app says."""
-        return [] if self.is_abandoned else self.app.advance(now_ns, self.link)
-
-    @property
-    def next_due_ns(self) -> int:
-        """When the app has something to do next."""
-        return FAR_NS if self.is_abandoned else self.app.next_due_ns
-
-
-@dataclass(slots=True)
 class EightVehicles:
-    """The station and its apps; what faults ask of connections is done."""
+    """The station and its apps, and an operator with a word for each drone now and then."""
 
-    driver: VirtualDriver
-    apps: Sequence[SimulatedApp]
+    connected: ConnectedApps
     site: Site
     steers: bool = True
-    make_link: Callable[[], FakeLink] = FakeLink
-    connections: dict[str, tuple[AppConnection, int]] = field(default_factory=dict)
     orders: list[int] = field(default_factory=list)
     _later: list[tuple[int, Callable[[], object]]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        for app in self.apps:
-            self._connect(app)
         for number, serial in enumerate(PLACES_M):
             self._after(3.0 + APART_S * number, lambda serial=serial: self._fly(serial))
+
+    @property
+    def driver(self) -> VirtualDriver:
+        """What lets time pass."""
+        return self.connected.driver
+
+    @property
+    def apps(self) -> Sequence[SimulatedApp]:
+        """All apps, the eye's first."""
+        return self.connected.apps
 
     def run_for(self, seconds: float) -> None:
         """Let virtual time pass."""
         end_ns = self.driver.now_ns + seconds_to_ns(seconds)
         while self.driver.now_ns < end_ns:
             next_ns = min([end_ns, *(at_ns for at_ns, _ in self._later)])
-            self.driver.run_for(min(WATCHED_EVERY_S, (next_ns - self.driver.now_ns) / NS_PER_S))
+            until_then_s = (next_ns - self.driver.now_ns) / NS_PER_S
+            self.connected.run_for(min(WATCHED_EVERY_S, until_then_s))
             self._do_what_is_due()
 
     def order(self, serial: str, body: Body, holder: str | None = None) -> None:
@@ -158,35 +141,6 @@ class EightVehicles:
         self._later = [item for item in self._later if item[0] > self.driver.now_ns]
         for action in due:
             action()
-        for app in self.apps:
-            for order in app.take_link_orders():
-                self._carry_out(app, order)
-
-    def _connect(self, app: SimulatedApp) -> None:
-        app.connected(self.driver.now_ns)
-        connection = AppConnection(app)
-        link_id = self.driver.connect(connection, self.make_link())
-        self.connections[app.settings.serial] = connection, link_id
-
-    def _carry_out(self, app: SimulatedApp, order: LinkOrder) -> None:
-        connection, link_id = self.connections[app.settings.serial]
-        match order.kind:
-            case LinkOrderKind.RECONNECT:
-                self.driver.disconnect(link_id)
-                self._after(order.seconds, lambda: self._connect(app))
-            case LinkOrderKind.ABANDON:
-                connection.is_abandoned = True
-                self._after(order.seconds, lambda: self.driver.disconnect(link_id))
-                self._connect(app)
-            case LinkOrderKind.SECOND:
-                app.connected(self.driver.now_ns, SECOND_LINK)
-                second = AppConnection(app, SECOND_LINK)
-                second_id = self.driver.connect(second, self.make_link())
-                self._after(order.seconds, lambda: self._end_second(app, second_id))
-
-    def _end_second(self, app: SimulatedApp, link_id: int) -> None:
-        app.disconnected(SECOND_LINK)
-        self.driver.disconnect(link_id)
 
     def _after(self, seconds: float, action: Callable[[], object]) -> None:
         self._later.append((self.driver.now_ns + seconds_to_ns(seconds), action))
@@ -206,7 +160,7 @@ def eight_vehicles(
     site = load_site(demo_site_folder())
     driver = VirtualDriver(first_state(site), tasks=worker_tasks(site), keeps_log=keeps_log)
     fleet = build_fleet(_config(site, seed, sees, faults), driver.now_ns)
-    return EightVehicles(driver, fleet, site, steers, make_link)
+    return EightVehicles(ConnectedApps(driver, fleet, make_link), site, steers)
 
 
 def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> SimulationConfig:
