@@ -3,6 +3,7 @@
 from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, surveyed_world
 
 from recon.model.event import Event
+from recon.model.survey import SurveyPhase
 from recon.record.audit import AuditEntry
 from recon.station.auditing import Auditing, audit
 from recon.station.state import Station
@@ -42,6 +43,22 @@ def test_every_word_is_told_with_who_said_it() -> None:
     ]
     started = entries[2]
     assert started.details == {"id": SURVEY_ID, "serials": ["SIM-1"], "takeoff": True}
+
+
+def test_a_hold_on_the_way_home_is_told_as_what_it_is() -> None:
+    world = surveyed_world()
+    entries = audited(world)
+    world.asks()
+    world.starts("SIM-1")
+    assert world.runs_until(SurveyPhase.DONE, 400.0)
+    world.runs(3.0)
+    world.aborts()
+    assert [entry.kind for entry in entries][-3:] == [
+        "survey.is_done",
+        "survey.held",
+        "authority.taken",
+    ]
+    assert world.phase() is SurveyPhase.DONE
 
 
 def test_a_refused_word_is_told_with_its_reason() -> None:

@@ -1,5 +1,7 @@
 """A survey's vehicles come home when there is nothing more to fly for them, in virtual time."""
 
+from random import Random
+
 import pytest
 from tests.station.surveyed_world import SurveyedWorld, asked, field, surveyed_world
 
@@ -223,3 +225,20 @@ def test_one_whose_mission_went_wrong_is_left_for_somebody_to_look_at() -> None:
     assert "SIM-1" not in world.fleet.stages()
     assert world.leader("SIM-1") is Leader.OPERATOR
     world.fleet.world.order("SIM-1", LandNow())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_whatever_the_field_and_the_batteries_they_keep_apart_and_land(seed: int) -> None:
+    """Random fields, pads and batteries: who comes home early does so past those who fly rows."""
+    random = Random(seed)
+    pads = [(40.0 * n + random.uniform(-8.0, 8.0), random.uniform(-70.0, -40.0)) for n in range(3)]
+    world = surveyed_world(3, pads=pads)
+    world.asks(asked(field(random.uniform(160.0, 320.0), random.uniform(60.0, 140.0))))
+    serials = ("SIM-1", "SIM-2", "SIM-3")
+    for serial in serials:
+        battery_of(world, serial, random.uniform(0.35, 0.9))
+    world.starts(*serials)
+    assert runs_until_home(world, serials, 1_500.0), (world.record().members, world.fleet.stages())
+    assert {world.leader(serial) for serial in serials} == {Leader.OPERATOR}
+    assert set(world.fleet.stages().values()) == {Stage.LANDED}
+    assert world.fleet.nearest.level_m >= 15.0, world.fleet.nearest.who

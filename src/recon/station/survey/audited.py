@@ -28,8 +28,11 @@ def survey_entries(
             yield _word("started", _name(before, number), text, by, refusal, details)
         case SurveyStopped(number, by, is_aborted):
             refusal = stop_refusal(before, event, now_ns)
+            record = before.surveys.records.get(number)
             kind = "aborted" if is_aborted else "paused"
             text = f"is {kind}; its vehicles hold"
+            if record is not None and record.is_over and refusal is None:
+                kind, text = "held", "is over; its vehicles on their way home hold"
             yield _word(kind, _name(before, number), text, by, refusal, {"id": number})
     if after.surveys is not before.surveys:
         yield from _changes(before, event, after)

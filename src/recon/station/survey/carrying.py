@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from recon.guidance.survey import refused
 from recon.model.authority import Leader
-from recon.model.command import Hover, Phase
+from recon.model.command import Hover, Phase, Refusal
 from recon.model.event import OperatorOrder, WorkerResult
 from recon.model.survey import MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
@@ -133,11 +133,17 @@ def _give(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> S
     if member is None or state is None or vehicle is None:
         return station, ()
     station, number = take_id(station)
-    order, tried = order_of(station, record, given, vehicle, now_ns)
-    station, sent = commanding.place(station, replace(order, command_id=number), now_ns)
+    order, why = order_of(station, record, given, vehicle, now_ns)
+    order = replace(order, command_id=number)
+    sent: tuple[Output, ...] = ()
+    if isinstance(why, Refusal):
+        station = commanding.refuse(station, order, why, now_ns)
+    else:
+        station, sent = commanding.place(station, order, now_ns)
     placed = station.orders.records[number]
+    words = placed.note if isinstance(why, Refusal) else placed.note + why
     if placed.phase is Phase.REFUSED_BY_STATION:
-        state = refused(state, given.serial, given.number, placed.note + tried, now_ns)
+        state = refused(state, given.serial, given.number, words, now_ns)
         record = replace(record, state=state)
         station = replace(station, surveys=station.surveys.put(record))
         if comes_home(record) and placed.note.startswith(f"{BATTERY}: "):

@@ -59,6 +59,9 @@ function One(props: Part) {
         <Show when={is("created", "running", "paused")}>
           <Stop survey={props.survey} onAnswer={props.onAnswer} word="abort" />
         </Show>
+        <Show when={is("done") && props.survey.vehicles.some((one) => one.waits_for !== null)}>
+          <Stop survey={props.survey} onAnswer={props.onAnswer} word="hold" />
+        </Show>
       </div>
     </section>
   );
@@ -137,17 +140,21 @@ function Start(props: Part) {
   );
 }
 
-function Stop(props: Part & { word: "pause" | "abort" }) {
+const STOPS = { pause: "Pause", abort: "Abort", hold: "Hold those going home" } as const;
+
+/** A survey that is done stays so: then the word to abort holds its vehicles on their way home. */
+function Stop(props: Part & { word: keyof typeof STOPS }) {
   const { source } = useConsole();
-  const stop = async () => props.onAnswer(await source.stopSurvey(props.survey.id, props.word));
-  const label = () => (props.word === "pause" ? "Pause" : "Abort");
+  const word = () => (props.word === "hold" ? "abort" : props.word);
+  const stop = async () => props.onAnswer(await source.stopSurvey(props.survey.id, word()));
+  const label = () => STOPS[props.word];
   return (
     <GuardButton
       label={label()}
       name={`${label()} survey ${props.survey.name}`}
       class={props.word === "abort" ? "guard-grave" : ""}
       // A pause holds, which is safe; what is aborted never flies again.
-      hold_ms={props.word === "pause" ? BRIEF_MS : GUARD_MS}
+      hold_ms={props.word === "abort" ? GUARD_MS : BRIEF_MS}
       subject={`${props.survey.id}`}
       onConfirm={() => void stop()}
     />

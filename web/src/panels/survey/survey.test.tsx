@@ -63,8 +63,16 @@ describe("a survey in the list", () => {
     expect(page.root.textContent).toContain("it has ended already");
   });
 
-  it("that is over has no buttons", () => {
+  it("that is done holds its vehicles that are on their way home, by a short press", () => {
     show(survey(7, { phase: "done" }));
+    hold("Hold those going home survey south field", 500);
+    expect(page.said).toEqual([{ stoppedSurvey: 7, word: "abort" }]);
+  });
+
+  it("that is over has no buttons", () => {
+    const home = { is_flying_rows: false, waits_for: null };
+    const vehicles = survey(7).vehicles.map((one) => ({ ...one, ...home }));
+    show(survey(7, { phase: "done", vehicles }));
     expect(page.root.querySelectorAll("[data-testid=survey-7] .guard")).toHaveLength(0);
   });
 });
