@@ -28,8 +28,11 @@ class FaultPlan:
 
     def active(self, kind: FaultKind, now_ns: int) -> Fault | None:
         """Return the fault of a kind that is on, the last told of several, else None."""
+        faults = self._by_kind.get(kind) if self._by_kind else None
+        if faults is None:
+            return None
         elapsed_ns = now_ns - self._start_ns
-        on = [fault for fault in self._by_kind.get(kind, ()) if fault.is_active(elapsed_ns)]
+        on = [fault for fault in faults if fault.is_active(elapsed_ns)]
         return on[-1] if on else None
 
     def has(self, kind: FaultKind, now_ns: int) -> bool:
