@@ -119,7 +119,7 @@ def _member(
     vehicle = station.fleet.vehicles.get(member.serial)
     is_told = record.is_running or is_under_way(station, member)
     waits = hindrance(station, member, now_ns) if is_told else None
-    refused = state.refusals.get(member.serial)
+    refused = None if record.is_over else state.refusals.get(member.serial)
     return schema.SurveyingView(
         serial=member.serial,
         vehicle_name=member.serial if vehicle is None else vehicle.display_name,

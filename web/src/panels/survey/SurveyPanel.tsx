@@ -38,6 +38,9 @@ interface Part {
 
 function One(props: Part) {
   const is = (...phases: SurveyView["phase"][]) => phases.includes(props.survey.phase);
+  /** Of a survey that is done, those still on their way home. */
+  const busy = () =>
+    props.survey.vehicles.filter(({ waits_for }) => !is("done", "aborted") || waits_for !== null);
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
       <p class="wire-text">
@@ -48,7 +51,9 @@ function One(props: Part) {
         <span class="muted survey-reason">{props.survey.reason}</span>
       </p>
       <Figures survey={props.survey} />
-      <For each={props.survey.vehicles}>{(vehicle) => <Surveying vehicle={vehicle} />}</For>
+      <For each={busy()}>
+        {(vehicle) => <Surveying vehicle={vehicle} isDone={props.survey.phase === "done"} />}
+      </For>
       <Show when={is("created", "paused", "running")}>
         <Start survey={props.survey} onAnswer={props.onAnswer} />
       </Show>
@@ -59,7 +64,7 @@ function One(props: Part) {
         <Show when={is("created", "running", "paused")}>
           <Stop survey={props.survey} onAnswer={props.onAnswer} word="abort" />
         </Show>
-        <Show when={is("done") && props.survey.vehicles.some((one) => one.waits_for !== null)}>
+        <Show when={is("done") && busy().length > 0}>
           <Stop survey={props.survey} onAnswer={props.onAnswer} word="hold" />
         </Show>
       </div>
@@ -94,8 +99,9 @@ function Figures(props: { survey: SurveyView }) {
   );
 }
 
-function Surveying(props: { vehicle: SurveyingView }) {
-  const does = () => (props.vehicle.is_flying_rows ? "flies rows" : "flies no row now");
+function Surveying(props: { vehicle: SurveyingView; isDone: boolean }) {
+  const waits = () => (props.isDone ? "is on its way home" : "flies no row now");
+  const does = () => (props.vehicle.is_flying_rows ? "flies rows" : waits());
   return (
     <p class="wire-text">
       <strong>{props.vehicle.vehicle_name}</strong> {does()}
