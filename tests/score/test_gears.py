@@ -7,7 +7,14 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from studies.gears import Arrival, compared, compared_shares, compared_survey, drawn_flight
+from studies.gears import (
+    Arrival,
+    compared,
+    compared_shares,
+    compared_survey,
+    drawn_curve,
+    drawn_flight,
+)
 
 
 def assert_all_agree(found: list[Arrival], at_least: int) -> None:
@@ -19,6 +26,10 @@ def assert_all_agree(found: list[Arrival], at_least: int) -> None:
 @pytest.mark.parametrize("seed", [1, 4])
 def test_a_single_mission_takes_as_long(seed: int) -> None:
     assert_all_agree(compared(drawn_flight(Random(seed))), at_least=3)
+
+
+def test_a_mission_past_rounded_corners_takes_as_long() -> None:
+    assert_all_agree(compared(drawn_curve(Random(6))), at_least=2)
 
 
 def test_a_survey_by_one_drone_takes_as_long_from_its_first_order_to_its_landing(

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, inf, log, sqrt
 
+from recon.score.curve import curved
 from recon.score.flight import Hop, Motion, Spot, Steady
 from recon.score.legs import Pace, leg
 from recon.sim.air import COMES_BACK_WITHIN_S, LEARNS_WITHIN_S
@@ -23,6 +24,7 @@ from recon.sim.manoeuvres import (
     TAKEOFF_HEIGHT_M,
 )
 from recon.sim.mission import ARRIVED_BELOW_MPS, ARRIVED_WITHIN_M
+from recon.sim.path import Corner
 from recon.sim.power import flying_load
 from recon.sim.world import Wind
 
@@ -51,6 +53,7 @@ class Point:
     at_m: Spot
     speed_mps: float
     loiter_s: float = 0.0
+    corner_radius_m: float = 0.2
 
 
 class Autopilot:
@@ -101,6 +104,19 @@ class Autopilot:
             stop_s = STOP_S + GUSTY_STOP_S * is_gusty
             self.wait(stop_s + point.loiter_s, waypoint=index)
 
+    def fly_curved(self, points: Sequence[Point]) -> None:
+        """Fly to the first waypoint, and past the others without a stop, round their corners."""
+        self._rise(points[0].at_m[2], RISEN_M)
+        self._go_to(points[0].at_m, points[0].speed_mps, is_row=False)
+        self.wait(STOP_S)
+        corners = [
+            Corner(p.at_m[1], p.at_m[0], p.at_m[2], p.corner_radius_m, p.speed_mps) for p in points
+        ]
+        for to_m, motion in curved(corners, self._limits):
+            climb_mps = (to_m[2] - self.at_m[2]) / max(motion.duration_s, 1e-9)
+            self._add(to_m, motion, motion.duration_s, climb_mps)
+        self.wait(STOP_S, waypoint=len(points) - 1)
+
     def land(self) -> None:
         """Come down here, wait for the confirmation, touch down."""
         height_m = self.at_m[2]
@@ -114,7 +130,6 @@ class Autopilot:
         start_s, height_m = self.now_s, max(go_home_height_m, self.at_m[2])
         self._rise(height_m, RISEN_M)
         # The last metre of the climb is flown on the way.
-        self.at_m, self._up_mps = (*self.at_m[:2], height_m), 0.0
         self._go_to((*home_m, height_m), HOME_MPS, is_row=False)
         self.wait(start_s + SHORTEST_GO_HOME_S - self.now_s)
         self.land()

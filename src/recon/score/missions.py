@@ -34,7 +34,12 @@ def points_of(mission: Mission, frame: LocalFrame) -> list[Point]:
     longitude = np.array([each.longitude_deg for each in mission.waypoints])
     places = enu_from_geo(frame, latitude, longitude, np.full(len(latitude), height_m))
     return [
-        Point((east_m, north_m, each.height_above_takeoff_m), each.speed_mps, each.loiter_s or 0.0)
+        Point(
+            (east_m, north_m, each.height_above_takeoff_m),
+            each.speed_mps,
+            each.loiter_s or 0.0,
+            each.corner_radius_m,
+        )
         for each, (east_m, north_m, _up_m) in zip(mission.waypoints, places.tolist(), strict=True)
     ]
 
