@@ -7,6 +7,7 @@ import { createOverlay, type Overlay } from "./map/overlay";
 import { createDesk, type Desk } from "./orders/desk";
 import { createFlyHere, type FlyHere } from "./orders/flyHere";
 import { type Targets, targetsOf } from "./orders/targets";
+import type { SurveyView } from "./protocol";
 import type { Clock, Instant } from "./source/clock";
 import type { StationSource } from "./source/stationSource";
 
@@ -34,6 +35,8 @@ export interface Console {
   /** The map says where its middle is. */
   setMiddle(middle: () => LonLat): void;
 }
+
+const FLOWN: readonly SurveyView["phase"][] = ["running", "paused"];
 
 /** Puts the page's shared parts together; `now` ticks as often as ages shall be shown anew. */
 export function createConsole(
@@ -65,7 +68,7 @@ export function createConsole(
     targets,
     desk,
     flyHere,
-    overlay: createOverlay(),
+    overlay: createOverlay(() => fleet.surveys.some(({ phase }) => FLOWN.includes(phase))),
     theme,
     behindS,
     fitRequests,

@@ -12,8 +12,16 @@ export interface Overlay {
   lookAhead(lead_s: number): void;
 }
 
-export function createOverlay(): Overlay {
-  const [kind, show] = createSignal<OverlayKind>("none");
+/** Until somebody chooses, a survey that is flown shows its cells: they are what is flown for. */
+export function createOverlay(isSurveyFlown: Accessor<boolean> = () => false): Overlay {
+  const [chosen, show] = createSignal<OverlayKind | null>(null);
   const [lead_s, lookAhead] = createSignal(0);
-  return { kind, lead_s, show, lookAhead };
+  return {
+    kind: () => chosen() ?? (isSurveyFlown() ? "cells" : "none"),
+    lead_s,
+    show: (kind) => {
+      show(kind);
+    },
+    lookAhead,
+  };
 }

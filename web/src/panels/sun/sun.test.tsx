@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { shadeLine, station, vehicle } from "../../testing/world";
+import { shadeLine, station, survey, vehicle } from "../../testing/world";
 import { SunPanel } from "./SunPanel";
 
 let page: RenderedPage;
@@ -24,6 +24,16 @@ describe("sun and shade", () => {
     show();
     find<HTMLInputElement>(page.root, "input[type=radio][name=overlay]:not(:checked)").click();
     expect(page.shared.overlay.kind()).toBe("shade");
+  });
+
+  it("shows a flown survey's cells until something else is chosen", () => {
+    page = renderPage(
+      SunPanel,
+      station([vehicle(1)], { surveys: [survey(1, { phase: "running" })] }),
+    );
+    expect(page.shared.overlay.kind()).toBe("cells");
+    find<HTMLInputElement>(page.root, "input[type=radio][name=overlay]:not(:checked)").click();
+    expect(page.shared.overlay.kind()).toBe("none");
   });
 
   it("looks ahead by the forecast's own leads", () => {
