@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil
 from typing import Protocol
 
@@ -88,8 +89,11 @@ class Hop:
         for lasts_s in self.motion.phases_s:
             end_s = min(begin_s + lasts_s, self.end_s)
             count = ceil((end_s - begin_s) / every_s)
-            parts.append(np.linspace(begin_s, end_s, count + 1)[1:])
-            begin_s = end_s
+            if count == 0:
+                continue
+            part = begin_s + (end_s - begin_s) / count * np.arange(1, count + 1)
+            part[-1] = begin_s = end_s
+            parts.append(part)
         return np.concatenate(parts)
 
 
@@ -102,8 +106,11 @@ def whereabouts(hops: Sequence[Hop], at_s: FloatArray) -> tuple[FloatArray, Bool
     in_air = np.zeros(len(at_s), dtype=np.bool_)
     starts_s = np.array([hop.start_s for hop in hops])
     which = np.searchsorted(starts_s, at_s, side="right") - 1
-    for index in np.unique(which[which >= 0]):
-        hop, now = hops[int(index)], which == index
-        places[now] = hop.places_m(at_s[now])
-        in_air[now] = ~(hop.lands & (at_s[now] >= hop.end_s))
+    firsts = np.flatnonzero(np.diff(which, prepend=-2)).tolist()
+    for first, after in pairwise([*firsts, len(at_s)]):
+        if which[first] < 0:
+            continue
+        hop, now_s = hops[int(which[first])], at_s[first:after]
+        places[first:after] = hop.places_m(now_s)
+        in_air[first:after] = ~(hop.lands & (now_s >= hop.end_s))
     return places, in_air
