@@ -1,5 +1,6 @@
 """Where a scenario is played: on a site of a folder or made up, and by the simulator."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,9 @@ from tests.score.scenes import SMALL, small
 
 from recon.geo import Polygon, enu_from_point
 from recon.score import Scenario, ScenarioError, load_scenario
+from recon.score.mishaps import with_chances, without_effect
 from recon.score.simulation import simulation_of
+from recon.sim.faults import FaultKind
 from recon.sim.fleet import EYE_SERIAL, build_fleet
 
 FOLDER = Path(__file__).parents[2] / "scenarios"
@@ -123,6 +126,21 @@ def test_a_file_of_faults_stands_beside_the_scenario(tmp_path: Path) -> None:
     assert "gusts" in [fault.kind.value for fault in second.settings.faults]
     assert "gusts" not in [fault.kind.value for fault in first.settings.faults]
     assert "telemetry-dropout" in [fault.kind.value for fault in eye.settings.faults]
+
+
+def test_chance_has_the_same_for_a_seed_in_both_gears(tmp_path: Path) -> None:
+    scenario = with_storm(tmp_path, STORM)
+    by_events = with_chances(scenario, 5)
+    for app in build_fleet(simulation_of(scenario, 5), 0):
+        serial = app.settings.serial
+        simulated = [f for f in app.settings.faults if f.kind.value == "telemetry-dropout"]
+        drawn = [f for f in by_events.faults if f.vehicle == serial and f not in scenario.faults]
+        assert [f.start_s for f in drawn] == [f.start_s for f in simulated]
+        assert len(drawn) > 0
+    assert with_chances(scenario, 6).faults != by_events.faults
+    assert without_effect(scenario) == []
+    unfelt = replace(scenario.chances[0], kind=FaultKind.NO_ACK)
+    assert without_effect(replace(scenario, chances=(unfelt,))) == ["no-ack"]
 
 
 @pytest.mark.parametrize(

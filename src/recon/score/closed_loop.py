@@ -20,7 +20,7 @@ from recon.model.units import seconds_to_ns
 from recon.score.drone import Doing, Drone
 from recon.score.eye import Eye
 from recon.score.flight import whereabouts
-from recon.score.mishaps import Mishap, gusty_spans, mishaps_of
+from recon.score.mishaps import Mishap, gusty_spans, mishaps_of, with_chances
 from recon.score.missions import survey_points, way_home
 from recon.score.photos import Imaged, imaged, phases_s, photos_of
 from recon.score.run_score import ENOUGH, RunScore, encounters, shares_by, time_to_share
@@ -44,6 +44,7 @@ class EventRun:
     """One run; times are seconds since its start."""
 
     def __init__(self, scenario: Scenario, seed: int) -> None:
+        scenario = with_chances(scenario, seed)
         self._scenario, self._seed = scenario, seed
         self._sky = Sky(replace(scenario.sky, seed=seed))
         self._eye = Eye(scenario, self._sky, seed)

@@ -1,11 +1,12 @@
 """Faults as they reach flights that go by events: what a link does to bytes has no place here."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 from recon.score.drone import Drone
 from recon.score.scenario import Scenario
+from recon.sim.fault_chance import drawn_faults
 from recon.sim.faults import FAILED_CELL_FRACTION, Fault, FaultKind
 from recon.sim.fleet import EYE_SERIAL
 
@@ -64,6 +65,20 @@ class Mishap:
                 drone.fall(self.at_s)
 
 
+def with_chances(scenario: Scenario, seed: int) -> Scenario:
+    """Return a run's scenario: the faults that chance has for it among the others.
+
+    They are those that the simulator draws for the same seed.
+    """
+    numbered = [(serial, index + 1) for index, serial in enumerate(scenario.fleet.serials)]
+    drawn = [
+        replace(fault, vehicle=serial)
+        for serial, number in (*numbered, (EYE_SERIAL, len(numbered) + 1))
+        for fault in drawn_faults(scenario.chances, seed, serial, number)
+    ]
+    return replace(scenario, faults=(*scenario.faults, *drawn), chances=())
+
+
 def mishaps_of(scenario: Scenario) -> list[Mishap]:
     """Return what strikes whom, in order of time, those of one moment by drone."""
     struck = [
@@ -95,7 +110,10 @@ def blind_spans(scenario: Scenario) -> tuple[Span, ...]:
 
 
 def without_effect(scenario: Scenario) -> list[str]:
-    """Return the names of the scenario's faults that flights by events do not feel."""
+    """Return the names of the scenario's faults, by script or chance, that flights by events do
+    not feel."""
+    by_chance = (Fault(c.kind, c.vehicle, c.from_s, c.longest_s) for c in scenario.chances)
+    scenario = replace(scenario, faults=(*scenario.faults, *by_chance), chances=())
     struck = {mishap.fault for mishap in mishaps_of(scenario)}
     return sorted(
         {
