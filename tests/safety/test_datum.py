@@ -13,10 +13,12 @@ from recon.model.stamped import Stamped
 from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.datum import (
+    FEW_PLACES,
     frame_for,
     home,
     home_enu_m,
     is_ground_assumed_flat,
+    places_m,
     takeoff_up_m,
     vehicle_enu_m,
 )
@@ -31,6 +33,17 @@ def geo_point(at: LatLon, height_m: float) -> GeoPoint:
 def pad(east_m: float, north_m: float, up_m: float, serial: str | None = None) -> LandingPad:
     at = geo_point(place(east_m, north_m), ORIGIN.ellipsoid_height_m + up_m)
     return LandingPad(f"pad {east_m:g} {north_m:g}", serial, at)
+
+
+class TestPlaces:
+    @pytest.mark.parametrize("count", [FEW_PLACES, FEW_PLACES + 1])
+    def test_many_at_once_are_where_each_is_alone(self, count: int) -> None:
+        wanted = [(37.0 * n - 400.0, 250.0 - 21.0 * n) for n in range(count)]
+        found = places_m(LocalFrame(ORIGIN), [place(*each) for each in wanted])
+        assert found == pytest.approx(np.array(wanted), abs=0.01)
+
+    def test_of_none_there_are_none(self) -> None:
+        assert places_m(LocalFrame(ORIGIN), []).shape == (0, 2)
 
 
 class TestHome:
