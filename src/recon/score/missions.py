@@ -19,12 +19,13 @@ RETURN = FleetReturnSettings()
 def survey_points(
     mission: Mission, at_m: Spot, number: int, scenario: Scenario
 ) -> tuple[list[Point], int]:
-    """Return a survey's mission with its way there as the station adds it, and where rows begin.
+    """Return a survey's mission with its ways as the station adds them, and where rows begin.
 
     `number` counts the survey's vehicles from 0.
     """
-    flown = with_approach(mission, _vehicle(at_m, scenario.frame), number, scenario.site.limits)
-    return points_of(flown, scenario.frame), len(flown.waypoints) - len(mission.waypoints)
+    vehicle, count = _vehicle(at_m, scenario.frame), len(scenario.fleet.serials)
+    flown = with_approach(mission, vehicle, number, count, scenario.site.limits)
+    return points_of(flown, scenario.frame), flown.waypoints.index(mission.waypoints[0])
 
 
 def points_of(mission: Mission, frame: LocalFrame) -> list[Point]:

@@ -22,7 +22,8 @@ BoolArray = npt.NDArray[np.bool_]
 
 AT_HEIGHT_WITHIN_M = 3.0
 """Of the survey's height: cruise heights to and from rows are 8 m apart from it."""
-ON_ROW_FROM_MPS = 1.0
+ON_ROW_FROM_MPS = 0.2
+"""Slower, it has no course: it turns, or waits."""
 LEVEL_WITH_M = 5.0
 """Two nearer than the separation are in danger when their heights are no farther apart."""
 COURSE_OVER_S = 0.5

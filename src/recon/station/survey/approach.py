@@ -1,8 +1,8 @@
-"""The way to the first row: each vehicle of a survey flies it at a height of its own.
+"""The ways to the first row and off the last: each vehicle of a survey has a height of its own.
 
-All rows are flown at one height. A vehicle on its way to them, or past another one that hovers at
-the end of its own, would come too near to it there; the gate would refuse it until the other one is
-gone.
+All rows are flown at one height. A vehicle on its way to them would come too near to others there,
+and one that waited at the end of its own would keep them from theirs: the gate would refuse them
+until it is gone. So it flies to them in its own layer, and climbs or sinks back to that at the end.
 """
 
 from dataclasses import replace
@@ -10,7 +10,7 @@ from dataclasses import replace
 from recon.geo.distance import horizontal_distance_m
 from recon.model.airspace import FlightLimits
 from recon.model.geo import LatLon
-from recon.model.mission import Mission, Waypoint
+from recon.model.mission import Mission
 from recon.model.vehicle import VehicleState
 
 LAYER_M = 8.0
@@ -30,43 +30,58 @@ LEVEL_M = 3.0
 
 
 def with_approach(
-    mission: Mission, vehicle: VehicleState, number: int, limits: FlightLimits
+    mission: Mission, vehicle: VehicleState, number: int, count: int, limits: FlightLimits
 ) -> Mission:
-    """Return the mission with the way to it at the first height that is the vehicle's.
+    """Return the mission with its ways at the first height that is the vehicle's.
 
-    `number` counts the survey's vehicles from 0; too many for the room share the last height.
+    `number` counts the survey's `count` vehicles from 0; too many for the room share the last
+    height.
     """
-    return with_approaches(mission, vehicle, number, number + 1, limits)[0]
+    return with_approaches(mission, vehicle, number, count, limits)[0]
 
 
 def with_approaches(
     mission: Mission, vehicle: VehicleState, number: int, count: int, limits: FlightLimits
 ) -> tuple[Mission, ...]:
-    """Return the mission with each way to it: straight up or down, across, onto the first row.
+    """Return the mission with each way to it: straight up or down, across, onto the first row; and
+    off the last row to the same height.
 
     One for each height that is the vehicle's, the nearest to the rows first: no height is that of
     two of the survey's `count` vehicles, while there is room. Zones are not looked at.
     """
+    rows_m = mission.waypoints[0].height_above_takeoff_m
+    layers_m = _layers_m(rows_m, limits)
+    own_m = layers_m[number::count] or layers_m[-1:]
+    ways = tuple(_with_way(mission, vehicle, layer_m) for layer_m in own_m)
+    if count > 1:
+        ways = tuple(_with_end(way, layer_m) for way, layer_m in zip(ways, own_m, strict=True))
+    return tuple(dict.fromkeys(ways))
+
+
+def _with_way(mission: Mission, vehicle: VehicleState, layer_m: float) -> Mission:
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
     if here is None or height_m is None:
-        return (mission,)
+        return mission
     first = mission.waypoints[0]
-    rows_m = first.height_above_takeoff_m
     far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
-    if far_m < NEAR_M and (abs(height_m - rows_m) < LEVEL_M or far_m < 1.0):
-        return (mission,)
+    is_level = abs(height_m - first.height_above_takeoff_m) < LEVEL_M
+    if far_m < NEAR_M and (is_level or far_m < 1.0):
+        return mission
     plain = replace(first, gimbal_pitch_deg=None)
     above = replace(plain, latitude_deg=here.latitude_deg, longitude_deg=here.longitude_deg)
     if far_m < NEAR_M:
-        return (replace(mission, waypoints=(above, *mission.waypoints)),)
-    layers_m = _layers_m(rows_m, limits)
-    own_m = layers_m[number::count] or layers_m[-1:]
-    return tuple(_over(mission, above, plain, layer_m) for layer_m in own_m)
-
-
-def _over(mission: Mission, above: Waypoint, first: Waypoint, layer_m: float) -> Mission:
-    way = tuple(replace(each, height_above_takeoff_m=layer_m) for each in (above, first))
+        return replace(mission, waypoints=(above, *mission.waypoints))
+    way = (replace(each, height_above_takeoff_m=layer_m) for each in (above, plain))
     return replace(mission, waypoints=(*way, *mission.waypoints))
+
+
+def _with_end(mission: Mission, layer_m: float) -> Mission:
+    """A lone vehicle is in nobody's way; where there is no room for layers, nor is there an end."""
+    last = mission.waypoints[-1]
+    if abs(layer_m - last.height_above_takeoff_m) < LEVEL_M:
+        return mission
+    end = replace(last, height_above_takeoff_m=layer_m, gimbal_pitch_deg=None)
+    return replace(mission, waypoints=(*mission.waypoints, end))
 
 
 def _layers_m(rows_m: float, limits: FlightLimits) -> list[float]:

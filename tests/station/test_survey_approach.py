@@ -1,0 +1,64 @@
+"""The ways to a survey's rows and off them: in layers, so that nobody waits in another's way."""
+
+from itertools import pairwise
+
+import pytest
+from tests.station.station_world import HOME, square_mission
+
+from recon.geo.distance import moved_m
+from recon.model.airspace import FlightLimits
+from recon.model.geo import LatLon
+from recon.model.mission import Mission
+from recon.model.stamped import Stamped
+from recon.model.vehicle import VehicleState
+from recon.station.survey.approach import with_approach, with_approaches
+
+LIMITS = FlightLimits()
+ROWS = square_mission(height_m=60.0)
+
+
+def standing(east_m: float, height_m: float = 0.0) -> VehicleState:
+    at = moved_m(LatLon(HOME.latitude_deg, HOME.longitude_deg), -50.0, east_m)
+    return VehicleState(None, position=Stamped(at), height_above_takeoff_m=Stamped(height_m))
+
+
+def heights_m(mission: Mission) -> list[float]:
+    return [each.height_above_takeoff_m for each in mission.waypoints]
+
+
+@pytest.mark.parametrize("count", [2, 3, 8])
+def test_each_of_several_goes_there_and_waits_in_a_layer_of_its_own(count: int) -> None:
+    flown = [with_approach(ROWS, standing(20.0 * n), n, count, LIMITS) for n in range(count)]
+    for mission in flown:
+        assert heights_m(mission)[:2] == [heights_m(mission)[-1]] * 2
+        assert heights_m(mission)[2:-1] == heights_m(ROWS)
+    layers_m = sorted({heights_m(mission)[-1] for mission in flown} | {60.0})
+    assert len(layers_m) == count + 1
+    assert min(b - a for a, b in pairwise(layers_m)) >= 8.0
+
+
+def test_the_end_is_straight_up_or_down_from_the_last_row() -> None:
+    last, end = with_approach(ROWS, standing(0.0), 0, 2, LIMITS).waypoints[-2:]
+    assert (last.latitude_deg, last.longitude_deg) == (end.latitude_deg, end.longitude_deg)
+    assert last.height_above_takeoff_m != end.height_above_takeoff_m
+    assert end.gimbal_pitch_deg is None
+
+
+def test_a_lone_vehicle_stays_where_its_rows_end() -> None:
+    assert heights_m(with_approach(ROWS, standing(0.0), 0, 1, LIMITS))[-1] == 60.0
+
+
+def test_one_that_begins_at_its_first_row_still_ends_in_its_layer() -> None:
+    first = ROWS.waypoints[0]
+    there = LatLon(first.latitude_deg, first.longitude_deg)
+    level = VehicleState(None, position=Stamped(there), height_above_takeoff_m=Stamped(60.0))
+    flown = with_approach(ROWS, level, 1, 2, LIMITS)
+    assert flown.waypoints[:-1] == ROWS.waypoints
+    assert heights_m(flown)[-1] != 60.0
+
+
+def test_where_there_is_no_room_nobody_changes_its_height() -> None:
+    low = FlightLimits(max_height_above_ground_m=26.0)
+    mission = square_mission(height_m=21.0)
+    for flown in with_approaches(mission, standing(0.0), 0, 2, low):
+        assert set(heights_m(flown)) == {21.0}
