@@ -35,7 +35,7 @@ def pad(east_m: float, north_m: float, up_m: float, serial: str | None = None) -
     return LandingPad(f"pad {east_m:g} {north_m:g}", serial, at)
 
 
-class TestPlaces:
+class TestPlacesInThePlane:
     @pytest.mark.parametrize("count", [FEW_PLACES, FEW_PLACES + 1])
     def test_many_at_once_are_where_each_is_alone(self, count: int) -> None:
         wanted = [(37.0 * n - 400.0, 250.0 - 21.0 * n) for n in range(count)]
