@@ -63,7 +63,7 @@ class People:
             self._is_begun = True
             yield SurveyStarted(SURVEY_ID, self.serials, BY, takeoff=True)
         elif record.state is not None and not record.is_over:
-            yield from self._save_batteries(station, now_ns)
+            yield from self._save_batteries(station, record, now_ns)
             for serial in self.serials:
                 yield from self._send_off(station, record, serial, now_ns)
 
@@ -73,14 +73,18 @@ class People:
         self._settled_ns = (self._settled_ns or now_ns) if heard else None
         return self._settled_ns is not None and now_ns - self._settled_ns >= SETTLED_S * NS_PER_S
 
-    def _save_batteries(self, station: Station, now_ns: int) -> Iterator[OperatorOrder]:
+    def _save_batteries(
+        self, station: Station, record: SurveyRecord, now_ns: int
+    ) -> Iterator[OperatorOrder]:
         """Call home whose battery an alarm is about, for as long as it is on no way home."""
         for alarm in station.alarms.alarms.values():
             about = alarm.condition
             vehicle = station.fleet.vehicles.get(about.serial or "")
             if about.rule != WAY_HOME or not alarm.is_active or vehicle is None:
                 continue
-            if _hovers_or_flies(vehicle) and self._lasts(f"{about.serial}: battery", now_ns):
+            is_coming = _is_coming_home(record.members.get(about.serial or ""), vehicle)
+            is_out = _hovers_or_flies(vehicle) and not is_coming
+            if is_out and self._lasts(f"{about.serial}: battery", now_ns):
                 yield self._home(about.serial or "")
 
     def _send_off(
@@ -137,3 +141,9 @@ class People:
 def _hovers_or_flies(vehicle: VehicleState) -> bool:
     """Whether a vehicle is in the air and on no way down."""
     return vehicle.is_flying.value is True and vehicle.flight_mode.value not in WAYS_DOWN
+
+
+def _is_coming_home(member: Member | None, vehicle: VehicleState) -> bool:
+    """Whether a vehicle that its survey called home flies there: it comes by a landing mission."""
+    is_called = member is not None and member.homeward is not None
+    return is_called and vehicle.flight_mode.value is FlightMode.GPS_WAYPOINT
