@@ -8,11 +8,13 @@ from contextlib import asynccontextmanager
 import uvloop
 from tests.ready import ready_site
 
+from recon.fleet.state import staleness
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.command import Body, FlyMission, LandNow
 from recon.model.mission import Mission, Waypoint
-from recon.model.vehicle import VehicleState
+from recon.model.vehicle import Staleness, VehicleState
+from recon.sim.proxy import Damage, ProxyConfig, run_proxy
 from recon.site import demo_site_folder, load_site
 from recon.station.build import first_state
 from recon.station.driver import AsyncioDriver, station_clock
@@ -48,8 +50,8 @@ class Field:
 
 
 @asynccontextmanager
-async def field(*sim_options: str) -> AsyncIterator[Field]:
-    """Run a station and a fleet of two that flies; both end."""
+async def field(*sim_options: str, damage: Damage | None = None) -> AsyncIterator[Field]:
+    """Run a station and a fleet of two that flies, perhaps over links with damage; all end."""
     demo = load_site(demo_site_folder())  # where the simulator starts by itself
     assert demo.frame is not None
     site = ready_site(demo.frame.origin, (demo.profiles[serial] for serial in SERIALS))
@@ -57,7 +59,8 @@ async def field(*sim_options: str) -> AsyncIterator[Field]:
     driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
     await links.start("127.0.0.1", 0)
     ticking = asyncio.create_task(driver.run())
-    station = f"127.0.0.1:{links.port}"
+    proxy, port = await _proxied(links.port, damage)
+    station = f"127.0.0.1:{port}"
     options = ["--station", station, "--vehicles", "2", "--no-eye", "--airborne", *sim_options]
     simulator = await asyncio.create_subprocess_exec(
         sys.executable, "-m", "recon", "sim", *options, stdout=asyncio.subprocess.DEVNULL
@@ -69,8 +72,20 @@ async def field(*sim_options: str) -> AsyncIterator[Field]:
     finally:
         simulator.terminate()
         await simulator.wait()
+        proxy.cancel()
         ticking.cancel()
         await links.stop()
+
+
+async def _proxied(port: int, damage: Damage | None) -> tuple["asyncio.Future[None]", int]:
+    """Return a proxy and its port; without damage none, and the station's own."""
+    if damage is None:
+        return asyncio.get_running_loop().create_future(), port
+    listening: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+    here, there = ("127.0.0.1", 0), ("127.0.0.1", port)
+    config = ProxyConfig(listen=here, station=there, damage=damage, seed=3)
+    proxy = asyncio.ensure_future(run_proxy(config, lambda _: None, listening.set_result))
+    return proxy, await listening
 
 
 def short_mission(vehicle: VehicleState) -> FlyMission:
@@ -84,6 +99,31 @@ def short_mission(vehicle: VehicleState) -> FlyMission:
             )
         )
     )
+
+
+def test_a_bad_link_between_loses_packets_and_no_vehicle() -> None:
+    async def main() -> None:
+        damage = Damage(delay_s=0.05, jitter_s=0.1, resets_per_min=12.0, corrupted_per_mb=400.0)
+        async with field("--seed", "3", damage=damage) as here:
+            await here.until(lambda: connections(here) >= 2 + 3)
+            vehicles = here.driver.station.fleet.vehicles
+            assert set(vehicles) == set(SERIALS)
+            for serial in SERIALS:
+                await here.until(lambda serial=serial: is_live(here, serial))
+                order = here.order(serial, LandNow())
+                await here.until(lambda order=order: "confirmed" in here.phases(order))
+
+    uvloop.run(main())
+
+
+def connections(here: Field) -> int:
+    """How many there have been."""
+    return max(here.driver.station.fleet.links, default=0)
+
+
+def is_live(here: Field, serial: str) -> bool:
+    vehicle = here.vehicle(serial)
+    return vehicle is not None and staleness(vehicle, here.driver.now_ns()) is Staleness.LIVE
 
 
 def test_orders_are_answered_and_confirmed_by_telemetry() -> None:
