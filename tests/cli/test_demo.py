@@ -51,6 +51,7 @@ def test_vehicles_fly_and_the_simulator_ends_with_the_demo(number: int, tmp_path
         assert len(children) == 1
         assert demo.end(number) == 0
         assert "Traceback" not in demo.text
+        assert "nothing more is flown" not in demo.text
         assert not any(Path(f"/proc/{pid}").exists() for pid in children)
 
 
