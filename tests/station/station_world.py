@@ -10,35 +10,15 @@ from recon.model.event import OperatorOrder
 from recon.model.geo import GeoPoint
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import AltitudeReference, VehicleState
-from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.score.whole.apps import SECOND_LINK, AppConnection
+from recon.sim.app import LinkOrder, LinkOrderKind, SimulatedApp
 from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.station.build import first_state
 from recon.station.orders import OrderRecord
-from recon.station.virtual import FAR_NS, FakeLink, VirtualDriver
+from recon.station.virtual import FakeLink, VirtualDriver
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
-SECOND_LINK = 1
-
-
-@dataclass(slots=True)
-class AppPeer:
-    """One of an app's connections; a silent one neither reads nor writes any more."""
-
-    app: SimulatedApp
-    link: int = MAIN_LINK
-    is_silent: bool = False
-
-    def receive(self, data: bytes, now_ns: int) -> None:
-        if not self.is_silent:
-            self.app.receive(data, now_ns, self.link)
-
-    def advance(self, now_ns: int) -> list[bytes]:
-        return [] if self.is_silent else self.app.advance(now_ns, self.link)
-
-    @property
-    def next_due_ns(self) -> int:
-        return FAR_NS if self.is_silent else self.app.next_due_ns
 
 
 @dataclass(slots=True)
@@ -46,7 +26,7 @@ class Connected:
     """An app and its present main connection."""
 
     app: SimulatedApp
-    peer: AppPeer
+    peer: AppConnection
     link_id: int
 
 
@@ -62,7 +42,7 @@ class World:
 
     def connect(self, app: SimulatedApp, link: FakeLink | None = None) -> int:
         app.connected(self.driver.now_ns)
-        peer = AppPeer(app)
+        peer = AppConnection(app)
         link_id = self.driver.connect(peer, link or self.make_link())
         self.connected[app.settings.serial] = Connected(app, peer, link_id)
         return link_id
@@ -113,12 +93,12 @@ class World:
                 self.driver.disconnect(old_id)
                 self._after(order.seconds, lambda: self.connect(app))
             case LinkOrderKind.ABANDON:
-                connected.peer.is_silent = True
+                connected.peer.is_abandoned = True
                 self._after(order.seconds, lambda: self.driver.disconnect(old_id))
                 self.connect(app)
             case LinkOrderKind.SECOND:
                 app.connected(self.driver.now_ns, SECOND_LINK)
-                second_id = self.driver.connect(AppPeer(app, SECOND_LINK), self.make_link())
+                second_id = self.driver.connect(AppConnection(app, SECOND_LINK), self.make_link())
                 self._after(order.seconds, lambda: self._end_second(app, second_id))
 
     def _end_second(self, app: SimulatedApp, link_id: int) -> None:

@@ -39,7 +39,7 @@ from recon.cli.until_stopped import say_at_once, until_stopped
 from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
-from recon.score.simulation import rig_of
+from recon.score.simulation import go_home_heights_of, pads_of, rig_of
 from recon.sim.camera_feed import FeedSettings, FrameSource, ImageFormat
 from recon.sim.commands import HoverOnGround
 from recon.sim.errors import SimulationError
@@ -98,12 +98,7 @@ def sim_command(
         return
     try:
         host, port = parse_station(station)
-        _refuse_non_positive("--fps", fps)
-        _refuse_non_positive("--endurance-min", endurance_min)
-        if latency_s is not None and not 0.0 <= latency_s <= LONGEST_LATENCY_S:
-            raise SimulationError(
-                f"--latency-s: expected 0 to {LONGEST_LATENCY_S:g} seconds, got {latency_s:g}"
-            )
+        _refuse_bad_numbers(fps, endurance_min, latency_s)
         script = FaultScript() if faults is None else load_faults(faults)
         place = _place(site)
         feed_settings = FeedSettings(fps, image_format, latency_s, feed)
@@ -128,12 +123,8 @@ def sim_command(
             tells_mission_id=mission_ids,
             faults=(*(parse_fault(text) for text in fault or ()), *script.faults),
             chances=script.chances,
-            pads=_pads(place) if home is None and replay_site is None else {},
-            go_home_heights_m={
-                serial: profile.go_home_height_m
-                for serial, profile in place.profiles.items()
-                if profile.go_home_height_m is not None
-            },
+            pads=pads_of(place) if home is None and replay_site is None else {},
+            go_home_heights_m=go_home_heights_of(place),
         )
         asyncio.run(until_stopped(run_fleet(config, say_at_once), "simulation ended"))
     except ReconError as problem:
@@ -171,6 +162,15 @@ def parse_size(text: str) -> tuple[int, int]:
     return int(cols), int(rows)
 
 
+def _refuse_bad_numbers(fps: float, endurance_min: float, latency_s: float | None) -> None:
+    _refuse_non_positive("--fps", fps)
+    _refuse_non_positive("--endurance-min", endurance_min)
+    if latency_s is not None and not 0.0 <= latency_s <= LONGEST_LATENCY_S:
+        raise SimulationError(
+            f"--latency-s: expected 0 to {LONGEST_LATENCY_S:g} seconds, got {latency_s:g}"
+        )
+
+
 def _refuse_non_positive(option: str, value: float) -> None:
     if not 0.0 < value < 1e6:
         raise SimulationError(f"{option}: expected a positive number, got {value:g}")
@@ -195,10 +195,6 @@ def _home(text: str | None, place: Site, world: EyeWorld | None) -> GeoPoint:
     if text is None:
         return frame.origin
     return GeoPoint(*parse_home(text), frame.origin.ellipsoid_height_m)
-
-
-def _pads(place: Site) -> dict[str, GeoPoint]:
-    return {s: profile.pad for s, profile in place.profiles.items() if profile.pad is not None}
 
 
 def _eye_world(

@@ -1,5 +1,6 @@
 """`recon survey`: a region cut into rows, flown by vehicles under the station's guidance."""
 
+from collections.abc import Awaitable, Callable
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,7 +20,7 @@ from recon.cli.at_station import (
 )
 from recon.cli.naming import NamingError, serials_of
 from recon.cli.telling import say, say_json, table
-from recon.client import ClientError, Refusal, Station, Survey
+from recon.client import ClientError, Refusal, Station, Survey, Surveys
 from recon.model.geo import GeoPoint
 from recon.model.survey import WhenDone, none_such
 
@@ -126,11 +127,7 @@ def pause_command(
     token_file: TokenOption = None,
 ) -> None:
     """Pause a survey. Its vehicles hold, and are the operator's again."""
-
-    async def work(at: Station) -> int:
-        return _told(await at.surveys.pause(number), as_json)
-
-    at_station(station, token_file, work)
+    at_station(station, token_file, _stop(Surveys.pause, number, as_json))
 
 
 @survey_app.command("abort")
@@ -141,11 +138,7 @@ def abort_command(
     token_file: TokenOption = None,
 ) -> None:
     """Abort a survey for good. Its vehicles hold, and are the operator's again."""
-
-    async def work(at: Station) -> int:
-        return _told(await at.surveys.abort(number), as_json)
-
-    at_station(station, token_file, work)
+    at_station(station, token_file, _stop(Surveys.abort, number, as_json))
 
 
 @survey_app.command("status")
@@ -157,6 +150,15 @@ def status_command(
 ) -> None:
     """Show the surveys, their figures and vehicles, the newest first."""
     at_station(station, token_file, _status(number, as_json))
+
+
+def _stop(
+    word: Callable[[Surveys, int], Awaitable[Survey | Refusal]], number: int, as_json: bool
+) -> Work:
+    async def work(at: Station) -> int:
+        return _told(await word(at.surveys, number), as_json)
+
+    return work
 
 
 def _status(number: int | None, as_json: bool) -> Work:

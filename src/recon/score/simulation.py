@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import TypeVar
 
-from recon.model.geo import LocalFrame
+from recon.model.geo import GeoPoint, LocalFrame
 from recon.score.scenario import Scenario
 from recon.sim.camera_feed import FeedSettings
 from recon.sim.eye import EyeSettings
@@ -16,7 +16,7 @@ from recon.sim.rig import EyeRig
 from recon.sim.telemetry import FIELD_SENSORS
 from recon.sim.world import Sky, Wind
 from recon.sim.world.relief import Relief, ReliefSettings
-from recon.site import Eye
+from recon.site import Eye, Site
 
 Asked = TypeVar("Asked", Fault, Chance)
 
@@ -56,17 +56,20 @@ def simulation_of(
         seed=seed,
         faults=tuple(_by_serial(fault, fleet.serials) for fault in scenario.faults),
         chances=tuple(_by_serial(chance, fleet.serials) for chance in scenario.chances),
-        pads={
-            serial: profile.pad
-            for serial, profile in site.profiles.items()
-            if profile.pad is not None
-        },
-        go_home_heights_m={
-            serial: profile.go_home_height_m
-            for serial, profile in site.profiles.items()
-            if profile.go_home_height_m is not None
-        },
+        pads=pads_of(site),
+        go_home_heights_m=go_home_heights_of(site),
     )
+
+
+def pads_of(site: Site) -> dict[str, GeoPoint]:
+    """Return the pads that a site's profiles tell, by serial."""
+    return {s: profile.pad for s, profile in site.profiles.items() if profile.pad is not None}
+
+
+def go_home_heights_of(site: Site) -> dict[str, float]:
+    """Return what a site's profiles say is set in the aircraft, in metres, by serial."""
+    told = {serial: profile.go_home_height_m for serial, profile in site.profiles.items()}
+    return {serial: height_m for serial, height_m in told.items() if height_m is not None}
 
 
 def sky_of(scenario: Scenario, seed: int) -> Sky:

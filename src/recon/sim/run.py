@@ -11,6 +11,7 @@ from recon.model.errors import ReconError
 from recon.model.units import NS_PER_S
 from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
 from recon.sim.camera_feed import Shot
+from recon.sim.closing import close
 from recon.sim.fleet import SimulationConfig, build_fleet
 
 SECOND_LINK = 1
@@ -18,7 +19,6 @@ READ_BYTES = 65_536
 FIRST_BACKOFF_S = 0.2
 LONGEST_BACKOFF_S = 2.0
 LONGEST_WAIT_S = 0.1
-CLOSING_S = 0.5
 WRITE_BUFFER_BYTES = 8 * 1024 * 1024
 """Beyond this a station that does not read gets no more packets, until it reads again."""
 
@@ -81,7 +81,7 @@ class _AppShell:
             if order is not None and order.kind is LinkOrderKind.ABANDON:
                 self._aside(_hold_open(writer, order.seconds))
             else:
-                await _close(writer)
+                await close(writer)
         if order is not None and order.kind is LinkOrderKind.RECONNECT:
             await asyncio.sleep(order.seconds)
         elif order is None:
@@ -170,7 +170,7 @@ class _AppShell:
             self._tell("second connection closed")
         finally:
             self.app.disconnected(SECOND_LINK)
-            await _close(writer)
+            await close(writer)
 
     def _aside(self, work: Coroutine[Any, Any, None]) -> None:
         task = asyncio.ensure_future(work)
@@ -189,16 +189,4 @@ async def _hold_open(writer: asyncio.StreamWriter, seconds: float) -> None:
     try:
         await asyncio.sleep(seconds)
     finally:
-        await _close(writer)
-
-
-async def _close(writer: asyncio.StreamWriter) -> None:
-    """Close, and wait a moment for what is still buffered."""
-    writer.close()
-    try:
-        async with asyncio.timeout(CLOSING_S):
-            await writer.wait_closed()
-    except TimeoutError:
-        writer.transport.abort()
-    except OSError:
-        return
+        await close(writer)

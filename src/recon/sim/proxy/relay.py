@@ -11,6 +11,7 @@ from enum import Enum
 from random import Random
 
 from recon.model.units import NS_PER_S
+from recon.sim.closing import close
 from recon.sim.errors import SimulationError
 from recon.sim.proxy.channel import Channel
 from recon.sim.proxy.damage import Damage
@@ -18,7 +19,6 @@ from recon.sim.proxy.damage import Damage
 READ_BYTES = 65_536
 MOST_CONNECTIONS = 64
 STATION_ANSWERS_WITHIN_S = 5.0
-CLOSING_S = 0.5
 RESET_ON_CLOSE = struct.pack("ii", 1, 0)
 """SO_LINGER on, for 0 s: closing sends RST, and what is not sent is lost."""
 
@@ -149,7 +149,7 @@ class _Connection:
             self._reset()
             return f"broken by one side ({problem})"
         finally:
-            await asyncio.gather(_close(self.app[1]), _close(self.station[1]))
+            await asyncio.gather(close(self.app[1]), close(self.station[1]))
         return f"closed, {up.passed_bytes} bytes towards the station, {down.passed_bytes} back"
 
     def _pump(
@@ -242,15 +242,3 @@ def _reset(writer: asyncio.StreamWriter) -> None:
         with contextlib.suppress(OSError):
             raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET_ON_CLOSE)
     writer.transport.abort()
-
-
-async def _close(writer: asyncio.StreamWriter) -> None:
-    """Close, and wait a moment for what is still buffered."""
-    writer.close()
-    try:
-        async with asyncio.timeout(CLOSING_S):
-            await writer.wait_closed()
-    except TimeoutError:
-        writer.transport.abort()
-    except OSError:
-        return
