@@ -8,8 +8,8 @@ from recon.model.event import OperatorOrder
 from recon.model.geo import GeoPoint
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.site import default_site
-from recon.station.build import first_state
-from recon.station.virtual import VirtualDriver
+from recon.station.kernel.build import first_state
+from recon.station.kernel.virtual import VirtualDriver
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 

@@ -17,12 +17,12 @@ from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.model.zone import Region
-from recon.sim.app import SimulatedApp
+from recon.sim.app.app import SimulatedApp
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.site import Site
 from recon.site.site import Layers
-from recon.station.build import first_state, worker_tasks
-from recon.station.virtual import VirtualDriver
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.virtual import VirtualDriver
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 FRAME = LocalFrame(HOME)

@@ -14,18 +14,18 @@ from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.score.whole.apps import ConnectedApps
-from recon.sim.app import SimulatedApp
-from recon.sim.camera_feed import FeedSettings
-from recon.sim.eye.settings import EyeSettings
-from recon.sim.faults import parse_fault
-from recon.sim.field import FieldFrames
+from recon.sim.app.app import SimulatedApp
+from recon.sim.app.camera_feed import FeedSettings
+from recon.sim.app.faults import parse_fault
+from recon.sim.app.telemetry import FIELD_SENSORS
+from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.rig import EyeRig
+from recon.sim.camera.settings import EyeSettings
 from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig, build_fleet
-from recon.sim.rig import EyeRig
-from recon.sim.telemetry import FIELD_SENSORS
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.build import first_state, worker_tasks
-from recon.station.virtual import FakeLink, VirtualDriver
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.virtual import FakeLink, VirtualDriver
 
 VEHICLES = 8
 HOLDER = "the study"

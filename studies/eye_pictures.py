@@ -12,8 +12,8 @@ import cv2
 import numpy as np
 
 from recon.camera import TelemetryReference, level_pose
-from recon.sim.camera_feed import View
-from recon.sim.field import FieldFrames
+from recon.sim.app.camera_feed import View
+from recon.sim.camera.field import FieldFrames
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.site import demo_site_folder, load_site
 

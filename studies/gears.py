@@ -36,17 +36,17 @@ from recon.score.missions import points_of
 from recon.score.settings import FLIGHT
 from recon.score.simulation import wind_of
 from recon.score.whole.apps import AppConnection
-from recon.sim.aircraft import Aircraft
-from recon.sim.app import SimulatedApp
+from recon.sim.app.app import SimulatedApp
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
-from recon.sim.kinematics import Motion
-from recon.sim.manoeuvres import TakeOff
-from recon.sim.mission import MissionFlight
+from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.flight_modes import TakeOff
+from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.mission import MissionFlight
 from recon.sim.world import Wind, WindSettings
 from recon.site import Site
 from recon.site.site import Layers
-from recon.station.build import first_state, worker_tasks
-from recon.station.virtual import VirtualDriver
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.virtual import VirtualDriver
 from studies.survey_gears import LANDED, by_events, by_the_station, drawn_survey
 
 HOME = GeoPoint(41.9, -93.6, 275.0)

@@ -8,8 +8,8 @@ from hashlib import sha256
 import numpy as np
 
 from recon.model.event import Event
-from recon.station.state import Station
-from recon.station.virtual import VirtualDriver
+from recon.station.kernel.virtual import VirtualDriver
+from recon.station.state.station import Station
 
 
 class RunDigest:

@@ -15,7 +15,7 @@ import sys
 from collections.abc import Mapping
 from random import Random
 
-from recon.station.virtual import FakeLink
+from recon.station.kernel.virtual import FakeLink
 from studies.eight_vehicles import EightVehicles, eight_vehicles
 from studies.run_digest import RunDigest
 

@@ -41,10 +41,10 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.site import Site
-from recon.station.build import first_state
-from recon.station.orders import OrderRecord
-from recon.station.state import Station
-from recon.station.virtual import FAR_NS, FakeLink, VirtualDriver
+from recon.station.kernel.build import first_state
+from recon.station.kernel.virtual import FAR_NS, FakeLink, VirtualDriver
+from recon.station.state.orders import OrderRecord
+from recon.station.state.station import Station
 from studies.counting_app import CountingApp
 
 HOME = GeoPoint(41.9, -93.6, 275.0)

@@ -13,7 +13,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world import LayerSettings, Sky, SkySettings
 
 SEED = 12

@@ -15,11 +15,11 @@ from recon.score.closed_loop import EventRun
 from recon.score.flight import Spot
 from recon.score.settings import FLIGHT
 from recon.score.whole.run import WholeRun
-from recon.sim.aircraft import Aircraft
-from recon.sim.manoeuvres import Grounded, TakeOff
-from recon.sim.mission import MissionFlight
+from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.flight_modes import Grounded, TakeOff
+from recon.sim.flight.mission import MissionFlight
 from recon.sim.world import Wind
-from recon.station.state import Station
+from recon.station.state.station import Station
 
 TASK = """about = "a survey for both gears"
 start_utc = 2025-06-20T16:00:00Z

@@ -31,7 +31,7 @@ from recon.safety.rules.separation import separation as rule
 from recon.safety.watchdogs import WATCHDOGS, Picture, Watched, take_picture
 from recon.safety.watchdogs.closeness import closeness, near_pairs
 from recon.safety.watchdogs.separation import watched_separation
-from recon.station.driver import spare_what_is_loaded
+from recon.station.kernel.driver import spare_what_is_loaded
 
 VEHICLES = 64
 ZONES = 20

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from recon.camera import TelemetryReference, level_pose
-from recon.sim.camera_feed import View
-from recon.sim.eye.land_tiles import CELLS_M, LandTiles
-from recon.sim.farmland import lay_out
-from recon.sim.field import FieldFrames
+from recon.sim.app.camera_feed import View
+from recon.sim.camera.field import FieldFrames
+from recon.sim.land.farmland import lay_out
+from recon.sim.land.land_tiles import CELLS_M, LandTiles
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.site import demo_site_folder, load_site
 

@@ -35,11 +35,11 @@ from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.imagery import Frame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.build import first_state, worker_tasks
-from recon.station.driver import AsyncioDriver, spare_what_is_loaded, station_clock
-from recon.station.imaging import LAY_FRAME, LayFrame
-from recon.station.outputs import StartWork
-from recon.station.worker import ThreadWorker
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
+from recon.station.kernel.worker import ThreadWorker
+from recon.station.state.imaging import LAY_FRAME, LayFrame
+from recon.station.state.outputs import StartWork
 
 LIMIT_MS = 20.0
 SETTLING_S = 2.0

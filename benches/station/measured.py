@@ -16,10 +16,10 @@ from recon.link.settings import LinkSettings
 from recon.model.event import CommandSent, Event, LinkClosed, PacketReceived
 from recon.model.report import CoreReport, ExtendedReport, ImageReport
 from recon.site import default_site
-from recon.station.build import first_state
-from recon.station.driver import AsyncioDriver, spare_what_is_loaded, station_clock
-from recon.station.service import Service
-from recon.station.state import Station
+from recon.station.api_views.service import Service
+from recon.station.kernel.build import first_state
+from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
+from recon.station.state.station import Station
 
 CONSOLE_PERIOD_S = 0.1
 ENDING_S = 30.0

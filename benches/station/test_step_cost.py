@@ -16,12 +16,12 @@ from recon.model.command import Hover
 from recon.model.event import LinkOpened, OperatorOrder, PacketReceived, Tick
 from recon.model.units import NS_PER_S
 from recon.site import default_site
-from recon.station.build import first_state
-from recon.station.conditions import conditions
-from recon.station.driver import AsyncioDriver
-from recon.station.service import Service
-from recon.station.state import Station
-from recon.station.step import step
+from recon.station.alarms.conditions import conditions
+from recon.station.api_views.service import Service
+from recon.station.kernel.build import first_state
+from recon.station.kernel.driver import AsyncioDriver
+from recon.station.kernel.step import step
+from recon.station.state.station import Station
 from recon.vehicles.reports import to_report
 
 VEHICLES = 64

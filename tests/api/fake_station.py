@@ -26,11 +26,11 @@ from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
 from recon.site import Site, default_site
-from recon.station.build import first_state, worker_tasks
-from recon.station.driver import AsyncioDriver
-from recon.station.outputs import StartWork
-from recon.station.service import Service
-from recon.station.worker import Task, do_work
+from recon.station.api_views.service import Service
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.driver import AsyncioDriver
+from recon.station.kernel.worker import Task, do_work
+from recon.station.state.outputs import StartWork
 
 TOKEN = "a-token-of-enough-letters"
 

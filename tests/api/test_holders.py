@@ -8,7 +8,7 @@ from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 from tests.api.test_stream import PATIENCE_S, served
 
-from recon.api import holders
+from recon.api import owners
 
 NAME = "a-name-of-a-holder-01"
 
@@ -50,7 +50,7 @@ def test_a_stream_holds_while_it_is_open() -> None:
 def test_one_that_says_nothing_holds_no_longer_and_is_closed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(holders, "SILENT_S", 0.2)
+    monkeypatch.setattr(owners, "SILENT_S", 0.2)
 
     async def main() -> None:
         station = FakeStation()
@@ -65,7 +65,7 @@ def test_one_that_says_nothing_holds_no_longer_and_is_closed(
 
 def test_one_that_beats_holds_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten states a second: thirteen beats are three times as long as silence may be."""
-    monkeypatch.setattr(holders, "SILENT_S", 0.4)
+    monkeypatch.setattr(owners, "SILENT_S", 0.4)
 
     async def main() -> None:
         station = FakeStation()

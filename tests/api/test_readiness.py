@@ -11,7 +11,7 @@ from recon import wire
 from recon.api import schema
 from recon.model.authority import Leader
 from recon.model.event import LinkOpened, PacketReceived
-from recon.station.authority import lead_of
+from recon.station.control.authority import lead_of
 from recon.vehicles.reports import to_report
 
 

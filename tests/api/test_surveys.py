@@ -17,8 +17,8 @@ from recon.geo import geo_from_enu
 from recon.model.event import WorkerResult
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
-from recon.station.shade.reading import take_image
-from recon.station.shade.work import READ_SHADE, ShadeRead
+from recon.station.imaging.shade_reading import take_image
+from recon.station.imaging.shade_work import READ_SHADE, ShadeRead
 
 FRAME = LocalFrame(HOME)
 

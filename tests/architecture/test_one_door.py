@@ -70,7 +70,7 @@ class TestNobodyElseMakesOne:
             for _, name in calls(path)
             if name.split(".")[-1] == "approve"
         }
-        assert askers == {"station/commanding.py"}
+        assert askers == {"station/control/order_gateway.py"}
 
 
 class TestOneCannotBecomeAnother:

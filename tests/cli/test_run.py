@@ -13,7 +13,7 @@ from tests.cli.processes import started
 
 from recon import wire
 from recon.cli.run import read_token
-from recon.station.run import StartError
+from recon.station.kernel.run import StartError
 
 FREE = ("--link-port", "0", "--http-port", "0")
 HELLO = wire.encode(wire.MessageString(type=1, text=b"hello"))

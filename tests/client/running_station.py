@@ -16,14 +16,14 @@ from recon.geo import point_from_enu
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.sim.faults import parse_fault
+from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.site import Site
-from recon.station.build import first_state, worker_tasks
-from recon.station.driver import AsyncioDriver, station_clock
-from recon.station.service import Service
-from recon.station.worker import ThreadWorker
+from recon.station.api_views.service import Service
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.driver import AsyncioDriver, station_clock
+from recon.station.kernel.worker import ThreadWorker
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 SERIALS = ("SIM-1", "SIM-2")

@@ -19,11 +19,11 @@ from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.record.audit_log import AuditLog
 from recon.site import default_site
-from recon.station.auditor import Auditor
-from recon.station.build import first_state
-from recon.station.driver import AsyncioDriver
-from recon.station.log import LogPrinter
-from recon.station.service import Service
+from recon.station.api_views.service import Service
+from recon.station.audit.auditor import Auditor
+from recon.station.audit.log import LogPrinter
+from recon.station.kernel.build import first_state
+from recon.station.kernel.driver import AsyncioDriver
 
 FLYING, STANDING, NAMELESS, STREAMS, STOPS = 12, 4, 2, 3, 5
 NOW_NS = 1_800_000_000_000_000_000

@@ -9,12 +9,12 @@ import pytest
 
 from recon.camera import GroundProjector
 from recon.model.imagery import Frame, GroundImage, Registration
-from recon.sim.camera_feed import FeedSettings, ImageFormat
+from recon.sim.app.camera_feed import FeedSettings, ImageFormat
+from recon.sim.camera.replay import load_replay
 from recon.sim.fleet import EYE_SERIAL, EyeSetup, SimulationConfig, build_fleet
-from recon.sim.replay import load_replay
 from recon.site import Site, load_site
-from recon.station.build import first_state, worker_tasks
-from recon.station.virtual import VirtualDriver
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.virtual import VirtualDriver
 
 PLACES = {
     "becker-1": (45.3455, -93.8590, 288.0, 3.62),

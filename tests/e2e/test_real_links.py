@@ -16,9 +16,9 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import Staleness, VehicleState
 from recon.sim.proxy import Damage, ProxyConfig, run_proxy
 from recon.site import demo_site_folder, load_site
-from recon.station.build import first_state
-from recon.station.driver import AsyncioDriver, station_clock
-from recon.station.service import Service
+from recon.station.api_views.service import Service
+from recon.station.kernel.build import first_state
+from recon.station.kernel.driver import AsyncioDriver, station_clock
 
 PATIENCE_S = 40.0
 SERIALS = ("SIM-1", "SIM-2")

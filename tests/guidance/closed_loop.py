@@ -23,7 +23,7 @@ from recon.guidance.steering import (
     steer,
 )
 from recon.model.geo import LatLon
-from recon.sim.kinematics import Demand, Limits, Motion, hold_height_mps, step
+from recon.sim.flight.kinematics import Demand, Limits, Motion, hold_height_mps, step
 
 START = LatLon(41.9, -93.6)
 STEP_NS = 10_000_000

@@ -22,7 +22,7 @@ from recon.guidance.steering import (
 )
 from recon.model.geo import LatLon
 from recon.model.units import wrap_degrees
-from recon.sim.kinematics import Motion
+from recon.sim.flight.kinematics import Motion
 
 S = 1_000_000_000
 STILL_AIR_OVERSHOOT_M = 0.5

@@ -11,8 +11,8 @@ from recon.fleet.state import Fleet, LinkRecord
 from recon.model.replacing import replace
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
-from recon.station.following import Following
-from recon.station.state import Station
+from recon.station.state.station import Station
+from recon.station.state.tracking import Following
 
 COPIED_OFTEN = (
     VehicleState("SIM-1", 3),

@@ -12,7 +12,7 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
-from recon.safety.homewards import leads_home
+from recon.safety.return_missions import leads_home
 
 
 def north(metres: float) -> LatLon:

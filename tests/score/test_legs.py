@@ -6,8 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.score.legs import Pace, leg
-from recon.sim.kinematics import BRAKING_MPS2, Demand, Limits, Motion, braking_speed_mps, step
-from recon.sim.mission import ARRIVED_BELOW_MPS, ARRIVED_WITHIN_M
+from recon.sim.flight.kinematics import (
+    BRAKING_MPS2,
+    Demand,
+    Limits,
+    Motion,
+    braking_speed_mps,
+    step,
+)
+from recon.sim.flight.mission import ARRIVED_BELOW_MPS, ARRIVED_WITHIN_M
 
 STEP_S = 0.02
 lengths = st.floats(0.01, 2_000.0)

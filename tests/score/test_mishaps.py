@@ -10,10 +10,10 @@ from tests.score.scenes import SMALL, small
 from recon.score import Scenario, run
 from recon.score.autopilot import Point
 from recon.score.drone import Doing, Drone
-from recon.score.mishaps import blind_spans, mishaps_of, without_effect
+from recon.score.fault_effects import blind_spans, mishaps_of, without_effect
 from recon.score.scenario import Fleet
 from recon.score.settings import FLIGHT
-from recon.sim.faults import FaultKind, parse_fault
+from recon.sim.app.faults import FaultKind, parse_fault
 from recon.sim.world import Wind, WindSettings
 
 CLEAR = SMALL.replace('faults = ["pilot-takes:1:40:30"]', "").split("[[clouds]]", maxsplit=1)[0]

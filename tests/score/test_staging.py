@@ -9,9 +9,9 @@ from tests.score.scenes import SMALL, small
 
 from recon.geo import Polygon, enu_from_point
 from recon.score import Scenario, ScenarioError, load_scenario
-from recon.score.mishaps import with_chances, without_effect
+from recon.score.fault_effects import with_chances, without_effect
 from recon.score.simulation import simulation_of
-from recon.sim.faults import FaultKind
+from recon.sim.app.faults import FaultKind
 from recon.sim.fleet import EYE_SERIAL, build_fleet
 
 FOLDER = Path(__file__).parents[2] / "scenarios"

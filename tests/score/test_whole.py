@@ -12,11 +12,11 @@ from recon.score import Methods, RunScore, Scenario, run
 from recon.score.whole import run_whole
 from recon.score.whole.run import WholeRun
 from recon.score.whole.ways import TrueWay, begins, encounters
-from recon.sim.aircraft import Aircraft
-from recon.sim.app import AppSettings, SimulatedApp
+from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.fleet import EYE_SERIAL
-from recon.sim.kinematics import Motion
-from recon.sim.manoeuvres import Hold
+from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.flight_modes import Hold
+from recon.sim.flight.kinematics import Motion
 
 CLEAR = SMALL.replace('faults = ["pilot-takes:1:40:30"]', "").partition("[[clouds]]")[0]
 SHORT = CLEAR.replace("limit_min = 10.0", "limit_min = 1.5")

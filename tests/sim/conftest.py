@@ -8,13 +8,13 @@ from recon import wire
 from recon.model.geo import GeoPoint
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import AltitudeReference
-from recon.sim.aircraft import TICK_NS, Aircraft
-from recon.sim.app import AppSettings, SimulatedApp
-from recon.sim.commands import AppHabits, HoverOnGround
-from recon.sim.faults import Fault
-from recon.sim.kinematics import Motion
-from recon.sim.manoeuvres import Grounded, Hold
-from recon.sim.telemetry import position_deg
+from recon.sim.app.app import AppSettings, SimulatedApp
+from recon.sim.app.commands import AppHabits, HoverOnGround
+from recon.sim.app.faults import Fault
+from recon.sim.app.telemetry import position_deg
+from recon.sim.flight.aircraft import TICK_NS, Aircraft
+from recon.sim.flight.flight_modes import Grounded, Hold
+from recon.sim.flight.kinematics import Motion
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 

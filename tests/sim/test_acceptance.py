@@ -6,8 +6,8 @@ from math import inf, nan
 import pytest
 
 from recon import wire
-from recon.sim.acceptance import SdkLimits, mission_problem, stick_problem
-from recon.sim.mission import MissionPoint
+from recon.sim.flight.acceptance import SdkLimits, mission_problem, stick_problem
+from recon.sim.flight.mission import MissionPoint
 
 LIMITS = SdkLimits()
 A = MissionPoint(0.0, 0.0, 30.0, 5.0)

@@ -12,13 +12,13 @@ from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
 from recon.safety.energy import Consumption
 from recon.safety.energy_settings import EnergySettings
-from recon.sim.air import Air, Squall
-from recon.sim.aircraft import Aircraft, AircraftSettings
-from recon.sim.battery import Battery
-from recon.sim.kinematics import Demand, Limits, Motion, step
-from recon.sim.manoeuvres import Hold, Stick
-from recon.sim.mission import MissionPoint
-from recon.sim.power import flying_load
+from recon.sim.flight.air import Air, Squall
+from recon.sim.flight.aircraft import Aircraft, AircraftSettings
+from recon.sim.flight.battery import Battery
+from recon.sim.flight.flight_modes import Hold, Stick
+from recon.sim.flight.kinematics import Demand, Limits, Motion, step
+from recon.sim.flight.mission import MissionPoint
+from recon.sim.flight.power import flying_load
 from recon.sim.world import Wind, WindSettings
 
 STEADY = WindSettings(

@@ -3,10 +3,10 @@
 import pytest
 
 from recon.model.vehicle import BatteryWarning, FlightMode
-from recon.sim.aircraft import Aircraft, AircraftSettings
-from recon.sim.battery import Battery
-from recon.sim.kinematics import Limits, Motion
-from recon.sim.manoeuvres import CONFIRM_HEIGHT_M, Hold, Stick
+from recon.sim.flight.aircraft import Aircraft, AircraftSettings
+from recon.sim.flight.battery import Battery
+from recon.sim.flight.flight_modes import CONFIRM_HEIGHT_M, Hold, Stick
+from recon.sim.flight.kinematics import Limits, Motion
 
 
 def stick(**changes) -> Stick:

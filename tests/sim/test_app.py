@@ -13,12 +13,12 @@ from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, FlightMode
-from recon.sim.aircraft import Aircraft, AircraftSettings
-from recon.sim.commands import AppHabits, HoverOnGround
+from recon.sim.app.commands import AppHabits, HoverOnGround
+from recon.sim.app.telemetry import FIELD_SENSORS, HomeAltitude, Sensors
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
-from recon.sim.kinematics import Motion
-from recon.sim.manoeuvres import Hold
-from recon.sim.telemetry import FIELD_SENSORS, HomeAltitude, Sensors
+from recon.sim.flight.aircraft import Aircraft, AircraftSettings
+from recon.sim.flight.flight_modes import Hold
+from recon.sim.flight.kinematics import Motion
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))

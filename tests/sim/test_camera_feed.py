@@ -10,12 +10,12 @@ import pytest
 from recon import wire
 from recon.camera import decode_jpeg
 from recon.model.units import NS_PER_S
-from recon.sim.aircraft import Aircraft
-from recon.sim.app import AppSettings, SimulatedApp
-from recon.sim.camera_feed import CameraFeed, FeedSettings, ImageFormat, View
+from recon.sim.app.app import AppSettings, SimulatedApp
+from recon.sim.app.camera_feed import CameraFeed, FeedSettings, ImageFormat, View
+from recon.sim.camera.frame_files import folder_frames, read_frame
+from recon.sim.camera.replay import StillFrame
 from recon.sim.errors import FrameSourceError
-from recon.sim.frame_files import folder_frames, read_frame
-from recon.sim.replay import StillFrame
+from recon.sim.flight.aircraft import Aircraft
 
 PICTURE = np.random.default_rng(1).integers(0, 255, (36, 64, 3), dtype=np.uint8)
 

@@ -8,9 +8,9 @@ import pytest
 from recon.geo import Polygon, enu_from_points
 from recon.model.units import NS_PER_S
 from recon.model.zone import ZoneKind
-from recon.sim.camera_feed import FeedSettings
+from recon.sim.app.camera_feed import FeedSettings
+from recon.sim.camera.rig import EyeRig
 from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig, build_fleet
-from recon.sim.rig import EyeRig
 from recon.site import Site, demo_site_folder, load_site
 
 SIMULATED_S = 600

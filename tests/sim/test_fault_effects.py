@@ -10,12 +10,12 @@ import pytest
 from recon import wire
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import AltitudeReference, FlightMode
-from recon.sim.aircraft import Aircraft
-from recon.sim.app import AppSettings, SimulatedApp
-from recon.sim.camera_feed import CameraFeed, FeedSettings, View
-from recon.sim.faults import Fault, FaultKind
-from recon.sim.kinematics import Motion
-from recon.sim.manoeuvres import Hold
+from recon.sim.app.app import AppSettings, SimulatedApp
+from recon.sim.app.camera_feed import CameraFeed, FeedSettings, View
+from recon.sim.app.faults import Fault, FaultKind
+from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.flight_modes import Hold
+from recon.sim.flight.kinematics import Motion
 
 LAND = wire.EmergencyCommand(action=1)
 HOVER = wire.EmergencyCommand(action=0)

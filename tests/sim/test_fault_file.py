@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.model.geo import GeoPoint
+from recon.sim.app.fault_chance import Chance, drawn_faults
+from recon.sim.app.fault_file import load_faults, read_faults
+from recon.sim.app.faults import Fault, FaultKind
 from recon.sim.errors import FaultError
-from recon.sim.fault_chance import Chance, drawn_faults
-from recon.sim.fault_file import load_faults, read_faults
-from recon.sim.faults import Fault, FaultKind
 from recon.sim.fleet import SimulationConfig, build_fleet
 
 GOOD = b"""

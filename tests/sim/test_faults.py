@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from recon import wire
 from recon.model.vehicle import FlightMode
-from recon.sim.app import LinkOrder, LinkOrderKind
+from recon.sim.app.app import LinkOrder, LinkOrderKind
+from recon.sim.app.faults import Fault, FaultKind, parse_fault
 from recon.sim.errors import FaultError
-from recon.sim.faults import Fault, FaultKind, parse_fault
 
 LAND = wire.EmergencyCommand(action=1)
 

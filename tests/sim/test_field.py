@@ -9,15 +9,14 @@ import pytest
 from recon.camera import TelemetryReference, level_pose, load_camera
 from recon.camera.image_circle import ImageCircle
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
-from recon.sim import field
-from recon.sim.camera_feed import View
+from recon.sim.app.camera_feed import View
+from recon.sim.camera import EyeSettings, field
 from recon.sim.errors import FrameSourceError
-from recon.sim.eye import EyeSettings
-from recon.sim.farmland import lay_out
-from recon.sim.farmland_raster import draw
-from recon.sim.farmland_shadows import draw_shadows
-from recon.sim.land_part import Part
-from recon.sim.noise import tileable_noise
+from recon.sim.land.farmland import lay_out
+from recon.sim.land.farmland_raster import draw
+from recon.sim.land.farmland_shadows import draw_shadows
+from recon.sim.land.land_part import Part
+from recon.sim.land.noise import tileable_noise
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.sim.world.sky_light import light_under
 from recon.site import demo_site_folder

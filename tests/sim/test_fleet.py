@@ -7,11 +7,11 @@ import pytest
 
 from recon.geo import enu_from_point
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.sim.app import SimulatedApp
+from recon.sim.app.app import SimulatedApp
+from recon.sim.app.faults import parse_fault
+from recon.sim.camera.replay import StillFrame
 from recon.sim.errors import FaultError
-from recon.sim.faults import parse_fault
 from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig, build_fleet, fleet_serials
-from recon.sim.replay import StillFrame
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 EYE = EyeSetup(StillFrame(np.zeros((9, 16, 3), dtype=np.uint8)))

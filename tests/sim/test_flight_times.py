@@ -3,10 +3,10 @@
 import pytest
 
 from recon.model.vehicle import FlightMode
-from recon.sim.aircraft import Aircraft, AircraftSettings
-from recon.sim.kinematics import Limits, Motion
-from recon.sim.manoeuvres import Hold, Stick
-from recon.sim.mission import MissionPoint
+from recon.sim.flight.aircraft import Aircraft, AircraftSettings
+from recon.sim.flight.flight_modes import Hold, Stick
+from recon.sim.flight.kinematics import Limits, Motion
+from recon.sim.flight.mission import MissionPoint
 
 TICK_S = 0.05
 

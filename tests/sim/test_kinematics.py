@@ -7,7 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.model.units import wrap_degrees
-from recon.sim.kinematics import Demand, Limits, Motion, braking_speed_mps, hold_height_mps, step
+from recon.sim.flight.kinematics import (
+    Demand,
+    Limits,
+    Motion,
+    braking_speed_mps,
+    hold_height_mps,
+    step,
+)
 
 LIMITS = Limits()
 SECONDS = 0.05

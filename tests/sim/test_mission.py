@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from recon.geo.path import rounded_path as geo_rounded_path
 from recon.model.vehicle import FlightMode
-from recon.sim.kinematics import Limits, Motion
-from recon.sim.mission import MissionPoint
-from recon.sim.path import Corner, rounded_path
+from recon.sim.flight.kinematics import Limits, Motion
+from recon.sim.flight.mission import MissionPoint
+from recon.sim.flight.path import Corner, rounded_path
 
 LIMITS = Limits()
 SECONDS = 0.05

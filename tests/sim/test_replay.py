@@ -16,10 +16,10 @@ from recon.camera import (
 )
 from recon.geo import enu_from_point, geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.sim.camera_feed import View
+from recon.sim.app.camera_feed import View
+from recon.sim.camera.replay import load_replay
 from recon.sim.errors import ReplayError
 from recon.sim.fleet import EyeSetup, SimulationConfig, build_fleet
-from recon.sim.replay import load_replay
 from recon.site import demo_site_folder
 
 ORIGIN = GeoPoint(44.0, -93.0, 300.0)

@@ -10,11 +10,11 @@ import pytest
 
 from recon import wire
 from recon.model.geo import GeoPoint
-from recon.sim.camera_feed import FeedSettings
+from recon.sim.app.camera_feed import FeedSettings
+from recon.sim.app.faults import Fault, FaultKind
+from recon.sim.camera.replay import StillFrame
 from recon.sim.errors import FrameSourceError
-from recon.sim.faults import Fault, FaultKind
 from recon.sim.fleet import EyeSetup, SimulationConfig
-from recon.sim.replay import StillFrame
 from recon.sim.run import run_fleet
 
 LIMIT_S = 20.0

@@ -10,14 +10,14 @@ import recon
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.sim.camera_feed import View
+from recon.sim.app.camera_feed import View
+from recon.sim.camera.survey_shutter import LATEST_S, IntervalTimer, footprint_m, photos
 from recon.sim.errors import SimulationError
-from recon.sim.kinematics import Motion
-from recon.sim.survey_shutter import LATEST_S, IntervalTimer, footprint_m, photos
+from recon.sim.flight.kinematics import Motion
 from recon.sim.truth import WorldTruth
 from recon.sim.world import LayerSettings, Sky, SkySettings
 
-SECRETS = ("recon.sim.truth", "recon.sim.survey_shutter")
+SECRETS = ("recon.sim.truth", "recon.sim.camera.survey_shutter")
 MAY_KNOW = {"sim", "score"}
 CAMERA = SurveyCamera(interval_s=2.0)
 

@@ -9,7 +9,6 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from msgspec import inspect
 
-from recon.site.complaints import in_words, said_value
 from recon.site.elevation import ElevationTable
 from recon.site.errors import SiteError
 from recon.site.geojson import Polygons, Rings
@@ -24,6 +23,7 @@ from recon.site.schema import (
     SiteTable,
     VehicleTable,
 )
+from recon.site.validation_errors import in_words, said_value
 
 TABLES: list[Any] = [
     *(SiteTable, OriginTable, LimitsTable, EyeTable, GroundImageTable, LayersTable, VehicleTable),

@@ -6,8 +6,8 @@ from tests.station.station_world import World
 
 from recon.model.event import Event
 from recon.record.audit import AuditEntry, AuditLine, Stamped, decode_line, encode_line
-from recon.station.auditing import Auditing, audit
-from recon.station.state import Station
+from recon.station.audit.entries import Auditing, audit
+from recon.station.state.station import Station
 
 UTC_NS = 1_748_770_200_000_000_000
 

@@ -22,12 +22,12 @@ from recon.model.geo import GeoPoint
 from recon.model.report import Report
 from recon.model.vehicle import FlightMode
 from recon.safety import ApprovedCommand, PreparedAirspace
-from recon.station.alarms import Alarm
-from recon.station.orders import OrderRecord
-from recon.station.outputs import SendCommand
-from recon.station.state import Clock, Station
-from recon.station.step import step
-from recon.station.virtual import EPOCH_NS
+from recon.station.kernel.step import step
+from recon.station.kernel.virtual import EPOCH_NS
+from recon.station.state.alarm_book import Alarm
+from recon.station.state.orders import OrderRecord
+from recon.station.state.outputs import SendCommand
+from recon.station.state.station import Clock, Station
 
 HOME = GeoPoint(PLACE.latitude_deg, PLACE.longitude_deg, 260.0)
 PROFILES = {serial: ready_profile(serial, HOME, n) for n, serial in enumerate("AB")}

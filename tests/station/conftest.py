@@ -5,7 +5,7 @@ from typing import NoReturn
 import pytest
 
 from recon.model.event import Event
-from recon.station.state import Station
+from recon.station.state.station import Station
 
 
 def _loud(_station: Station, _event: Event, fault: Exception, _now_ns: int) -> NoReturn:
@@ -14,4 +14,4 @@ def _loud(_station: Station, _event: Event, fault: Exception, _now_ns: int) -> N
 
 @pytest.fixture(autouse=True)
 def _faults_are_loud(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("recon.station.driver.after_fault", _loud)
+    monkeypatch.setattr("recon.station.kernel.driver.after_fault", _loud)

@@ -16,12 +16,12 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import Failsafe
 from recon.model.zone import LandingPad, Zone
 from recon.safety import PreparedAirspace
-from recon.sim.faults import parse_fault
+from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
-from recon.sim.manoeuvres import Grounded
-from recon.station.build import first_state, worker_tasks
-from recon.station.fleet_return.record import Member, Stage
-from recon.station.virtual import VirtualDriver
+from recon.sim.flight.flight_modes import Grounded
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.virtual import VirtualDriver
+from recon.station.state.fleet_return_record import Member, Stage
 
 FRAME = LocalFrame(HOME)
 LEAST_LEVEL_M, LEAST_HEIGHT_M = 15.0, 6.0

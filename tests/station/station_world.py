@@ -11,12 +11,12 @@ from recon.model.geo import GeoPoint
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.score.whole.apps import SECOND_LINK, AppConnection
-from recon.sim.app import LinkOrder, LinkOrderKind, SimulatedApp
-from recon.sim.faults import parse_fault
+from recon.sim.app.app import LinkOrder, LinkOrderKind, SimulatedApp
+from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
-from recon.station.build import first_state
-from recon.station.orders import OrderRecord
-from recon.station.virtual import FakeLink, VirtualDriver
+from recon.station.kernel.build import first_state
+from recon.station.kernel.virtual import FakeLink, VirtualDriver
+from recon.station.state.orders import OrderRecord
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 

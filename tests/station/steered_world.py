@@ -12,11 +12,11 @@ from recon.geo.distance import moved_m
 from recon.model.command import Body, GoTo, Phase
 from recon.model.event import HolderCame, HolderGone, OperatorOrder
 from recon.model.geo import LatLon
-from recon.sim.aircraft import Aircraft
-from recon.sim.app import MAIN_LINK, SimulatedApp
-from recon.station.lease import Lease
-from recon.station.stream_ends import RULE
-from recon.station.virtual import FakeLink
+from recon.sim.app.app import MAIN_LINK, SimulatedApp
+from recon.sim.flight.aircraft import Aircraft
+from recon.station.kernel.virtual import FakeLink
+from recon.station.state.setpoint_lease import Lease
+from recon.station.steering.stream_ends import RULE
 
 SERIAL = "SIM-1"
 HOLDER = "a-stream-of-a-program"

@@ -12,9 +12,9 @@ from recon.model.command import FlyMission
 from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyPhase
 from recon.model.zone import Region
-from recon.station.authority import lead_of
-from recon.station.orders import OrderRecord
-from recon.station.survey.record import SurveyRecord
+from recon.station.control.authority import lead_of
+from recon.station.state.orders import OrderRecord
+from recon.station.state.survey_record import SurveyRecord
 
 PADS = ((0.0, -40.0), (40.0, -40.0), (80.0, -40.0))
 HEIGHT_M = 40.0

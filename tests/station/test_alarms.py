@@ -4,7 +4,15 @@ from dataclasses import replace
 
 from tests.fleet.said import S
 
-from recon.station.alarms import Alarm, AlarmBook, Condition, Severity, acknowledge, note, update
+from recon.station.state.alarm_book import (
+    Alarm,
+    AlarmBook,
+    Condition,
+    Severity,
+    acknowledge,
+    note,
+    update,
+)
 
 LOW = Condition("battery:A", Severity.WARNING, "battery", "A", "low", "A")
 SERIOUS = replace(LOW, severity=Severity.CRITICAL, text="seriously low")

@@ -10,7 +10,7 @@ from recon.record.audit_check import check_audit
 from recon.record.audit_files import audit_files
 from recon.record.audit_log import AuditLog
 from recon.record.errors import RecordError
-from recon.station.audit_start import (
+from recon.station.audit.start import (
     MOST_FILES_LOOKED_AT,
     AuditPlace,
     begin_audit,
@@ -18,8 +18,8 @@ from recon.station.audit_start import (
     ended_entry,
     started_entry,
 )
-from recon.station.last_run import LastRun
-from recon.station.settings import StationSettings
+from recon.station.recovery.last_run import LastRun
+from recon.station.state.settings import StationSettings
 
 ORDER = {"id": 41, "phase": "queued", "order": "hover", "body": {}}
 

@@ -33,11 +33,11 @@ from recon.model.event import (
 from recon.model.units import NS_PER_S
 from recon.record.audit import AuditEntry
 from recon.sim.fleet import Airborne
-from recon.station.audited_links import MOST_IN_A_WINDOW
-from recon.station.auditing import Auditing, audit
-from recon.station.orders import PhaseChange
-from recon.station.state import Station
-from recon.station.step import step
+from recon.station.audit.entries import Auditing, audit
+from recon.station.audit.link_entries import MOST_IN_A_WINDOW
+from recon.station.kernel.step import step
+from recon.station.state.orders import PhaseChange
+from recon.station.state.station import Station
 from recon.vehicles.reports import to_report
 
 STICK = VirtualStick(StickFrame.GROUND, 0.0, 1.0, 0.0, 40.0, 1.0)

@@ -8,11 +8,11 @@ from tests.record.audits import PATIENCE_S, entry, until
 
 from recon.model.event import LinkOpened, Tick
 from recon.record.audit_log import AuditLog
-from recon.station import log as log_module
-from recon.station.auditor import Auditor
-from recon.station.driver import AsyncioDriver
-from recon.station.log import WAITING_LINES, LogPrinter
-from recon.station.state import Station
+from recon.station.audit import log as log_module
+from recon.station.audit.auditor import Auditor
+from recon.station.audit.log import WAITING_LINES, LogPrinter
+from recon.station.kernel.driver import AsyncioDriver
+from recon.station.state.station import Station
 
 NOW_NS = 1_800_000_000_000_000_000
 

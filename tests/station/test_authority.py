@@ -10,8 +10,8 @@ from recon.model.command import Body, FlyMission, Hover, LandNow, Phase, ReturnH
 from recon.model.event import AuthorityTaken, CommandSent, OperatorOrder
 from recon.model.intent import Commanded, Intent
 from recon.model.vehicle import FlightMode
-from recon.station import authority
-from recon.station.outputs import WithdrawMotion
+from recon.station.control import authority
+from recon.station.state.outputs import WithdrawMotion
 
 HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
 

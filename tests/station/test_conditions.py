@@ -6,7 +6,7 @@ from tests.station.commanded import Told
 
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.vehicle import BatteryWarning
-from recon.station.alarms import Severity
+from recon.station.state.alarm_book import Severity
 
 
 def severities(told: Told, rule: str) -> list[Severity]:

@@ -15,13 +15,14 @@ from recon.model.event import AlarmAcknowledged, Event, LinkOpened, StationFault
 from recon.model.units import NS_PER_S
 from recon.safety.rules import RULES
 from recon.safety.watchdogs import WATCHDOGS, Finding, Picture
-from recon.station import commanding, containment, step
-from recon.station.alarms import Alarm, Severity
-from recon.station.commanding import Stepped
-from recon.station.containment import after_fault, contained
-from recon.station.orders import OrderRecord
-from recon.station.outputs import CloseLink, Output, SendCommand
-from recon.station.state import Station
+from recon.station.control import order_gateway
+from recon.station.control.order_gateway import Stepped
+from recon.station.kernel import fault_isolation, step
+from recon.station.kernel.fault_isolation import after_fault, contained
+from recon.station.state.alarm_book import Alarm, Severity
+from recon.station.state.orders import OrderRecord
+from recon.station.state.outputs import CloseLink, Output, SendCommand
+from recon.station.state.station import Station
 from recon.vehicles.reports import to_report
 
 FAULT = ZeroDivisionError("division by zero")
@@ -48,7 +49,7 @@ def contained_step(station: Station, event: Event, now_ns: int) -> Stepped:
 @pytest.fixture
 def bench(monkeypatch: pytest.MonkeyPatch) -> Bench:
     """A driver with one vehicle in the air, whose faults are contained as in a real run."""
-    monkeypatch.setattr("recon.station.driver.after_fault", after_fault)
+    monkeypatch.setattr("recon.station.kernel.driver.after_fault", after_fault)
     made = Bench()
     made.open(1, extended(b"A"), core())
     return made
@@ -71,7 +72,7 @@ class TestATick:
             return run
 
         parts = {name: part(name) for name in step.TICK_PARTS}
-        monkeypatch.setattr(containment, "TICK_PARTS", parts)
+        monkeypatch.setattr(fault_isolation, "TICK_PARTS", parts)
         station, outputs = after_fault(Station(), Tick(), FAULT, 0)
         assert called == [name for name in parts if name != broken]
         assert len(outputs) == len(parts) - 1
@@ -86,7 +87,7 @@ class TestATick:
         """The vehicle falls silent: the watch on links still tells it."""
         told = flying()
         watchdogs = (contained(failing), *(contained(dog) for dog in WATCHDOGS))  # type: ignore[arg-type]
-        monkeypatch.setattr(containment, "CONTAINED", watchdogs)
+        monkeypatch.setattr(fault_isolation, "CONTAINED", watchdogs)
         for _ in range(45):
             told.now_ns += NS_PER_S // 10
             told.station, _ = after_fault(told.station, Tick(), FAULT, told.now_ns)
@@ -112,7 +113,7 @@ class TestATick:
         told.passes(4.0)
         before = told.alarms()
         assert "link_lost" in before
-        monkeypatch.setattr("recon.station.step.conditions", failing)
+        monkeypatch.setattr("recon.station.kernel.step.conditions", failing)
         told.station, _ = after_fault(told.station, Tick(), FAULT, told.now_ns)
         assert told.alarms() == {*before, "station_fault"}
 
@@ -126,14 +127,14 @@ class TestATick:
         told.order(Hover(), "A")
         told.order(Hover(), "B")
         sent = len(told.handed)
-        real = commanding._watch_order
+        real = order_gateway._watch_order
 
         def watch(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
             if record.command.serial == "A":
                 raise FAULT
             return real(station, record, now_ns)
 
-        monkeypatch.setattr(commanding, "_watch_order", watch)
+        monkeypatch.setattr(order_gateway, "_watch_order", watch)
         told.now_ns += NS_PER_S
         told.station, outputs = after_fault(told.station, Tick(), FAULT, told.now_ns)
         assert len(told.handed) == sent
@@ -152,8 +153,8 @@ class TestAStream:
         s = steered()
         order = s.goto(200.0)
         s.run_for(4.0)
-        monkeypatch.setattr("recon.station.streams.steer", failing)
-        monkeypatch.setattr("recon.station.virtual.step", contained_step)
+        monkeypatch.setattr("recon.station.steering.setpoint_streams.steer", failing)
+        monkeypatch.setattr("recon.station.kernel.virtual.step", contained_step)
         failed_s = s.now_s
         s.run_for(5.0)
         assert s.phase(order) is Phase.FAILED
@@ -167,9 +168,9 @@ class TestAStream:
         s = steered()
         s.goto(200.0)
         s.run_for(4.0)
-        monkeypatch.setattr("recon.station.streams.steer", failing)
-        monkeypatch.setattr("recon.station.stream_ends.halted", failing)
-        monkeypatch.setattr("recon.station.virtual.step", contained_step)
+        monkeypatch.setattr("recon.station.steering.setpoint_streams.steer", failing)
+        monkeypatch.setattr("recon.station.steering.stream_ends.halted", failing)
+        monkeypatch.setattr("recon.station.kernel.virtual.step", contained_step)
         failed_s = s.now_s
         s.run_for(5.0)
         assert s.sticks(failed_s + 0.15) == []
@@ -184,7 +185,7 @@ class TestAnEvent:
     ) -> None:
         before = bench.driver.station
         with monkeypatch.context() as patched:
-            patched.setattr("recon.station.step.fleet_step.step", failing)
+            patched.setattr("recon.station.kernel.step.fleet_step.step", failing)
             bench.driver.handle(LinkOpened(2, "10.0.0.2:5"))
         station = bench.driver.station
         assert replace(station, faults={}) == before
@@ -214,7 +215,7 @@ class TestAnEvent:
     def test_an_order_that_was_never_judged_is_answered_as_refused(
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("recon.station.step.commanding.place", failing)
+        monkeypatch.setattr("recon.station.kernel.step.commanding.place", failing)
         (result,) = bench.service.all_stop("test").results
         assert (result.accepted, result.rule, result.serial) == (False, "station_fault", "A")
         assert fault_alarms(bench.driver.station)
@@ -237,7 +238,7 @@ class TestTheDriver:
 
         bench.driver.links = Links()  # type: ignore[assignment]
         with monkeypatch.context() as patched:
-            patched.setattr("recon.station.step._tick", both)
+            patched.setattr("recon.station.kernel.step._tick", both)
             bench.driver.handle(Tick())
         assert closed == [2]
         (alarm,) = fault_alarms(bench.driver.station)

@@ -12,8 +12,8 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.zone import Region
 from recon.sim.fleet import build_fleet
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.build import first_state
-from recon.station.virtual import VirtualDriver
+from recon.station.kernel.build import first_state
+from recon.station.kernel.virtual import VirtualDriver
 
 
 def demonstration(site: Site, seed: int, vehicle_count: int, wanders: bool) -> World:

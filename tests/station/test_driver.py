@@ -7,9 +7,9 @@ import pytest
 
 from recon.model.event import DeadlineMissed, Event, LinkOpened, Tick
 from recon.site import default_site
-from recon.station.build import first_state
-from recon.station.driver import AsyncioDriver, station_clock
-from recon.station.event_queue import EventQueue
+from recon.station.kernel.build import first_state
+from recon.station.kernel.driver import AsyncioDriver, station_clock
+from recon.station.kernel.event_queue import EventQueue
 
 PATIENCE_S = 20.0
 

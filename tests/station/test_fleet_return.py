@@ -14,8 +14,8 @@ from tests.station.station_world import square_mission
 from recon.model.authority import Leader
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
 from recon.model.event import AuthorityTaken, SeparationHoldSwitched
-from recon.station.fleet_return.record import Stage
-from recon.station.fleet_return.told import view
+from recon.station.operations.fleet_return.told import view
+from recon.station.state.fleet_return_record import Stage
 
 FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
 """Six that hover over a field, east, north, up."""

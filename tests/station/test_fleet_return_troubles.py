@@ -18,10 +18,10 @@ from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
-from recon.station.fleet_return import places
-from recon.station.fleet_return.planning import PLAN_RETURN
-from recon.station.fleet_return.record import Stage
-from recon.station.state import Station
+from recon.station.operations.fleet_return import places
+from recon.station.operations.fleet_return.planning import PLAN_RETURN
+from recon.station.state.fleet_return_record import Stage
+from recon.station.state.station import Station
 
 ONE = [(0, 100, 30)]
 TWO = [(0, 100, 30), (60, 100, 40)]

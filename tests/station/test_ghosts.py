@@ -10,8 +10,8 @@ from recon.fleet.settings import FleetSettings
 from recon.geo.distance import moved_m
 from recon.model.command import GoTo, Hover, Phase
 from recon.model.event import AlarmAcknowledged, GhostDismissed
-from recon.station.air import ghost, in_the_air, is_hazard_unseen
-from recon.station.ghost_view import ghost_view
+from recon.station.api_views.hazard_view import ghost_view
+from recon.station.traffic.known_traffic import ghost, in_the_air, is_hazard_unseen
 
 NORTH_100 = moved_m(PLACE, 100.0, 0.0)
 

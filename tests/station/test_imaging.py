@@ -9,7 +9,7 @@ from recon.model.imagery import Frame
 from recon.model.stamped import Stamped
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import Attitude, VehicleState
-from recon.station.imaging import Imaging, take_frame, with_sample
+from recon.station.state.imaging import Imaging, take_frame, with_sample
 
 MARKED = TelemetryReference(41.9, -93.6, 130.0, 0.0, 0.0, 0.0)
 

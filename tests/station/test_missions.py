@@ -17,7 +17,7 @@ from recon.model.event import AuthorityTaken, CommandSent
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
-from recon.station.orders import OrderRecord
+from recon.station.state.orders import OrderRecord
 
 BROKEN_OFF = "mission_broken_off"
 

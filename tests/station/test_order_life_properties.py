@@ -34,10 +34,10 @@ from recon.model.event import (
     Tick,
 )
 from recon.model.vehicle import FlightMode
-from recon.station.orders import OrderRecord
-from recon.station.outputs import Output, SendCommand
-from recon.station.state import Station
-from recon.station.step import step
+from recon.station.kernel.step import step
+from recon.station.state.orders import OrderRecord
+from recon.station.state.outputs import Output, SendCommand
+from recon.station.state.station import Station
 
 MODES = [
     FlightMode.GPS_ATTI,

@@ -8,7 +8,7 @@ from tests.safety.cases import command
 
 from recon.model.command import Command, Hover, Phase, StopCamera
 from recon.model.event import CommandDropped, CommandSent
-from recon.station.orders import (
+from recon.station.state.orders import (
     OrderBook,
     OrderRecord,
     PhaseChange,

@@ -12,9 +12,9 @@ from recon.model.event import AlarmAcknowledged, ClockRead, PreflightOverridden
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.vehicle import FlightMode
 from recon.safety import Override, PreparedAirspace
-from recon.station import preflight
-from recon.station.state import Clock, Station
-from recon.station.virtual import EPOCH_NS
+from recon.station.control import preflight
+from recon.station.kernel.virtual import EPOCH_NS
+from recon.station.state.station import Clock, Station
 
 HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
 ON_GROUND = (core(flying=False, height_m=0.0), extended(mode=FlightMode.GPS_ATTI))

@@ -20,20 +20,20 @@ from recon.model.event import AuthorityTaken, Event, GhostDismissed, OperatorOrd
 from recon.model.units import NS_PER_S
 from recon.record.audit import AuditEntry, AuditLine, Stamped, decode_line, encode_line
 from recon.sim.fleet import Airborne
-from recon.station.air import LOST_KEPT
-from recon.station.auditing import Auditing, audit
-from recon.station.ghost_view import ghost_view
-from recon.station.last_run import (
+from recon.station.api_views.hazard_view import ghost_view
+from recon.station.audit.entries import Auditing, audit
+from recon.station.audit.unidentified_snapshots import NAMELESS_KIND
+from recon.station.audit.vehicle_snapshots import sighting_of
+from recon.station.recovery.last_run import (
     LARGEST_ID,
     MOST_NAMELESS,
     MOST_ORDERS,
     MOST_VEHICLES,
     LastRun,
 )
-from recon.station.nameless_sightings import NAMELESS_KIND
-from recon.station.restart import INTERRUPTED, first_ids, restart_entries, restored
-from recon.station.sightings import sighting_of
-from recon.station.state import Station
+from recon.station.recovery.restart import INTERRUPTED, first_ids, restart_entries, restored
+from recon.station.state.station import Station
+from recon.station.traffic.known_traffic import LOST_KEPT
 
 HOUR_NS = 3_600 * NS_PER_S
 

@@ -5,7 +5,7 @@ from tests.station.audited import Audited
 from tests.station.station_world import World, world
 from tests.station.test_restart import restart
 
-from recon.station.alarms import Alarm
+from recon.station.state.alarm_book import Alarm
 
 GONE_S = 4.0
 LATEST_S = 8.0

@@ -9,7 +9,7 @@ from studies.run_digest import RunDigest, parts_of
 from studies.same_again import FAULTS, HASH_SEEDS, in_another_process
 
 from recon.model.event import CommandAnswered, CommandSent, Event, LinkClosed, WorkerResult
-from recon.station.state import Station
+from recon.station.state.station import Station
 
 SECONDS = 20.0
 

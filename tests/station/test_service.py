@@ -15,9 +15,9 @@ from recon.model.event import LinkClosed, LinkOpened, PacketReceived
 from recon.model.geo import GeoPoint
 from recon.model.units import NS_PER_S
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.build import first_state, worker_tasks
-from recon.station.driver import AsyncioDriver
-from recon.station.service import Service
+from recon.station.api_views.service import Service
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.driver import AsyncioDriver
 from recon.vehicles.reports import to_report
 
 

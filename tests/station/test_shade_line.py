@@ -10,15 +10,15 @@ from recon.model.event import DeadlineMissed, WorkerResult
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.units import NS_PER_S
-from recon.station.conditions import conditions
-from recon.station.imaging import LAY_FRAME
-from recon.station.outputs import Output, StartWork
-from recon.station.shade.line import WAITING_KEPT
-from recon.station.shade.told import view
-from recon.station.shade.work import READ_SHADE, ReadShade, ShadeRead, read_task
-from recon.station.state import Station
-from recon.station.step import step
-from recon.station.worker import do_work
+from recon.station.alarms.conditions import conditions
+from recon.station.imaging.shade_told import view
+from recon.station.imaging.shade_work import READ_SHADE, ReadShade, ShadeRead, read_task
+from recon.station.kernel.step import step
+from recon.station.kernel.worker import do_work
+from recon.station.state.imaging import LAY_FRAME
+from recon.station.state.outputs import Output, StartWork
+from recon.station.state.shade import WAITING_KEPT
+from recon.station.state.station import Station
 
 GRID = GroundGrid(LocalFrame(HOME), -64.0, 64.0, 1.0, 128, 128)
 POSE = CameraPose(np.eye(3), np.array([0.0, 0.0, 120.0]))

@@ -13,7 +13,7 @@ from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.zone import Region, Zone, ZoneKind
 from recon.site import Layers, Site, default_site, demo_site_folder, load_site
-from recon.station.site_view import MOST_CORNERS, MOST_RINGS, site_view
+from recon.station.api_views.site_view import MOST_CORNERS, MOST_RINGS, site_view
 
 FRAME = LocalFrame(GeoPoint(45.0, -93.0, 280.0))
 

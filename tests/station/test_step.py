@@ -11,9 +11,9 @@ from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.report import ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
-from recon.station.imaging import LAY_FRAME
-from recon.station.settings import StationSettings
-from recon.station.state import Station
+from recon.station.state.imaging import LAY_FRAME
+from recon.station.state.settings import StationSettings
+from recon.station.state.station import Station
 
 IMAGE = ImageReport(target_fps_hz=1.0, jpeg=b"x")
 

@@ -21,10 +21,10 @@ from recon.model.event import (
 )
 from recon.model.report import AckReport, AnsweredKind, ImageReport, MessageReport, MessageSeverity
 from recon.model.vehicle import FlightMode
-from recon.station.outputs import SendCommand
-from recon.station.settings import StationSettings
-from recon.station.state import Station
-from recon.station.step import step
+from recon.station.kernel.step import step
+from recon.station.state.outputs import SendCommand
+from recon.station.state.settings import StationSettings
+from recon.station.state.station import Station
 
 LINKS = st.integers(1, 4)
 IDS = st.integers(1, 12)

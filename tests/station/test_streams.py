@@ -29,7 +29,7 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
 from recon.model.zone import Region
 from recon.safety import PreparedAirspace
-from recon.station.virtual import FakeLink
+from recon.station.kernel.virtual import FakeLink
 
 JITTERY = FakeLink(delay_s=0.05, jitter_s=0.25, seed=4)
 

@@ -5,8 +5,8 @@ from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, survey
 from recon.model.event import Event
 from recon.model.survey import SurveyPhase
 from recon.record.audit import AuditEntry
-from recon.station.auditing import Auditing, audit
-from recon.station.state import Station
+from recon.station.audit.entries import Auditing, audit
+from recon.station.state.station import Station
 
 
 def audited(world: SurveyedWorld) -> list[AuditEntry]:

@@ -9,7 +9,7 @@ from recon.model.authority import Leader
 from recon.model.command import FlyMission, Hover, LandNow
 from recon.model.event import AuthorityTaken
 from recon.model.survey import SurveyBudget, SurveyPhase, WhenDone
-from recon.station.fleet_return.record import Stage
+from recon.station.state.fleet_return_record import Stage
 
 LONG_FIELD = field(360.0)
 

@@ -13,7 +13,7 @@ from recon.model.report import CoreReport
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import AltitudeReference, FlightMode, Staleness
 from recon.sim.fleet import Airborne
-from recon.station.virtual import FakeLink
+from recon.station.kernel.virtual import FakeLink
 
 
 def lived(seed: int) -> World:

@@ -16,7 +16,7 @@ from recon.model.geo import LatLon
 from recon.model.intent import Commanded, Intent
 from recon.model.severity import Severity
 from recon.model.vehicle import FlightMode
-from recon.station.alarms import Alarm
+from recon.station.state.alarm_book import Alarm
 
 
 def place(north_m: float) -> LatLon:

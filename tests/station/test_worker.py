@@ -5,8 +5,8 @@ from queue import Queue
 
 from recon.model.errors import ReconError
 from recon.model.event import DeadlineMissed, Event, WorkerResult
-from recon.station.outputs import StartWork
-from recon.station.worker import ThreadWorker, do_work
+from recon.station.kernel.worker import ThreadWorker, do_work
+from recon.station.state.outputs import StartWork
 
 PATIENCE_S = 20.0
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from recon.api.holders import Holders, until_silent
+from recon.api.owners import Holders, until_silent
 from recon.api.port import StationPort
 from recon.api.security import PROTOCOL
 

@@ -11,7 +11,7 @@ import msgspec
 import typer
 
 from recon.cli.at_station import NO_USE
-from recon.cli.telling import clean, say
+from recon.cli.output import clean, say
 from recon.record.audit import AuditLine, decode_line
 from recon.record.audit_check import Verdict, check_audit
 from recon.record.audit_files import audit_files, raw_lines

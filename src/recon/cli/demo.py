@@ -10,15 +10,15 @@ import typer
 
 import recon
 from recon.cli.console_files import console_folder
-from recon.cli.demo_crew import fly_surveys
 from recon.cli.event_loop import run_in_loop
 from recon.cli.run import announce
+from recon.cli.scripted_operator import fly_surveys
 from recon.cli.until_stopped import say_at_once
 from recon.client import ClientError
 from recon.model.errors import ReconError
 from recon.score import Scenario, ScenarioError, load_scenario
-from recon.station.audit_start import default_place
-from recon.station.run import RunConfig, Started, run
+from recon.station.audit.start import default_place
+from recon.station.kernel.run import RunConfig, Started, run
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
 STATION_ENDS_WITHIN_S = 5.0

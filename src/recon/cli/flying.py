@@ -17,8 +17,8 @@ from recon.cli.at_station import (
     at_station,
 )
 from recon.cli.mission_file import read_mission
-from recon.cli.naming import serials_of
-from recon.cli.telling import outcomes, say, say_json, tell
+from recon.cli.output import outcomes, say, say_json, tell
+from recon.cli.vehicle_names import serials_of
 from recon.client import Mission, Refusal, Station, VehicleAnswer
 
 STARTED_WITHIN_S = 15.0

@@ -13,8 +13,8 @@ from recon.cli.at_station import (
     TokenOption,
     at_station,
 )
-from recon.cli.naming import NamingError, serials_of
-from recon.cli.telling import say
+from recon.cli.output import say
+from recon.cli.vehicle_names import NamingError, serials_of
 from recon.client import Station
 
 

@@ -7,9 +7,9 @@ from recon import __version__
 from recon.api.app import create_app
 from recon.api.security import Access
 from recon.site import default_site
-from recon.station.build import first_state
-from recon.station.driver import AsyncioDriver
-from recon.station.service import Service
+from recon.station.api_views.service import Service
+from recon.station.kernel.build import first_state
+from recon.station.kernel.driver import AsyncioDriver
 
 
 def openapi_command() -> None:

@@ -5,13 +5,13 @@ from collections.abc import Callable
 
 import typer
 
+from recon.cli.authority import preflight_command, release_command, take_command
 from recon.cli.flying import camera_command, fly_command
 from recon.cli.hazards import dismiss_command, separation_hold_command
-from recon.cli.leading import preflight_command, release_command, take_command
 from recon.cli.negative_numbers import TakesNegativeNumbers
 from recon.cli.returning import fleet_return_command
 from recon.cli.steering import goto_command, nudge_command
-from recon.cli.stopping import all_stop_command, hold_command, land_command, return_command
+from recon.cli.stop_commands import all_stop_command, hold_command, land_command, return_command
 from recon.cli.surveying import survey_app
 from recon.cli.watching import alarms_command, commands_command, status_command
 

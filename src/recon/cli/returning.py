@@ -17,8 +17,8 @@ from recon.cli.at_station import (
     WaitOption,
     at_station,
 )
-from recon.cli.naming import serials_of
-from recon.cli.telling import say_json, table
+from recon.cli.output import say_json, table
+from recon.cli.vehicle_names import serials_of
 from recon.client import Returning, Station
 
 PLANNED_WITHIN_S = 10.0

@@ -11,8 +11,8 @@ from recon.cli.event_loop import run_in_loop
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
 from recon.site import Site, default_site, load_site, site_report
-from recon.station.audit_start import AuditPlace
-from recon.station.run import RunConfig, Started, StartError, run
+from recon.station.audit.start import AuditPlace
+from recon.station.kernel.run import RunConfig, Started, StartError, run
 
 SHORTEST_TOKEN = 16
 TOKEN_LETTERS = frozenset(string.ascii_letters + string.digits + "-._~")

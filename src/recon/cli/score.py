@@ -11,7 +11,7 @@ import typer
 
 from recon.model.errors import ReconError
 from recon.score import Methods, RunScore, Scenario, ScenarioError, load_scenario, run, tables
-from recon.score.mishaps import without_effect
+from recon.score.fault_effects import without_effect
 from recon.score.scenario_schema import METHOD_NAMES
 from recon.score.whole import run_whole
 

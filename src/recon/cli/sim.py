@@ -40,19 +40,19 @@ from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.score.simulation import go_home_heights_of, pads_of, rig_of
-from recon.sim.camera_feed import FeedSettings, FrameSource, ImageFormat
-from recon.sim.commands import HoverOnGround
+from recon.sim.app.camera_feed import FeedSettings, FrameSource, ImageFormat
+from recon.sim.app.commands import HoverOnGround
+from recon.sim.app.fault_file import FaultScript, load_faults
+from recon.sim.app.faults import parse_fault
+from recon.sim.app.telemetry import FIELD_SENSORS
+from recon.sim.camera import EyeSettings
+from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.frame_files import folder_frames
+from recon.sim.camera.replay import load_replay
+from recon.sim.camera.rig import EyeRig
 from recon.sim.errors import SimulationError
-from recon.sim.eye import EyeSettings
-from recon.sim.fault_file import FaultScript, load_faults
-from recon.sim.faults import parse_fault
-from recon.sim.field import FieldFrames
 from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig
-from recon.sim.frame_files import folder_frames
-from recon.sim.replay import load_replay
-from recon.sim.rig import EyeRig
 from recon.sim.run import run_fleet
-from recon.sim.telemetry import FIELD_SENSORS
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.site import Eye, Site, SiteError, demo_site_folder, load_site
 

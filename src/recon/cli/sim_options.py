@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from recon.sim.camera_feed import ImageFormat
-from recon.sim.commands import HoverOnGround
-from recon.sim.faults import FaultKind
+from recon.sim.app.camera_feed import ImageFormat
+from recon.sim.app.commands import HoverOnGround
+from recon.sim.app.faults import FaultKind
 
 MOST_VEHICLES = 256
 

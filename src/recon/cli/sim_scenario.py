@@ -14,7 +14,7 @@ from recon.cli.until_stopped import say_at_once, until_stopped
 from recon.model.errors import ReconError
 from recon.score import load_scenario
 from recon.score.simulation import simulation_of
-from recon.sim.camera_feed import FeedSettings, ImageFormat
+from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.errors import SimulationError
 from recon.sim.run import run_fleet
 

@@ -17,8 +17,8 @@ from recon.cli.at_station import (
     TokenOption,
     at_station,
 )
-from recon.cli.naming import serials_of
-from recon.cli.telling import Outcome, say, tell
+from recon.cli.output import Outcome, say, tell
+from recon.cli.vehicle_names import serials_of
 from recon.client import Order, Phase, Refusal, Station, Vehicle
 
 ARRIVED_WITHIN_S = 600.0

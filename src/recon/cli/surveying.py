@@ -18,8 +18,8 @@ from recon.cli.at_station import (
     Work,
     at_station,
 )
-from recon.cli.naming import NamingError, serials_of
-from recon.cli.telling import say, say_json, table
+from recon.cli.output import say, say_json, table
+from recon.cli.vehicle_names import NamingError, serials_of
 from recon.client import ClientError, Refusal, Station, Survey, Surveys
 from recon.model.geo import GeoPoint
 from recon.model.survey import WhenDone, none_such

@@ -13,7 +13,7 @@ from recon.cli.at_station import (
     TokenOption,
     at_station,
 )
-from recon.cli.telling import say, say_json, table
+from recon.cli.output import say, say_json, table
 from recon.client import Alarm, Life, Station, Telemetry
 
 

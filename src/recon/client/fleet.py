@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from recon.client.desk import OrderDesk
 from recon.client.messages import StateMessage
 from recon.client.order import VehicleAnswer
+from recon.client.order_api import OrderDesk
 from recon.client.returning import Returning
 from recon.model.command import Body, Hover, LandNow, ReturnHome
 

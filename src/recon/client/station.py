@@ -3,13 +3,13 @@
 from types import TracebackType
 
 from recon.client.address import parse_address
-from recon.client.desk import OrderDesk
 from recon.client.errors import StationUnreachableError, TookTooLongError
 from recon.client.fleet import Fleet
 from recon.client.http import Http
 from recon.client.life import Life
 from recon.client.messages import StateMessage
 from recon.client.order import VehicleAnswer
+from recon.client.order_api import OrderDesk
 from recon.client.stream import Stream
 from recon.client.surveys import Surveys
 from recon.client.telemetry import Telemetry

@@ -3,9 +3,9 @@
 from collections.abc import AsyncIterator
 from urllib.parse import quote
 
-from recon.client.desk import OrderDesk
 from recon.client.errors import ConnectionLostError
 from recon.client.order import Order
+from recon.client.order_api import OrderDesk
 from recon.client.readiness import Preflight, ask_preflight, say_leader, say_override
 from recon.client.stream import Heard
 from recon.client.telemetry import Telemetry

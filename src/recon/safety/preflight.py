@@ -10,24 +10,24 @@ from collections.abc import Callable
 
 from recon.model.vehicle import VehicleState
 from recon.safety.check import Check
-from recon.safety.checks import aircraft, go_home, place, told
+from recon.safety.checks import aircraft, go_home, place, site_facts
 from recon.safety.situation import Situation
 
 _CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
     aircraft.link,
     aircraft.battery,
-    told.endurance,
+    site_facts.endurance,
     aircraft.gnss,
     aircraft.wind,
-    told.altitude_reference,
+    site_facts.altitude_reference,
     go_home.go_home_height,
-    told.failsafe,
+    site_facts.failsafe,
     place.home_place,
     place.pad_altitude,
     place.fence,
     place.ground,
     place.clock,
-    told.camera_interval,
+    site_facts.camera_interval,
     aircraft.app,
 )
 

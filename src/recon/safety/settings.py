@@ -6,7 +6,7 @@ from recon.safety.energy_settings import EnergySettings
 from recon.safety.fence_settings import FenceSettings
 from recon.safety.prediction.settings import PredictionSettings
 from recon.safety.preflight_settings import PreflightSettings
-from recon.safety.watch_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchSettings
 
 
 @dataclass(frozen=True, slots=True)

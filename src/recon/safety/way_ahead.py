@@ -16,7 +16,7 @@ from recon.safety.energy import (
     path_need,
     place_of,
 )
-from recon.safety.homewards import leads_home
+from recon.safety.return_missions import leads_home
 from recon.safety.situation import Situation
 
 Way = tuple[Sequence[Point], float]

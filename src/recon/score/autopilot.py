@@ -11,10 +11,8 @@ from math import hypot, inf, log, sqrt
 from recon.score.curve import curved
 from recon.score.flight import Hop, Motion, Spot, Steady
 from recon.score.legs import Pace, leg
-from recon.sim.air import COMES_BACK_WITHIN_S, LEARNS_WITHIN_S
-from recon.sim.kinematics import DRAG_PER_S, Limits
-from recon.sim.kinematics import Motion as AirMotion
-from recon.sim.manoeuvres import (
+from recon.sim.flight.air import COMES_BACK_WITHIN_S, LEARNS_WITHIN_S
+from recon.sim.flight.flight_modes import (
     CONFIRM_HEIGHT_M,
     LANDING_FAST_MPS,
     LANDING_SLOW_BELOW_M,
@@ -23,9 +21,11 @@ from recon.sim.manoeuvres import (
     SPIN_UP_S,
     TAKEOFF_HEIGHT_M,
 )
-from recon.sim.mission import ARRIVED_BELOW_MPS, ARRIVED_WITHIN_M
-from recon.sim.path import Corner
-from recon.sim.power import flying_load
+from recon.sim.flight.kinematics import DRAG_PER_S, Limits
+from recon.sim.flight.kinematics import Motion as AirMotion
+from recon.sim.flight.mission import ARRIVED_BELOW_MPS, ARRIVED_WITHIN_M
+from recon.sim.flight.path import Corner
+from recon.sim.flight.power import flying_load
 from recon.sim.world import Wind
 
 LIFTED_M = TAKEOFF_HEIGHT_M - 0.1

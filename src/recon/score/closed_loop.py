@@ -18,9 +18,9 @@ from recon.guidance.survey import (
 from recon.model.survey import CellState, SurveyPhase
 from recon.model.units import seconds_to_ns
 from recon.score.drone import Doing, Drone
-from recon.score.eye import Eye
+from recon.score.fault_effects import Mishap, gusty_spans, mishaps_of, with_chances
 from recon.score.flight import whereabouts
-from recon.score.mishaps import Mishap, gusty_spans, mishaps_of, with_chances
+from recon.score.imager import Eye
 from recon.score.missions import survey_points, way_home
 from recon.score.photos import Imaged, imaged, phases_s, photos_of
 from recon.score.run_score import ENOUGH, RunScore, encounters, shares_by, time_to_share

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.score.flight import Spot
-from recon.sim.kinematics import Limits
-from recon.sim.mission import LEAST_PATH_SPEED_MPS
-from recon.sim.path import Corner, FlightPath, rounded_path
+from recon.sim.flight.kinematics import Limits
+from recon.sim.flight.mission import LEAST_PATH_SPEED_MPS
+from recon.sim.flight.path import Corner, FlightPath, rounded_path
 
 FloatArray = npt.NDArray[np.float64]
 

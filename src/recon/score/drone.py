@@ -16,8 +16,8 @@ from recon.score.autopilot import Autopilot, Point
 from recon.score.flight import Hop, Spot
 from recon.score.scenario import Fleet, Place
 from recon.score.settings import FlightSettings
-from recon.sim.kinematics import Motion
-from recon.sim.power import flying_load
+from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.power import flying_load
 from recon.sim.world import Wind
 
 _START_S = attrgetter("start_s")

@@ -10,7 +10,7 @@ from math import log, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.kinematics import BRAKING_MPS2
+from recon.sim.flight.kinematics import BRAKING_MPS2
 
 FloatArray = npt.NDArray[np.float64]
 

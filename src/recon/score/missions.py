@@ -11,7 +11,7 @@ from recon.model.vehicle import VehicleState
 from recon.score.autopilot import Point
 from recon.score.flight import Spot
 from recon.score.scenario import Place, Scenario
-from recon.station.survey.approach import with_approach
+from recon.station.operations.survey.approach import with_approach
 
 RETURN = FleetReturnSettings()
 

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from recon.guidance.survey import SurveyPlan
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.score.flight import Hop
-from recon.sim.survey_shutter import IntervalTimer
+from recon.sim.camera.survey_shutter import IntervalTimer
 from recon.sim.world import Sky
 
 FloatArray = npt.NDArray[np.float64]

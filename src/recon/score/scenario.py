@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
-from recon.sim.fault_chance import Chance
-from recon.sim.faults import Fault
+from recon.sim.app.fault_chance import Chance
+from recon.sim.app.faults import Fault
 from recon.sim.world import LightSettings, SkySettings, WindSettings
 from recon.site import Site
 

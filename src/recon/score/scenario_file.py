@@ -13,15 +13,15 @@ from recon.guidance.survey import SurveyPlan, plan_survey
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
 from recon.model.zone import Region
-from recon.score.complaints import Complaints
 from recon.score.errors import ScenarioError
 from recon.score.scenario import Methods, Scenario
 from recon.score.scenario_schema import CloudsTable, ScenarioFile, TaskTable
 from recon.score.staging import staged
 from recon.score.toml_lines import key_lines
-from recon.sim.fault_chance import Chance
-from recon.sim.fault_file import FaultScript, load_faults
-from recon.sim.faults import Fault, parse_fault
+from recon.score.validation_errors import Complaints
+from recon.sim.app.fault_chance import Chance
+from recon.sim.app.fault_file import FaultScript, load_faults
+from recon.sim.app.faults import Fault, parse_fault
 from recon.sim.fleet import EYE_SERIAL
 from recon.sim.world import (
     LayerSettings,
@@ -31,7 +31,7 @@ from recon.sim.world import (
     WindSettings,
     WindShift,
 )
-from recon.site.complaints import complaint
+from recon.site.validation_errors import complaint
 
 LARGEST_BYTES = 1_000_000
 AT_LINE = re.compile(r"at line (\d+)")

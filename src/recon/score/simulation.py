@@ -5,15 +5,15 @@ from typing import TypeVar
 
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.score.scenario import Scenario
-from recon.sim.camera_feed import FeedSettings
-from recon.sim.eye import EyeSettings
-from recon.sim.fault_chance import Chance
-from recon.sim.faults import Fault
-from recon.sim.field import FieldFrames
+from recon.sim.app.camera_feed import FeedSettings
+from recon.sim.app.fault_chance import Chance
+from recon.sim.app.faults import Fault
+from recon.sim.app.telemetry import FIELD_SENSORS
+from recon.sim.camera import EyeSettings
+from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.replay import rig_over
+from recon.sim.camera.rig import EyeRig
 from recon.sim.fleet import EYE_SERIAL, Airborne, EyeSetup, SimulationConfig
-from recon.sim.replay import rig_over
-from recon.sim.rig import EyeRig
-from recon.sim.telemetry import FIELD_SENSORS
 from recon.sim.world import Sky, Wind
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Eye, Site

@@ -9,10 +9,10 @@ from recon.geo import enu_from_point
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey
 from recon.model.zone import Region
-from recon.score.complaints import Complaints
 from recon.score.scenario import Fleet, Place, ScenarioEye
 from recon.score.scenario_schema import EyeTable, FleetTable, ScenarioFile
 from recon.score.scenario_site import made_up_site
+from recon.score.validation_errors import Complaints
 from recon.sim.fleet import EYE_SERIAL
 from recon.site import Site, SiteError, load_site
 

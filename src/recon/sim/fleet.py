@@ -8,19 +8,19 @@ from random import Random
 from recon.geo import enu_from_point, point_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import AltitudeReference
-from recon.sim.air import Air
-from recon.sim.aircraft import Aircraft, AircraftSettings
-from recon.sim.app import AppSettings, SimulatedApp
-from recon.sim.battery import Battery
-from recon.sim.camera_feed import CameraFeed, FeedSettings, FrameSource
-from recon.sim.commands import AppHabits, HoverOnGround
+from recon.sim.app.app import AppSettings, SimulatedApp
+from recon.sim.app.camera_feed import CameraFeed, FeedSettings, FrameSource
+from recon.sim.app.commands import AppHabits, HoverOnGround
+from recon.sim.app.fault_chance import Chance, drawn_faults
+from recon.sim.app.faults import Fault
+from recon.sim.app.telemetry import SensorSettings
+from recon.sim.camera.rig import EyeRig
 from recon.sim.errors import FaultError
-from recon.sim.fault_chance import Chance, drawn_faults
-from recon.sim.faults import Fault
-from recon.sim.kinematics import Motion
-from recon.sim.manoeuvres import Grounded, Hold, Manoeuvre, TakeOff, Wander
-from recon.sim.rig import EyeRig
-from recon.sim.telemetry import SensorSettings
+from recon.sim.flight.air import Air
+from recon.sim.flight.aircraft import Aircraft, AircraftSettings
+from recon.sim.flight.battery import Battery
+from recon.sim.flight.flight_modes import Grounded, Hold, Manoeuvre, TakeOff, Wander
+from recon.sim.flight.kinematics import Motion
 from recon.sim.world import Wind, WindSettings
 
 EYE_SERIAL = "SIM-EYE"

@@ -9,8 +9,8 @@ from typing import Any
 
 from recon.model.errors import ReconError
 from recon.model.units import NS_PER_S
-from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
-from recon.sim.camera_feed import Shot
+from recon.sim.app.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.sim.app.camera_feed import Shot
 from recon.sim.closing import close
 from recon.sim.fleet import SimulationConfig, build_fleet
 

@@ -13,11 +13,11 @@ from recon.model.imagery import CameraPose
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S
-from recon.sim.camera_feed import View
+from recon.sim.app.camera_feed import View
+from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.survey_shutter import IntervalTimer, SurveyPhoto, TruePath, photos
 from recon.sim.errors import SimulationError
-from recon.sim.field import FieldFrames
-from recon.sim.noise import FloatImage
-from recon.sim.survey_shutter import IntervalTimer, SurveyPhoto, TruePath, photos
+from recon.sim.land.noise import FloatImage
 from recon.sim.world import Sky, SunPosition
 
 

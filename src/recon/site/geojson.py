@@ -18,9 +18,9 @@ from msgspec import Meta
 from recon.geo import enu_from_geo, region_fault
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.zone import Region
-from recon.site.complaints import said_value
 from recon.site.errors import SiteError
 from recon.site.reading import convert, read_bounded, refuse_non_finite
+from recon.site.validation_errors import said_value
 
 FloatArray = npt.NDArray[np.float64]
 

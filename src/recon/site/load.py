@@ -12,7 +12,7 @@ from recon.model.vehicle import VehicleProfile
 from recon.site.agreement import refuse_high_ways_home, refuse_misplaced_pads, refuse_sunken_pads
 from recon.site.elevation import ElevationTable, read_elevation
 from recon.site.errors import SiteError
-from recon.site.eye import eye_from_table
+from recon.site.imager import eye_from_table
 from recon.site.layers import read_layers
 from recon.site.limits import LimitsTable, limits_from_table
 from recon.site.profiles import profile_from_table

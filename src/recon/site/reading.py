@@ -8,8 +8,8 @@ from typing import TypeVar
 
 import msgspec
 
-from recon.site.complaints import complaint, said_value
 from recon.site.errors import SiteError
+from recon.site.validation_errors import complaint, said_value
 
 T = TypeVar("T")
 

@@ -6,8 +6,8 @@ from recon.camera import PoseSolution
 from recon.geo import Polygon
 from recon.model.airspace import FlightLimits
 from recon.model.zone import ZoneKind
-from recon.site.advice import site_advice
 from recon.site.site import Eye, Layers, Site
+from recon.site.warnings import site_advice
 
 
 def site_report(site: Site) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from tests.safety.cases import TAKEOFF, vehicle
 from tests.safety.checks.checked import ATTENTION, OK, UNKNOWN, checked
 
 from recon.model.vehicle import AltitudeReference, Failsafe
-from recon.safety.checks.told import altitude_reference, camera_interval, endurance, failsafe
+from recon.safety.checks.site_facts import altitude_reference, camera_interval, endurance, failsafe
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from recon.model.command import (
 )
 from recon.model.geo import LatLon
 from recon.safety import Situation
-from recon.safety.rules.leader import leader
+from recon.safety.rules.authority import leader
 
 MOVES: list[Body] = [
     mission(),

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from recon.sim.eye import ExposureSettings
-from recon.sim.eye.exposure import LARGEST_DEVIATION, exposure_stops, white_balance
+from recon.sim.camera import ExposureSettings
+from recon.sim.camera.exposure import LARGEST_DEVIATION, exposure_stops, white_balance
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.sim.world.sky_light import metered_light
 

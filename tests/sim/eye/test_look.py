@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from recon.model.imagery import CameraPose
-from recon.sim.eye import HoverSettings, LensSettings
-from recon.sim.eye.hover import true_pose
-from recon.sim.eye.lens import Lens
-from recon.sim.eye.look import RELIEF_TANGENT, look
+from recon.sim.camera import HoverSettings, LensSettings
+from recon.sim.camera.hover import true_pose
+from recon.sim.camera.lens import Lens
+from recon.sim.camera.look import RELIEF_TANGENT, look
 from recon.sim.world.relief import Relief, ReliefSettings
 
 PIXELS = np.stack(np.meshgrid(np.arange(330, 950, 37), np.arange(60, 660, 41)), axis=-1)

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from recon.model.imagery import RgbImage
-from recon.sim.camera_feed import View
+from recon.sim.app.camera_feed import View
+from recon.sim.camera import EyeSettings, HoverSettings, LensSettings, SensorSettings
+from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.sensor import light_of_value
 from recon.sim.errors import SimulationError
-from recon.sim.eye import EyeSettings, HoverSettings, LensSettings, SensorSettings
-from recon.sim.eye import land_tiles as tiles_module
-from recon.sim.eye.land_tiles import TILES_KEPT, LandTiles, land_of
-from recon.sim.eye.sensor import light_of_value
-from recon.sim.farmland import lay_out
-from recon.sim.farmland_raster import draw
-from recon.sim.farmland_shadows import draw_shadows
-from recon.sim.field import FieldFrames
-from recon.sim.land_part import Part
+from recon.sim.land import land_tiles as tiles_module
+from recon.sim.land.farmland import lay_out
+from recon.sim.land.farmland_raster import draw
+from recon.sim.land.farmland_shadows import draw_shadows
+from recon.sim.land.land_part import Part
+from recon.sim.land.land_tiles import TILES_KEPT, LandTiles, land_of
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunPosition
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.sim.world.sky_light import light_under

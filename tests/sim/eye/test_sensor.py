@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from recon.sim.eye import SensorSettings
-from recon.sim.eye.sensor import light_of_value, noise_of, read_out, value_of_light
+from recon.sim.camera import SensorSettings
+from recon.sim.camera.sensor import light_of_value, noise_of, read_out, value_of_light
 
 SHAPE = (400, 400)
 

@@ -23,7 +23,7 @@ from recon.safety.prediction.course import (
     Course,
 )
 from recon.safety.prediction.flyer import Flyer
-from recon.safety.prediction.ghost import ghost_courses, ghost_of
+from recon.safety.prediction.hazard_area import ghost_courses, ghost_of
 from recon.safety.prediction.intents import UNHOMED_RADIUS_M, Follower
 from recon.safety.prediction.legs import STANDING_MPS, stopping_distance_m
 from recon.safety.prediction.meetings import Separation

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from recon.model.command import Command, Refusal
 from recon.safety.rules.altitude_reference import altitude_reference
+from recon.safety.rules.authority import leader
 from recon.safety.rules.battery import battery
 from recon.safety.rules.boundary import boundary
 from recon.safety.rules.dji_limits import dji_limits
@@ -15,7 +16,6 @@ from recon.safety.rules.home_distance import home_distance
 from recon.safety.rules.identified import identified
 from recon.safety.rules.keep_out import keep_out
 from recon.safety.rules.known_order import known_order
-from recon.safety.rules.leader import leader
 from recon.safety.rules.link_age import link_age
 from recon.safety.rules.max_height import max_height
 from recon.safety.rules.min_height import min_height

@@ -1,8 +1,8 @@
 """Missions and takeoffs ask for a checklist that is passed, or overridden in so many words."""
 
 from recon.model.command import Command, FlyMission, Refusal
-from recon.safety.homewards import leads_home
 from recon.safety.preflight import checklist
+from recon.safety.return_missions import leads_home
 from recon.safety.situation import Situation
 
 RULE = "preflight"

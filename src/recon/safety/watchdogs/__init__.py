@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from recon.safety.watch_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchSettings
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.fences import fences
 from recon.safety.watchdogs.finding import Finding

@@ -15,7 +15,7 @@ from recon.safety.prediction import Flyer, Follower, PredictionSettings
 from recon.safety.prediction.course import FloatArray, Part, Row
 from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
 from recon.safety.prediction.sampling import Samples, sample
-from recon.safety.watch_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchSettings
 
 FASTEST_TOLD_MPS = 15.0
 """Of a vehicle told to hold, when nobody has noted how fast it was: no order flies faster."""

@@ -12,7 +12,7 @@ from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.energy_settings import EnergySettings
 from recon.safety.prediction import Flyer, Ghost, PredictionSettings
-from recon.safety.watch_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchSettings
 from recon.safety.watchdogs.ahead import Ahead
 from recon.safety.watchdogs.finding import Finding
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from recon.model.units import seconds_to_ns
-from recon.sim.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
-from recon.station.virtual import FAR_NS, FakeLink, VirtualDriver
+from recon.sim.app.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.station.kernel.virtual import FAR_NS, FakeLink, VirtualDriver
 
 SECOND_LINK = 1
 

@@ -16,8 +16,8 @@ from recon.score.scenario import Scenario
 from recon.score.settings import RUN
 from recon.score.simulation import sky_of
 from recon.score.whole.apps import ConnectedApps
-from recon.score.whole.eye import config_of, settings_of, tasks_of
-from recon.score.whole.people import SURVEY_ID, People
+from recon.score.whole.imager import config_of, settings_of, tasks_of
+from recon.score.whole.scripted_operator import SURVEY_ID, People
 from recon.score.whole.sight import Sight, footprint_on
 from recon.score.whole.ways import (
     TrueWay,
@@ -27,9 +27,9 @@ from recon.score.whole.ways import (
     true_way,
 )
 from recon.sim.fleet import EYE_SERIAL, build_fleet
-from recon.station.build import first_state
-from recon.station.survey.record import SurveyRecord
-from recon.station.virtual import VirtualDriver
+from recon.station.kernel.build import first_state
+from recon.station.kernel.virtual import VirtualDriver
+from recon.station.state.survey_record import SurveyRecord
 
 SAMPLE_S = 0.1
 SAMPLES_TO_A_LOOK = 10

@@ -8,13 +8,13 @@ import numpy as np
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, MaskMap, ShadeMap, SunForecast
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.score.eye import EyeScore
 from recon.score.forecast_metrics import LeadScore, score_lead
+from recon.score.imager import EyeScore
 from recon.score.scenario import NO_FORECAST, Scenario
 from recon.score.settings import RUN
 from recon.score.shade_metrics import boundary_error_m, overlap, told_shade
 from recon.sim.world import Sky
-from recon.station.state import Station
+from recon.station.state.station import Station
 
 T = TypeVar("T")
 OLDEST_S = 10.0

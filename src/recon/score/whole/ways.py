@@ -14,7 +14,7 @@ from recon.model.units import NS_PER_S
 from recon.model.zone import ZoneKind
 from recon.score.photos import STEEPEST_COURSE, Photos
 from recon.score.settings import FLIGHT
-from recon.sim.app import SimulatedApp
+from recon.sim.app.app import SimulatedApp
 from recon.site import Site
 
 FloatArray = npt.NDArray[np.float64]

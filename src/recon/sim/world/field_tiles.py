@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.fft import ifft, irfft
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.keyframes import FloatArray, generator
 
 ComplexImage = npt.NDArray[np.complex64]

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.field_tiles import (
     BAND_RATIO,
     CELLS_PER_WAVE,

@@ -8,7 +8,7 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.keyframes import FloatArray
 from recon.sim.world.light import clear_sky_light
 from recon.sim.world.settings import LightSettings

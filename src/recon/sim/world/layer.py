@@ -7,7 +7,7 @@ from statistics import NormalDist
 
 import numpy as np
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.drift import drift_m
 from recon.sim.world.fractal_field import AT_ONCE, ROW_POINTS, FractalField, IndexArray
 from recon.sim.world.keyframes import FloatArray, gaussian, generator

@@ -9,7 +9,7 @@ from math import exp, radians, sin
 
 import numpy as np
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.settings import LightSettings
 from recon.sim.world.sun import SunPosition
 

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.fractal_field import Sample
 from recon.sim.world.keyframes import FloatArray
 from recon.sim.world.sun import SunPosition

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.model.geo import GroundGrid
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.fractal_field import AT_ONCE, IndexArray
 from recon.sim.world.keyframes import FloatArray
 from recon.sim.world.layer import CloudLayer

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.noise import FloatImage
+from recon.sim.land.noise import FloatImage
 from recon.sim.world.ground_light import GroundLight, ground_light
 from recon.sim.world.relief import Relief
 from recon.sim.world.settings import LightSettings

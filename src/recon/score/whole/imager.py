@@ -1,0 +1,93 @@
+"""The eye of a whole run: rendered frames read by the station's own methods, or the truth.
+
+With the truth, frames of a few pixels travel as any do, with their latency and faults; what would
+be read from them is put in their place when the station has them laid and read.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from recon.forecast import FORECASTERS
+from recon.model.geo import GroundGrid
+from recon.model.imagery import CameraPose, GroundImage, RgbImage
+from recon.model.shade import MaskMap, ShadeMap
+from recon.model.units import NS_PER_S
+from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
+from recon.score.simulation import simulation_of
+from recon.sim.app.camera_feed import FeedSettings, ImageFormat, View
+from recon.sim.fleet import EYE_SERIAL, SimulationConfig
+from recon.sim.world import Sky
+from recon.station.imaging.shade_work import READ_SHADE, ReadShade, ShadeRead
+from recon.station.kernel.build import worker_tasks
+from recon.station.kernel.worker import Task
+from recon.station.state.imaging import LAY_FRAME, LayFrame
+from recon.station.state.settings import StationSettings
+
+PLACEHOLDER_PX = 8
+METRES_PER_PIXEL = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Placeholders:
+    """Frames of which nobody reads a pixel."""
+
+    def prepare(self) -> None:
+        """There is nothing to draw."""
+
+    def render(self, view: View) -> RgbImage:
+        """Return a grey frame; its number is in it, so that no two are the same."""
+        level = 1 + view.number % 250
+        return np.full((PLACEHOLDER_PX, PLACEHOLDER_PX, 3), level, dtype=np.uint8)
+
+
+def config_of(scenario: Scenario, seed: int) -> SimulationConfig:
+    """Return the scenario's simulation with the frames that its detection needs."""
+    feed = FeedSettings(1.0 / scenario.eye.period_s, ImageFormat.RAW)
+    config = simulation_of(scenario, seed, feed)
+    if scenario.methods.detection != IDEAL or config.eye is None:
+        return config
+    return replace(config, eye=replace(config.eye, source=Placeholders()))
+
+
+def settings_of(scenario: Scenario) -> StationSettings:
+    """Return the station's settings with the methods that the scenario names."""
+    settings, methods = StationSettings(), scenario.methods
+    if methods.detection != IDEAL:
+        detection = replace(settings.detection, method=methods.detection)
+        settings = replace(settings, detection=detection)
+    if methods.forecast != NO_FORECAST:
+        settings = replace(settings, forecast=replace(settings.forecast, method=methods.forecast))
+    return settings
+
+
+def tasks_of(scenario: Scenario, sky: Sky, grid: GroundGrid, footprint: MaskMap) -> dict[str, Task]:
+    """Return what the station's worker does; with ideal detection it tells the truth of `sky`."""
+    tasks = worker_tasks(scenario.site)
+    if scenario.methods.detection != IDEAL:
+        return tasks
+
+    def lay(payload: object) -> GroundImage:
+        assert isinstance(payload, LayFrame)
+        nothing = np.zeros((grid.rows, grid.cols, 3), dtype=np.uint8)
+        pose = CameraPose(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
+        frame = payload.frame
+        return GroundImage(
+            grid, frame.id, frame.captured_at_ns, nothing, footprint, pose, serial=EYE_SERIAL
+        )
+
+    def read(payload: object) -> ShadeRead:
+        assert isinstance(payload, ReadShade)
+        shade = true_shade(sky, grid, footprint, payload.image.captured_at_ns)
+        method = FORECASTERS[payload.forecast_settings.method]
+        foreseen, sun = method(payload.forecast, shade, payload.forecast_settings)
+        return ShadeRead(payload.detection, foreseen, (shade, sun))
+
+    return {**tasks, LAY_FRAME: lay, READ_SHADE: read}
+
+
+def true_shade(sky: Sky, grid: GroundGrid, footprint: MaskMap, at_ns: int) -> ShadeMap:
+    """Return the truth of a moment as a shade map of the footprint."""
+    told = np.where(footprint, sky.on_grid(grid, at_ns / NS_PER_S), np.nan).astype(np.float32)
+    fine = np.where(footprint, METRES_PER_PIXEL, np.nan).astype(np.float32)
+    return ShadeMap(grid, at_ns, (EYE_SERIAL,), told, footprint, footprint.astype(np.float32), fine)

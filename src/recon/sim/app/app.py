@@ -1,0 +1,362 @@
+"""One simulated companion app and its aircraft, without sockets or clock.
+
+A driver opens links (`connected`), hands over what it reads (`receive`) and sends what `advance`
+returns. What the app does depends on the times of these calls only through what it received: its
+own clock runs in exact steps, so the same seed and orders give the same bytes.
+"""
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import partial
+from operator import itemgetter
+from random import Random
+
+from recon import wire
+from recon.camera import TelemetryReference
+from recon.model.geo import GeoPoint
+from recon.model.imagery import CameraPose
+from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.sim.app.camera_feed import CameraFeed, Shot
+from recon.sim.app.commands import AppHabits, CommandReader, Reaction
+from recon.sim.app.fault_plan import FaultPlan
+from recon.sim.app.faults import AIRCRAFT_FAULTS, LINK_FAULTS, PLACEHOLDER_SERIAL, Fault, FaultKind
+from recon.sim.app.inbox import Inbox
+from recon.sim.app.outbox import Outbox
+from recon.sim.app.telemetry import HomeAltitude, Sensors, SensorSettings, position_deg
+from recon.sim.camera.frame_flaws import Black, FrameFlaw, exposed, torn
+from recon.sim.camera.rig import EyeRig
+from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.aircraft_faults import AircraftFaults
+
+CORE_PERIOD_NS = 100_000_000
+EXTENDED_PERIOD_NS = 500_000_000
+ACTION_DELAY_NS = 120_000_000
+"""Between the acknowledgment and the act: the app's call of the SDK takes its time."""
+
+HELLO = b"recon-sim simulated vehicle"
+MESSAGE_INFO = 1
+MAIN_LINK = 0
+
+
+class LinkOrderKind(Enum):
+    """What a driver is asked to do with the app's connection."""
+
+    RECONNECT = "reconnect"
+    """Close it; after `seconds` open it again."""
+    ABANDON = "abandon"
+    """Leave it open for `seconds` without reading or writing, and open a new one at once."""
+    SECOND = "second"
+    """Open another one beside it, for `seconds`."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkOrder:
+    """One thing to do with the connection."""
+
+    kind: LinkOrderKind
+    seconds: float
+
+
+_DUE_NS = itemgetter(0)
+_LINK_ORDERS = {
+    FaultKind.RESTART: LinkOrderKind.RECONNECT,
+    FaultKind.HALF_OPEN: LinkOrderKind.ABANDON,
+    FaultKind.SECOND_LINK: LinkOrderKind.SECOND,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class AppSettings:
+    """What one simulated app is."""
+
+    serial: str
+    home: GeoPoint
+    seed: int = 0
+    habits: AppHabits = field(default_factory=AppHabits)
+    faults: tuple[Fault, ...] = ()
+    sensors: SensorSettings = field(default_factory=SensorSettings)
+    renders_inline: bool = True
+    """False: the driver takes the shots and renders them in a thread."""
+
+
+@dataclass(slots=True)
+class _Link:
+    deframer: wire.Deframer = field(default_factory=wire.Deframer)
+    inbox: Inbox = field(default_factory=Inbox)
+    outbox: Outbox = field(default_factory=Outbox)
+
+
+class SimulatedApp:
+    """A companion app: telemetry out, commands in, pictures if it has a feed."""
+
+    def __init__(
+        self,
+        settings: AppSettings,
+        aircraft: Aircraft,
+        feed: CameraFeed | None = None,
+        rig: EyeRig | None = None,
+    ) -> None:
+        self.settings = settings
+        self.aircraft = aircraft
+        self.feed = feed
+        self.rig = rig
+        self._start_ns = aircraft.now_ns
+        home, habits = settings.home, settings.habits
+        self._altitude = HomeAltitude(home.ellipsoid_height_m, habits.altitude_bias_m)
+        random = Random(f"{settings.seed}/{settings.serial}/sensors")
+        slow_random = Random(f"{settings.seed}/{settings.serial}/drift")
+        self._sensors = Sensors(home, self._altitude, settings.sensors, random, slow_random)
+        self._commands = CommandReader(home, aircraft, feed, habits, self._altitude)
+        self._links: dict[int, _Link] = {}
+        self._acts: deque[tuple[int, Reaction]] = deque()
+        self._link_orders: deque[LinkOrder] = deque()
+        name = f"{settings.seed}/{settings.serial}/faults"
+        self._plan = FaultPlan(settings.faults, name, self._start_ns)
+        self._flaws = Random(f"{name}/frames")
+        self._aircraft_faults = AircraftFaults(aircraft, self._altitude, name)
+        self._is_silent = False
+        self._now_ns = self._start_ns
+        self._fault_moments = sorted(self._moments_of_faults(), key=lambda moment: moment[0])
+        self._lines: deque[str] = deque(maxlen=64)
+        # Apps do not speak in step: each starts at its own part of the first period.
+        phase_ns = random.randrange(CORE_PERIOD_NS)
+        self._next_core_ns = self._start_ns + phase_ns
+        self._next_extended_ns = self._start_ns + phase_ns
+
+    def connected(self, now_ns: int, link: int = MAIN_LINK) -> None:
+        """A connection is open: say hello on it. An older one of this number is forgotten."""
+        self._run_until(now_ns)
+        self._links[link] = _Link()
+        if self.feed is not None and link == MAIN_LINK:
+            # Nobody takes pictures for nobody: those of the time without a link are left out.
+            self.feed.skip_to(now_ns)
+        self._send(wire.encode(wire.MessageString(type=MESSAGE_INFO, text=HELLO)), link, now_ns)
+
+    def disconnected(self, link: int = MAIN_LINK) -> None:
+        """A connection is gone."""
+        self._links.pop(link, None)
+
+    def receive(self, data: bytes, now_ns: int, link: int = MAIN_LINK) -> None:
+        """Take what was read from a connection: answer now, act a little later."""
+        self._run_until(now_ns)
+        if link not in self._links or self._is_silent:
+            return
+        self._links[link].inbox.keep(data, now_ns)
+        if not self._plan.has(FaultKind.SLOW_READER, now_ns):
+            self._read(link, now_ns)
+
+    def advance(self, now_ns: int, link: int = MAIN_LINK) -> list[bytes]:
+        """Let time pass and return the packets to send on a connection, in order."""
+        self._run_until(now_ns)
+        waiting = self._links.get(link)
+        if waiting is None:
+            return []
+        return waiting.outbox.pop_due(now_ns)
+
+    def takes_more(self, link: int = MAIN_LINK) -> bool:
+        """Return whether a connection is to be read on; if not, TCP makes the station wait."""
+        waiting = self._links.get(link)
+        return waiting is None or (not self._is_silent and waiting.inbox.has_room)
+
+    @property
+    def next_due_ns(self) -> int:
+        """When `advance` has something to do next, as far as is known."""
+        held = (link.outbox.next_after_ns(self._now_ns) for link in self._links.values())
+        dues = [due_ns for due_ns, _ in self._timetable()]
+        return min([*dues, *(due_ns for due_ns in held if due_ns is not None)])
+
+    def take_shots(self) -> list[Shot]:
+        """Return the shots to render (only when not rendered inline); see `add_image`."""
+        return [] if self.feed is None else self.feed.take_shots()
+
+    def add_image(self, shot: Shot, packet: bytes | None) -> None:
+        """Take a rendered shot's packet, or None when rendering failed."""
+        if self.feed is None:
+            return
+        if packet is None:
+            self.feed.lose()
+        else:
+            self.feed.add(shot, packet)
+
+    def take_link_orders(self) -> list[LinkOrder]:
+        """Return what faults ask the driver to do with the connection."""
+        orders = list(self._link_orders)
+        self._link_orders.clear()
+        return orders
+
+    def take_lines(self) -> list[str]:
+        """Return what happened since the last call, one line each, for the console."""
+        lines = list(self._lines)
+        self._lines.clear()
+        return lines
+
+    def true_reference(self) -> TelemetryReference:
+        """Return where the aircraft truly is, in the terms of telemetry."""
+        motion = self.aircraft.motion
+        latitude, longitude = position_deg(self.settings.home, motion.north_m, motion.east_m)
+        return TelemetryReference(
+            latitude,
+            longitude,
+            motion.height_m,
+            motion.yaw_deg,
+            motion.pitch_deg,
+            motion.roll_deg,
+        )
+
+    def _timetable(self) -> list[tuple[int, Callable[[int], None]]]:
+        """Return what comes next of each kind, with its time; earlier rows go first on a tie."""
+        rows: list[tuple[int, Callable[[int], None]]] = []
+        if self._acts:
+            rows.append((self._acts[0][0], self._act))
+        if self._fault_moments:
+            rows.append((self._fault_moments[0][0], self._happen))
+        for number, link in self._links.items():
+            if link.inbox.next_read_ns is not None:
+                rows.append((link.inbox.next_read_ns, partial(self._read_on, number)))
+        rows.append((self._next_core_ns, self._say_core))
+        rows.append((self._next_extended_ns, self._say_extended))
+        feed = self.feed
+        if feed is not None and feed.is_on and MAIN_LINK in self._links:
+            rows.append((feed.next_shot_ns, partial(self._take_picture, feed)))
+        if feed is not None and feed.next_send_ns is not None:
+            rows.append((feed.next_send_ns, partial(self._say_images, feed)))
+        return rows
+
+    def _run_until(self, now_ns: int) -> None:
+        while True:
+            due_ns, happen = min(self._timetable(), key=_DUE_NS)
+            if due_ns > now_ns:
+                break
+            self._advance_aircraft(due_ns)
+            happen(due_ns)
+        self._now_ns = max(self._now_ns, now_ns)
+        self._advance_aircraft(now_ns)
+
+    def _advance_aircraft(self, now_ns: int) -> None:
+        mode = self.aircraft.flight_mode
+        self.aircraft.advance(now_ns)
+        if self.aircraft.flight_mode is not mode:
+            self._lines.append(f"mode {self.aircraft.flight_mode.name}")
+
+    def _read_on(self, link: int, now_ns: int) -> None:
+        """Read a little of what waits, or all of it once the fault is over."""
+        self._read(link, now_ns, self._plan.has(FaultKind.SLOW_READER, now_ns))
+
+    def _read(self, link: int, now_ns: int, slowly: bool = False) -> None:
+        waiting = self._links[link]
+        for packet in waiting.deframer.feed(waiting.inbox.read(slowly), now_ns):
+            self._answer(packet, link, now_ns)
+
+    def _answer(self, packet: wire.Packet, link: int, now_ns: int) -> None:
+        reaction = self._commands.reaction(packet)
+        if reaction is None:
+            self._lines.append(f"ignored a {type(packet).__name__}")
+            return
+        refuses = self._has(FaultKind.NEGATIVE_ACK, now_ns)
+        if not self._has(FaultKind.NO_ACK, now_ns):
+            positive = reaction.is_positive and not refuses
+            answer = wire.Acknowledgment(positive=int(positive), source_pid=reaction.source_pid)
+            self._send(wire.encode(answer), link, now_ns, self._plan.answered_ns(now_ns))
+        is_mission = isinstance(packet, wire.ExecuteWaypointMission)
+        ignores = is_mission and self._has(FaultKind.IGNORED_MISSIONS, now_ns)
+        if refuses or ignores or self._has(FaultKind.ACK_THEN_NOTHING, now_ns):
+            self._lines.append(f"command {reaction.source_pid}: not carried out (fault)")
+        else:
+            self._acts.append((now_ns + ACTION_DELAY_NS, reaction))
+
+    def _act(self, now_ns: int) -> None:
+        _, reaction = self._acts.popleft()
+        mode = self.aircraft.flight_mode
+        self._lines.append(reaction.act(now_ns))
+        if self.aircraft.flight_mode is not mode:
+            self._lines.append(f"mode {self.aircraft.flight_mode.name}")
+
+    def _say_core(self, now_ns: int) -> None:
+        self._next_core_ns = now_ns + CORE_PERIOD_NS
+        packet = self._sensors.core(self.aircraft, CORE_PERIOD_NS / NS_PER_S)
+        self._broadcast(packet, now_ns)
+
+    def _say_extended(self, now_ns: int) -> None:
+        self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
+        is_placeholder = self._has(FaultKind.PLACEHOLDER_SERIAL, now_ns)
+        serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
+        tells_id = self.settings.habits.tells_mission_id
+        packet = self._sensors.extended(self.aircraft, self.feed, serial, tells_id)
+        self._broadcast(packet, now_ns)
+
+    def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
+        if self._has(FaultKind.CAMERA_STOPS, now_ns):
+            feed.miss()
+            return
+        repeats = self._has(FaultKind.FRAMES_REPEATED, now_ns)
+        feed.take(self._camera_pose(), self._flaw(now_ns), repeats)
+        if self.settings.renders_inline:
+            for shot in feed.take_shots():
+                feed.add(shot, shot.packet())
+
+    def _flaw(self, now_ns: int) -> FrameFlaw | None:
+        """Return what is wrong with a picture of this moment."""
+        if self._has(FaultKind.FRAMES_BLACK, now_ns):
+            return Black()
+        if self._has(FaultKind.FRAMES_TORN, now_ns):
+            return torn(self._flaws)
+        return exposed(self._flaws) if self._has(FaultKind.EXPOSURE_JUMPS, now_ns) else None
+
+    def _camera_pose(self) -> CameraPose | None:
+        return None if self.rig is None else self.rig.pose_at(self.true_reference())
+
+    def _say_images(self, feed: CameraFeed, now_ns: int) -> None:
+        packets = feed.due(now_ns)
+        if MAIN_LINK in self._links and not self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
+            for packet in packets:
+                self._send(packet, MAIN_LINK, now_ns)
+
+    def _moments_of_faults(self) -> Iterator[tuple[int, Callable[[], None]]]:
+        """Return when faults that happen once do so, and what they then do."""
+        for fault in self.settings.faults:
+            begin_ns = self._start_ns + seconds_to_ns(fault.start_s)
+            if fault.kind in LINK_FAULTS:
+                yield begin_ns, partial(self._begin_link_fault, fault)
+            elif fault.kind in AIRCRAFT_FAULTS:
+                yield begin_ns, partial(self._begin_aircraft_fault, fault)
+                end_ns = fault.end_ns(self._start_ns)
+                if end_ns is not None:
+                    yield end_ns, partial(self._aircraft_faults.end, fault.kind)
+
+    def _happen(self, now_ns: int) -> None:
+        _due_ns, happen = self._fault_moments.pop(0)
+        happen()
+
+    def _begin_aircraft_fault(self, fault: Fault) -> None:
+        self._lines.append(f"fault {fault.kind.value}")
+        self._aircraft_faults.begin(fault.kind)
+        self._is_silent = self._is_silent or fault.kind is FaultKind.FALLS_SILENT
+
+    def _begin_link_fault(self, fault: Fault) -> None:
+        self._lines.append(f"fault {fault.kind.value}")
+        self._link_orders.append(LinkOrder(_LINK_ORDERS[fault.kind], fault.duration_s))
+        if fault.kind is FaultKind.SECOND_LINK:
+            return
+        self.disconnected()
+        if fault.kind is FaultKind.RESTART:
+            self._acts.clear()
+            self.aircraft.forget_mission_numbers()
+
+    def _has(self, kind: FaultKind, now_ns: int) -> bool:
+        return self._plan.has(kind, now_ns)
+
+    def _broadcast(self, packet: wire.Packet, now_ns: int) -> None:
+        if self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
+            return
+        encoded = wire.encode(packet)
+        for link in self._links:
+            self._send(encoded, link, now_ns)
+
+    def _send(self, packet: bytes, link: int, now_ns: int, due_ns: int | None = None) -> None:
+        """Send a packet at a time, by default now; in whole or damaged, as the faults want it."""
+        if self._is_silent:
+            return
+        due_ns = self._plan.sent_ns(now_ns) if due_ns is None else due_ns
+        self._links[link].outbox.add(self._plan.on_the_way(packet, now_ns), due_ns)

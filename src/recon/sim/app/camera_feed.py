@@ -1,0 +1,219 @@
+"""The app's video feed: when a picture is taken, and when it is sent.
+
+Taking, rendering and sending are apart, because rendering is slow and the shell does it in a
+thread: the feed hands out `Shot`s, gets packets back, and sends each at its own time.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field
+from enum import Enum
+from math import isfinite
+from random import Random
+from typing import Protocol
+
+import cv2
+
+from recon import wire
+from recon.model.imagery import CameraPose, RgbImage
+from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.sim.camera.frame_flaws import FrameFlaw
+from recon.sim.errors import FrameSourceError
+
+MOST_SHOTS_IN_HAND = 4
+"""Slower rendering than this skips pictures, as a phone does."""
+
+SHORTEST_LATENCY_S = 0.2
+LONGEST_LATENCY_S = 1.0
+JITTER_S = 0.05
+"""Either way of a vehicle's own latency, with each picture: the phone's encoder and its queue."""
+CAPTURES_KEPT = 4096
+"""An hour at a picture a second."""
+
+
+class ImageFormat(Enum):
+    """How pictures travel: Image packets (PID 2) or Compressed Image packets (PID 5)."""
+
+    RAW = "raw"
+    JPEG = "jpeg"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """What a picture is taken of: time since the simulation's start, number, camera pose."""
+
+    elapsed_s: float
+    number: int
+    pose: CameraPose | None
+
+
+class FrameSource(Protocol):
+    """Where pictures come from."""
+
+    def prepare(self) -> None:
+        """Do what the first picture would wait for; may take seconds, once."""
+        ...
+
+    def render(self, view: View) -> RgbImage:
+        """Return (rows, cols, 3) uint8 RGB; may take long, may be called from any thread."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class FeedSettings:
+    """How the feed behaves. `latency_s` None draws one per vehicle between 0.2 and 1 s."""
+
+    largest_fps_hz: float = 1.0
+    image_format: ImageFormat = ImageFormat.RAW
+    latency_s: float | None = None
+    starts_on: bool = True
+    jpeg_quality: int = 85
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shot:
+    """A picture taken and not yet rendered."""
+
+    view: View
+    target_fps_hz: float
+    send_at_ns: int
+    source: FrameSource
+    settings: FeedSettings
+    flaw: FrameFlaw | None = None
+
+    def packet(self) -> bytes:
+        """Render and encode: the slow part. Depends on nothing but this shot."""
+        rgb = self.source.render(self.view)
+        if self.flaw is not None:
+            rgb = self.flaw.applied(rgb)
+        if self.settings.image_format is ImageFormat.RAW:
+            return wire.encode(wire.Image(target_fps_hz=self.target_fps_hz, pixels=rgb))
+        jpeg = _jpeg(rgb, self.settings.jpeg_quality)
+        return wire.encode(wire.CompressedImage(target_fps_hz=self.target_fps_hz, jpeg=jpeg))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Capture:
+    """When a picture was truly taken and when it goes out: for the score and for tests."""
+
+    view: View
+    taken_at_ns: int
+    send_at_ns: int
+
+
+@dataclass(slots=True)
+class CameraFeed:
+    """A feed that is on or off, its pace, and the pictures on their way."""
+
+    source: FrameSource
+    settings: FeedSettings
+    random: Random
+    start_ns: int
+    is_on: bool = False
+    target_fps_hz: float = 0.0
+    next_shot_ns: int = 0
+    captures: deque[Capture] = field(default_factory=lambda: deque(maxlen=CAPTURES_KEPT))
+    _latency_s: float = 0.0
+    _jitter_seed: int = 0
+    _shot_count: int = 0
+    _shown: View | None = None
+    _taken: deque[Shot] = field(default_factory=deque)
+    _in_hand: int = 0
+    _ready: list[tuple[int, int, bytes]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        drawn = self.random.uniform(SHORTEST_LATENCY_S + JITTER_S, LONGEST_LATENCY_S - JITTER_S)
+        self._latency_s = drawn if self.settings.latency_s is None else self.settings.latency_s
+        self._jitter_seed = self.random.getrandbits(64)
+        if self.settings.starts_on:
+            self.switch_on(self.settings.largest_fps_hz, self.start_ns)
+
+    def switch_on(self, fps_hz: float, now_ns: int) -> None:
+        """Send pictures at this rate, or the fastest the app can; the rate must be positive."""
+        if not (isfinite(fps_hz) and fps_hz > 0.0):
+            raise FrameSourceError(f"expected a positive frame rate, got {fps_hz}")
+        self.target_fps_hz = min(fps_hz, self.settings.largest_fps_hz)
+        self.next_shot_ns = (
+            now_ns if not self.is_on else min(self.next_shot_ns, self._after(now_ns))
+        )
+        self.is_on = True
+
+    def switch_off(self) -> None:
+        """Send no more pictures; those on their way are lost."""
+        self.is_on = False
+        self._in_hand -= len(self._taken)
+        self._taken.clear()
+        self._ready.clear()
+
+    def take(
+        self,
+        pose: CameraPose | None,
+        flaw: FrameFlaw | None = None,
+        is_repeated: bool = False,
+    ) -> None:
+        """Take the picture that is due at `next_shot_ns`, or send the last one once more."""
+        now_ns = self.next_shot_ns
+        self.next_shot_ns = self._after(now_ns)
+        if self._in_hand >= MOST_SHOTS_IN_HAND:
+            return
+        view = View((now_ns - self.start_ns) / NS_PER_S, self._shot_count, pose)
+        self._shot_count += 1
+        self._in_hand += 1
+        send_at_ns = now_ns + seconds_to_ns(self._latency_at(now_ns))
+        self.captures.append(Capture(view, now_ns, send_at_ns))
+        self._shown = self._shown if is_repeated and self._shown is not None else view
+        self._taken.append(
+            Shot(self._shown, self.target_fps_hz, send_at_ns, self.source, self.settings, flaw)
+        )
+
+    def _latency_at(self, taken_at_ns: int) -> float:
+        """Return the seconds from taking to sending: a function of the time it was taken at."""
+        jitter = Random(f"{self._jitter_seed}/{taken_at_ns - self.start_ns}")
+        return max(0.0, self._latency_s + jitter.uniform(-JITTER_S, JITTER_S))
+
+    def miss(self) -> None:
+        """Leave out the picture that is due at `next_shot_ns`."""
+        self.next_shot_ns = self._after(self.next_shot_ns)
+
+    def skip_to(self, now_ns: int) -> None:
+        """Take the next picture at this moment, and none before."""
+        self.next_shot_ns = max(self.next_shot_ns, now_ns)
+
+    def take_shots(self) -> list[Shot]:
+        """Hand out the shots to render; each comes back by `add`."""
+        shots = list(self._taken)
+        self._taken.clear()
+        return shots
+
+    def add(self, shot: Shot, packet: bytes) -> None:
+        """Take back a rendered picture."""
+        self._in_hand -= 1
+        if self.is_on:
+            self._ready.append((shot.send_at_ns, shot.view.number, packet))
+            self._ready.sort()
+
+    def lose(self) -> None:
+        """Take back a shot that could not be rendered."""
+        self._in_hand -= 1
+
+    @property
+    def next_send_ns(self) -> int | None:
+        """When the next picture goes out, None while there is none."""
+        return self._ready[0][0] if self._ready else None
+
+    def due(self, now_ns: int) -> list[bytes]:
+        """Return the packets whose time has come."""
+        packets = []
+        while self._ready and self._ready[0][0] <= now_ns:
+            packets.append(self._ready.pop(0)[2])
+        return packets
+
+    def _after(self, now_ns: int) -> int:
+        return now_ns + seconds_to_ns(1.0 / self.target_fps_hz)
+
+
+def _jpeg(rgb: RgbImage, quality: int) -> bytes:
+    bgr = cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR)
+    is_done, data = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    if not is_done:
+        raise FrameSourceError(f"expected a picture that JPEG can hold, got {rgb.shape}")
+    return data.tobytes()

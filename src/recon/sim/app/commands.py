@@ -1,0 +1,215 @@
+"""What an app makes of each command packet: an answer, and an act that follows it.
+
+The answer is sent before acting (as apps in the field do), so a positive one promises nothing.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from math import isfinite, isnan, nan
+
+from recon import wire
+from recon.geo import enu_from_geo
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.vehicle import AltitudeReference
+from recon.sim.app.camera_feed import CameraFeed
+from recon.sim.app.telemetry import HomeAltitude
+from recon.sim.flight.acceptance import SdkLimits, mission_problem, stick_problem
+from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.flight_modes import Stick
+from recon.sim.flight.mission import MissionPoint
+
+
+class HoverOnGround(Enum):
+    """What hover and return do to an aircraft on the ground."""
+
+    NOTHING = "nothing"
+    TAKEOFF = "takeoff"
+    """As the public iOS app: it takes off (and then hovers, or returns and lands)."""
+
+
+@dataclass(frozen=True, slots=True)
+class AppHabits:
+    """How this app reads commands."""
+
+    altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
+    hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
+    altitude_bias_m: float = 0.0
+    """Added to every absolute altitude the app knows, its home's included."""
+    tells_mission_id: bool = True
+    """False: telemetry's MissionID is always 0, as some apps in the field send it."""
+    sdk: SdkLimits = field(default_factory=SdkLimits)
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """An app's answer to one command packet, and what it then does (returning a line of text)."""
+
+    source_pid: int
+    is_positive: bool
+    act: Callable[[int], str]
+    """Takes the time in nanoseconds."""
+
+
+class CommandReader:
+    """Turns command packets into reactions of one app."""
+
+    def __init__(
+        self,
+        home: GeoPoint,
+        aircraft: Aircraft,
+        feed: CameraFeed | None,
+        habits: AppHabits,
+        altitude: HomeAltitude,
+    ) -> None:
+        self._home = home
+        self._altitude = altitude
+        self._frame = LocalFrame(home)
+        self._aircraft = aircraft
+        self._feed = feed
+        self._habits = habits
+
+    def reaction(self, packet: wire.Packet) -> Reaction | None:
+        """Return the reaction, or None for what is no command."""
+        match packet:
+            case wire.EmergencyCommand():
+                return self._emergency(packet)
+            case wire.CameraControl():
+                return self._camera(packet)
+            case wire.ExecuteWaypointMission():
+                return Reaction(packet.PID, True, lambda now_ns: self._fly(packet))
+            case wire.VirtualStickCommand():
+                return Reaction(packet.PID, True, lambda now_ns: self._stick(packet))
+            case _:
+                return None
+
+    def _emergency(self, packet: wire.EmergencyCommand) -> Reaction:
+        acts: dict[int, Callable[[], str]] = {0: self._hover, 1: self._land, 2: self._go_home}
+        act = acts.get(packet.action)
+        if act is None:
+            return _refusal(packet.PID, f"emergency action {packet.action} unknown")
+        return Reaction(packet.PID, True, lambda now_ns: act())
+
+    def _hover(self) -> str:
+        if self._aircraft.is_on_ground and self._takes_off_when_told_to_hover:
+            self._aircraft.take_off()
+            return "hover: takes off"
+        self._aircraft.hover()
+        return "hover" if not self._aircraft.is_on_ground else "hover: nothing, on the ground"
+
+    def _land(self) -> str:
+        self._aircraft.land()
+        return "land" if not self._aircraft.is_on_ground else "land: nothing, on the ground"
+
+    def _go_home(self) -> str:
+        if self._aircraft.is_on_ground and not self._takes_off_when_told_to_hover:
+            return "return home: nothing, on the ground"
+        self._aircraft.take_off_and_go_home()
+        return "return home"
+
+    @property
+    def _takes_off_when_told_to_hover(self) -> bool:
+        return self._habits.hover_on_ground is HoverOnGround.TAKEOFF
+
+    def _camera(self, packet: wire.CameraControl) -> Reaction:
+        feed = self._feed
+        if feed is None:
+            return _refusal(packet.PID, "camera control: no camera")
+        if packet.action == 0:
+            return Reaction(packet.PID, True, lambda now_ns: _switch_off(feed))
+        fps_hz = packet.target_fps_hz
+        if packet.action != 1 or not (isfinite(fps_hz) and fps_hz > 0.0):
+            return _refusal(packet.PID, f"camera control: action {packet.action}, {fps_hz:g} fps")
+        return Reaction(packet.PID, True, lambda now_ns: _switch_on(feed, fps_hz, now_ns))
+
+    def _fly(self, packet: wire.ExecuteWaypointMission) -> str:
+        points = self.mission_points(packet)
+        is_curved = packet.curved_flight == 1
+        problem = mission_problem(points, is_curved, self._limits()) or self._deafness()
+        if problem is not None:
+            return f"mission rejected silently: {problem}"
+        self._aircraft.fly_mission(points, is_curved, packet.land_at_end == 1)
+        return f"mission of {len(points)} waypoints"
+
+    def _stick(self, packet: wire.VirtualStickCommand) -> str:
+        problem = stick_problem(packet, self._habits.sdk) or self._deafness()
+        if problem is not None:
+            return f"stick rejected silently: {problem}"
+        self._aircraft.stick(
+            Stick(
+                is_body_frame=packet.mode == 1,
+                yaw_deg=packet.yaw_deg,
+                velocity_x_mps=packet.velocity_x_mps,
+                velocity_y_mps=packet.velocity_y_mps,
+                height_m=packet.height_above_takeoff_m,
+                timeout_s=packet.timeout_s,
+                limits=self._aircraft.settings.limits,
+                drift_north_mps=self._aircraft.settings.stick_drift_north_mps,
+                drift_east_mps=self._aircraft.settings.stick_drift_east_mps,
+            )
+        )
+        return "stick" if not self._aircraft.is_on_ground else "stick: nothing, on the ground"
+
+    def _limits(self) -> SdkLimits:
+        """Return the SDK's limits and, where they are lower, those set in the aircraft."""
+        sdk, own = self._habits.sdk, self._aircraft.settings
+        return replace(
+            sdk,
+            highest_m=min(sdk.highest_m, own.max_height_m),
+            farthest_m=min(sdk.farthest_m, own.max_distance_m),
+        )
+
+    def _deafness(self) -> str | None:
+        """Return why the flight controller takes neither missions nor sticks now, else None."""
+        if self._aircraft.is_pilots:
+            return "the pilot's mode switch"
+        return None if self._aircraft.has_gnss else "no GNSS"
+
+    def mission_points(self, packet: wire.ExecuteWaypointMission) -> tuple[MissionPoint, ...]:
+        """Return a mission's waypoints in home metres, its altitudes read as this app does.
+
+        An app built to the first issue of the ICD subtracts the home altitude it believes in.
+        """
+        subtracted_m = 0.0
+        if self._habits.altitude_reference is AltitudeReference.WGS84:
+            subtracted_m = self._altitude.believed_m
+        return tuple(self._point(waypoint, subtracted_m) for waypoint in packet.waypoints)
+
+    def _point(self, waypoint: wire.Waypoint, subtracted_m: float) -> MissionPoint:
+        north_m, east_m = self._place(waypoint.latitude_deg, waypoint.longitude_deg)
+        return MissionPoint(
+            north_m=north_m,
+            east_m=east_m,
+            height_m=waypoint.altitude_m - subtracted_m,
+            speed_mps=waypoint.speed_mps,
+            corner_radius_m=waypoint.corner_radius_m,
+            loiter_s=_unless_nan(waypoint.loiter_time_s),
+            gimbal_pitch_deg=_unless_nan(waypoint.gimbal_pitch_deg),
+        )
+
+    def _place(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
+        """Return north and east of home; NaN for what is no place on the globe."""
+        # The sine of infinity is an error, that of 1e30 is noise.
+        if not (abs(latitude_deg) <= 90.0 and abs(longitude_deg) <= 360.0):
+            return nan, nan
+        height_m = self._home.ellipsoid_height_m
+        east, north, _ = enu_from_geo(self._frame, latitude_deg, longitude_deg, height_m)[0]
+        return float(north), float(east)
+
+
+def _refusal(pid: int, why: str) -> Reaction:
+    return Reaction(pid, False, lambda now_ns: f"{why}: refused")
+
+
+def _switch_on(feed: CameraFeed, fps_hz: float, now_ns: int) -> str:
+    feed.switch_on(fps_hz, now_ns)
+    return f"camera on at {feed.target_fps_hz:g} fps"
+
+
+def _switch_off(feed: CameraFeed) -> str:
+    feed.switch_off()
+    return "camera off"
+
+
+def _unless_nan(value: float) -> float | None:
+    return None if isnan(value) else value

@@ -1,0 +1,42 @@
+"""Where the camera truly is and looks, when its aircraft believes in a pose."""
+
+from math import radians
+
+import numpy as np
+
+from recon.model.imagery import CameraPose
+from recon.sim.camera.settings import HoverSettings
+from recon.sim.world.keyframes import FloatArray, gaussian, number
+
+WOBBLE, MOUNT, DRIFT = 100, 110, 120
+"""Streams of the eye's random numbers: three axes from each."""
+
+
+def true_pose(pose: CameraPose, settings: HoverSettings, seed: int, time_s: float) -> CameraPose:
+    """Return the true pose at a time; `pose` is where aircraft and marking put the camera."""
+    lean_rad = np.array(
+        [
+            radians(settings.mount_error_deg) * number((seed, MOUNT + axis), 0)
+            + radians(settings.wobble_deg)
+            * _value((seed, WOBBLE + axis), time_s, settings.wobble_s)
+            for axis in range(3)
+        ]
+    )
+    drift = [_value((seed, DRIFT + axis), time_s, settings.drift_s) for axis in range(3)]
+    shift_m = np.array(drift) * (settings.drift_m, settings.drift_m, settings.drift_up_m)
+    return CameraPose(pose.rotation_enu_camera @ _rotation(lean_rad), pose.position_enu_m + shift_m)
+
+
+def _value(stream: tuple[int, ...], time_s: float, lifetime_s: float) -> float:
+    return float(gaussian(stream, np.array([time_s]), lifetime_s)[0])
+
+
+def _rotation(vector_rad: FloatArray) -> FloatArray:
+    """Return the rotation about a vector by its length (Rodrigues)."""
+    angle = float(np.linalg.norm(vector_rad))
+    if angle == 0.0:
+        return np.eye(3)
+    x, y, z = vector_rad / angle
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    rotation: FloatArray = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    return rotation

@@ -1,0 +1,124 @@
+"""Survey cameras: an interval timer that nobody hears, and what each photo shows.
+
+The pilot starts the timer by hand some time before the flight, so where in the interval it fires is
+unknown to the station. Here it is a function of the seed and the serial; only the score and tests
+may know it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, cos, radians, sin
+from random import Random
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.survey import SurveyCamera
+from recon.model.units import seconds_to_ns
+from recon.sim.errors import SimulationError
+from recon.sim.flight.kinematics import Motion
+
+FloatArray = npt.NDArray[np.float64]
+TruePath = Callable[[int], Motion | None]
+"""Time in ns -> where the aircraft truly is, None while it does not fly."""
+
+LATEST_S = 0.08
+"""A photo is up to so much late: the app waits for the card."""
+
+
+@dataclass(frozen=True, slots=True)
+class IntervalTimer:
+    """A camera that takes a photo each interval, at a phase of its own."""
+
+    seed: int
+    serial: str
+    interval_s: float
+
+    def __post_init__(self) -> None:
+        if not LATEST_S < self.interval_s < 3600.0:
+            raise SimulationError(
+                f"interval timer: expected {LATEST_S:g} to 3600 s, got {self.interval_s:g}"
+            )
+
+    @property
+    def phase_s(self) -> float:
+        """When within each interval it fires."""
+        return Random(f"{self.seed}/{self.serial}/shutter").uniform(0.0, self.interval_s)
+
+    def capture_ns(self, number: int) -> int:
+        """Return when photo `number` is taken, in ns since the simulation's start."""
+        late_s = Random(f"{self.seed}/{self.serial}/photo {number}").uniform(0.0, LATEST_S)
+        return seconds_to_ns(self.phase_s + number * self.interval_s + late_s)
+
+    def between(self, start_ns: int, end_ns: int) -> list[tuple[int, int]]:
+        """Return number and time of the photos from `start_ns` up to before `end_ns`."""
+        interval_ns = seconds_to_ns(self.interval_s)
+        first = (start_ns - seconds_to_ns(self.phase_s + LATEST_S)) // interval_ns
+        last = ceil((end_ns - seconds_to_ns(self.phase_s)) / interval_ns)
+        numbered = [(n, self.capture_ns(n)) for n in range(max(0, first), max(0, last) + 1)]
+        return [(number, time_ns) for number, time_ns in numbered if start_ns <= time_ns < end_ns]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurveyPhoto:
+    """One photo as it truly was taken."""
+
+    serial: str
+    number: int
+    captured_at_ns: int
+    east_m: float
+    north_m: float
+    height_m: float
+    """Above the ground."""
+    corners_m: FloatArray
+    """(4, 2) east, north of what it shows: front left, front right, back right, back left."""
+
+
+def photos(
+    timer: IntervalTimer,
+    camera: SurveyCamera,
+    path: TruePath,
+    span_ns: tuple[int, int],
+    home_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> list[SurveyPhoto]:
+    """Return the photos taken in flight over level ground, the camera looking straight down.
+
+    `path` is relative to a home that lies `home_m` east, north, up of the site's origin; photos
+    are in the site's frame.
+    """
+    taken = []
+    for number, time_ns in timer.between(*span_ns):
+        motion = path(time_ns)
+        if motion is not None and motion.height_m > 0.0:
+            moved = motion._replace(
+                east_m=motion.east_m + home_m[0],
+                north_m=motion.north_m + home_m[1],
+                height_m=motion.height_m + home_m[2],
+            )
+            taken.append(_photo(timer.serial, number, time_ns, moved, camera))
+    return taken
+
+
+def footprint_m(motion: Motion, camera: SurveyCamera) -> FloatArray:
+    """Return the corners (4, 2) east, north that a level camera shows, its top to the yaw."""
+    ahead_m = camera.along_m(motion.height_m) / 2.0
+    aside_m = camera.across_m(motion.height_m) / 2.0
+    yaw = radians(motion.yaw_deg)
+    ahead, right = np.array([sin(yaw), cos(yaw)]), np.array([cos(yaw), -sin(yaw)])
+    signs = ((1, -1), (1, 1), (-1, 1), (-1, -1))
+    middle = np.array([motion.east_m, motion.north_m])
+    return np.array([middle + a * ahead_m * ahead + r * aside_m * right for a, r in signs])
+
+
+def _photo(
+    serial: str, number: int, time_ns: int, motion: Motion, camera: SurveyCamera
+) -> SurveyPhoto:
+    return SurveyPhoto(
+        serial,
+        number,
+        time_ns,
+        motion.east_m,
+        motion.north_m,
+        motion.height_m,
+        footprint_m(motion, camera),
+    )

@@ -1,0 +1,283 @@
+"""One simulated aircraft: its flight controller's modes, battery, home and gimbal."""
+
+from dataclasses import dataclass, field
+from math import hypot
+
+from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.model.vehicle import FlightMode
+from recon.sim.flight.air import Air
+from recon.sim.flight.battery import FORCED_LANDING_FRACTION, Battery
+from recon.sim.flight.flight_modes import GoHome, Grounded, Hold, Land, Manoeuvre, Stick, TakeOff
+from recon.sim.flight.kinematics import Demand, Limits, Motion, hold_height_mps, step
+from recon.sim.flight.mission import Gimbal, MissionFlight, MissionPoint
+from recon.sim.flight.power import GROUND_LOAD, flying_load
+
+TICK_NS = 50_000_000
+"""Motion advances in steps of 50 ms, so that it does not depend on how often it is asked."""
+
+FLYING_ABOVE_M = 0.02
+AT_LIMIT_WITHIN_M = 0.5
+STICK_DRIFT_SHARE = 0.08
+"""Of the wind: under sticks the controller holds a velocity, no place, and not quite that one."""
+
+
+@dataclass(frozen=True, slots=True)
+class AircraftSettings:
+    """What is set in an aircraft before the flight."""
+
+    limits: Limits = field(default_factory=Limits)
+    go_home_height_m: float = 30.0
+    endurance_s: float = 1500.0
+    stick_drift_north_mps: float = 0.0
+    stick_drift_east_mps: float = 0.0
+    """What wind pushes the aircraft past the velocity that a virtual stick asks for. In position
+    mode and in missions the flight controller holds against it."""
+    landing_confirmation_s: float = 1.0
+    """The app confirms a landing this long after the aircraft stopped at 0.3 m."""
+    max_height_m: float = 500.0
+    """Above takeoff: the aircraft climbs no higher, and tells when it is there."""
+    max_distance_m: float = 5_000.0
+    """From home: told when it is reached; missions that lead farther are rejected."""
+    battery_swap_s: float | None = None
+    """So long after a landing somebody has put in a fresh battery; None: nobody does."""
+
+
+@dataclass(slots=True)
+class Aircraft:
+    """An aircraft in home metres; `now_ns` is how far it has been advanced."""
+
+    now_ns: int
+    settings: AircraftSettings = field(default_factory=AircraftSettings)
+    motion: Motion = field(default_factory=Motion)
+    manoeuvre: Manoeuvre = field(default_factory=Grounded)
+    gimbal: Gimbal = field(default_factory=Gimbal)
+    battery: Battery = field(default_factory=lambda: Battery(1.0, 1500.0))
+    is_pilots: bool = False
+    """Whether the pilot's mode switch keeps the app's missions and sticks out."""
+    air: Air = field(default_factory=Air)
+    has_gnss: bool = True
+    home_north_m: float = 0.0
+    home_east_m: float = 0.0
+    _mission_count: int = 0
+    _landed_at_ns: int | None = None
+    """Since when a battery that has flown waits on the ground for somebody to change it."""
+
+    @property
+    def is_on_ground(self) -> bool:
+        """Whether the motors are off."""
+        return isinstance(self.manoeuvre, Grounded)
+
+    @property
+    def is_flying(self) -> bool:
+        """What the flight controller says: lifted off, and the motors not stopped since."""
+        if isinstance(self.manoeuvre, TakeOff):
+            return self.motion.height_m > FLYING_ABOVE_M
+        return not self.is_on_ground
+
+    @property
+    def flight_mode(self) -> FlightMode:
+        """The flight mode."""
+        return self.manoeuvre.mode
+
+    @property
+    def mission_id(self) -> int:
+        """The number of the mission being flown, else 0."""
+        return self._mission_count if isinstance(self.manoeuvre, MissionFlight) else 0
+
+    @property
+    def is_at_max_height(self) -> bool:
+        """Whether it is as high as its settings let it."""
+        return self.motion.height_m >= self.settings.max_height_m - AT_LIMIT_WITHIN_M
+
+    @property
+    def is_at_max_distance(self) -> bool:
+        """Whether it is as far from home as its settings let it."""
+        away_m = hypot(
+            self.motion.north_m - self.home_north_m, self.motion.east_m - self.home_east_m
+        )
+        return away_m >= self.settings.max_distance_m - AT_LIMIT_WITHIN_M
+
+    @property
+    def obeys_the_app(self) -> bool:
+        """Whether missions, sticks and returns do anything: not for lack of GNSS, or a pilot."""
+        return self.has_gnss and not self.is_pilots
+
+    def advance(self, now_ns: int) -> None:
+        """Move on in whole ticks, up to `now_ns`."""
+        while self.now_ns + TICK_NS <= now_ns:
+            self._tick(TICK_NS / NS_PER_S)
+            self.now_ns += TICK_NS
+
+    def hover(self) -> None:
+        """Stop and hold; on the ground nothing."""
+        if not self.is_on_ground:
+            self.manoeuvre = Hold()
+
+    def take_off(self, then: Manoeuvre | None = None) -> None:
+        """Start from the ground, which is from now on home, and go on with `then`."""
+        if self.is_on_ground:
+            self._set_home()
+            self.manoeuvre = TakeOff(self.settings.limits, then or Hold())
+        elif then is not None:
+            self.manoeuvre = then
+
+    def land(self) -> None:
+        """Land here."""
+        if not self.is_on_ground and not isinstance(self.manoeuvre, Land):
+            self.manoeuvre = Land(self.settings.landing_confirmation_s)
+
+    def go_home(self) -> None:
+        """Return and land; on the ground, or not knowing where it is, nothing."""
+        if not self.is_on_ground and self.has_gnss:
+            self.manoeuvre = self._way_home()
+
+    def take_off_and_go_home(self) -> None:
+        """What some apps make of a return order on the ground."""
+        if not self.has_gnss:
+            return
+        if self.is_on_ground:
+            self._set_home()
+        self.take_off(self._way_home())
+
+    def fly_mission(
+        self, points: tuple[MissionPoint, ...], is_curved: bool, lands_at_end: bool
+    ) -> None:
+        """Fly a mission in place of whatever is flown now; from the ground take off first.
+
+        While the pilot has it, or without GNSS, nothing.
+        """
+        if not self.obeys_the_app:
+            return
+        self._mission_count = self._mission_count % 0xFFFF + 1
+        settings = self.settings
+        flight = MissionFlight(
+            points,
+            is_curved,
+            lands_at_end,
+            self.gimbal,
+            settings.limits,
+            settings.landing_confirmation_s,
+        )
+        self.take_off(flight)
+
+    def forget_mission_numbers(self) -> None:
+        """Count missions from the start again, as an app does that was restarted."""
+        self._mission_count = 0
+
+    def stick(self, stick: Stick) -> None:
+        """Fly a stick command; on the ground, for a pilot's, or without GNSS, nothing."""
+        if not self.is_on_ground and self.obeys_the_app:
+            self.manoeuvre = stick
+
+    def pilot_takes(self, mode: FlightMode = FlightMode.GPS_SPORT) -> None:
+        """The pilot flips the mode switch, and for now holds."""
+        self.is_pilots = True
+        if not self.is_on_ground:
+            self.manoeuvre = Hold(mode)
+
+    def pilot_gives_back(self) -> None:
+        """The pilot flips the mode switch back; the aircraft holds until it is told something."""
+        self.is_pilots = False
+        if isinstance(self.manoeuvre, Hold):
+            self.manoeuvre = Hold()
+
+    def lose_gnss(self) -> None:
+        """Know no longer where it is: whatever was flown ends, and the wind carries it along."""
+        self.has_gnss = False
+        if not self.is_on_ground and not isinstance(self.manoeuvre, Land | TakeOff):
+            self.manoeuvre = Hold(FlightMode.ATTI)
+
+    def find_gnss(self) -> None:
+        """Know again where it is, and hold there."""
+        self.has_gnss = True
+        if self.flight_mode is FlightMode.ATTI:
+            self.manoeuvre = Hold()
+
+    def crash(self) -> None:
+        """Fall from where it is, and lie there."""
+        self.manoeuvre = Grounded()
+        self._lie_still()
+        self._landed_at_ns = None
+
+    def _set_home(self) -> None:
+        self.home_north_m, self.home_east_m = self.motion.north_m, self.motion.east_m
+
+    def _way_home(self) -> GoHome:
+        return GoHome(
+            self.home_north_m,
+            self.home_east_m,
+            self.settings.go_home_height_m,
+            self.settings.limits,
+            confirmation_s=self.settings.landing_confirmation_s,
+        )
+
+    def _tick(self, seconds: float) -> None:
+        self.air.step(self.motion, self.now_ns, seconds)
+        if not self.is_on_ground:
+            demand = self._carried(self.manoeuvre.demand(self.motion, seconds))
+            wind = self.air.horizontal
+            self.motion = _kept_above_ground(
+                step(self.motion, demand, seconds, self.settings.limits, wind)
+            )
+            self._go_on()
+        else:
+            self._change_battery()
+        self.gimbal.step(seconds)
+        load = flying_load(self.motion, self.air.horizontal) if self.is_flying else GROUND_LOAD
+        self.battery.drain(seconds, load)
+        if self.battery.fraction < FORCED_LANDING_FRACTION:
+            self.land()
+
+    def _carried(self, demand: Demand) -> Demand:
+        """Return what is flown of a demand: the wind adds its part, the height limit takes its."""
+        north, east, up = self._drift() if self.is_flying else (0.0, 0.0, 0.0)
+        limits = self.settings.limits
+        highest = hold_height_mps(self.motion.height_m, self.settings.max_height_m, limits)
+        return Demand(
+            demand.velocity_north_mps + north,
+            demand.velocity_east_mps + east,
+            min(demand.velocity_up_mps + up, highest),
+            demand.yaw_deg,
+        )
+
+    def _drift(self) -> tuple[float, float, float]:
+        """Return the velocity that the air adds to what is asked for."""
+        north, east, up = self.air.push
+        if not self.has_gnss:
+            return *self.air.horizontal, up
+        if isinstance(self.manoeuvre, Stick):
+            wind_north, wind_east = self.air.horizontal
+            return north + STICK_DRIFT_SHARE * wind_north, east + STICK_DRIFT_SHARE * wind_east, up
+        return north, east, up
+
+    def _go_on(self) -> None:
+        following = self.manoeuvre.successor(self.motion)
+        if following is None:
+            return
+        self.manoeuvre = following
+        if isinstance(following, Grounded):
+            self._lie_still()
+            self._landed_at_ns = self.now_ns
+
+    def _change_battery(self) -> None:
+        swap_s, landed_at_ns = self.settings.battery_swap_s, self._landed_at_ns
+        if swap_s is None or landed_at_ns is None:
+            return
+        if self.now_ns - landed_at_ns >= seconds_to_ns(swap_s):
+            self.battery = Battery(1.0, self.settings.endurance_s)
+            self._landed_at_ns = None
+
+    def _lie_still(self) -> None:
+        motion = self.motion
+        self.motion = Motion(north_m=motion.north_m, east_m=motion.east_m, yaw_deg=motion.yaw_deg)
+
+
+def _kept_above_ground(motion: Motion) -> Motion:
+    if motion.height_m >= 0.0:
+        return motion
+    return motion._replace(
+        height_m=0.0,
+        velocity_north_mps=0.0,
+        velocity_east_mps=0.0,
+        velocity_up_mps=0.0,
+    )

@@ -1,0 +1,250 @@
+"""What a flight controller does in each mode: every manoeuvre turns motion into a demand.
+
+A manoeuvre lives while it is flown: it may keep timers, and says by `successor` what follows it.
+"""
+
+from dataclasses import dataclass, field
+from math import atan2, cos, degrees, hypot, radians, sin
+from typing import Protocol
+
+from recon.model.vehicle import FlightMode
+from recon.sim.flight.kinematics import (
+    BRAKING_MPS2,
+    Demand,
+    Limits,
+    Motion,
+    braking_speed_mps,
+    hold_height_mps,
+)
+
+TAKEOFF_HEIGHT_M = 1.2
+SPIN_UP_S = 1.5
+CONFIRM_HEIGHT_M = 0.3
+"""DJI firmware stops here and waits until the app confirms that the ground is fit to land on."""
+
+SHORTEST_GO_HOME_S = 2.0
+"""The mode lasts this long even above home, so that telemetry at 2 Hz shows it."""
+
+LANDING_FAST_MPS = 3.0
+LANDING_SLOW_MPS = 0.8
+LANDING_SLOW_BELOW_M = 6.0
+
+
+class Manoeuvre(Protocol):
+    """One thing a vehicle does."""
+
+    @property
+    def mode(self) -> FlightMode:
+        """The flight mode telemetry reports meanwhile."""
+        ...
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Return what the next `seconds` ask of the airframe."""
+        ...
+
+    def successor(self, motion: Motion) -> "Manoeuvre | None":
+        """Return what follows when this is done, else None."""
+        ...
+
+
+@dataclass(slots=True)
+class Grounded:
+    """On the ground with the motors off."""
+
+    mode: FlightMode = FlightMode.GPS_ATTI
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for nothing."""
+        return Demand()
+
+    def successor(self, motion: Motion) -> Manoeuvre | None:
+        """Stay until ordered otherwise."""
+        return None
+
+
+@dataclass(slots=True)
+class Hold:
+    """Brake, then hover (DJI's position mode)."""
+
+    mode: FlightMode = FlightMode.GPS_ATTI
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for standstill."""
+        return Demand()
+
+    def successor(self, motion: Motion) -> Manoeuvre | None:
+        """Stay until ordered otherwise."""
+        return None
+
+
+@dataclass(slots=True)
+class TakeOff:
+    """Start the motors, rise to takeoff height, then do `then`."""
+
+    limits: Limits
+    then: Manoeuvre = field(default_factory=Hold)
+    mode: FlightMode = FlightMode.AUTO_TAKEOFF
+    _elapsed_s: float = 0.0
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for a climb once the motors run."""
+        self._elapsed_s += seconds
+        if self._elapsed_s < SPIN_UP_S:
+            return Demand()
+        return Demand(
+            velocity_up_mps=hold_height_mps(motion.height_m, TAKEOFF_HEIGHT_M, self.limits)
+        )
+
+    def successor(self, motion: Motion) -> Manoeuvre | None:
+        """Go on once the height is reached."""
+        return self.then if motion.height_m > TAKEOFF_HEIGHT_M - 0.1 else None
+
+
+@dataclass(slots=True)
+class Land:
+    """Come down, wait at 0.3 m for the app's confirmation, touch down."""
+
+    confirmation_s: float = 1.0
+    _waited_s: float = 0.0
+
+    @property
+    def mode(self) -> FlightMode:
+        """AUTO_LANDING on the way, CONFIRM_LANDING while waiting."""
+        waiting = 0.0 < self._waited_s < self.confirmation_s
+        return FlightMode.CONFIRM_LANDING if waiting else FlightMode.AUTO_LANDING
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for a descent straight down, after the horizontal speed is gone."""
+        if motion.ground_speed_mps > 0.5:
+            return Demand()
+        if self._waited_s >= self.confirmation_s:
+            return Demand(velocity_up_mps=-LANDING_SLOW_MPS)
+        if motion.height_m <= CONFIRM_HEIGHT_M + 0.05:
+            self._waited_s += seconds
+            return Demand()
+        # Half a metre above the stop the descent is a crawl, so that braking ends at 0.3 m.
+        above_m = motion.height_m - CONFIRM_HEIGHT_M
+        fast = LANDING_SLOW_MPS if motion.height_m < LANDING_SLOW_BELOW_M else LANDING_FAST_MPS
+        return Demand(velocity_up_mps=-min(fast, 0.1 + braking_speed_mps(above_m, 0.8)))
+
+    def successor(self, motion: Motion) -> Manoeuvre | None:
+        """Stop the motors on the ground."""
+        return Grounded() if motion.height_m <= 0.0 else None
+
+
+@dataclass(slots=True)
+class GoHome:
+    """Climb to the go-home height unless already higher, fly home, land."""
+
+    home_north_m: float
+    home_east_m: float
+    go_home_height_m: float
+    limits: Limits
+    speed_mps: float = 10.0
+    confirmation_s: float = 1.0
+    mode: FlightMode = FlightMode.GO_HOME
+    _height_m: float | None = None
+    _elapsed_s: float = 0.0
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for the climb first, then for the way home."""
+        self._elapsed_s += seconds
+        if self._height_m is None:
+            self._height_m = max(self.go_home_height_m, motion.height_m)
+        up = hold_height_mps(motion.height_m, self._height_m, self.limits)
+        if motion.height_m < self._height_m - 1.0:
+            return Demand(velocity_up_mps=up)
+        return _towards(motion, self.home_north_m, self.home_east_m, self.speed_mps, up)
+
+    def successor(self, motion: Motion) -> Manoeuvre | None:
+        """Land once above home."""
+        if self._height_m is None or motion.height_m < self._height_m - 1.0:
+            return None
+        distance_m = hypot(self.home_north_m - motion.north_m, self.home_east_m - motion.east_m)
+        arrived = distance_m < 0.5 and motion.ground_speed_mps < 0.5
+        arrived = arrived and self._elapsed_s >= SHORTEST_GO_HOME_S
+        return Land(self.confirmation_s) if arrived else None
+
+
+@dataclass(slots=True)
+class Stick:
+    """Virtual stick: velocities for at most `timeout_s`, heading and height held (ICD 3.2.4)."""
+
+    is_body_frame: bool
+    yaw_deg: float
+    velocity_x_mps: float
+    velocity_y_mps: float
+    height_m: float
+    timeout_s: float
+    limits: Limits
+    drift_north_mps: float = 0.0
+    drift_east_mps: float = 0.0
+    mode: FlightMode = FlightMode.JOYSTICK
+    _elapsed_s: float = 0.0
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for the stick's velocity; after the timeout for standstill, the rest kept."""
+        self._elapsed_s += seconds
+        x, y = self.velocity_x_mps, self.velocity_y_mps
+        if self._elapsed_s > self.timeout_s:
+            x = y = 0.0
+        north, east = (x, y) if not self.is_body_frame else _from_body(x, y, motion.yaw_deg)
+        up = hold_height_mps(motion.height_m, self.height_m, self.limits)
+        north, east = north + self.drift_north_mps, east + self.drift_east_mps
+        return Demand(north, east, up, self.yaw_deg)
+
+    def successor(self, motion: Motion) -> Manoeuvre | None:
+        """Stay in this mode until ordered otherwise."""
+        return None
+
+
+@dataclass(slots=True)
+class Wander:
+    """Fly back and forth over a rectangle as if a pilot did, in position mode, for ever."""
+
+    corners_m: tuple[tuple[float, float], ...]
+    height_m: float
+    speed_mps: float
+    limits: Limits
+    mode: FlightMode = FlightMode.GPS_ATTI
+    _next: int = 0
+
+    def demand(self, motion: Motion, seconds: float) -> Demand:
+        """Ask for the next corner, once the height is there."""
+        up = hold_height_mps(motion.height_m, self.height_m, self.limits)
+        if motion.height_m < 0.5 * self.height_m:
+            return Demand(velocity_up_mps=up)
+        north_m, east_m = self.corners_m[self._next]
+        if hypot(north_m - motion.north_m, east_m - motion.east_m) < 2.0:
+            self._next = (self._next + 1) % len(self.corners_m)
+        return _towards(motion, north_m, east_m, self.speed_mps, up)
+
+    def successor(self, motion: Motion) -> Manoeuvre | None:
+        """Stay until ordered otherwise."""
+        return None
+
+
+def heading_deg(north_m: float, east_m: float) -> float:
+    """Return the compass heading of a horizontal vector."""
+    return degrees(atan2(east_m, north_m))
+
+
+def _from_body(forward: float, right: float, yaw_deg: float) -> tuple[float, float]:
+    heading = radians(yaw_deg)
+    return (
+        forward * cos(heading) - right * sin(heading),
+        forward * sin(heading) + right * cos(heading),
+    )
+
+
+def _towards(
+    motion: Motion, north_m: float, east_m: float, speed_mps: float, up_mps: float
+) -> Demand:
+    """Return the demand that flies level to a point, nose first, and stops there."""
+    north, east = north_m - motion.north_m, east_m - motion.east_m
+    distance = hypot(north, east)
+    if distance < 1e-6:
+        return Demand(velocity_up_mps=up_mps)
+    share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
+    yaw = heading_deg(north, east) if distance > 3.0 else None
+    return Demand(north * share, east * share, up_mps, yaw)

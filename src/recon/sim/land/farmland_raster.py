@@ -1,0 +1,223 @@
+"""Drawing farmland into pixels: part by part, each the same whatever else is drawn."""
+
+from functools import lru_cache
+from math import cos, radians, sin
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.imagery import RgbImage
+from recon.sim.land.farmland import (
+    MEADOW,
+    POND_EDGE_M,
+    Box,
+    Building,
+    Farmland,
+    Plot,
+    Pond,
+    Tree,
+)
+from recon.sim.land.land_index import index_of
+from recon.sim.land.land_part import (
+    FRACTION_BITS,
+    MARGIN_PX,
+    Part,
+    fixed_point,
+    seen_trees,
+    slices,
+)
+from recon.sim.land.noise import FloatImage, tileable_noise
+
+GRAVEL = (168.0, 160.0, 145.0)
+DIRT = (150.0, 133.0, 106.0)
+VERGE = (116.0, 127.0, 80.0)
+WATER = (88.0, 101.0, 98.0)
+CROWN = (58.0, 76.0, 44.0)
+
+HEADLAND_M = 16.0
+TRAMLINE_M = 24.0
+PLANT_ROW_M = 0.75
+"""Between rows of maize or soybeans; seen from low only."""
+WETTEST_DARKENS = 0.34
+"""Soil that is wet through, over dry soil, in screen brightness: about half of the light."""
+WET_ABOVE, WET_OVER = 0.5, 1.1
+"""Deviations of a field 400 m coarse: where the ground begins to be wet, and until it is wet."""
+
+POND_CORNERS = 40
+DARKER_SLOPE = 0.88
+"""Of a roof: the slope that faces away from the noon's sun."""
+NOISE_CELLS = 512
+
+
+def draw(land: Farmland, part: Part, seed: int) -> RgbImage:
+    """Return the land's colours in full sun, without shadows, (size, size, 3)."""
+    index = index_of(land)
+    canvas = _Canvas(part.with_margin(), seed)
+    box = canvas.part.box_m
+    canvas.pixels[:] = VERGE
+    for plot in index.plots.within(box):
+        canvas.draw_plot(plot)
+    for track in index.tracks.within(box):
+        canvas.fill(track, DIRT)
+    canvas.draw_creek(land)
+    for pond in index.ponds.within(box):
+        canvas.draw_pond(pond)
+    canvas.draw_roads(land)
+    for yard in index.yards.within(box):
+        canvas.fill(yard, GRAVEL)
+    canvas.add_grain()
+    for building in index.buildings.within(box):
+        canvas.draw_roof(building)
+    canvas.draw_trees(seen_trees(index, canvas.part))
+    inner = canvas.pixels[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX]
+    return np.clip(inner, 0.0, 255.0).astype(np.uint8)
+
+
+@lru_cache(maxsize=32)
+def _noise_tile(seed: int, smallest_cells: float, slope: float, blur_px: int) -> FloatImage:
+    """Return noise; details finer than a pixel average out."""
+    tile = tileable_noise(NOISE_CELLS, seed, smallest_cells, slope)
+    if blur_px <= 1:
+        return tile
+    wrapped = np.pad(tile, blur_px, mode="wrap")
+    blurred = cv2.blur(wrapped, (blur_px, blur_px))[blur_px:-blur_px, blur_px:-blur_px]
+    inner: FloatImage = blurred.astype(np.float32, copy=True)
+    return inner
+
+
+class _Canvas:
+    def __init__(self, part: Part, seed: int) -> None:
+        self.part, self.cell_m = part, part.cell_m
+        self.pixels: FloatImage = np.empty((part.size, part.size, 3), dtype=np.float32)
+        numbers = np.arange(part.size, dtype=np.float64)
+        self.east_m = ((numbers + part.col + 0.5) * part.cell_m).astype(np.float32)
+        self.north_m = (-(numbers + part.row + 0.5) * part.cell_m).astype(np.float32)
+        self._patches = self._noise(seed + 1, tile_m=900.0, smallest_cells=3.0, slope=1.6)
+        self._grain = self._noise(seed + 2, tile_m=NOISE_CELLS * 0.8, smallest_cells=1.0, slope=0.7)
+        self._wet = self._noise(seed + 3, tile_m=2_600.0, smallest_cells=2.0, slope=1.5)
+        if part.cell_m <= 0.5:
+            self._grain += 0.8 * self._noise(seed + 4, NOISE_CELLS * 0.25, 1.0, 0.6)
+
+    def _noise(self, seed: int, tile_m: float, smallest_cells: float, slope: float) -> FloatImage:
+        """Return noise fixed to the ground, at this part's pixels."""
+        per_m = NOISE_CELLS / tile_m
+        tile = _noise_tile(seed, smallest_cells, slope, max(1, round(self.cell_m * per_m)))
+        cols, rows = np.meshgrid(
+            np.mod(self.east_m * per_m, NOISE_CELLS), np.mod(self.north_m * per_m, NOISE_CELLS)
+        )
+        sampled = cv2.remap(
+            tile,
+            cols.astype(np.float32),
+            rows.astype(np.float32),
+            cv2.INTER_LINEAR,
+            borderMode=cv2.BORDER_WRAP,
+        )
+        return sampled.astype(np.float32, copy=False)
+
+    def fill(self, box: Box, colour: tuple[float, ...]) -> None:
+        self.pixels[slices(self.part, box)] = colour
+
+    def draw_plot(self, plot: Plot) -> None:
+        rows, cols = slices(self.part, plot.box_m)
+        area = self.pixels[rows, cols]
+        if area.size == 0:
+            return
+        area[:] = plot.colour
+        light = plot.patchiness * self._patches[rows, cols]
+        north, east = self.north_m[rows, np.newaxis], self.east_m[np.newaxis, cols]
+        if plot.row_contrast > 0.0:
+            light += self._crop_rows(plot, east, north)
+        area += light[:, :, np.newaxis] * np.array([1.0, 0.95, 0.75], dtype=np.float32)
+        wet = np.clip((self._wet[rows, cols] - WET_ABOVE) / WET_OVER, 0.0, 1.0)
+        area *= (1.0 - WETTEST_DARKENS * plot.bareness * wet)[:, :, np.newaxis]
+
+    def _crop_rows(self, plot: Plot, east: FloatImage, north: FloatImage) -> FloatImage:
+        """Return the light and dark of crop rows: across on the headlands, tramlines between."""
+        u, v = (east, north) if plot.rows_run_north else (north, east)
+        low, high = (
+            (plot.south_m, plot.north_m) if plot.rows_run_north else (plot.west_m, plot.east_m)
+        )
+        is_headland = (v < low + HEADLAND_M) | (v > high - HEADLAND_M)
+        stripes = self._stripes(plot.row_spacing_m, u, v, is_headland) + self._stripes(
+            PLANT_ROW_M, u, v, is_headland
+        )
+        to_tramline = np.abs(np.mod(u, TRAMLINE_M) - TRAMLINE_M / 2.0)
+        tramline = np.clip(1.0 - to_tramline / max(1.0, self.cell_m), 0.0, 1.0)
+        tramline = np.where(is_headland, 0.0, tramline) * min(1.0, 1.0 / self.cell_m)
+        shade: FloatImage = (
+            plot.row_contrast * (stripes - 1.6 * tramline) - 3.0 * is_headland
+        ).astype(np.float32)
+        return shade
+
+    def _stripes(
+        self, spacing_m: float, u: FloatImage, v: FloatImage, is_headland: npt.NDArray[np.bool_]
+    ) -> FloatImage:
+        """Return waves of a spacing, as far as the pixels are fine enough for them."""
+        visible = max(0.0, 1.0 - 2.0 * self.cell_m / spacing_m)
+        if visible == 0.0:
+            return np.zeros((1, 1), dtype=np.float32)
+        wave = np.float32(2.0 * np.pi / spacing_m)
+        across, along = visible * np.sin(wave * v), visible * np.sin(wave * u)
+        stripes: FloatImage = np.where(is_headland, across, along).astype(np.float32)
+        return stripes
+
+    def draw_roads(self, land: Farmland) -> None:
+        far = land.half_width_m
+        for width_m, colour in ((14.0, VERGE), (7.0, GRAVEL)):
+            for east in land.roads_east_m:
+                self.fill((east - width_m / 2, -far, east + width_m / 2, far), colour)
+            for north in land.roads_north_m:
+                self.fill((-far, north - width_m / 2, far, north + width_m / 2), colour)
+
+    def draw_creek(self, land: Farmland) -> None:
+        west, _, east, _ = self.part.box_m
+        near = (land.creek_m[:, 0] > west - 60.0) & (land.creek_m[:, 0] < east + 60.0)
+        points = fixed_point(self.part, land.creek_m[near])
+        for width_m, colour in ((46.0, MEADOW), (8.0, WATER)):
+            thickness = max(1, round(width_m / self.cell_m))
+            cv2.polylines(
+                self.pixels, [points], False, colour, thickness, cv2.LINE_8, FRACTION_BITS
+            )
+
+    def draw_pond(self, pond: Pond) -> None:
+        angles = np.linspace(0.0, 2.0 * np.pi, POND_CORNERS, endpoint=False)
+        turned = radians(pond.turned_deg)
+        for wider_m, colour in ((POND_EDGE_M, MEADOW), (0.0, WATER)):
+            along = (pond.across_m + wider_m) * np.cos(angles)
+            aside = (pond.along_m + wider_m) * np.sin(angles)
+            east = pond.east_m + along * cos(turned) + aside * sin(turned)
+            north = pond.north_m - along * sin(turned) + aside * cos(turned)
+            outline = fixed_point(self.part, np.stack([east, north], axis=1))
+            cv2.fillConvexPoly(self.pixels, outline, colour, cv2.LINE_8, FRACTION_BITS)
+
+    def draw_roof(self, building: Building) -> None:
+        """Draw two slopes; the one to the north or west is a little darker from above."""
+        at, colour = building, np.array(building.colour)
+        self.fill((at.west_m, at.south_m, at.east_m, at.north_m), tuple(colour))
+        east, north = (at.west_m + at.east_m) / 2.0, (at.south_m + at.north_m) / 2.0
+        runs_north = at.north_m - at.south_m > at.east_m - at.west_m
+        box = (at.west_m, at.south_m, east, at.north_m)
+        box = box if runs_north else (at.west_m, north, at.east_m, at.north_m)
+        self.fill(box, tuple(DARKER_SLOPE * colour))
+
+    def draw_trees(self, trees: list[Tree]) -> None:
+        if not trees:
+            return
+        cover = cv2.GaussianBlur(self._discs(trees), (0, 0), 0.8).astype(np.float32)
+        light = 5.0 * self._grain + self._discs(trees, shades=True)
+        crowns = light[:, :, np.newaxis] + np.array(CROWN, dtype=np.float32)
+        self.pixels += cover[:, :, np.newaxis] * (crowns - self.pixels)
+
+    def _discs(self, trees: list[Tree], shades: bool = False) -> FloatImage:
+        """Return an image with a disc per crown, of 1 or of its shade."""
+        image = np.zeros((self.part.size, self.part.size), dtype=np.float32)
+        points = fixed_point(self.part, np.array([(t.east_m, t.north_m) for t in trees]))
+        for tree, point in zip(trees, points.tolist(), strict=True):
+            radius = max(1, round(tree.radius_m / self.cell_m * 2**FRACTION_BITS))
+            value = tree.shade if shades else 1.0
+            cv2.circle(image, point, radius, value, -1, cv2.LINE_8, FRACTION_BITS)
+        return image
+
+    def add_grain(self) -> None:
+        self.pixels += (2.6 * self._grain + 1.5 * self._patches)[:, :, np.newaxis]

@@ -1,0 +1,330 @@
+"""The running station as the API sees it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import count
+
+from recon import __version__
+from recon.api import schema
+from recon.api.port import SurveyCells
+from recon.model.authority import Leader
+from recon.model.command import Body, Hover, Phase, Refusal
+from recon.model.event import (
+    AlarmAcknowledged,
+    AuthorityTaken,
+    FleetReturnOrdered,
+    GhostDismissed,
+    HolderCame,
+    HolderGone,
+    OperatorOrder,
+    PreflightOverridden,
+    SeparationHoldSwitched,
+)
+from recon.model.imagery import Frame, GroundImage
+from recon.model.shade import ShadeMap, SunForecast
+from recon.model.units import ns_to_seconds
+from recon.record import geotiff_bytes
+from recon.record.audit_log import AuditLog
+from recon.site import Site
+from recon.station.alarms.station_faults import TO_DO
+from recon.station.api_views.audit_view import audit_page
+from recon.station.api_views.readiness_view import preflight_view
+from recon.station.api_views.site_view import site_view
+from recon.station.api_views.state_view import Surroundings, state_view
+from recon.station.api_views.survey_service import SurveyDesk
+from recon.station.control import authority, preflight
+from recon.station.control.dry_run import CHECKED_ID, check
+from recon.station.kernel.driver import AsyncioDriver
+from recon.station.state.orders import OrderRecord
+from recon.station.state.station import Station
+from recon.station.traffic.known_traffic import is_hazard_unseen
+
+
+@dataclass(slots=True)
+class Service:
+    """Implements `recon.api.port.StationPort` on a driver."""
+
+    driver: AsyncioDriver
+    site: Site
+    link_addresses: list[str]
+    capture_folder: str | None
+    audit_log: AuditLog | None
+    _ids: Callable[[], int]
+
+    @classmethod
+    def around(
+        cls,
+        driver: AsyncioDriver,
+        site: Site,
+        capture_folder: str | None,
+        audit_log: AuditLog | None = None,
+        first_id: int = 1,
+    ) -> "Service":
+        """Return the service of a driver that is about to run; orders are numbered from a first."""
+        # Thinning outlines of very many corners takes a moment: now, not while somebody flies.
+        site_view(site)
+        return cls(driver, site, [], capture_folder, audit_log, count(first_id).__next__)
+
+    def state(self) -> schema.StationState:
+        """Return everything a console shows, as of now."""
+        now_ns = self.driver.now_ns()
+        return state_view(self.driver.station, self._surroundings(now_ns), now_ns)
+
+    def order(
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
+    ) -> schema.OrderResponse:
+        """Give one order to each named vehicle, once each."""
+        asked = [
+            OperatorOrder(
+                self._ids(), body, issued_by, serial=serial, takeoff=takeoff, holder=holder
+            )
+            for serial in dict.fromkeys(serials)
+        ]
+        return self._give(asked)
+
+    def check(
+        self,
+        serials: list[str],
+        body: Body,
+        *,
+        takeoff: bool,
+        issued_by: str,
+        holder: str | None = None,
+    ) -> schema.OrderResponse:
+        """Return what `order` would answer now; nothing is given and nothing changes."""
+        orders = [
+            OperatorOrder(
+                CHECKED_ID, body, issued_by, serial=serial, takeoff=takeoff, holder=holder
+            )
+            for serial in dict.fromkeys(serials)
+        ]
+        station = self.driver.station
+        records = check(station, orders, self.driver.now_ns())
+        return schema.OrderResponse(
+            results=[_result(r, _is_simulated(station, r)) for r in records]
+        )
+
+    def holder_came(self, holder: str) -> None:
+        """Let a stream hold steered orders from now on."""
+        self.driver.handle(HolderCame(holder))
+
+    def holder_gone(self, holder: str) -> None:
+        """End what a stream held."""
+        self.driver.handle(HolderGone(holder))
+
+    def all_stop(self, issued_by: str) -> schema.OrderResponse:
+        """Hold every link whose telemetry says flying, identified or not.
+
+        What is on the ground or has no connection is in the results with the gate's refusal: nobody
+        that may be in the air is left out in silence.
+        """
+        fleet = self.driver.station.fleet
+        serials = self._within_reach()
+        links = [
+            link.id
+            for link in fleet.unbound_links()
+            if link.claimed_serial is None
+            and link.own_state.core_received_at_ns is not None
+            and link.own_state.is_flying.value is not False
+        ]
+        orders = [OperatorOrder(self._ids(), Hover(), issued_by, serial=s) for s in serials]
+        orders += [OperatorOrder(self._ids(), Hover(), issued_by, link_id=i) for i in links]
+        return self._give(orders)
+
+    def fleet_return(self, serials: list[str] | None, issued_by: str) -> schema.OrderResponse:
+        """Call vehicles home in layers; None calls every one that flies or may."""
+        called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
+        return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
+
+    def dismiss_ghost(self, name: str, by: str) -> bool:
+        """Take a vehicle that is not heard out of the air."""
+        if not is_hazard_unseen(self.driver.station, name, self.driver.now_ns()):
+            return False
+        self.driver.handle(GhostDismissed(name, by))
+        return True
+
+    def switch_separation_hold(self, is_on: bool, by: str) -> None:
+        """Switch on or off that the watchdogs hold vehicles."""
+        self.driver.handle(SeparationHoldSwitched(is_on, by))
+
+    def take_authority(self, serial: str, leader: Leader, by: str) -> schema.WordResponse:
+        """Let somebody else lead a vehicle."""
+        event = AuthorityTaken(serial, leader, by)
+        return self._say(event, authority.refusal(self.driver.station, event))
+
+    def preflight(self, serial: str) -> schema.PreflightView | None:
+        """Return a vehicle's checklist as of now."""
+        return preflight_view(self.driver.station, serial, self.driver.now_ns())
+
+    def override_preflight(self, serial: str, reason: str, by: str) -> schema.WordResponse:
+        """Let a vehicle fly missions although its checklist is not passed."""
+        event = PreflightOverridden(serial, by, reason)
+        return self._say(event, preflight.refusal(self.driver.station, event))
+
+    def acknowledge(self, alarm_id: int, by: str) -> bool:
+        """Mark an alarm as seen."""
+        if alarm_id not in self.driver.station.alarms.alarms:
+            return False
+        self.driver.handle(AlarmAcknowledged(alarm_id, by))
+        return True
+
+    def audit(self, after: int, at_most: int) -> schema.AuditPage:
+        """Return the audit's entries after a number, as far as they are in memory."""
+        return audit_page(self.audit_log, after, at_most)
+
+    def frame(self, serial: str) -> Frame | None:
+        """Return a vehicle's newest frame."""
+        return self.driver.station.frames.get(serial)
+
+    def ground_image(self) -> GroundImage | None:
+        """Return the newest ground image."""
+        return self.driver.station.imaging.ground_image
+
+    def shade(self) -> tuple[int, ShadeMap] | None:
+        """Return the newest shade map and its number."""
+        line = self.driver.station.shade
+        return None if line.shade is None else (line.number, line.shade)
+
+    def forecast(self) -> tuple[int, SunForecast] | None:
+        """Return the newest forecast and its number."""
+        line = self.driver.station.shade
+        return None if line.sun is None else (line.number, line.sun)
+
+    def ask_survey(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
+        """Ask for a survey."""
+        return self._surveys.ask(asked, by)
+
+    def survey(self, survey_id: int) -> schema.SurveyView | None:
+        """Return a survey as it stands."""
+        return self._surveys.view(survey_id)
+
+    def start_survey(
+        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+    ) -> schema.SurveyResponse:
+        """Start a survey with these vehicles, or let them join."""
+        return self._surveys.start(survey_id, serials, takeoff=takeoff, by=by)
+
+    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> schema.SurveyResponse:
+        """Pause a survey, or abort it for good."""
+        return self._surveys.stop(survey_id, is_aborted=is_aborted, by=by)
+
+    def survey_ways(self, survey_id: int) -> schema.SurveyWays | None:
+        """Return a survey's planned and flown ways."""
+        return self._surveys.ways(survey_id)
+
+    def survey_cells(self, survey_id: int) -> SurveyCells | None:
+        """Return a survey's cells as they stand."""
+        return self._surveys.cells(survey_id)
+
+    @property
+    def _surveys(self) -> SurveyDesk:
+        return SurveyDesk(self.driver, self.site, self._ids)
+
+    def geotiff(self, image: GroundImage) -> bytes:
+        """Return a ground image as a GeoTIFF file."""
+        rms_px = None if self.site.eye is None else self.site.eye.solution.rms_px
+        captured = datetime.fromtimestamp(ns_to_seconds(image.captured_at_ns), UTC)
+        return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
+
+    def _say(
+        self, event: AuthorityTaken | PreflightOverridden, refusal: Refusal | None
+    ) -> schema.WordResponse:
+        """Pass a word on, unless it is refused."""
+        if refusal is not None:
+            return schema.WordResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
+        self.driver.handle(event)
+        return schema.WordResponse(accepted=True, rule=None, reason=None)
+
+    def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
+        return schema.OrderResponse(results=[self._give_one(order) for order in orders])
+
+    def _give_one(self, order: OperatorOrder) -> schema.OrderResult:
+        """Give an order and read its record at once: of many, the first are soon forgotten."""
+        self.driver.handle(order)
+        return self._outcome(order.command_id, order.serial)
+
+    def _call_one(self, serial: str, issued_by: str) -> schema.OrderResult:
+        """Let one more vehicle join the return; it is planned with the next tick."""
+        command_id = self._ids()
+        self.driver.handle(FleetReturnOrdered(command_id, (serial,), issued_by))
+        return self._outcome(command_id, serial)
+
+    def _outcome(self, command_id: int, serial: str | None) -> schema.OrderResult:
+        station = self.driver.station
+        record = station.orders.records.get(command_id)
+        if record is None:
+            return _not_taken(command_id, serial)
+        return _result(record, _is_simulated(station, record))
+
+    def _within_reach(self) -> list[str]:
+        """Every vehicle that has a connection, or flies or may."""
+        fleet = self.driver.station.fleet
+        return [
+            serial
+            for serial, vehicle in fleet.vehicles.items()
+            if fleet.link_ids_claiming(serial) or vehicle.is_flying.value is not False
+        ]
+
+    def _surroundings(self, now_ns: int) -> Surroundings:
+        links = self.driver.links
+        sessions = {} if links is None else links.sessions()
+        return Surroundings(sessions, self._station_view(now_ns), site_view(self.site))
+
+    def _station_view(self, now_ns: int) -> schema.StationView:
+        links = self.driver.links
+        capture = None if links is None else links.capture
+        return schema.StationView(
+            version=__version__,
+            link_addresses=self.link_addresses,
+            uptime_s=ns_to_seconds(now_ns - self.driver.started_at_ns),
+            frames_dropped=self.driver.station.imaging.frames_dropped,
+            capture_folder=self.capture_folder,
+            capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
+            separation_hold_on=self.driver.station.watch.is_hold_on,
+            connections_refused=0 if links is None else links.refused_connections,
+        )
+
+
+def _not_taken(command_id: int, serial: str | None) -> schema.OrderResult:
+    """The answer to an order that a fault of the station kept from being judged."""
+    return schema.OrderResult(
+        serial=serial,
+        link_id=None,
+        vehicle_name=serial or "?",
+        is_simulated=False,
+        accepted=False,
+        command_id=command_id,
+        rule="station_fault",
+        reason=f"a fault in the station's own code, see the alarm; nothing was sent: {TO_DO}",
+        repairs=[],
+        parts=0,
+    )
+
+
+def _is_simulated(station: Station, record: OrderRecord) -> bool:
+    target = station.target(record.command.serial, record.command.link_id)
+    return target is not None and target.is_simulated
+
+
+def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
+    is_refused = record.phase is Phase.REFUSED_BY_STATION
+    rule, _, reason = record.note.partition(": ")
+    return schema.OrderResult(
+        serial=record.command.serial,
+        link_id=record.command.link_id,
+        vehicle_name=record.vehicle_name,
+        is_simulated=is_simulated,
+        accepted=not is_refused,
+        command_id=record.command.id,
+        rule=rule if is_refused else None,
+        reason=reason if is_refused else record.note or None,
+        repairs=[] if record.plan is None else list(record.plan.repairs),
+        parts=0 if record.plan is None else len(record.plan.parts),
+    )

@@ -1,0 +1,279 @@
+"""The station's state as the API says it."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from recon.api import schema
+from recon.fleet.state import Fleet, LinkRecord, staleness
+from recon.link.session import Session
+from recon.model.imagery import Frame, GroundImage
+from recon.model.stamped import Stamped
+from recon.model.units import ns_to_seconds
+from recon.model.vehicle import AltitudeReference, VehicleState
+from recon.station.api_views.corners import corners_lon_lat
+from recon.station.api_views.hazard_view import ghost_view
+from recon.station.api_views.readiness_view import lead_view, override_view
+from recon.station.api_views.steering_view import steering_view
+from recon.station.imaging import shade_told as shade
+from recon.station.operations.fleet_return import told as fleet_return
+from recon.station.operations.survey import told as survey
+from recon.station.state.alarm_book import Alarm
+from recon.station.state.orders import OrderRecord
+from recon.station.state.station import Station
+
+SHOWN_ORDERS = 50
+TRACK_POINTS_SHOWN = 120
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What the view needs beside the station's state: things that live in the driver."""
+
+    sessions: dict[int, Session]
+    station: schema.StationView
+    site: schema.SiteView | None
+
+
+def state_view(station: Station, around: Surroundings, now_ns: int) -> schema.StationState:
+    """Return everything a console shows, with ages as of `now_ns`."""
+    return schema.StationState(
+        time_ns=now_ns,
+        station=around.station,
+        site=around.site,
+        vehicles=_vehicles(station, now_ns),
+        links=[_link(station.fleet, r, around, now_ns) for r in station.fleet.links.values()],
+        commands=_commands(station, now_ns),
+        alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
+        ground_image=_ground_image(station, now_ns),
+        fleet_return=fleet_return.view(station, now_ns),
+        shade=shade.view(station, now_ns),
+        surveys=survey.view(station, now_ns),
+    )
+
+
+def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
+    numbers = _numbers(station.fleet)
+    known = [
+        _vehicle(station, vehicle, numbers[serial], now_ns)
+        for serial, vehicle in sorted(
+            station.fleet.vehicles.items(), key=lambda item: numbers[item[0]]
+        )
+    ]
+    unidentified = [
+        _vehicle(station, link.own_state, 0, now_ns)
+        for link in station.fleet.unbound_links()
+        if link.claimed_serial is None and link.own_state.core_received_at_ns is not None
+    ]
+    lost = [_vehicle(station, state, 0, now_ns) for state in station.watch.lost.values()]
+    return known + unidentified + lost
+
+
+def _numbers(fleet: Fleet) -> dict[str, int]:
+    """Return each serial's number: first the site's vehicles in its order, then as they came."""
+    serials = dict.fromkeys((*fleet.profiles, *fleet.vehicles))
+    return {serial: number for number, serial in enumerate(serials, start=1)}
+
+
+def _vehicle(
+    station: Station, vehicle: VehicleState, number: int, now_ns: int
+) -> schema.VehicleView:
+    profile = vehicle.profile
+    reference = AltitudeReference.UNSET if profile is None else profile.waypoint_altitude
+    aged = _Aging(now_ns)
+    return schema.VehicleView(
+        number=number,
+        serial=vehicle.serial,
+        link_id=vehicle.link_id,
+        name=vehicle.display_name,
+        model="unknown model" if profile is None else profile.model,
+        is_simulated=vehicle.is_simulated,
+        is_eye=vehicle.serial is not None and vehicle.serial == station.imaging.eye_serial,
+        lead=lead_view(station, vehicle.serial, now_ns),
+        preflight_override=override_view(station, vehicle.serial, now_ns),
+        steering=steering_view(station, vehicle.serial),
+        staleness=staleness(vehicle, now_ns).value,
+        telemetry_age_s=_age_s(vehicle.core_received_at_ns, now_ns),
+        is_flying=aged.flag(vehicle.is_flying),
+        position=aged.parts(
+            schema.PositionView, vehicle.position, ("latitude_deg", "longitude_deg")
+        ),
+        height_above_takeoff_m=aged.number(vehicle.height_above_takeoff_m),
+        reported_altitude_m=aged.number(vehicle.reported_altitude_m),
+        velocity_ned=aged.parts(
+            schema.VelocityView, vehicle.velocity_ned, ("north_mps", "east_mps", "down_mps")
+        ),
+        attitude=aged.parts(
+            schema.AttitudeView, vehicle.attitude, ("yaw_deg", "pitch_deg", "roll_deg")
+        ),
+        battery_fraction=aged.number(vehicle.battery_fraction),
+        battery_warning=aged.word(vehicle.battery_warning),
+        gnss_satellite_count=aged.number(vehicle.gnss_satellite_count),
+        gnss_signal_level=aged.number(vehicle.gnss_signal_level),
+        wind_level=aged.number(vehicle.wind_level),
+        flight_mode=aged.word(vehicle.flight_mode),
+        mission_id=aged.number(vehicle.mission_id),
+        camera_state=aged.word(vehicle.camera_state),
+        waypoint_altitude=reference.value,
+        conflict_link_ids=list(vehicle.rival_link_ids),
+        track=[(p.longitude_deg, p.latitude_deg) for p in vehicle.track[-TRACK_POINTS_SHOWN:]],
+        frame=_frame(station.frames.get(vehicle.serial or ""), now_ns),
+        ghost=ghost_view(station, vehicle, now_ns),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Aging:
+    """Turns stamped values into views with ages."""
+
+    now_ns: int
+
+    def number(self, stamped: Stamped[Any]) -> schema.AgedNumber:
+        return schema.AgedNumber(value=stamped.value, age_s=stamped.age_s(self.now_ns))
+
+    def flag(self, stamped: Stamped[bool]) -> schema.AgedFlag:
+        return schema.AgedFlag(value=stamped.value, age_s=stamped.age_s(self.now_ns))
+
+    def word(self, stamped: Stamped[Any]) -> schema.AgedText:
+        value: Enum | None = stamped.value
+        text = None if value is None else value.name.lower()
+        return schema.AgedText(value=text, age_s=stamped.age_s(self.now_ns))
+
+    def parts(self, view: Callable[..., Any], stamped: Stamped[Any], names: Iterable[str]) -> Any:
+        values = {name: getattr(stamped.value, name, None) for name in names}
+        return view(**values, age_s=stamped.age_s(self.now_ns))
+
+
+def _frame(frame: Frame | None, now_ns: int) -> schema.FrameView | None:
+    if frame is None:
+        return None
+    return schema.FrameView(
+        id=frame.id,
+        received_age_s=ns_to_seconds(now_ns - frame.received_at_ns),
+        captured_age_s=ns_to_seconds(now_ns - frame.captured_at_ns),
+        captured_sigma_s=frame.captured_sigma_s,
+    )
+
+
+def _link(fleet: Fleet, record: LinkRecord, around: Surroundings, now_ns: int) -> schema.LinkView:
+    session = around.sessions.get(record.id)
+    counters = None if session is None else session.counters
+    return schema.LinkView(
+        id=record.id,
+        remote_address=record.remote_address,
+        status=_link_status(fleet, record),
+        claimed_serial=record.claimed_serial,
+        opened_age_s=ns_to_seconds(now_ns - record.opened_at_ns),
+        last_packet_age_s=_age_s(record.last_packet_at_ns, now_ns),
+        closed_reason=record.closed_reason,
+        bytes_received=0 if session is None else session.bytes_received,
+        packets_received=record.packets,
+        images_received=record.images,
+        bad_hash=0 if counters is None else counters.bad_hash,
+        bad_size=0 if counters is None else counters.bad_size,
+        unknown_pid=0 if counters is None else counters.unknown_pid,
+        meaningless=record.meaningless,
+        bytes_skipped=0 if counters is None else counters.bytes_skipped,
+        commands_queued=0 if session is None else session.commands_queued,
+        answers_not_believed=0 if session is None else session.acks.unbelieved,
+    )
+
+
+def _link_status(fleet: Fleet, record: LinkRecord) -> Any:
+    if not record.is_open:
+        return "closed"
+    if record.claimed_serial is None:
+        return "unidentified"
+    vehicle = fleet.vehicles.get(record.claimed_serial)
+    has_rivals = vehicle is not None and bool(vehicle.rival_link_ids)
+    return "conflict" if has_rivals else "identified"
+
+
+def _commands(station: Station, now_ns: int) -> list[schema.CommandView]:
+    newest = sorted(station.orders.records.values(), key=_issued, reverse=True)
+    # A stream of sticks is one order: how many have gone is counted in its lease.
+    sticks = {lease.command.id: lease.packets_sent for lease in station.streams.values()}
+    return [
+        _command(record, sticks.get(record.command.id, record.times_sent), now_ns)
+        for record in newest[:SHOWN_ORDERS]
+    ]
+
+
+def _issued(record: OrderRecord) -> tuple[int, int]:
+    return record.command.issued_at_ns, record.command.id
+
+
+def _command(record: OrderRecord, times_sent: int, now_ns: int) -> schema.CommandView:
+    command = record.command
+    return schema.CommandView(
+        id=command.id,
+        kind=command.name,
+        serial=command.serial,
+        link_id=command.link_id,
+        vehicle_name=record.vehicle_name,
+        issued_by=command.issued_by,
+        age_s=ns_to_seconds(now_ns - command.issued_at_ns),
+        phase=record.phase.value,
+        is_final=record.phase.is_final,
+        note=record.note,
+        times_sent=times_sent,
+        takeoff=command.takeoff,
+        sent_altitudes=record.altitudes,
+        part=None if record.plan is None else record.plan.label or None,
+        repairs=[] if record.plan is None else list(record.plan.repairs),
+        history=[
+            schema.PhaseView(
+                phase=change.phase.value,
+                age_s=ns_to_seconds(now_ns - change.at_ns),
+                note=change.note,
+            )
+            for change in record.history
+        ],
+    )
+
+
+def _alarm(alarm: Alarm, now_ns: int) -> schema.AlarmView:
+    condition = alarm.condition
+    return schema.AlarmView(
+        id=alarm.id,
+        severity=condition.severity.value,
+        rule=condition.rule,
+        serial=condition.serial,
+        link_id=condition.link_id,
+        vehicle_name=condition.vehicle_name,
+        text=condition.text,
+        raised_age_s=ns_to_seconds(now_ns - alarm.raised_at_ns),
+        is_active=alarm.is_active,
+        is_acknowledged=alarm.acknowledged_by is not None,
+    )
+
+
+def _ground_image(station: Station, now_ns: int) -> schema.GroundImageView | None:
+    imaging = station.imaging
+    image: GroundImage | None = imaging.ground_image
+    if image is None or imaging.eye_serial is None:
+        return None
+    profile = station.fleet.profiles.get(imaging.eye_serial)
+    return schema.GroundImageView(
+        frame_id=image.frame_id,
+        serial=imaging.eye_serial,
+        captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
+        captured_sigma_s=0.25 if profile is None else profile.video_latency_sigma_s,
+        registration=image.registration.value,
+        reference=_reference_text(imaging.is_reference_assumed),
+        corners=corners_lon_lat(image.grid),
+        cell_m=image.grid.cell_m,
+        rows=image.grid.rows,
+        cols=image.grid.cols,
+    )
+
+
+def _reference_text(is_assumed: bool) -> str:
+    if is_assumed:
+        return "the first frame received in flight stands for the marked one"
+    return "telemetry of the marked frame, from the site's file"
+
+
+def _age_s(at_ns: int | None, now_ns: int) -> float | None:
+    return None if at_ns is None else ns_to_seconds(now_ns - at_ns)

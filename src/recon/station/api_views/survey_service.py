@@ -1,0 +1,127 @@
+"""Surveys as the API asks for them: words made events, the state made answers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from recon.api import schema
+from recon.api.port import SurveyCells
+from recon.guidance.survey.plan import RULE
+from recon.model.command import Refusal
+from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
+from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
+from recon.model.zone import Region
+from recon.site import Site
+from recon.site.errors import SiteError
+from recon.site.geojson import Feature, regions_of
+from recon.station.kernel.driver import AsyncioDriver
+from recon.station.operations.survey import told
+from recon.station.operations.survey.commands import start_refusal, stop_refusal
+from recon.station.operations.survey.planning import NO_SITE
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyDesk:
+    """Speaks of surveys to a driver's station."""
+
+    driver: AsyncioDriver
+    site: Site
+    ids: Callable[[], int]
+
+    def ask(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
+        """Ask for a survey; a region that is none is refused before anything begins."""
+        region = self._region(asked)
+        if isinstance(region, Refusal):
+            return _refused(region)
+        number = self.ids()
+        self.driver.handle(SurveyAsked(_survey(number, asked, region), by))
+        return self._taken(number)
+
+    def start(
+        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+    ) -> schema.SurveyResponse:
+        """Start a survey, unless that is refused; the refused word is on record too."""
+        event = SurveyStarted(survey_id, tuple(dict.fromkeys(serials)), by, takeoff)
+        refusal = start_refusal(self.driver.station, event, self.driver.now_ns())
+        self.driver.handle(event)
+        return self._taken(survey_id) if refusal is None else _refused(refusal)
+
+    def stop(self, survey_id: int, *, is_aborted: bool, by: str) -> schema.SurveyResponse:
+        """Pause or abort a survey, unless that is refused."""
+        event = SurveyStopped(survey_id, by, is_aborted)
+        refusal = stop_refusal(self.driver.station, event, self.driver.now_ns())
+        self.driver.handle(event)
+        return self._taken(survey_id) if refusal is None else _refused(refusal)
+
+    def view(self, survey_id: int) -> schema.SurveyView | None:
+        """Return a survey as it stands."""
+        station = self.driver.station
+        record = station.surveys.records.get(survey_id)
+        return None if record is None else told.survey_view(station, record, self.driver.now_ns())
+
+    def ways(self, survey_id: int) -> schema.SurveyWays | None:
+        """Return a survey's planned and flown ways, None without rows."""
+        record = self.driver.station.surveys.records.get(survey_id)
+        return None if record is None else told.ways(record)
+
+    def cells(self, survey_id: int) -> SurveyCells | None:
+        """Return a survey's cells, None without rows."""
+        record = self.driver.station.surveys.records.get(survey_id)
+        if record is None or record.state is None:
+            return None
+        state = record.state
+        return SurveyCells(
+            told.cells_number(state), state.progress.state, state.plan.cells.is_inside
+        )
+
+    def _taken(self, survey_id: int) -> schema.SurveyResponse:
+        return schema.SurveyResponse(
+            accepted=True, rule=None, reason=None, survey=self.view(survey_id)
+        )
+
+    def _region(self, asked: schema.SurveyRequest) -> Region | Refusal:
+        """The site's region of that name, or the polygon; one of them must be said."""
+        if (asked.region is None) == (asked.polygon is None):
+            return Refusal(RULE, "say either a region of the site or a polygon")
+        if self.site.frame is None:
+            return Refusal(RULE, NO_SITE)
+        if asked.region is not None:
+            return self._of_site(asked.region)
+        geometry = {"type": "Polygon", "coordinates": asked.polygon}
+        try:
+            (region,) = regions_of(Feature("polygon", 1, {}, geometry), self.site.frame)
+        except SiteError as problem:
+            return Refusal(RULE, str(problem))
+        return region
+
+    def _of_site(self, name: str) -> Region | Refusal:
+        regions = self.site.layers.survey_regions
+        if name in regions:
+            return regions[name]
+        known = ", ".join(regions) or "none: its site.toml names no survey_regions layer"
+        return Refusal(RULE, f"the site has no survey region {name!a}; it has {known}")
+
+
+def _survey(number: int, asked: schema.SurveyRequest, region: Region) -> Survey:
+    camera, budget = asked.camera, asked.budget
+    return Survey(
+        id=number,
+        name=asked.name or asked.region or f"survey {number}",
+        region=region,
+        height_above_takeoff_m=asked.height_above_takeoff_m,
+        speed_mps=asked.speed_mps,
+        camera=SurveyCamera(camera.across_deg, camera.along_deg, camera.interval_s),
+        front_overlap=asked.front_overlap,
+        side_overlap=asked.side_overlap,
+        row_bearing_deg=asked.row_bearing_deg,
+        planner=asked.planner,
+        budget=SurveyBudget(budget.rounds, budget.time_s, budget.flown_m),
+        counts_neighbours=asked.counts_neighbours,
+        cell_m=asked.cell_m,
+        when_done=WhenDone(asked.when_done),
+    )
+
+
+def _refused(refusal: Refusal) -> schema.SurveyResponse:
+    return schema.SurveyResponse(
+        accepted=False, rule=refusal.rule, reason=refusal.reason, survey=None
+    )

@@ -1,0 +1,83 @@
+"""Alarms in the audit: raised, worse, seen by a person, ended.
+
+An alarm that comes and goes many times a second is told every five seconds at most, as it is then;
+that it got worse, or that a person has seen it, is told at once.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from recon.model.units import seconds_to_ns
+from recon.record.audit import AuditEntry
+from recon.station.state.alarm_book import Alarm, AlarmBook
+
+AGAIN_AFTER_S = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmTold:
+    """An alarm as the audit last told it."""
+
+    alarm: Alarm
+    at_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmsTold:
+    """All alarms that were there, by number."""
+
+    told: Mapping[int, AlarmTold] = field(default_factory=dict)
+
+
+def alarm_entries(
+    memory: AlarmsTold, book: AlarmBook, now_ns: int
+) -> tuple[AlarmsTold, tuple[AuditEntry, ...]]:
+    """Return what is new about the alarms since it was last told."""
+    entries: list[AuditEntry] = []
+    told = dict(memory.told)
+    for number, alarm in book.alarms.items():
+        last = told.get(number)
+        new = _news(last, alarm, now_ns)
+        if new is not None:
+            entries.append(new)
+            told[number] = AlarmTold(alarm, now_ns)
+    for number in memory.told.keys() - book.alarms.keys():
+        entries += _forgotten(told.pop(number).alarm)
+    return (AlarmsTold(told), tuple(entries)) if entries else (memory, ())
+
+
+def seen_entry(alarm: Alarm, by: str) -> AuditEntry:
+    """Return the entry of an alarm that a person has seen."""
+    return _entry("alarm.acknowledged", "alarm seen", alarm, by)
+
+
+def _news(last: AlarmTold | None, alarm: Alarm, now_ns: int) -> AuditEntry | None:
+    if last is None:
+        return _entry("alarm.raised", "alarm", alarm)
+    was = last.alarm
+    if alarm.condition.severity.is_worse_than(was.condition.severity):
+        return _entry("alarm.worse", "alarm is worse", alarm)
+    if alarm.is_active is was.is_active or now_ns - last.at_ns < seconds_to_ns(AGAIN_AFTER_S):
+        return None
+    if alarm.is_active:
+        return _entry("alarm.raised", "alarm again", alarm)
+    return _entry("alarm.ended", "alarm ended", alarm)
+
+
+def _forgotten(alarm: Alarm) -> list[AuditEntry]:
+    """What leaves the book was seen by a person and has ended."""
+    return [_entry("alarm.ended", "alarm ended", alarm)] if alarm.is_active else []
+
+
+def _entry(kind: str, word: str, alarm: Alarm, by: str = "station") -> AuditEntry:
+    condition = alarm.condition
+    details = {
+        "id": alarm.id,
+        "rule": condition.rule,
+        "severity": condition.severity.value,
+        "is_active": alarm.is_active,
+    }
+    if condition.link_id is not None:
+        details["link_id"] = condition.link_id
+    text = f"{word}: {condition.text}"
+    return AuditEntry(kind, text, by, condition.serial, condition.vehicle_name, details)

@@ -1,0 +1,149 @@
+"""What a step changed that belongs into the audit. Pure: the same steps give the same entries."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from recon.model.authority import Lead
+from recon.model.command import Refusal
+from recon.model.event import (
+    AlarmAcknowledged,
+    AuditTroubled,
+    AuthorityTaken,
+    Event,
+    FleetReturnOrdered,
+    GhostDismissed,
+    PreflightOverridden,
+    SeparationHoldSwitched,
+    Tick,
+)
+from recon.record.audit import AuditEntry
+from recon.safety import Override
+from recon.station.audit.alarm_entries import AlarmsTold, alarm_entries, seen_entry
+from recon.station.audit.link_entries import LinksTold, link_entries
+from recon.station.audit.order_entries import OrdersTold, ended_streams, order_entries
+from recon.station.audit.unidentified_snapshots import nameless_entries
+from recon.station.audit.vehicle_snapshots import Sightings, sightings
+from recon.station.control import authority, preflight
+from recon.station.operations.survey.audit import survey_entries
+from recon.station.state.station import Station
+from recon.station.traffic import known_traffic
+
+_NOBODY_YET = Lead()
+
+
+@dataclass(frozen=True, slots=True)
+class Auditing:
+    """What the entries of the next step depend on, beside the states before and after it."""
+
+    orders: OrdersTold = field(default_factory=OrdersTold)
+    alarms: AlarmsTold = field(default_factory=AlarmsTold)
+    links: LinksTold = field(default_factory=LinksTold)
+    sightings: Sightings = field(default_factory=Sightings)
+    nameless: Mapping[str, int] = field(default_factory=dict)
+
+
+def audit(
+    memory: Auditing, before: Station, event: Event, after: Station, now_ns: int
+) -> tuple[Auditing, tuple[AuditEntry, ...]]:
+    """Return the entries of one step, in the order of cause and effect."""
+    entries = list(_words(before, event, after))
+    entries += survey_entries(before, event, after, now_ns)
+    links, told = link_entries(memory.links, before, event, after, now_ns)
+    entries += told
+    seen, told = sightings(memory.sightings, before, event, after, now_ns)
+    entries += told
+    nameless, told = nameless_entries(memory.nameless, before, event, after, now_ns)
+    entries += told
+    if after.leads is not before.leads:
+        entries += _leads(before.leads, after)
+    if after.preflight_overrides is not before.preflight_overrides:
+        entries += _overrides(before.preflight_overrides, after)
+    orders = memory.orders
+    if after.orders is not before.orders:
+        orders, told = order_entries(orders, before.orders, after.orders, now_ns)
+        entries += told
+    if isinstance(event, Tick):
+        orders, told = ended_streams(orders, now_ns)
+        entries += told
+    alarms = memory.alarms
+    if after.alarms is not before.alarms:
+        alarms, told = alarm_entries(alarms, after.alarms, now_ns)
+        entries += told
+    return Auditing(orders, alarms, links, seen, nameless), tuple(entries)
+
+
+def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
+    """What somebody said that is no order to one vehicle."""
+    match event:
+        case AlarmAcknowledged(alarm_id, by) if alarm_id in before.alarms.alarms:
+            yield seen_entry(before.alarms.alarms[alarm_id], by)
+        case AuthorityTaken(serial=serial, by=by):
+            yield from _refused(after, "authority", authority.refusal(before, event), by, serial)
+        case PreflightOverridden(serial=serial, by=by):
+            yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
+        case GhostDismissed(serial, by):
+            name = known_traffic.lost_as(before, serial) or serial
+            yield _about(before, "ghost.dismissed", "is no longer counted as in the air", by, name)
+        case SeparationHoldSwitched(is_on, by):
+            word = "on" if is_on else "off"
+            text = f"the separation watchdog's holds were switched {word}"
+            yield AuditEntry("separation_hold.switched", text, by, details={"is_on": is_on})
+        case FleetReturnOrdered(first_id, serials, by):
+            text = f"{len(serials)} vehicles are called home in layers"
+            details = {"first_id": first_id, "serials": list(serials)}
+            yield AuditEntry("fleet_return.ordered", text, by, details=details)
+        case AuditTroubled(problem):
+            text = problem or "the audit can be written again"
+            yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
+
+
+def _refused(
+    station: Station, what: str, refusal: Refusal | None, by: str, serial: str
+) -> Iterator[AuditEntry]:
+    """A word that changed nothing; what it would have changed is told where it did."""
+    if refusal is not None:
+        details = {"rule": refusal.rule, "reason": refusal.reason}
+        yield _about(station, f"{what}.refused", f"refused: {refusal.reason}", by, serial, details)
+
+
+def _leads(before: Mapping[str, Lead], after: Station) -> Iterator[AuditEntry]:
+    for serial, lead in after.leads.items():
+        was = before.get(serial, _NOBODY_YET)
+        if (lead.leader, lead.holder) == (was.leader, was.holder):
+            continue
+        details = {
+            "leader": lead.leader.value,
+            "holder": lead.holder,
+            "from": was.leader.value,
+            "reason": lead.reason,
+        }
+        text = f"is led by the {lead.leader.value} now: {lead.reason}"
+        by = lead.holder or lead.leader.value
+        yield _about(after, "authority.taken", text, by, serial, details)
+
+
+def _overrides(before: Mapping[str, Override], after: Station) -> Iterator[AuditEntry]:
+    for serial, override in after.preflight_overrides.items():
+        if before.get(serial) is not override:
+            text = f"may fly without its preflight checklist: {override.reason}"
+            details = {"reason": override.reason}
+            yield _about(after, "preflight.overridden", text, override.by, serial, details)
+    for serial in before.keys() - after.preflight_overrides.keys():
+        text = "needs its preflight checklist again"
+        yield _about(after, "preflight.override_ended", text, "station", serial)
+
+
+def _about(
+    station: Station,
+    kind: str,
+    text: str,
+    by: str,
+    serial: str,
+    details: Mapping[str, Any] | None = None,
+) -> AuditEntry:
+    vehicle = station.fleet.vehicles.get(serial)
+    profile = station.fleet.profiles.get(serial)
+    known = vehicle or profile
+    name = serial if known is None else known.display_name
+    return AuditEntry(kind, f"{name}: {text}", by, serial, name, details or {})

@@ -1,0 +1,101 @@
+"""Connections in the audit: opened, closed, which vehicle they are, conflicts.
+
+Whoever reaches the port can connect a thousand times a second: beyond two a second the rest of a
+minute is told as a count.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived, Tick
+from recon.model.report import ImageReport
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import VehicleState
+from recon.record.audit import AuditEntry
+from recon.station.state.station import Station
+
+WINDOW_S = 60.0
+MOST_IN_A_WINDOW = 120
+
+
+@dataclass(frozen=True, slots=True)
+class LinksTold:
+    """How much of this minute's coming and going was told, and how much only counted."""
+
+    window_began_ns: int = 0
+    told: int = 0
+    untold: int = 0
+
+
+def link_entries(
+    memory: LinksTold, before: Station, event: Event, after: Station, now_ns: int
+) -> tuple[LinksTold, tuple[AuditEntry, ...]]:
+    """Return what an event changes of the connections."""
+    entries: list[AuditEntry] = []
+    if now_ns - memory.window_began_ns >= seconds_to_ns(WINDOW_S):
+        if memory.untold:
+            entries.append(_untold(memory.untold))
+        memory = LinksTold(now_ns)
+    for entry in _changes(before, event, after):
+        if memory.told < MOST_IN_A_WINDOW:
+            memory = LinksTold(memory.window_began_ns, memory.told + 1, memory.untold)
+            entries.append(entry)
+        else:
+            memory = LinksTold(memory.window_began_ns, memory.told, memory.untold + 1)
+    return memory, tuple(entries)
+
+
+def _changes(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
+    match event:
+        case LinkOpened(link_id, remote_address):
+            details = {"link_id": link_id, "address": remote_address}
+            text = f"app connected: link {link_id} from {remote_address}"
+            yield AuditEntry("link.opened", text, details=details)
+        case LinkClosed(link_id, reason):
+            yield _closed(before, link_id, reason)
+    for serial in _serials_to_look_at(event, after):
+        vehicle = after.fleet.vehicles.get(serial)
+        if vehicle is not None:
+            yield from _identity(before.fleet.vehicles.get(serial), vehicle)
+
+
+def _serials_to_look_at(event: Event, after: Station) -> Iterable[str]:
+    """An app's word concerns the vehicle it claims; time and a lost link can concern any."""
+    match event:
+        case PacketReceived(_, ImageReport()):
+            return ()
+        case PacketReceived(link_id):
+            link = after.fleet.links.get(link_id)
+            return () if link is None or link.claimed_serial is None else (link.claimed_serial,)
+        case LinkClosed() | Tick():
+            return after.fleet.vehicles
+    return ()
+
+
+def _closed(before: Station, link_id: int, reason: str) -> AuditEntry:
+    vehicle = before.fleet.vehicle_of_link(link_id)
+    serial = None if vehicle is None else vehicle.serial
+    name = "" if vehicle is None or serial is None else vehicle.display_name
+    text = f"app gone: link {link_id}{f' of {name}' if name else ''}: {reason}"
+    details = {"link_id": link_id, "reason": reason}
+    return AuditEntry("link.closed", text, "station", serial, name, details)
+
+
+def _identity(old: VehicleState | None, vehicle: VehicleState) -> Iterator[AuditEntry]:
+    name = vehicle.display_name
+    if vehicle.link_id is not None and (old is None or old.link_id != vehicle.link_id):
+        simulated = " (simulated)" if vehicle.is_simulated else ""
+        text = f"{name}{simulated} is on link {vehicle.link_id}"
+        details = {"link_id": vehicle.link_id, "is_simulated": vehicle.is_simulated}
+        yield AuditEntry("link.identified", text, "station", vehicle.serial, name, details)
+    was_in_conflict = old is not None and old.in_conflict
+    if vehicle.in_conflict is not was_in_conflict:
+        kind = "link.conflict" if vehicle.in_conflict else "link.conflict_ended"
+        words = "two links claim its serial" if vehicle.in_conflict else "one link claims it again"
+        rivals = {"link_id": vehicle.link_id, "rival_link_ids": list(vehicle.rival_link_ids)}
+        yield AuditEntry(kind, f"{name}: {words}", "station", vehicle.serial, name, rivals)
+
+
+def _untold(count: int) -> AuditEntry:
+    text = f"{count} more changes of connections in the last minute, not told one by one"
+    return AuditEntry("link.many", text, details={"count": count})

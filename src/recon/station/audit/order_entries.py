@@ -1,0 +1,173 @@
+"""Every change in every order's life, as the audit keeps it; streams of sticks as one each.
+
+Of a stream of sticks the audit has its first packet, its end with a count, and each kind of trouble
+once, instead of ten lines a second.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import msgspec
+
+from recon.model.command import Command, Phase, VirtualStick
+from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.record.audit import AuditEntry
+from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
+
+STREAM_ENDS_AFTER_S = 2.0
+"""A stream of sticks that is silent so long has ended: its last stick's own time is over."""
+
+_TROUBLE = frozenset(
+    {
+        Phase.REFUSED_BY_STATION,
+        Phase.REFUSED_BY_APP,
+        Phase.TIMED_OUT,
+        Phase.EXPIRED,
+        Phase.FAILED,
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class StickStream:
+    """Sticks of one giver for one vehicle that followed each other closely."""
+
+    by: str
+    serial: str | None
+    vehicle: str
+    first_id: int
+    began_ns: int
+    last_ns: int
+    count: int = 0
+    refused: int = 0
+    told: frozenset[str] = frozenset()
+
+
+StickStreams = Mapping[tuple[str | None, str], StickStream]
+
+
+@dataclass(frozen=True, slots=True)
+class OrdersTold:
+    """What the next step's entries depend on: the streams that go on."""
+
+    streams: StickStreams = field(default_factory=dict)
+
+
+def order_entries(
+    memory: OrdersTold, before: OrderBook, after: OrderBook, now_ns: int
+) -> tuple[OrdersTold, tuple[AuditEntry, ...]]:
+    """Return an entry for each change between two books."""
+    entries: list[AuditEntry] = []
+    for number, record in after.records.items():
+        old = before.records.get(number)
+        if old is record:
+            continue
+        changes = record.history[0 if old is None else len(old.history) :]
+        if isinstance(record.command.body, VirtualStick):
+            memory, told = _stick(memory, record, changes, old is None, now_ns)
+            entries += told
+        else:
+            entries += [_entry(record, change) for change in changes]
+    return memory, tuple(entries)
+
+
+def ended_streams(memory: OrdersTold, now_ns: int) -> tuple[OrdersTold, tuple[AuditEntry, ...]]:
+    """Return an entry for each stream of sticks that has ended."""
+    limit_ns = seconds_to_ns(STREAM_ENDS_AFTER_S)
+    ended = [s for s in memory.streams.values() if now_ns - s.last_ns > limit_ns]
+    if not ended:
+        return memory, ()
+    keys = {(stream.serial, stream.by) for stream in ended}
+    left = {key: stream for key, stream in memory.streams.items() if key not in keys}
+    return replace(memory, streams=left), tuple(_end(stream) for stream in ended)
+
+
+def body_details(command: Command) -> dict[str, Any]:
+    """Return an order's body as JSON values."""
+    body = msgspec.to_builtins(command.body)
+    assert isinstance(body, dict)
+    return body
+
+
+def _entry(record: OrderRecord, change: PhaseChange) -> AuditEntry:
+    command, phase = record.command, change.phase.value
+    details: dict[str, Any] = {
+        "id": command.id,
+        "order": command.name,
+        "phase": phase,
+        "note": change.note,
+    }
+    if command.link_id is not None:
+        details["link_id"] = command.link_id
+    if change is record.history[0]:
+        details["body"] = body_details(command)
+        details["takeoff"] = command.takeoff
+        details["asked_as"] = command.asked_as.value
+        details["sent_altitudes"] = record.altitudes
+        if record.plan is not None:
+            details["parts"] = len(record.plan.parts)
+            details["repairs"] = list(record.plan.repairs)
+    words = f"{record.vehicle_name}: {command.name.replace('_', ' ')}: {phase.replace('_', ' ')}"
+    text = f"{words} ({change.note})" if change.note else words
+    return AuditEntry(
+        f"order.{phase}", text, command.issued_by, command.serial, record.vehicle_name, details
+    )
+
+
+def _stick(
+    memory: OrdersTold,
+    record: OrderRecord,
+    changes: tuple[PhaseChange, ...],
+    is_new: bool,
+    now_ns: int,
+) -> tuple[OrdersTold, list[AuditEntry]]:
+    command, entries = record.command, list[AuditEntry]()
+    key = (command.serial, command.issued_by)
+    stream = memory.streams.get(key)
+    if is_new:
+        if stream is None:
+            stream = StickStream(
+                command.issued_by, command.serial, record.vehicle_name, command.id, now_ns, now_ns
+            )
+            entries.append(_begin(record))
+        stream = replace(stream, count=stream.count + 1, last_ns=now_ns)
+    for change in changes:
+        if change.phase in _TROUBLE and stream is not None:
+            stream, told = _trouble(stream, record, change)
+            entries += told
+    if stream is None:
+        return memory, entries
+    return replace(memory, streams={**memory.streams, key: stream}), entries
+
+
+def _trouble(
+    stream: StickStream, record: OrderRecord, change: PhaseChange
+) -> tuple[StickStream, Iterator[AuditEntry] | tuple[AuditEntry, ...]]:
+    """Tell each kind of trouble once a stream."""
+    refused = stream.refused + (change.phase is Phase.REFUSED_BY_STATION)
+    kind = f"{change.phase.value}:{change.note.partition(':')[0]}"
+    is_known = kind in stream.told
+    stream = replace(stream, refused=refused, told=stream.told | {kind})
+    return stream, () if is_known else (_entry(record, change),)
+
+
+def _begin(record: OrderRecord) -> AuditEntry:
+    command = record.command
+    text = f"{record.vehicle_name}: a stream of sticks begins"
+    details = {"id": command.id, "body": body_details(command), "asked_as": command.asked_as.value}
+    return AuditEntry(
+        "sticks.began", text, command.issued_by, command.serial, record.vehicle_name, details
+    )
+
+
+def _end(stream: StickStream) -> AuditEntry:
+    seconds = ns_to_seconds(stream.last_ns - stream.began_ns)
+    text = f"{stream.vehicle}: a stream of {stream.count} sticks ended after {seconds:.1f} s"
+    details = {
+        "first_id": stream.first_id,
+        "count": stream.count,
+        "refused": stream.refused,
+        "seconds": seconds,
+    }
+    return AuditEntry("sticks.ended", text, stream.by, stream.serial, stream.vehicle, details)

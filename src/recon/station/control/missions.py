@@ -1,0 +1,143 @@
+"""Missions in parts: each part goes through the gate, and the next one only over a whole chain.
+
+A mission longer than an app takes is flown in parts that hover at their ends. The next part is sent
+when the one before was flown to its end, if since the order the vehicle has stayed on the same
+link, was heard without a gap, and was led by the same leader. Else it holds, the order has failed,
+and an alarm says why. Nothing else is ever sent by itself.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from recon.model.authority import Lead
+from recon.model.command import Command, FlyMission, Phase, Refusal
+from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.model.vehicle import VehicleProfile, VehicleState
+from recon.safety import ApprovedCommand, Situation, judge_parts
+from recon.station.state import orders
+from recon.station.state.flight_plan import FlightPlan
+from recon.station.state.orders import OrderRecord
+from recon.station.state.outputs import Output, SendCommand
+from recon.station.state.station import Station
+from recon.vehicles.mission_repair import repair
+from recon.vehicles.packets import describe_altitudes
+
+Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
+Stepped = tuple[Station, tuple[Output, ...]]
+
+_NOBODY_YET = Lead()
+
+
+def plan(station: Station, command: Command) -> FlightPlan | None:
+    """Return how a mission will be flown, repaired to what DJI accepts; None for other orders."""
+    if not isinstance(command.body, FlyMission):
+        return None
+    vehicle = station.target(command.serial, command.link_id)
+    known = None if vehicle is None else vehicle.profile
+    repaired = repair(command.body.mission, known or VehicleProfile(command.serial or ""))
+    return FlightPlan(
+        parts=repaired.parts,
+        repairs=repaired.repairs,
+        link_id=None if vehicle is None else vehicle.link_id,
+        lead=station.leads.get(command.serial or "", _NOBODY_YET),
+        heard_at_ns=None if vehicle is None else vehicle.core_received_at_ns,
+    )
+
+
+def present_part(command: Command, flight_plan: FlightPlan | None) -> Command:
+    """Return the order as it is sent now: of a mission, its present part."""
+    if flight_plan is None:
+        return command
+    return replace(command, body=FlyMission(flight_plan.part))
+
+
+def refusal_of_whole(
+    command: Command, flight_plan: FlightPlan | None, situation: Situation
+) -> Refusal | None:
+    """Return why a mission of several parts may not be flown as a whole, else None."""
+    if flight_plan is None or len(flight_plan.parts) == 1:
+        return None
+    return judge_parts(command, flight_plan.parts, situation)
+
+
+def watch_chain(
+    station: Station, record: OrderRecord, vehicle: VehicleState, now_ns: int
+) -> Station:
+    """Return the station with a mission's chain judged: once broken it stays so, and it is said."""
+    chain = record.plan
+    if chain is None or chain.is_last or chain.broken is not None:
+        return station
+    broken = _break(station, chain, vehicle, now_ns)
+    heard = replace(chain, heard_at_ns=vehicle.core_received_at_ns, broken=broken)
+    if heard == chain:
+        return station
+    record = replace(record, plan=heard)
+    if broken is not None:
+        note = f"no part will follow the present one: {broken}"
+        record = orders.noted(record, now_ns, note)
+    return _put(station, record)
+
+
+def part_flown(station: Station, record: OrderRecord, now_ns: int, ask: Ask) -> Stepped:
+    """Return the station after a vehicle flew a mission's present part to its end."""
+    flown = record.plan
+    if flown is None or flown.is_last:
+        note = "by telemetry: flown to its end, and it hovers there"
+        return _put(station, orders.ended(record, Phase.DONE, now_ns, note)), ()
+    if flown.broken is not None:
+        return _broken_off(station, record, flown.broken, now_ns), ()
+    return _send_next(station, record, flown, now_ns, ask)
+
+
+def _send_next(
+    station: Station, record: OrderRecord, flown: FlightPlan, now_ns: int, ask: Ask
+) -> Stepped:
+    following = replace(flown, index=flown.index + 1)
+    expires_at_ns = now_ns + seconds_to_ns(station.settings.order_expiry_s)
+    order = replace(record.command, issued_at_ns=now_ns, expires_at_ns=expires_at_ns, takeoff=False)
+    judged = ask(station, present_part(order, following))
+    if isinstance(judged, Refusal):
+        return _broken_off(station, record, f"{judged.rule}: {judged.reason}", now_ns), ()
+    queued = orders.changed(record, Phase.QUEUED, now_ns, following.label)
+    queued = replace(
+        queued,
+        command=replace(record.command, expires_at_ns=expires_at_ns),
+        plan=following,
+        sent=None,
+        altitudes=describe_altitudes(FlyMission(following.part), judged.altitude_offset_m),
+        waiting_link_ids=judged.link_ids,
+    )
+    return _put(station, queued), (SendCommand(judged),)
+
+
+def _broken_off(station: Station, record: OrderRecord, why: str, now_ns: int) -> Station:
+    flown = record.plan
+    assert flown is not None
+    note = (
+        f"part {flown.index + 2} of {len(flown.parts)} is not flown: {why}; it holds at the end of "
+        f"part {flown.index + 1}"
+    )
+    alarm = orders.MISSION_BROKEN_OFF
+    return _put(station, orders.ended(record, Phase.FAILED, now_ns, note, alarm=alarm))
+
+
+def _break(station: Station, chain: FlightPlan, vehicle: VehicleState, now_ns: int) -> str | None:
+    """Return what broke the chain since the order, else None."""
+    if vehicle.link_id != chain.link_id:
+        return "its connection ended or was renewed since the order"
+    heard_ns, before_ns = vehicle.core_received_at_ns, chain.heard_at_ns
+    gap_s = station.settings.parts_gap_s
+    if heard_ns is None or before_ns is None:
+        return "it was not heard when the order was given"
+    silent_s = ns_to_seconds(max(now_ns - heard_ns, heard_ns - before_ns))
+    if silent_s > gap_s:
+        return f"it was not heard for more than {gap_s:g} s since the order"
+    lead = station.leads.get(vehicle.serial or "", _NOBODY_YET)
+    if lead != chain.lead:
+        return f"it was taken over since the order ({lead.reason})"
+    return None
+
+
+def _put(station: Station, record: OrderRecord) -> Station:
+    book = orders.put(station.orders, record, station.settings.orders_kept)
+    return replace(station, orders=book)

@@ -1,0 +1,212 @@
+"""Orders carried out: judged by the gate, superseded, repeated, confirmed, timed out.
+
+The gate's approval is asked for here alone. `judging` is what it judges by, `order_records` how an
+order comes on record, `order_life` and `repeats` what becomes of it, `order_targets` for whom.
+"""
+
+from collections.abc import Collection
+
+from recon.fleet.confirmation import Progress
+from recon.link.outbox import Lane, lane_of
+from recon.model.command import STEERED_BODIES, Command, Phase, Refusal
+from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
+from recon.model.replacing import replace
+from recon.model.vehicle import VehicleState
+from recon.safety import approve, judge
+from recon.station.control import authority, intents, missions, mode_tracking
+from recon.station.control.order_records import (
+    may_wait,
+    put,
+    queued_record,
+    refused_record,
+    supersede_older,
+    waiting_record,
+)
+from recon.station.control.order_targets import name_of, progress_of, sent_context, target_of
+from recon.station.control.order_timeouts import intents_after, pilot_of, timed_out_by_now
+from recon.station.control.retry import repeat
+from recon.station.control.situation_builder import command_of, situation
+from recon.station.state import orders
+from recon.station.state.orders import OrderRecord, PhaseChange
+from recon.station.state.outputs import Output, SendCommand
+from recon.station.state.station import Station
+from recon.station.steering import neutral_setpoint, setpoint_streams
+from recon.station.steering.stream_ends import Ask, Driven
+
+Stepped = tuple[Station, tuple[Output, ...]]
+
+
+def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
+    """Judge an order; send it when the gate approves, record the refusal when not."""
+    command = command_of(station, order, now_ns)
+    station = authority.after_stop(station, command, now_ns)
+    if isinstance(command.body, STEERED_BODIES):
+        return _steer(station, order, command, now_ns)
+    flight_plan = missions.plan(station, command)
+    seen = situation(station, command, now_ns)
+    first = missions.present_part(command, flight_plan)
+    judged = missions.refusal_of_whole(command, flight_plan, seen) or approve(first, seen)
+    if isinstance(judged, Refusal):
+        if may_wait(command, judged):
+            station = setpoint_streams.release(station, command.serial, now_ns)
+            station = supersede_older(station, command, now_ns)
+            return put(station, waiting_record(station, command, judged, now_ns)), ()
+        refused = replace(refused_record(station, command, judged, now_ns), plan=flight_plan)
+        station = put(station, refused)
+        return _end_stream_for(station, command, now_ns)
+    if lane_of(command) is not Lane.CAMERA:
+        station = neutral_setpoint.forget(station, command)
+        station = setpoint_streams.release(station, command.serial, now_ns)
+    station = supersede_older(station, command, now_ns)
+    queued = replace(queued_record(station, command, judged, now_ns), plan=flight_plan)
+    return put(station, queued), (SendCommand(judged),)
+
+
+def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int) -> Stepped:
+    """Judge a steered order as a whole; lease its vehicle to it and send its first stick."""
+    refusal = judge(command, situation(station, command, now_ns))
+    refusal = refusal or setpoint_streams.unsteerable(station, order, now_ns)
+    if refusal is not None:
+        return put(station, refused_record(station, command, refusal, now_ns)), ()
+    station = neutral_setpoint.forget(station, command)
+    station = setpoint_streams.release(station, command.serial, now_ns)
+    station = supersede_older(station, command, now_ns)
+    queued = PhaseChange(Phase.QUEUED, now_ns, "")
+    station = put(station, OrderRecord(command, name_of(station, command), (queued,)))
+    station = setpoint_streams.lease_out(station, command, order.holder, now_ns)
+    return drive_streams(station, now_ns)
+
+
+def drive_streams(station: Station, now_ns: int, serials: Collection[str] | None = None) -> Stepped:
+    """Send the sticks that are due, and end the streams that are over; None: of all vehicles."""
+    return _after(setpoint_streams.drive(station, now_ns, _ask(now_ns), serials), now_ns)
+
+
+def end_stream(station: Station, serial: str, why: str, now_ns: int) -> Stepped:
+    """End a vehicle's stream as a failure: zero, then hold."""
+    return _after(setpoint_streams.end(station, serial, why, now_ns, _ask(now_ns)), now_ns)
+
+
+def _end_stream_for(station: Station, refused: Command, now_ns: int) -> Stepped:
+    """Who asks for a stop does not want to be steered on, even where the stop itself is refused."""
+    if not refused.is_emergency:
+        return station, ()
+    why = f"{refused.name.replace('_', ' ')} was ordered, and refused"
+    return end_stream(station, refused.serial or "", why, now_ns)
+
+
+def holder_gone(station: Station, holder: str, now_ns: int) -> Stepped:
+    """End the streams that a connection held: zero, then hold."""
+    return _after(setpoint_streams.end_held_by(station, holder, now_ns, _ask(now_ns)), now_ns)
+
+
+def _ask(now_ns: int) -> Ask:
+    return lambda station, command: approve(command, situation(station, command, now_ns))
+
+
+def _after(driven: Driven, now_ns: int) -> Stepped:
+    station, outputs = driven.station, driven.outputs
+    for serial, why in driven.pilots:
+        station, withdrawn = authority.pilot_has_it(station, serial, now_ns, why)
+        outputs += withdrawn
+    for order in driven.holds:
+        station, sent = place(station, order, now_ns)
+        outputs += sent
+    return station, outputs
+
+
+def refuse(station: Station, order: OperatorOrder, refusal: Refusal, now_ns: int) -> Station:
+    """Return the station with an order on record that is refused before the gate is asked."""
+    command = command_of(station, order, now_ns)
+    return put(station, refused_record(station, command, refusal, now_ns))
+
+
+def follow(
+    station: Station, event: CommandSent | CommandAnswered | CommandDropped, now_ns: int
+) -> Station:
+    """Take what a link says of a command into its life."""
+    record = station.orders.records.get(event.command_id)
+    if record is None:
+        return (
+            setpoint_streams.on_sent(station, event, now_ns)
+            if isinstance(event, CommandSent)
+            else station
+        )
+    match event:
+        case CommandSent():
+            station = neutral_setpoint.begin(station, record.command, now_ns)
+            return _sent(station, record, event, now_ns)
+        case CommandAnswered():
+            return put(station, orders.on_answered(record, event, now_ns))
+        case CommandDropped():
+            return put(station, orders.on_dropped(record, event, now_ns))
+
+
+def _sent(station: Station, record: OrderRecord, event: CommandSent, now_ns: int) -> Station:
+    """An order has left: from its first sending on it is what the vehicle does."""
+    context = sent_context(station, record, now_ns)
+    is_first = record.sent is None and not record.phase.is_final
+    station = put(station, orders.on_sent(record, event, context))
+    target = target_of(station, record.command)
+    if not is_first or target is None or target.serial is None:
+        return station
+    body = missions.present_part(record.command, record.plan).body
+    return intents.on_sent(station, target.serial, record.command.id, body, context)
+
+
+def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None) -> Stepped:
+    """Let time and telemetry change the orders still alive; repeat emergency orders.
+
+    `serials` are the vehicles that have spoken; None: time went on for all. What one says shows
+    nothing of the others' orders, and right after an all stop every vehicle has one.
+    """
+    outputs: tuple[Output, ...] = ()
+    for record in station.orders.watched:
+        if serials is not None and record.command.serial not in (None, *serials):
+            continue
+        if not isinstance(record.command.body, STEERED_BODIES):  # a stream tells its order's life
+            station, sent = _watch_order(station, record, now_ns)
+            outputs += sent
+    seen = mode_tracking.silent(station, now_ns) if serials is None else serials
+    station, sent = mode_tracking.follow(station, seen, now_ns, _ask(now_ns))
+    outputs += sent
+    station, zeros = neutral_setpoint.due(station, now_ns)
+    for order in zeros:
+        station, sent = place(station, order, now_ns)
+        station = neutral_setpoint.forget(station, order)
+        outputs += sent
+    return neutral_setpoint.give_up(station, now_ns), outputs
+
+
+def _watch_order(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
+    """Let time and telemetry change one order."""
+    target = target_of(station, record.command)
+    if target is None:
+        note = "its connection closed before telemetry showed its end"
+        return put(station, orders.ended(record, Phase.FAILED, now_ns, note)), ()
+    pilot = pilot_of(station, record, target)
+    if pilot is not None:
+        return _pilot_has_it(station, record, target, pilot, now_ns)
+    if record.alarm == orders.MISSION_BROKEN_OFF and target.is_flying.value is False:
+        return put(station, replace(record, alarm=None)), ()
+    outputs: tuple[Output, ...] = ()
+    is_flown = record.phase is Phase.STARTED  # its end is the flight table's matter
+    seen = Progress.UNSEEN if is_flown else progress_of(station, record, target, now_ns)
+    updated = orders.shown(orders.stick_over(record, now_ns), seen, now_ns)
+    if updated.is_watched:
+        updated = timed_out_by_now(updated, target, seen, station.settings, now_ns)
+    if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
+        updated, outputs = repeat(station, updated, _ask(now_ns), now_ns)
+    if updated is not record:
+        station = intents_after(put(station, updated), record, updated, seen, now_ns)
+    return station, outputs
+
+
+def _pilot_has_it(
+    station: Station, record: OrderRecord, target: VehicleState, why: str, now_ns: int
+) -> Stepped:
+    note = f"the pilot has taken over: {why}"
+    station = put(station, orders.ended(record, Phase.SUPERSEDED, now_ns, note))
+    if target.serial is None:
+        return station, ()
+    return mode_tracking.pilot_has_it(station, target.serial, why, now_ns)

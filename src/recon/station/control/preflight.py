@@ -1,0 +1,80 @@
+"""The preflight checklist in the station: what it needs beside the vehicle, and its overrides."""
+
+from dataclasses import replace
+
+from recon.model.command import Refusal
+from recon.model.event import ClockRead, PreflightOverridden
+from recon.model.vehicle import VehicleState
+from recon.safety import Override
+from recon.safety.facts import ClockReading, StationFacts
+from recon.station.state.station import Clock, Station
+
+RULE = "preflight_override"
+LONGEST_REASON = 500
+
+
+def read_clock(station: Station, event: ClockRead, now_ns: int) -> Station:
+    """Return the station after the computer's clock was looked at."""
+    ahead_ns = event.wall_ns - now_ns
+    at_start_ns = ahead_ns if station.clock is None else station.clock.ahead_at_start_ns
+    return replace(station, clock=Clock(event.wall_ns, ahead_ns, at_start_ns))
+
+
+def facts(station: Station, vehicle: VehicleState | None) -> StationFacts:
+    """Return what the checklist of one vehicle needs to know of the rest."""
+    clock = station.clock
+    return StationFacts(
+        clock=None if clock is None else ClockReading(clock.wall_ns, clock.set_by_ns),
+        others=tuple(
+            other
+            for other in station.fleet.vehicles.values()
+            if vehicle is None or other.serial != vehicle.serial
+            if other.link_id is not None or other.is_flying.value is not False
+        ),
+        app_warnings=() if vehicle is None else _app_warnings(station, vehicle),
+    )
+
+
+def refusal(station: Station, event: PreflightOverridden) -> Refusal | None:
+    """Return why a checklist cannot be overridden like this, else None."""
+    if event.serial not in station.fleet.vehicles:
+        return Refusal(RULE, f"{event.serial} is not known: no app has said this serial")
+    if not event.reason.strip():
+        return Refusal(RULE, "an override needs a reason in words: it is logged")
+    if len(event.reason) > LONGEST_REASON:
+        return Refusal(RULE, f"a reason of {LONGEST_REASON} characters at most is kept")
+    return None
+
+
+def override(station: Station, event: PreflightOverridden, now_ns: int) -> Station:
+    """Return the station after somebody overrode a vehicle's checklist; or as it was."""
+    if refusal(station, event) is not None:
+        return station
+    given = Override(event.by, event.reason.strip(), now_ns)
+    return replace(
+        station, preflight_overrides={**station.preflight_overrides, event.serial: given}
+    )
+
+
+def after_packet(before: Station, after: Station, link_id: int) -> Station:
+    """Return the station after a packet: with the landing its vehicle's override ends."""
+    vehicle = after.fleet.vehicle_of_link(link_id)
+    if vehicle is None or vehicle.serial not in after.preflight_overrides:
+        return after
+    was = before.fleet.vehicles.get(vehicle.serial or "")
+    was_up = was is None or was.is_flying.value is not False
+    if not was_up or vehicle.is_flying.value is not False:
+        return after
+    left = {s: o for s, o in after.preflight_overrides.items() if s != vehicle.serial}
+    return replace(after, preflight_overrides=left)
+
+
+def _app_warnings(station: Station, vehicle: VehicleState) -> tuple[str, ...]:
+    """What its app has said, of warnings and errors, that nobody has seen."""
+    return tuple(
+        alarm.condition.text
+        for alarm in station.alarms.alarms.values()
+        if alarm.condition.rule == "app_message"
+        and alarm.condition.serial == vehicle.serial
+        and alarm.acknowledged_by is None
+    )

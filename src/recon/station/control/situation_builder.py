@@ -1,0 +1,92 @@
+"""What the gate judges: an order as a command, and the snapshot of the state to judge it by."""
+
+from recon.model.authority import Lead
+from recon.model.command import Command, FlyMission
+from recon.model.event import OperatorOrder
+from recon.model.intent import Intent
+from recon.model.units import seconds_to_ns
+from recon.safety import Claimant, Situation, Traffic
+from recon.safety.facts import NO_FACTS
+from recon.station.control import preflight
+from recon.station.state.station import Station
+from recon.station.traffic.known_traffic import in_the_air, setting_out
+
+_NOBODY_YET = Lead()
+_TOLD_NOTHING = Intent()
+
+
+def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
+    """Return an order as the command the gate judges."""
+    return Command(
+        id=order.command_id,
+        body=order.body,
+        issued_by=order.issued_by,
+        issued_at_ns=now_ns,
+        expires_at_ns=now_ns + seconds_to_ns(station.settings.order_expiry_s),
+        serial=order.serial,
+        link_id=order.link_id,
+        takeoff=order.takeoff,
+        asked_as=order.asked_as,
+    )
+
+
+def situation(station: Station, command: Command, now_ns: int) -> Situation:
+    """Return the snapshot the gate judges a command by.
+
+    The others in the air matter to what sets a vehicle in motion alone: a stop waits for no look
+    at all of them.
+    """
+    target = station.target(command.serial, command.link_id)
+    serial = "" if target is None or target.serial is None else target.serial
+    needs_checklist = isinstance(command.body, FlyMission) or command.takeoff
+    return Situation(
+        now_ns=now_ns,
+        vehicle=target,
+        claimants=_claimants(station, command),
+        settings=station.settings.safety,
+        airspace=station.airspace,
+        lead=station.leads.get(serial, _NOBODY_YET),
+        intent=station.intents.get(serial, _TOLD_NOTHING),
+        stick_height_above_takeoff_m=_stick_height_m(station, serial),
+        traffic=_traffic(station, command, serial, now_ns) if command.moves else (),
+        preflight_override=station.preflight_overrides.get(serial),
+        facts=preflight.facts(station, target) if needs_checklist else NO_FACTS,
+    )
+
+
+def _stick_height_m(station: Station, serial: str) -> float | None:
+    """The height above takeoff that a vehicle's newest stick asked for."""
+    lease = station.streams.get(serial)
+    if lease is not None:
+        return lease.steered.height_above_takeoff_m
+    pending = station.sticks.get(serial)
+    if pending is not None:
+        return pending.body.height_above_takeoff_m
+    return station.intents.get(serial, _TOLD_NOTHING).target_height_above_takeoff_m
+
+
+def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tuple[Traffic, ...]:
+    """Every other vehicle that flies or was last known to, heard or not, or is about to fly."""
+    about_to = tuple(
+        Traffic(state, intent)
+        for state, intent in setting_out(station, now_ns)
+        if state.serial != serial
+    )
+    return about_to + tuple(
+        Traffic(state, station.intents.get(state.serial or "", _TOLD_NOTHING))
+        for state, claimed in in_the_air(station)
+        if state.serial is None or state.serial != serial
+        if claimed is None or claimed != command.serial
+        if state.serial is not None or state.link_id is None or state.link_id != command.link_id
+    )
+
+
+def _claimants(station: Station, command: Command) -> tuple[Claimant, ...]:
+    fleet = station.fleet
+    if command.serial is not None:
+        link_ids = fleet.link_ids_claiming(command.serial)
+    else:
+        target = station.target(None, command.link_id)
+        link_ids = () if target is None or target.link_id is None else (target.link_id,)
+    states = ((link_id, fleet.vehicle_of_link(link_id)) for link_id in link_ids)
+    return tuple(Claimant(link_id, s.is_flying) for link_id, s in states if s is not None)

@@ -1,0 +1,284 @@
+"""`recon run`: the station on real sockets, until it is told to stop."""
+
+import asyncio
+import errno
+import signal
+import socket
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import AsyncExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import uvicorn
+
+from recon import __version__
+from recon.api.app import create_app
+from recon.api.security import LOOPBACK_NAMES, Access
+from recon.link.capture import Capture
+from recon.link.server import LinkServer
+from recon.link.settings import LinkSettings
+from recon.model.errors import ReconError
+from recon.model.units import ns_to_seconds
+from recon.record.errors import RecordError
+from recon.site import Site
+from recon.site.digest import site_digest
+from recon.station.api_views.service import Service
+from recon.station.audit.auditor import Auditor
+from recon.station.audit.log import LogPrinter
+from recon.station.audit.start import (
+    AuditPlace,
+    Begun,
+    begin_audit,
+    default_place,
+    ended_entry,
+    started_entry,
+)
+from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
+from recon.station.kernel.worker import ThreadWorker
+from recon.station.recovery.restart import first_ids, restart_entries, restored
+from recon.station.state.station import Station
+
+HTTP_BACKLOG = 128
+SHUTDOWN_S = 2
+
+
+class StartError(ReconError):
+    """The station cannot start; the text says why and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunConfig:
+    """How a station is started. Everything binds loopback unless told otherwise."""
+
+    site: Site
+    link_host: str = "127.0.0.1"
+    link_port: int = 3001
+    http_host: str = "127.0.0.1"
+    http_port: int = 8080
+    site_folder: Path | None = None
+    """Where the site was read from; its digest goes into the audit."""
+    capture_folder: Path | None = None
+    audit: AuditPlace | None = None
+    """None: the place in the user's state folder that belongs to the link port."""
+    token: str | None = None
+    console: Path | None = None
+    link: LinkSettings = field(default_factory=LinkSettings)
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """Where a station listens."""
+
+    link_addresses: list[str]
+    link_port: int
+    console_url: str
+    audit_folder: str = ""
+    taken_up: str = ""
+    """What the last run left that this one goes on with, in words; empty for nothing."""
+
+
+OnStart = Callable[[Started], Awaitable[None]]
+
+
+async def run(config: RunConfig, on_start: OnStart) -> None:
+    """Run a station until SIGINT or SIGTERM. Raises `StartError` when it cannot start."""
+    _refuse_open_door(config)
+    begun = _begin_audit(config)
+    http_socket = _listen(config.http_host, config.http_port, "--http-port")
+    async with AsyncExitStack() as stack:
+        stack.callback(http_socket.close)
+        clock = station_clock()
+        station = restored(first_state(config.site), begun.last, clock())
+        auditor = _start_auditor(config, begun, clock, stack)
+        auditor.put(restart_entries(station))
+        driver = AsyncioDriver(station, clock, auditor.observe)
+        auditor.handle = driver.handle
+        capture = _start_capture(config, driver)
+        if capture is not None:
+            stack.callback(capture.close)
+        worker = ThreadWorker(worker_tasks(config.site), driver.handle_from_thread)
+        driver.worker = worker
+        links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
+        driver.links = links
+        service = Service.around(
+            driver, config.site, _text(config.capture_folder), begun.log, first_ids(begun.last)[0]
+        )
+        service.link_addresses = await _start_links(links, config)
+        stack.push_async_callback(links.stop)
+        ticking = asyncio.create_task(driver.run())
+        stack.callback(ticking.cancel)
+        worker.start()
+        stack.callback(worker.stop)
+        server = _http_server(config, service)
+        spare_what_is_loaded()
+        stack.enter_context(_stopped_by_signals(server))
+        serving = asyncio.create_task(server.serve(sockets=[http_socket]))
+        started = _started(config, service, links, http_socket)
+        taken_up = _taken_up(station, begun)
+        audit_folder = str(begun.log.folder)
+        await on_start(replace(started, audit_folder=audit_folder, taken_up=taken_up))
+        done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
+        # A loop that died must not leave a station that looks alive.
+        server.should_exit = True
+        await serving
+        for task in done:
+            task.result()
+
+
+def _refuse_open_door(config: RunConfig) -> None:
+    if config.http_host not in LOOPBACK_NAMES and config.token is None:
+        raise StartError(
+            f"the console would be open to everyone who reaches {config.http_host}: give "
+            "--token-file FILE with a secret of 16 characters or more, or leave it on 127.0.0.1"
+        )
+
+
+def _begin_audit(config: RunConfig) -> Begun:
+    try:
+        return begin_audit(config.audit or default_place(config.link_port))
+    except RecordError as problem:
+        raise StartError(str(problem)) from problem
+
+
+def _start_auditor(
+    config: RunConfig, begun: Begun, clock: Callable[[], int], stack: AsyncExitStack
+) -> Auditor:
+    """Begin the audit; its last line is written after everything else has ended."""
+    printer = LogPrinter()
+    auditor = Auditor(begun.log, printer, clock)
+    printer.start()
+    stack.callback(printer.close)
+    begun.log.start()
+    stack.callback(begun.log.close)
+    stack.push(lambda kind, problem, trace: auditor.put([ended_entry(problem)]))
+    settings, folder = first_state(config.site).settings, config.site_folder
+    site = {
+        "name": config.site.name,
+        "folder": _text(folder),
+        "sha256": None if folder is None else site_digest(folder),
+    }
+    auditor.put([started_entry(settings, site, begun.last, begun.troubles)])
+    return auditor
+
+
+def _taken_up(station: Station, begun: Begun) -> str:
+    """What a person must know who starts a station after one that ended in flight."""
+    names = [station.fleet.vehicles[serial].display_name for serial in station.restored_flights]
+    names += [state.display_name for state in station.watch.lost.values()]
+    words = [f"flying when last seen: {', '.join(names)}"] if names else []
+    if station.orders.records:
+        words.append(f"{len(station.orders.records)} orders were interrupted")
+    return "; ".join((*words, *begun.troubles))
+
+
+def _listen(host: str, port: int, option: str) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    sock = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        sock.bind((host, port))
+        # Listening at once, so that the address is open when it is printed, and so that a second
+        # station started in the same moment finds the port in use.
+        sock.listen(HTTP_BACKLOG)
+    except (OSError, OverflowError) as problem:
+        sock.close()
+        raise _cannot_listen(host, port, option, problem) from problem
+    return sock
+
+
+def _cannot_listen(host: str, port: int, option: str, problem: Exception) -> StartError:
+    if isinstance(problem, OSError) and problem.errno == errno.EADDRINUSE:
+        return StartError(
+            f"port {port} of {host} is in use, perhaps by another station: stop that one, or "
+            f"choose another port with {option}"
+        )
+    reason = problem.strerror if isinstance(problem, OSError) else problem
+    return StartError(f"cannot listen on {host} port {port}: {reason}; see {option}")
+
+
+async def _start_links(links: LinkServer, config: RunConfig) -> list[str]:
+    try:
+        return await links.start(config.link_host, config.link_port)
+    except (OSError, OverflowError) as problem:
+        raise _cannot_listen(
+            config.link_host, config.link_port, "--link-port", problem
+        ) from problem
+
+
+def _start_capture(config: RunConfig, driver: AsyncioDriver) -> Capture | None:
+    if config.capture_folder is None:
+        return None
+    run_name = f"{ns_to_seconds(driver.started_at_ns):.0f}"
+    capture = Capture(config.capture_folder, run_name, config.link.capture_limit_bytes)
+    try:
+        capture.start()
+    except OSError as problem:
+        raise StartError(
+            f"cannot write captures to {config.capture_folder}: {problem.strerror}; give a folder "
+            "that can be written with --capture"
+        ) from problem
+    return capture
+
+
+class _HttpServer(uvicorn.Server):
+    """Uvicorn without its own signal handling.
+
+    That would raise the signal again once the server has ended, and so kill the process before the
+    links are closed and the captures written.
+    """
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals alone; `_stopped_by_signals` takes them."""
+        yield
+
+
+@contextmanager
+def _stopped_by_signals(server: uvicorn.Server) -> Iterator[None]:
+    """End the server on SIGINT and SIGTERM; the second one does not wait for open requests."""
+    loop = asyncio.get_running_loop()
+    numbers = (signal.SIGINT, signal.SIGTERM)
+
+    def stop() -> None:
+        server.force_exit = server.should_exit
+        server.should_exit = True
+
+    for number in numbers:
+        loop.add_signal_handler(number, stop)
+    try:
+        yield
+    finally:
+        for number in numbers:
+            loop.remove_signal_handler(number)
+
+
+def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
+    access = Access.make(config.http_host, config.token)
+    app = create_app(service, access, config.console, __version__)
+    return _HttpServer(
+        uvicorn.Config(
+            app,
+            log_level="warning",
+            access_log=False,
+            server_header=False,
+            # Its send waits while the reader's socket takes no more: see api/stream.py.
+            ws="websockets-sansio",
+            ws_max_size=64 * 1024,
+            timeout_graceful_shutdown=SHUTDOWN_S,
+            lifespan="off",
+        )
+    )
+
+
+def _started(
+    config: RunConfig, service: Service, links: LinkServer, http_socket: socket.socket
+) -> Started:
+    port = http_socket.getsockname()[1]
+    host = f"[{config.http_host}]" if ":" in config.http_host else config.http_host
+    fragment = "" if config.token is None else f"/#token={config.token}"
+    return Started(service.link_addresses, links.port, f"http://{host}:{port}{fragment}")
+
+
+def _text(folder: Path | None) -> str | None:
+    return None if folder is None else str(folder)

@@ -1,0 +1,255 @@
+"""The driver in virtual time: the same sessions, bytes and steps without sockets or clock.
+
+Used by tests and studies. Things happen at whole steps of 10 ms, and steps at which nothing is due
+are left out; every order of things is fixed, so that the same peers and seeds give the same run to
+the bit.
+"""
+
+import heapq
+import random
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from recon.fleet.step import CloseLink
+from recon.link.session import Session
+from recon.link.settings import LinkSettings
+from recon.model.event import ClockRead, Event, LinkClosed, LinkOpened, SticksDue, Tick
+from recon.model.units import seconds_to_ns
+from recon.station.kernel.event_queue import EventQueue
+from recon.station.kernel.step import step
+from recon.station.kernel.worker import Task, do_work
+from recon.station.state.outputs import Output, SendCommand, StartWork, WithdrawMotion
+from recon.station.state.station import Station
+from recon.station.steering.setpoint_streams import next_due_ns
+
+STEP_NS = 10_000_000
+TICK_EVERY_NS = 50_000_000
+FAR_NS = 2**63 - 1
+EPOCH_NS = 1_780_000_000_000_000_000
+"""What the computer's clock says when virtual time begins: a day in 2026."""
+
+
+class Peer(Protocol):
+    """An app at the other end of a link: bytes and times in, bytes out."""
+
+    def receive(self, data: bytes, now_ns: int) -> None:
+        """Take bytes from the station."""
+
+    def advance(self, now_ns: int) -> list[bytes]:
+        """Return what it sends now."""
+
+    @property
+    def next_due_ns(self) -> int:
+        """When `advance` has something to do next, if nothing is received before then."""
+
+
+@dataclass(slots=True)
+class FakeLink:
+    """What a link does to bytes. TCP delivers in order, so delays only ever add up.
+
+    `damage` may change, cut or drop a chunk on its way to the station. A dead link swallows
+    everything without a word, as a phone that sleeps does.
+    """
+
+    delay_s: float = 0.02
+    jitter_s: float = 0.0
+    damage: Callable[[bytes, random.Random], bytes] | None = None
+    is_dead: bool = False
+    seed: int = 0
+    rng: random.Random = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.rng = random.Random(self.seed)
+
+
+@dataclass(slots=True)
+class _Wire:
+    """One connection: a peer, the link between, and the station's session."""
+
+    peer: Peer
+    link: FakeLink
+    session: Session
+    to_station_at_ns: int = 0
+    to_app_at_ns: int = 0
+    peer_due_ns: int = 0
+
+
+class VirtualDriver:
+    """Runs the station and its peers in virtual time."""
+
+    def __init__(
+        self,
+        station: Station,
+        *,
+        tasks: Mapping[str, Task] | None = None,
+        link_settings: LinkSettings | None = None,
+        work_takes_s: float = 0.05,
+        keeps_log: bool = True,
+    ) -> None:
+        self.station = station
+        self.now_ns = 0
+        self.log: list[Event] = []
+        """Every event the station saw, in order; not kept in long studies, images fill memory."""
+        self.observe: Callable[[Station, Station, Event], None] | None = None
+        """Sees every step as the asyncio driver's observer does."""
+        self._keeps_log = keeps_log
+        self._tasks = dict(tasks or {})
+        self._settings = link_settings or LinkSettings()
+        self._work_takes_ns = seconds_to_ns(work_takes_s)
+        self._wires: dict[int, _Wire] = {}
+        self._next_link_id = 1
+        self._due: list[tuple[int, int, Callable[[], None]]] = []
+        self._sequence = 0
+        self._queue = EventQueue(self._step)
+        self.handle(ClockRead(EPOCH_NS))
+
+    def connect(self, peer: Peer, link: FakeLink | None = None) -> int:
+        """Open a connection for a peer; return its link id."""
+        link_id = self._next_link_id
+        self._next_link_id += 1
+        session = Session(link_id, self._settings, self.now_ns)
+        self._wires[link_id] = _Wire(peer, link or FakeLink(), session)
+        self.handle(LinkOpened(link_id, f"virtual:{link_id}"))
+        return link_id
+
+    def disconnect(self, link_id: int, reason: str = "the app closed the connection") -> None:
+        """End a connection as a FIN would."""
+        wire = self._wires.pop(link_id, None)
+        if wire is not None:
+            self._handle_all(wire.session.finish(reason, self.now_ns))
+            self.handle(LinkClosed(link_id, reason))
+
+    def is_connected(self, link_id: int) -> bool:
+        """Return whether a connection stands."""
+        return link_id in self._wires
+
+    def handle(self, event: Event) -> None:
+        """Give the station an event now; what a step's outputs cause is queued behind it."""
+        self._queue.put(event)
+
+    def run_for(self, seconds: float) -> None:
+        """Let virtual time pass, in whole steps; at its end every peer has come as far."""
+        end_ns = _step_from(self.now_ns + seconds_to_ns(seconds))
+        for wire in self._wires.values():  # somebody may have touched a peer meanwhile
+            wire.peer_due_ns = min(wire.peer_due_ns, wire.peer.next_due_ns)
+        while self.now_ns < end_ns:
+            now_ns = min(end_ns, self._next_step_ns())
+            self._advance(now_ns, asks_all=now_ns == end_ns)
+
+    def run_until(self, is_reached: Callable[[Station], bool], at_most_s: float) -> bool:
+        """Let virtual time pass until a state is reached; return whether it was."""
+        end_ns = self.now_ns + seconds_to_ns(at_most_s)
+        while self.now_ns < end_ns and not is_reached(self.station):
+            self._advance(self.now_ns + STEP_NS, asks_all=True)
+        return is_reached(self.station)
+
+    def _step(self, event: Event) -> None:
+        if self._keeps_log:
+            self.log.append(event)
+        before = self.station
+        self.station, outputs = step(before, event, self.now_ns)
+        if self.observe is not None:
+            self.observe(before, self.station, event)
+        for output in outputs:
+            self._carry_out(output)
+
+    def _next_step_ns(self) -> int:
+        """Return the next step at which anything is due."""
+        sticks_ns = next_due_ns(self.station)
+        due_ns = min(
+            (self.now_ns // TICK_EVERY_NS + 1) * TICK_EVERY_NS,
+            self._due[0][0] if self._due else FAR_NS,
+            FAR_NS if sticks_ns is None else sticks_ns,
+            *(wire.peer_due_ns for wire in self._wires.values()),
+        )
+        return max(_step_from(due_ns), self.now_ns + STEP_NS)
+
+    def _advance(self, now_ns: int, *, asks_all: bool) -> None:
+        self.now_ns = now_ns
+        for link_id, wire in tuple(self._wires.items()):
+            if asks_all or wire.peer_due_ns <= now_ns:
+                for chunk in wire.peer.advance(now_ns):
+                    self._post_to_station(link_id, wire, chunk)
+                wire.peer_due_ns = wire.peer.next_due_ns
+        while self._due and self._due[0][0] <= now_ns:
+            heapq.heappop(self._due)[2]()
+        sticks_ns = next_due_ns(self.station)
+        if sticks_ns is not None and sticks_ns <= now_ns:
+            self.handle(SticksDue())
+        if now_ns % TICK_EVERY_NS == 0:
+            self._tick()
+
+    def _tick(self) -> None:
+        for link_id, wire in tuple(self._wires.items()):
+            self._handle_all(wire.session.tick(self.now_ns))
+            self._pump(wire)
+            if wire.session.closing_reason is not None:
+                self.disconnect(link_id, wire.session.closing_reason)
+        self.handle(Tick())
+
+    def _post_to_station(self, link_id: int, wire: _Wire, chunk: bytes) -> None:
+        link = wire.link
+        if link.is_dead:
+            return
+        arriving = chunk if link.damage is None else link.damage(chunk, link.rng)
+        wire.to_station_at_ns = max(wire.to_station_at_ns, self.now_ns + self._delay_ns(link))
+        self._at(wire.to_station_at_ns, lambda: self._arrive(link_id, arriving))
+
+    def _arrive(self, link_id: int, data: bytes) -> None:
+        wire = self._wires.get(link_id)
+        if wire is not None and data and not wire.link.is_dead:
+            self._handle_all(wire.session.receive(data, self.now_ns))
+            self._pump(wire)
+
+    def _pump(self, wire: _Wire) -> None:
+        while (outgoing := wire.session.next_packet(self.now_ns)) is not None:
+            self.handle(outgoing.event)
+            if not wire.link.is_dead:
+                self._post_to_app(wire, outgoing.data)
+
+    def _post_to_app(self, wire: _Wire, data: bytes) -> None:
+        arrives_at_ns = self.now_ns + self._delay_ns(wire.link)
+        wire.to_app_at_ns = max(wire.to_app_at_ns, arrives_at_ns)
+        self._at(wire.to_app_at_ns, lambda: self._reach_app(wire, data))
+
+    def _reach_app(self, wire: _Wire, data: bytes) -> None:
+        # What was on its way when a connection ended must not come out of the peer's next one.
+        if self._wires.get(wire.session.link_id) is wire and not wire.link.is_dead:
+            wire.peer.receive(data, self.now_ns)
+            wire.peer_due_ns = self.now_ns  # it may have an answer
+
+    def _carry_out(self, output: Output) -> None:
+        match output:
+            case SendCommand(approved):
+                for link_id in approved.link_ids:
+                    wire = self._wires.get(link_id)
+                    if wire is not None:
+                        self._handle_all(wire.session.submit(approved))
+                        self._pump(wire)
+            case WithdrawMotion(link_ids, reason):
+                for link_id in link_ids:
+                    wire = self._wires.get(link_id)
+                    if wire is not None:
+                        self._handle_all(wire.session.withdraw_motion(reason))
+            case CloseLink(link_id, reason):
+                self.disconnect(link_id, reason)
+            case StartWork():
+                result = do_work(self._tasks, output)
+                self._at(self.now_ns + self._work_takes_ns, lambda: self.handle(result))
+
+    def _delay_ns(self, link: FakeLink) -> int:
+        return seconds_to_ns(link.delay_s + link.jitter_s * link.rng.random())
+
+    def _handle_all(self, events: Iterable[Event]) -> None:
+        for event in events:
+            self.handle(event)
+
+    def _at(self, at_ns: int, action: Callable[[], None]) -> None:
+        self._sequence += 1
+        heapq.heappush(self._due, (at_ns, self._sequence, action))
+
+
+def _step_from(at_ns: int) -> int:
+    """Return the first whole step that is not before a time."""
+    return -(-at_ns // STEP_NS) * STEP_NS

@@ -1,0 +1,251 @@
+"""Carrying a fleet return on: who stands is planned, whose turn has come is sent its mission."""
+
+from dataclasses import replace
+from math import dist
+
+from recon.guidance.fleet_return import (
+    Claim,
+    Flight,
+    Place,
+    claim_left,
+    hindrance,
+    layer_is_taken_by,
+    least_time_s,
+    mission_of,
+    whole_claim,
+)
+from recon.model.authority import Leader
+from recon.model.command import FlyMission, Hover, Phase, Refusal
+from recon.model.event import OperatorOrder
+from recon.model.units import seconds_to_ns
+from recon.safety import judge
+from recon.station.control import authority, order_gateway
+from recon.station.control.order_gateway import Stepped
+from recon.station.control.situation_builder import command_of, situation
+from recon.station.operations.fleet_return import places, planning
+from recon.station.operations.fleet_return.places import is_same_pad
+from recon.station.operations.fleet_return.progress import seen
+from recon.station.operations.fleet_return.settings import SETTINGS, ReturnSettings
+from recon.station.state.command_ids import take_id
+from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, FleetReturn, Member, Stage
+from recon.station.state.outputs import Output
+from recon.station.state.station import Station
+
+WAITING_RULES = ("separation", "link_age")
+"""Refusals of the gate that time may end; any other stands."""
+
+MOVED = "it was moved from where it waited: its pilot has it, or it drifts"
+
+
+def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) -> Stepped:
+    """Return the station after a fleet return has gone on as far as it can now."""
+    station = _handed_back(station, now_ns)
+    running = station.fleet_return
+    if running is None or running.is_over or now_ns < running.look_at_ns:
+        return station, ()
+    running = replace(running, look_at_ns=now_ns + seconds_to_ns(settings.look_every_s))
+    for member in running.members.values():
+        running = running.put(seen(station, member, settings, now_ns))
+    station, stops = _stop_what_may_begin_late(station, running, now_ns)
+    if running.at(Stage.STOPPING):
+        return replace(station, fleet_return=running), stops
+    if any(member.flight is None for member in running.at(Stage.WAITING)):
+        running, work = planning.ask(station, running, settings, now_ns)
+        return replace(station, fleet_return=running), (*stops, *work)
+    station, begun = _begin_one(station, running, settings, now_ns)
+    return station, (*stops, *begun)
+
+
+def _handed_back(station: Station, now_ns: int) -> Station:
+    """Whom guidance called home, and who is there or is not flown any further, is the operator's.
+
+    What somebody has given to guidance since is left to it.
+    """
+    running = station.fleet_return
+    for member in () if running is None else running.at(*ENDED):
+        led_since_ns = authority.lead_of(station, member.serial).since_ns
+        if member.asked_as is Leader.GUIDANCE and led_since_ns <= member.since_ns:
+            why = f"its way home has ended: {member.reason or 'it has landed'}"
+            station = authority.hand_back(station, member.serial, member.by, why, now_ns)
+    return station
+
+
+def _stop_what_may_begin_late(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
+    """Hold those whose mission was ignored so far: begun now, it would come into others' ways."""
+    outputs: list[Output] = []
+    for member in running.at(Stage.LEFT_OUT):
+        record = station.orders.records.get(member.mission_id or 0)
+        if member.since_ns != now_ns or record is None or record.phase is not Phase.TIMED_OUT:
+            continue
+        station, number = take_id(station)
+        by = f"station: fleet return, for the mission of order {record.command.id} was ignored"
+        hold = OperatorOrder(number, Hover(), by, serial=member.serial)
+        station, sent = order_gateway.place(station, hold, now_ns)
+        outputs += sent
+    return station, tuple(outputs)
+
+
+def _begin_one(
+    station: Station, running: FleetReturn, settings: ReturnSettings, now_ns: int
+) -> Stepped:
+    """Begin the first flight in turn that may; one at a time, for each changes what others may."""
+    running, ready = _with_a_free_layer(running, settings, now_ns)
+    if ready:
+        seen = _Air(station, running, settings)
+        for member in ready:
+            flight = seen.from_here(member)
+            if flight is None:
+                running = running.put(member.at(Stage.LEFT_OUT, now_ns, MOVED))
+                continue
+            hindered = seen.hindrance(flight, running)
+            running = running.put(member.waits_for(hindered or ""))
+            if hindered is None:
+                return _judged(station, running, member, flight, settings, now_ns)
+    return replace(station, fleet_return=_anew_if_stuck(running, settings, now_ns)), ()
+
+
+def _with_a_free_layer(
+    running: FleetReturn, settings: ReturnSettings, now_ns: int
+) -> tuple[FleetReturn, list[Member]]:
+    """Who waits for nothing but other vehicles' ways, in turn; the others get their reason."""
+    before: list[Flight] = []
+    ready: list[Member] = []
+    flying = [m.flight for m in running.at(*UNDER_WAY) if m.flight is not None]
+    for member in _waiting_in_turn(running):
+        flight = member.flight
+        assert flight is not None
+        clears = _to_be_cleared(running, flight, settings, now_ns)
+        reason = layer_is_taken_by(flight, before, flying)
+        if clears is not None:
+            reason = f"its pad is being cleared of {clears}"
+        before.append(flight)
+        member = replace(member, clears=clears)
+        if reason is not None:
+            running = running.put(member.waits_for(reason))
+        elif now_ns >= member.judge_at_ns:
+            running = running.put(member)
+            ready.append(member)
+    return running, ready
+
+
+def _waiting_in_turn(running: FleetReturn) -> list[Member]:
+    members = (running.members[serial] for serial in running.turns)
+    return [m for m in members if m.stage is Stage.WAITING and m.flight is not None]
+
+
+class _Air:
+    """What is in the air now, looked up once for all that might begin."""
+
+    def __init__(self, station: Station, running: FleetReturn, settings: ReturnSettings) -> None:
+        self._settings = settings
+        self._separation = places.separation(station, settings)
+        self._flying = places.in_the_air(station, running.frame)
+        self._moving = {member.serial for member in running.at(*UNDER_WAY)}
+        self._under_way = [
+            claim_left(member.flight, self._place_m(member), settings.plan)
+            for member in running.at(*UNDER_WAY)
+            if member.flight is not None
+        ]
+
+    def from_here(self, member: Member) -> Flight | None:
+        """The flight from where the vehicle has drifted to since it was planned; None: too far."""
+        assert member.flight is not None
+        start_m, place_m = member.flight.start_m, self._place_m(member)
+        if dist(start_m, place_m) > self._settings.moved_m:
+            return None
+        return replace(
+            member.flight, start_m=place_m, way_m=(place_m[:2], *member.flight.way_m[1:])
+        )
+
+    def hindrance(self, flight: Flight, running: FleetReturn) -> str | None:
+        """Why a flight whose layer is free must wait."""
+        before: list[Claim] = []
+        for member in _waiting_in_turn(running):
+            if member.serial == flight.serial:
+                break
+            if member.flight is not None:
+                before.append(whole_claim(member.flight))
+        not_hovering = self._moving | {flight.serial}
+        hovering = [other for key, other in self._flying.items() if key not in not_hovering]
+        return hindrance(flight, before, self._under_way, hovering, self._separation)
+
+    def _place_m(self, member: Member) -> Place:
+        """Where it was last heard; one that tells no place any more may be anywhere on its way,
+        and so counts as at its start."""
+        assert member.flight is not None
+        heard = self._flying.get(member.serial)
+        return member.flight.start_m if heard is None else heard.place_m
+
+
+def _anew_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) -> FleetReturn:
+    """Let those that wait be planned for anew when nothing they wait for will end by itself.
+
+    So it is when somebody hovers where nobody did when the plan was made.
+    """
+    waiting = running.at(Stage.WAITING)
+    is_patient = any(member.clears or now_ns < member.judge_at_ns for member in waiting)
+    if not waiting or is_patient or running.at(*UNDER_WAY):
+        return running
+    for member in waiting:
+        running = running.put(replace(member, flight=None))
+    return replace(running, look_at_ns=now_ns + seconds_to_ns(settings.planned_again_s))
+
+
+def _to_be_cleared(
+    running: FleetReturn, flight: Flight, settings: ReturnSettings, now_ns: int
+) -> str | None:
+    """The vehicle that landed on this pad and might still stand there when this one comes."""
+    arrives_ns = now_ns + seconds_to_ns(least_time_s(flight, settings.plan))
+    clearing_ns = seconds_to_ns(settings.pad_clearing_s)
+    for other in running.at(Stage.LANDED):
+        if other.flight is None or arrives_ns - other.since_ns >= clearing_ns:
+            continue
+        if is_same_pad(other.flight.pad, flight.pad, settings):
+            return other.name
+    return None
+
+
+def _judged(
+    station: Station,
+    running: FleetReturn,
+    member: Member,
+    flight: Flight,
+    settings: ReturnSettings,
+    now_ns: int,
+) -> Stepped:
+    """Ask the gate, and give the mission; while time may end a refusal, wait for that."""
+    speed_mps = station.airspace.airspace.limits.max_speed_mps
+    mission = mission_of(flight, running.frame, flight.start_m, settings.plan, speed_mps)
+    order = OperatorOrder(
+        0,
+        FlyMission(mission),
+        f"{member.by}: fleet return",
+        serial=member.serial,
+        asked_as=member.asked_as,
+    )
+    command = command_of(station, order, now_ns)
+    refusal = judge(command, situation(station, command, now_ns))
+    if refusal is not None and _may_end(running, member, refusal, settings, now_ns):
+        since_ns = now_ns if member.refused_since_ns is None else member.refused_since_ns
+        waits = replace(
+            member.waits_for(f"the gate says not yet: {refusal.reason}"),
+            judge_at_ns=now_ns + seconds_to_ns(settings.judged_again_s),
+            refused_since_ns=since_ns,
+        )
+        return replace(station, fleet_return=running.put(waits)), ()
+    station, number = take_id(station)
+    given = replace(member.at(Stage.ORDERED, now_ns), flight=flight, mission_id=number)
+    station = replace(station, fleet_return=running.put(given))
+    return order_gateway.place(station, replace(order, command_id=number), now_ns)
+
+
+def _may_end(
+    running: FleetReturn, member: Member, refusal: Refusal, settings: ReturnSettings, now_ns: int
+) -> bool:
+    if refusal.rule not in WAITING_RULES:
+        return False
+    if running.at(*UNDER_WAY) or member.refused_since_ns is None:
+        return True
+    if member.asked_as is Leader.GUIDANCE:
+        return True  # others fly rows for minutes; its battery ends the waiting
+    return now_ns - member.refused_since_ns < seconds_to_ns(settings.gate_waits_s)

@@ -1,0 +1,100 @@
+"""Calling vehicles home: each is told to hold, so that the plan begins with vehicles that stand."""
+
+from dataclasses import replace
+
+from recon.model.authority import Leader
+from recon.model.command import Hover, Phase, Refusal
+from recon.model.event import FleetReturnOrdered, OperatorOrder
+from recon.safety.datum import frame_for
+from recon.station.control import order_gateway
+from recon.station.control.order_gateway import Stepped
+from recon.station.operations.fleet_return.progress import is_still_left
+from recon.station.state.fleet_return_record import ENDED, FleetReturn, Member, Stage
+from recon.station.state.outputs import Output
+from recon.station.state.station import Station
+
+RULE = "fleet_return"
+
+
+def call(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
+    """Begin a fleet return, or let more vehicles join the one that goes on.
+
+    Each serial gets one order, with a number of its own: the hold that it begins with, or a
+    refusal. Missions come later, each judged by the gate when its turn comes.
+    """
+    outputs: list[Output] = []
+    for command_id, serial in enumerate(event.serials, event.first_command_id):
+        order = OperatorOrder(command_id, Hover(), f"{event.by}: fleet return", serial=serial)
+        why = refusal(station, serial)
+        if why is not None:
+            station = order_gateway.refuse(station, order, why, now_ns)
+            continue
+        station, sent = join(station, order, event.by, now_ns)
+        outputs += sent
+    return station, tuple(outputs)
+
+
+def join(station: Station, hold: OperatorOrder, by: str, now_ns: int) -> Stepped:
+    """Hold a vehicle, and let it join the return unless that is refused; see the hold's record.
+
+    The mission that follows is asked for as the hold is: as the operator's, or as guidance's.
+    """
+    station, sent = order_gateway.place(station, hold, now_ns)
+    if station.orders.records[hold.command_id].phase is not Phase.REFUSED_BY_STATION:
+        station = _joined(station, hold, by, now_ns)
+    return station, sent
+
+
+def refusal(station: Station, serial: str) -> Refusal | None:
+    """Return why a vehicle is not called at all; whether it flies is the gate's question.
+
+    One that guidance leads is taken from it by its hold, as by any other.
+    """
+    name, vehicle = _name(station, serial), station.fleet.vehicles.get(serial)
+    if vehicle is not None and frame_for(station.airspace, vehicle) is None:
+        return Refusal(RULE, f"{name}: expected a position, it has told none: hold it, or land it")
+    lead = station.leads.get(serial)
+    if lead is not None and lead.leader is Leader.PILOT:
+        return Refusal(
+            RULE,
+            f"{name} is led by the pilot ({lead.reason}): ask the pilot, take it over, then call "
+            "it home",
+        )
+    running = station.fleet_return
+    member = None if running is None else running.members.get(serial)
+    if member is not None and member.stage not in ENDED:
+        return Refusal(RULE, f"{name} is already on its way home or waits for its turn")
+    return None
+
+
+def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Station:
+    serial = order.serial or ""
+    vehicle = station.fleet.vehicles[serial]
+    running = station.fleet_return
+    if running is None or running.is_over:
+        frame = frame_for(station.airspace, vehicle)
+        assert frame is not None  # or it was refused
+        left = () if running is None else running.members.values()
+        still = {member.serial: member for member in left if is_still_left(station, member)}
+        running = FleetReturn(by, now_ns, frame, still)
+    hold_id = order.command_id
+    name = vehicle.display_name
+    member = Member(
+        serial,
+        name,
+        vehicle.link_id,
+        hold_id,
+        Stage.STOPPING,
+        now_ns,
+        by=by,
+        asked_as=order.asked_as,
+    )
+    return replace(station, fleet_return=running.put(member))
+
+
+def _name(station: Station, serial: str) -> str:
+    vehicle = station.fleet.vehicles.get(serial)
+    if vehicle is not None:
+        return vehicle.display_name
+    profile = station.fleet.profiles.get(serial)
+    return serial if profile is None else profile.display_name

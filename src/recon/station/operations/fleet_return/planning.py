@@ -1,0 +1,134 @@
+"""The plan is made by the worker: for a large fleet it takes longer than a step may."""
+
+from dataclasses import dataclass, replace
+
+from recon.guidance.fleet_return import (
+    Hovering,
+    Returning,
+    ReturnPlan,
+    Separation,
+    plan_return,
+    way_home,
+)
+from recon.model.airspace import Airspace
+from recon.model.event import WorkerResult
+from recon.model.units import seconds_to_ns
+from recon.station.operations.fleet_return import places
+from recon.station.operations.fleet_return.settings import ReturnSettings
+from recon.station.state.fleet_return_record import UNDER_WAY, FleetReturn, Member, Stage
+from recon.station.state.outputs import Output, StartWork
+from recon.station.state.station import Station
+
+PLAN_RETURN = "plan_fleet_return"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanWork:
+    """All that a plan needs. `ground_up_m` is the lowest and the highest ground on the ways."""
+
+    vehicles: tuple[Returning, ...]
+    others: tuple[Hovering, ...]
+    airspace: Airspace
+    ground_up_m: tuple[float, float]
+    separation: Separation
+    settings: ReturnSettings
+    first_wave: int
+
+
+def plan_task(payload: object) -> ReturnPlan:
+    """Make a plan; this is what the worker does."""
+    assert isinstance(payload, PlanWork)
+    spots = [v.place_m[:2] for v in payload.vehicles]
+    spots += [v.pad.east_north_m for v in payload.vehicles]
+    settings = payload.settings.plan
+    home = way_home(payload.airspace, payload.ground_up_m, spots, settings)
+    return plan_return(
+        payload.vehicles,
+        home,
+        payload.separation,
+        settings,
+        payload.others,
+        payload.first_wave,
+    )
+
+
+def ask(
+    station: Station, running: FleetReturn, settings: ReturnSettings, now_ns: int
+) -> tuple[FleetReturn, tuple[Output, ...]]:
+    """Ask for a plan for all that wait, unless one is being made; give up one that never comes."""
+    if running.planning_since_ns is not None:
+        within_s = settings.planned_within_s
+        if now_ns - running.planning_since_ns < seconds_to_ns(within_s):
+            return running, ()
+        return _left_out(running, f"it was not planned for within {within_s:g} s", now_ns), ()
+    vehicles: list[Returning] = []
+    for member in running.at(Stage.WAITING):
+        found = places.returning(station, member.serial, running.frame)
+        if isinstance(found, str):
+            running = running.put(member.at(Stage.LEFT_OUT, now_ns, found))
+        else:
+            vehicles.append(found)
+    if not vehicles:
+        return running, ()
+    work = _work(station, running, vehicles, settings)
+    planning = replace(running, planning_since_ns=now_ns)
+    return planning, (StartWork(now_ns, PLAN_RETURN, work),)
+
+
+def take(station: Station, result: WorkerResult, now_ns: int) -> Station:
+    """Take a plan in, for those that still wait for it."""
+    running = station.fleet_return
+    if running is None or running.planning_since_ns != result.job_id:
+        return station
+    plan = result.result
+    if not isinstance(plan, ReturnPlan):
+        reason = f"its way home could not be planned: {result.error}"
+        return replace(station, fleet_return=_left_out(running, reason, now_ns))
+    running = replace(running, planning_since_ns=None, layers_up_m=plan.layers_up_m)
+    for flight in plan.flights:
+        member = running.members[flight.serial]
+        if member.stage is Stage.WAITING:
+            running = running.put(replace(member, flight=flight))
+    for left in plan.left_out:
+        member = running.members[left.serial]
+        if member.stage is Stage.WAITING:
+            running = running.put(member.at(Stage.LEFT_OUT, now_ns, left.reason))
+    turns = tuple(flight.serial for flight in plan.flights)
+    return replace(station, fleet_return=replace(running, turns=turns))
+
+
+def lost(station: Station, job_id: int) -> Station:
+    """Return the station after the worker has dropped a plan: it is asked for anew."""
+    running = station.fleet_return
+    if running is None or running.planning_since_ns != job_id:
+        return station
+    return replace(station, fleet_return=replace(running, planning_since_ns=None))
+
+
+def _work(
+    station: Station, running: FleetReturn, vehicles: list[Returning], settings: ReturnSettings
+) -> PlanWork:
+    theirs = {member.serial for member in running.at(Stage.WAITING, *UNDER_WAY)}
+    flying = places.in_the_air(station, running.frame)
+    return PlanWork(
+        tuple(vehicles),
+        tuple(other for key, other in flying.items() if key not in theirs),
+        station.airspace.airspace,
+        places.ground_up_m(station, vehicles),
+        places.separation(station, settings),
+        settings,
+        1 + max((_wave(member) for member in running.members.values()), default=0),
+    )
+
+
+def _wave(member: Member) -> int:
+    """Whose wave has begun keeps it; those that wait are planned anew."""
+    is_waiting = member.stage is Stage.WAITING
+    return 0 if member.flight is None or is_waiting else member.flight.wave
+
+
+def _left_out(running: FleetReturn, reason: str, now_ns: int) -> FleetReturn:
+    for member in running.at(Stage.WAITING):
+        if member.flight is None:
+            running = running.put(member.at(Stage.LEFT_OUT, now_ns, reason))
+    return replace(running, planning_since_ns=None)

@@ -1,0 +1,170 @@
+"""What becomes of each vehicle of a fleet return, by what telemetry and the orders' lives show."""
+
+from dataclasses import replace
+
+from recon.link.outbox import Lane, lane_of
+from recon.model.command import Hover, Phase
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import FlightMode, VehicleState
+from recon.station.control.authority import lead_of
+from recon.station.operations.fleet_return.settings import ReturnSettings
+from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, Member, Stage
+from recon.station.state.orders import OrderRecord
+from recon.station.state.station import Station
+from recon.station.steering import neutral_setpoint
+
+STATION_ISSUER = "station"
+STANDING_MPS = 0.5
+FRESH_S = 1.0
+
+_RETURN_MODES = (FlightMode.GPS_WAYPOINT, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)
+_FLOWN = (Phase.CONFIRMED, Phase.STARTED, Phase.DONE)
+_NOT_FLOWN = (
+    Phase.REFUSED_BY_STATION,
+    Phase.REFUSED_BY_APP,
+    Phase.TIMED_OUT,
+    Phase.SUPERSEDED,
+    Phase.EXPIRED,
+    Phase.FAILED,
+)
+
+
+def seen(station: Station, member: Member, settings: ReturnSettings, now_ns: int) -> Member:
+    """Return a member after what is known of it now."""
+    if member.stage in ENDED:
+        return member
+    vehicle = station.fleet.vehicles.get(member.serial)
+    if vehicle is None:
+        return member.at(Stage.LEFT_OUT, now_ns, "the station no longer knows it")
+    taken = _taken(station, member, now_ns)
+    if taken is not None:
+        return taken
+    if member.stage in UNDER_WAY:
+        return _under_way(station, member, vehicle, settings, now_ns)
+    broken = _broken(vehicle, member, settings, now_ns)
+    if broken is not None:
+        return member.at(Stage.LEFT_OUT, now_ns, broken)
+    if vehicle.is_flying.value is False:
+        return member.at(Stage.LANDED, now_ns, "it landed by itself or by its pilot")
+    return _stopping(member, vehicle, settings, now_ns)
+
+
+def newest_motion(station: Station, serial: str) -> OrderRecord | None:
+    """Return the newest accepted order to move or stop that a vehicle was given.
+
+    The station's own zero at a stick's end counts for none.
+    """
+    for record in reversed(tuple(station.orders.records.values())):
+        command = record.command
+        if command.serial != serial or record.phase is Phase.REFUSED_BY_STATION:
+            continue
+        if lane_of(command) is not Lane.CAMERA and command.issued_by != neutral_setpoint.ISSUER:
+            return record
+    return None
+
+
+def is_still_left(station: Station, member: Member) -> bool:
+    """Return whether a vehicle left out still flies, and nobody has ordered it anything since."""
+    vehicle = station.fleet.vehicles.get(member.serial)
+    if member.stage is not Stage.LEFT_OUT or vehicle is None or vehicle.is_flying.value is False:
+        return False
+    newest = newest_motion(station, member.serial)
+    return newest is None or newest.command.issued_at_ns <= member.since_ns
+
+
+def _taken(station: Station, member: Member, now_ns: int) -> Member | None:
+    """The pilot, or whoever ordered something newer, has the vehicle."""
+    lead = lead_of(station, member.serial)
+    if lead.leader is not member.asked_as:
+        words = f"it is led by {lead.leader.value} now ({lead.reason})"
+        return member.at(Stage.RELEASED, now_ns, words)
+    newest = newest_motion(station, member.serial)
+    if newest is None or newest.command.id in (member.hold_id, member.mission_id):
+        return None
+    command = newest.command
+    words = f"{command.name.replace('_', ' ')}, ordered by {command.issued_by}, took its place"
+    if not command.issued_by.startswith(STATION_ISSUER):
+        return member.at(Stage.RELEASED, now_ns, words)
+    if isinstance(command.body, Hover) and member.stage not in UNDER_WAY:
+        return None  # it hovers anyway
+    return member.at(Stage.LEFT_OUT, now_ns, words)
+
+
+def _broken(
+    vehicle: VehicleState, member: Member, settings: ReturnSettings, now_ns: int
+) -> str | None:
+    """Why a vehicle that waits is not flown any further: its link was not whole since the call."""
+    if vehicle.link_id != member.link_id:
+        return "its link broke since it was called, and nothing is resumed by itself"
+    if not _is_heard(vehicle, settings.heard_within_s, now_ns):
+        return f"it has not been heard for {settings.heard_within_s:g} s"
+    return None
+
+
+def _stopping(
+    member: Member, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
+) -> Member:
+    if member.stage is not Stage.STOPPING:
+        return member
+    velocity = vehicle.velocity_ned.value
+    is_standing = velocity is not None and velocity.speed_mps < STANDING_MPS
+    is_new = (vehicle.core_received_at_ns or 0) > member.since_ns
+    mode = vehicle.flight_mode
+    is_stopped = (mode.received_at_ns or 0) > member.since_ns and mode.value not in (
+        FlightMode.GPS_WAYPOINT,
+        FlightMode.GO_HOME,
+        FlightMode.JOYSTICK,
+        FlightMode.AUTO_LANDING,
+    )
+    if is_standing and is_new and is_stopped and _is_heard(vehicle, FRESH_S, now_ns):
+        return member.at(Stage.WAITING, now_ns)
+    if now_ns - member.since_ns < seconds_to_ns(settings.stands_within_s):
+        return member
+    within_s = settings.stands_within_s
+    return member.at(Stage.LEFT_OUT, now_ns, f"it did not stand within {within_s:g} s of its hold")
+
+
+def _under_way(
+    station: Station, member: Member, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
+) -> Member:
+    record = station.orders.records.get(member.mission_id or 0)
+    if vehicle.is_flying.value is False and (vehicle.core_received_at_ns or 0) > member.since_ns:
+        return member.at(Stage.LANDED, now_ns)
+    if record is not None and record.phase in _NOT_FLOWN:
+        words = record.phase.value.replace("_", " ")
+        return member.at(Stage.LEFT_OUT, now_ns, f"its mission {words}: {record.note}")
+    if member.stage is not Stage.ORDERED:
+        return _still_flying(member, vehicle, settings, now_ns)
+    is_flown = record is not None and record.phase in _FLOWN
+    if is_flown or _is_in_return_mode(vehicle, member):
+        return member.at(Stage.FLYING, now_ns)
+    return member
+
+
+def _still_flying(
+    member: Member, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
+) -> Member:
+    """A flight that is out of its mission and does not land was ended by somebody, or by the
+    aircraft itself."""
+    mode = vehicle.flight_mode
+    is_new = (mode.received_at_ns or 0) > member.since_ns
+    if not is_new or mode.value is None or mode.value in _RETURN_MODES:
+        return replace(member, out_of_mission_since_ns=None)
+    since_ns = member.out_of_mission_since_ns
+    if since_ns is None:
+        return replace(member, out_of_mission_since_ns=now_ns)
+    if now_ns - since_ns < seconds_to_ns(settings.hovers_after_s):
+        return member
+    words = mode.value.name.lower().replace("_", " ")
+    return member.at(Stage.LEFT_OUT, now_ns, f"its mission ended before it had landed ({words})")
+
+
+def _is_in_return_mode(vehicle: VehicleState, member: Member) -> bool:
+    mode = vehicle.flight_mode
+    is_new = (mode.received_at_ns or 0) > member.since_ns
+    return is_new and mode.value in _RETURN_MODES
+
+
+def _is_heard(vehicle: VehicleState, within_s: float, now_ns: int) -> bool:
+    heard_ns = vehicle.core_received_at_ns
+    return heard_ns is not None and now_ns - heard_ns <= seconds_to_ns(within_s)

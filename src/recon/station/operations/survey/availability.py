@@ -1,0 +1,109 @@
+"""Which vehicles of a survey can fly for it now, and for how long."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from recon.fleet.state import staleness
+from recon.guidance.survey import Surveyor
+from recon.model.authority import Leader
+from recon.model.command import Phase
+from recon.model.vehicle import Staleness, VehicleState
+from recon.safety.airspace import PreparedAirspace
+from recon.safety.datum import frame_for, home_enu_m, vehicle_enu_m
+from recon.safety.energy import consumption
+from recon.safety.energy_settings import EnergySettings
+from recon.station.control.authority import lead_of
+from recon.station.state.orders import OrderRecord
+from recon.station.state.station import Station
+from recon.station.state.survey_record import Member, SurveyRecord
+
+
+def surveyors(station: Station, record: SurveyRecord, now_ns: int) -> Iterator[Surveyor]:
+    """Yield the survey's vehicles whose place is known, as its planner must know them."""
+    for member in record.members.values():
+        vehicle = station.fleet.vehicles.get(member.serial)
+        if vehicle is None:
+            continue
+        place_m = vehicle_enu_m(station.airspace, vehicle)
+        if place_m is None:
+            continue
+        home_m = home_enu_m(station.airspace, vehicle)
+        yield Surveyor(
+            serial=member.serial,
+            place_m=(float(place_m[0]), float(place_m[1])),
+            is_able=hindrance(station, member, now_ns) is None,
+            ended_mission=member.number - is_flown(station, member),
+            time_left_s=time_left_s(vehicle, station.airspace, station.settings.safety.energy),
+            home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
+        )
+
+
+def hindrance(station: Station, member: Member, now_ns: int) -> str | None:
+    """Return why a vehicle flies nothing (more) for its survey now; None when it can or does."""
+    if member.stopped is not None:
+        return member.stopped
+    if member.homeward is not None:
+        return _homeward(station, member, member.homeward)
+    lead = lead_of(station, member.serial)
+    if lead.leader is not Leader.GUIDANCE:
+        return f"it is led by the {lead.leader.value} ({lead.reason})"
+    vehicle = station.fleet.vehicles.get(member.serial)
+    if vehicle is None or frame_for(station.airspace, vehicle) is None:
+        return "its place is not known"
+    if is_flown(station, member):
+        return None
+    if staleness(vehicle, now_ns) is not Staleness.LIVE:
+        return "it is not heard now"
+    if vehicle.is_flying.value is not True and not member.may_take_off:
+        return "it is on the ground, and nobody has said that it may take off (again)"
+    return None
+
+
+def _homeward(station: Station, member: Member, why: str) -> str:
+    vehicle = station.fleet.vehicles.get(member.serial)
+    if vehicle is None or vehicle.is_flying.value is not False:
+        return f"it was called home: {why}"
+    return f"it has come home: {why}"
+
+
+def is_flown(station: Station, member: Member) -> bool:
+    """Return whether the vehicle's newest mission of its survey still lives."""
+    order = _order(station, member)
+    return order is not None and not order.phase.is_final
+
+
+def looked_at(station: Station, member: Member) -> tuple[Member, OrderRecord | None]:
+    """Return the member after a look at its mission, and the order that has just ended badly.
+
+    A mission that has ended in any way but flown to its end is not given again by itself: somebody
+    must have a look, and start the vehicle again.
+    """
+    order = _order(station, member)
+    if order is None or member.stopped is not None or not order.phase.is_final:
+        return member, None
+    if order.phase is Phase.DONE:
+        return member, None
+    words = order.phase.value.replace("_", " ")
+    why = f"its mission was not flown to its end: {words}, {order.note}"
+    return replace(member, stopped=why), order
+
+
+def time_left_s(
+    vehicle: VehicleState, airspace: PreparedAirspace, energy: EnergySettings
+) -> float | None:
+    """Return how long a vehicle can fly level and still land with the site's reserve; None: nobody
+    knows. The ways there and home are the planner's matter, and the gate's, which is stricter."""
+    uses = consumption(vehicle, airspace, energy)
+    has, height_m = vehicle.battery_fraction.value, vehicle.height_above_takeoff_m.value
+    if uses is None or has is None or height_m is None:
+        return None
+    climb_s = max(0.0, uses.go_home_height_m - height_m) / energy.climb_mps * energy.climb_load
+    ends = uses.fraction(climb_s) + uses.landing(max(height_m, uses.go_home_height_m))
+    left = has - airspace.airspace.limits.battery_reserve_fraction - ends
+    return max(0.0, left) / uses.fraction(energy.level_load)
+
+
+def _order(station: Station, member: Member) -> OrderRecord | None:
+    if member.command_id is None:
+        return None
+    return station.orders.records.get(member.command_id)

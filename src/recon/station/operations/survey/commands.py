@@ -1,0 +1,189 @@
+"""What people say to a survey: start, pause, abort. Each refused as a whole, or carried out."""
+
+from dataclasses import replace
+from types import MappingProxyType
+
+from recon.guidance.survey import SurveyState, abort, pause, start
+from recon.guidance.survey.plan import RULE
+from recon.model.authority import Leader
+from recon.model.command import Hover, LandNow, Phase, Refusal
+from recon.model.event import (
+    AuthorityTaken,
+    OperatorOrder,
+    SurveyStarted,
+    SurveyStopped,
+)
+from recon.station.control import authority, order_gateway
+from recon.station.control.order_gateway import Stepped
+from recon.station.operations.survey.availability import is_flown
+from recon.station.operations.survey.return_to_home import is_under_way
+from recon.station.state.command_ids import take_id
+from recon.station.state.fleet_return_record import ENDED
+from recon.station.state.outputs import Output
+from recon.station.state.station import Station
+from recon.station.state.survey_record import Member, SurveyRecord
+
+
+def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusal | None:
+    """Return why a survey cannot be started with these vehicles, else None."""
+    record = station.surveys.records.get(event.survey_id)
+    if record is None:
+        return _unknown(station, event.survey_id)
+    started = _started(record, event, now_ns)
+    if isinstance(started, Refusal):
+        return started
+    for serial in event.serials:
+        refusal = _vehicle_refusal(station, record, serial, event.by)
+        if refusal is not None:
+            return refusal
+    return None
+
+
+def begin(station: Station, event: SurveyStarted, now_ns: int) -> Station:
+    """Return the station with a survey that flies, its vehicles given to guidance by this word.
+
+    Said of a running survey it lets the named vehicles join it, or fly for it again. Unchanged when
+    it is refused: no vehicle is given away unless all can be.
+    """
+    if start_refusal(station, event, now_ns) is not None:
+        return station
+    record = station.surveys.records[event.survey_id]
+    state = _started(record, event, now_ns)
+    assert isinstance(state, SurveyState)  # or it was refused
+    serials = dict.fromkeys(event.serials)
+    for serial in serials:
+        taken = AuthorityTaken(serial, Leader.GUIDANCE, event.by)
+        station = authority.take(station, taken, now_ns)
+    named = {
+        serial: replace(
+            record.members.get(serial, Member(serial)),
+            may_take_off=event.takeoff,
+            stopped=None,
+            homeward=None,
+        )
+        for serial in serials
+    }
+    kept = {
+        serial: member
+        for serial, member in record.members.items()
+        if record.is_running or is_under_way(station, member)
+    }
+    fresh = {serial: _forgiven(station, member) for serial, member in named.items()}
+    record = replace(
+        record,
+        state=state,
+        started_by=event.by,
+        members=MappingProxyType({**kept, **fresh}),
+        look_at_ns=now_ns,
+    )
+    surveys = station.surveys.without_look(event.survey_id)
+    return replace(station, surveys=surveys.put(record))
+
+
+def stop_refusal(station: Station, event: SurveyStopped, now_ns: int) -> Refusal | None:
+    """Return why a survey cannot be paused or aborted, else None."""
+    record = station.surveys.records.get(event.survey_id)
+    if record is None:
+        return _unknown(station, event.survey_id)
+    stopped = _stopped(station, record, event, now_ns)
+    return stopped if isinstance(stopped, Refusal) else None
+
+
+def stop(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
+    """Return the station with a survey paused or aborted, and the holds of its vehicles.
+
+    The holds take them from guidance: whoever starts the survey again says with whom.
+    """
+    if stop_refusal(station, event, now_ns) is not None:
+        return station, ()
+    record = station.surveys.records[event.survey_id]
+    state = _stopped(station, record, event, now_ns)
+    assert isinstance(state, SurveyState)  # or it was refused
+    surveys = station.surveys.without_look(event.survey_id)
+    station = replace(station, surveys=surveys.put(replace(record, state=state)))
+    word = "aborted" if event.is_aborted else "paused"
+    outputs: tuple[Output, ...] = ()
+    for member in record.members.values():
+        lead = authority.lead_of(station, member.serial)
+        is_its = record.is_running or is_under_way(station, member)
+        if is_its and lead.leader is Leader.GUIDANCE:
+            by = f"{event.by}: survey {record.survey.name} {word}"
+            station, sent = _hold(station, member, by, now_ns)
+            outputs += sent
+            station = authority.hand_back(station, member.serial, event.by, by, now_ns)
+    return station, outputs
+
+
+def _hold(station: Station, member: Member, by: str, now_ns: int) -> Stepped:
+    """Hold a vehicle; one on the ground whose mission may yet make it take off is told to land."""
+    vehicle = station.fleet.vehicles.get(member.serial)
+    may_set_out = is_flown(station, member)
+    if vehicle is None or (vehicle.is_flying.value is False and not may_set_out):
+        return station, ()
+    station, number = take_id(station)
+    hold = OperatorOrder(number, Hover(), by, serial=member.serial)
+    station, sent = order_gateway.place(station, hold, now_ns)
+    if station.orders.records[number].phase is not Phase.REFUSED_BY_STATION or not may_set_out:
+        return station, sent
+    station, number = take_id(station)
+    land = OperatorOrder(number, LandNow(), by, serial=member.serial)
+    station, landing = order_gateway.place(station, land, now_ns)
+    return station, (*sent, *landing)
+
+
+def _forgiven(station: Station, member: Member) -> Member:
+    """A mission that has ended is no reason any more; one that is flown stays the member's."""
+    return member if is_flown(station, member) else replace(member, command_id=None)
+
+
+def _started(record: SurveyRecord, event: SurveyStarted, now_ns: int) -> SurveyState | Refusal:
+    if record.refusal is not None:
+        return record.refusal
+    state = record.state
+    if state is None:
+        return Refusal(RULE, f"the rows of the survey {record.survey.name} are being worked out")
+    if not record.is_running or not event.serials:
+        return start(state, event.serials, now_ns)
+    named = frozenset(event.serials)
+    return replace(
+        state,
+        serials=tuple(dict.fromkeys((*state.serials, *event.serials))),
+        barred=state.barred - named,
+    )
+
+
+def _stopped(
+    station: Station, record: SurveyRecord, event: SurveyStopped, now_ns: int
+) -> SurveyState | Refusal:
+    if record.refusal is not None:
+        return record.refusal
+    if record.state is None:
+        return Refusal(RULE, f"the rows of the survey {record.survey.name} are being worked out")
+    if record.is_over and any(is_under_way(station, each) for each in record.members.values()):
+        return record.state  # it stays what it is; those on their way home are held
+    if event.is_aborted:
+        return abort(record.state, now_ns)
+    return pause(record.state, now_ns)
+
+
+def _vehicle_refusal(
+    station: Station, record: SurveyRecord, serial: str, by: str
+) -> Refusal | None:
+    given = authority.refusal(station, AuthorityTaken(serial, Leader.GUIDANCE, by))
+    if given is not None:
+        return given
+    name = station.fleet.vehicles[serial].display_name
+    if serial == station.imaging.eye_serial:
+        return Refusal(RULE, f"{name} is the eye: it stays where it sees the field")
+    other = station.surveys.running_with(serial)
+    if other is not None and other.survey.id != record.survey.id:
+        return Refusal(RULE, f"{name} flies for the survey {other.survey.name}: pause that first")
+    running = station.fleet_return
+    member = None if running is None else running.members.get(serial)
+    if member is not None and member.stage not in ENDED:
+        return Refusal(RULE, f"{name} is on its way home: hold it first, or let it land")
+    return None
+
+
+def _unknown(station: Station, survey_id: int) -> Refusal:
+    return Refusal(RULE, station.surveys.none_such(survey_id))

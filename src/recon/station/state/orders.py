@@ -1,0 +1,263 @@
+"""The life of every order: queued, sent, answered, carried out by telemetry's word, and its end.
+
+A life ends in exactly one final phase. What is heard of it later is written down beside that phase
+and changes nothing but the alarm.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from itertools import islice
+
+from recon.fleet.confirmation import Progress, SentContext
+from recon.model.command import (
+    Body,
+    Command,
+    FlyMission,
+    Hover,
+    LandNow,
+    Phase,
+    ReturnHome,
+    VirtualStick,
+)
+from recon.model.event import CommandAnswered, CommandDropped, CommandSent
+from recon.model.units import seconds_to_ns
+from recon.station.state.flight_plan import FlightPlan
+
+UNCONFIRMED = "order_not_confirmed"
+MISSION_IGNORED = "mission_ignored"
+MISSION_BROKEN_OFF = "mission_broken_off"
+LANDING_STOPPED = "landing_stopped"
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseChange:
+    """One step of a life."""
+
+    phase: Phase
+    at_ns: int
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class OrderRecord:
+    """One order and what has become of it.
+
+    `next_repeat_ns`: when an emergency order is sent again if nothing has ended that. `alarm` is
+    the rule of the alarm it raises, until telemetry shows it carried out or a newer order comes.
+    """
+
+    command: Command
+    vehicle_name: str
+    history: tuple[PhaseChange, ...]
+    altitudes: str | None = None
+    sent: SentContext | None = None
+    """What was known at the first sending; of a mission in parts, at that of the present part."""
+    times_sent: int = 0
+    next_repeat_ns: int | None = None
+    repeats_left: int = 0
+    waits_to_be_heard: bool = False
+    """A stop for a vehicle that cannot be heard: judged anew with every word of it."""
+    waiting_link_ids: tuple[int, ...] = ()
+    """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""
+    is_refused_by_app: bool = False
+    """An app has refused an emergency order that is still repeated."""
+    alarm: str | None = None
+    plan: FlightPlan | None = None
+    """Of a mission: its parts, and which one is flown."""
+
+    @property
+    def phase(self) -> Phase:
+        """Where it is now."""
+        return self.history[-1].phase
+
+    @property
+    def note(self) -> str:
+        """The latest word on it."""
+        return self.history[-1].note
+
+    @property
+    def is_watched(self) -> bool:
+        """Whether time and telemetry still change it: it lives, or its alarm does."""
+        return not self.phase.is_final or self.alarm is not None
+
+
+@dataclass(frozen=True, slots=True)
+class OrderBook:
+    """All orders lately given. `watched` are those still alive, and those whose alarm is: time and
+    telemetry still change them. `put` keeps it, for it is asked for with every packet."""
+
+    records: Mapping[int, OrderRecord] = field(default_factory=dict)
+    watched: tuple[OrderRecord, ...] = ()
+
+
+def changed(record: OrderRecord, phase: Phase, at_ns: int, note: str = "") -> OrderRecord:
+    """Return the record after a change of phase. A final phase stays: then it is a note only."""
+    kept = record.phase if record.phase.is_final else phase
+    record = replace(record, history=(*record.history, PhaseChange(kept, at_ns, note)))
+    return replace(record, next_repeat_ns=None, repeats_left=0) if kept.is_final else record
+
+
+def noted(record: OrderRecord, at_ns: int, note: str) -> OrderRecord:
+    """Return the record with a word on it that changes no phase."""
+    return changed(record, record.phase, at_ns, note)
+
+
+def ended(
+    record: OrderRecord, phase: Phase, at_ns: int, note: str = "", *, alarm: str | None = None
+) -> OrderRecord:
+    """Return the record at its end; with an alarm when a person must look."""
+    return replace(changed(record, phase, at_ns, note), alarm=alarm)
+
+
+def underway(record: OrderRecord, phase: Phase, at_ns: int, note: str) -> OrderRecord:
+    """Return a record that telemetry shows carried out; repeats and its alarm end."""
+    shown = changed(record, phase, at_ns, note)
+    return replace(shown, next_repeat_ns=None, repeats_left=0, alarm=None)
+
+
+def unsent(record: OrderRecord, phase: Phase, at_ns: int, note: str) -> OrderRecord:
+    """Return a record that never left. For an emergency order, or a later part of a mission, that
+    is an alarm until a newer order takes its place."""
+    return ended(record, phase, at_ns, _of_part(record, note), alarm=_alarm_when_lost(record))
+
+
+def shown(record: OrderRecord, seen: Progress, at_ns: int) -> OrderRecord:
+    """Return the record after what telemetry shows of it.
+
+    What is shown of an order that has ended is a word beside its end, and the end of its alarm.
+    """
+    if seen < Progress.CONFIRMED:
+        return record
+    body = record.command.body
+    begins, text = _BEGINNINGS.get(type(body), (Phase.CONFIRMED, "by telemetry"))
+    text = _of_part(record, text)
+    if record.phase.is_final:
+        late = noted(record, at_ns, f"{text}, after its time")
+        return record if record.alarm is None else replace(late, alarm=None)
+    is_complete = seen is Progress.COMPLETE
+    if record.phase is not begins and not (is_complete and _is_shown_by_its_end(body)):
+        record = underway(record, begins, at_ns, text)
+    return ended(record, Phase.DONE, at_ns, _end_text(body)) if is_complete else record
+
+
+_BEGINNINGS: dict[type, tuple[Phase, str]] = {
+    FlyMission: (Phase.STARTED, "by telemetry: it flies the mission"),
+    LandNow: (Phase.CONFIRMED, "by telemetry: it is landing"),
+    ReturnHome: (Phase.CONFIRMED, "by telemetry: it flies home"),
+    Hover: (Phase.CONFIRMED, "by telemetry: it stands"),
+}
+
+
+def _of_part(record: OrderRecord, text: str) -> str:
+    """A word on a mission in parts says which part it is about."""
+    label = "" if record.plan is None else record.plan.label
+    return f"{label}: {text}" if label else text
+
+
+def _alarm_when_lost(record: OrderRecord) -> str | None:
+    """The alarm of an order that did not get through: a stop, or a mission's later part."""
+    if record.command.is_emergency:
+        return UNCONFIRMED
+    is_later_part = record.plan is not None and record.plan.index > 0
+    return MISSION_BROKEN_OFF if is_later_part else None
+
+
+def _is_shown_by_its_end(body: Body) -> bool:
+    """Whether nothing is to be seen between the sending and the end: the camera's orders, and a
+    landing or return that is on the ground at once."""
+    return not isinstance(body, (Hover, VirtualStick))
+
+
+def _end_text(body: Body) -> str:
+    return "by telemetry: it is on the ground" if isinstance(body, (LandNow, ReturnHome)) else ""
+
+
+def stick_over(record: OrderRecord, at_ns: int) -> OrderRecord:
+    """Return the record of a stick, done when the time it is held for is over."""
+    body, sent = record.command.body, record.sent
+    if not isinstance(body, VirtualStick) or record.phase is not Phase.CONFIRMED or sent is None:
+        return record
+    is_over = at_ns - sent.sent_at_ns >= seconds_to_ns(body.timeout_s)
+    return ended(record, Phase.DONE, at_ns, "its time is over") if is_over else record
+
+
+def timed_out(record: OrderRecord, at_ns: int, limit_s: float) -> OrderRecord:
+    """Return a record that telemetry has not shown in time: an alarm, for what moves a vehicle."""
+    if record.is_refused_by_app:
+        return ended(
+            record,
+            Phase.REFUSED_BY_APP,
+            at_ns,
+            "the app refused it, and telemetry shows no effect",
+            alarm=UNCONFIRMED,
+        )
+    note = _of_part(record, f"telemetry has not confirmed it within {limit_s:g} s")
+    alarm = MISSION_IGNORED if isinstance(record.command.body, FlyMission) else None
+    if record.command.is_emergency or isinstance(record.command.body, VirtualStick):
+        alarm = UNCONFIRMED
+    return ended(record, Phase.TIMED_OUT, at_ns, note, alarm=alarm)
+
+
+def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
+    """Return the book with a record in it; the oldest other finished ones are forgotten."""
+    newest_id = record.command.id
+    records = {**book.records, newest_id: record}
+    if len(records) > kept:
+        finished = (key for key, r in records.items() if not r.is_watched and key != newest_id)
+        for key in tuple(islice(finished, len(records) - kept)):
+            del records[key]
+    return OrderBook(records, _watched(book.watched, record))
+
+
+def _watched(before: tuple[OrderRecord, ...], newest: OrderRecord) -> tuple[OrderRecord, ...]:
+    """Return the watched records with the newest form of one, each in its old place."""
+    newest_id = newest.command.id
+    if all(record.command.id != newest_id for record in before):
+        return (*before, newest) if newest.is_watched else before
+    changed_ones = (newest if r.command.id == newest_id else r for r in before)
+    return tuple(record for record in changed_ones if record.is_watched)
+
+
+def on_sent(record: OrderRecord, event: CommandSent, context: SentContext) -> OrderRecord:
+    """The packet is on its way; the first time counts for what telemetry must be newer than."""
+    record = no_longer_waiting(record, event.link_id)
+    again = replace(record, times_sent=record.times_sent + 1)
+    if record.sent is not None:
+        return noted(again, context.sent_at_ns, f"sent again, on link {event.link_id}")
+    if record.phase.is_final:
+        return again
+    return changed(replace(again, sent=context), Phase.SENT, context.sent_at_ns)
+
+
+def on_answered(record: OrderRecord, event: CommandAnswered, now_ns: int) -> OrderRecord:
+    """The app answered, or its answer missed its time. Neither confirms anything.
+
+    The refusal of an emergency order is an alarm at once, and its end only when no repeat of it
+    has had an effect in time.
+    """
+    if record.phase not in (Phase.SENT, Phase.ACKNOWLEDGED):
+        return record
+    if event.positive is None:
+        return noted(record, now_ns, "the app has not acknowledged it in time")
+    if event.positive:
+        is_known = record.phase is Phase.ACKNOWLEDGED
+        return record if is_known else changed(record, Phase.ACKNOWLEDGED, now_ns)
+    if not record.command.is_emergency:
+        note, alarm = _of_part(record, "the app refused it"), _alarm_when_lost(record)
+        return ended(record, Phase.REFUSED_BY_APP, now_ns, note, alarm=alarm)
+    refused = noted(record, now_ns, "the app refused it")
+    return replace(refused, is_refused_by_app=True, alarm=UNCONFIRMED)
+
+
+def on_dropped(record: OrderRecord, event: CommandDropped, now_ns: int) -> OrderRecord:
+    """It left a queue unsent. That ends it only when no other link can send it, nor has."""
+    record = no_longer_waiting(record, event.link_id)
+    if record.phase is not Phase.QUEUED or record.waiting_link_ids:
+        return record
+    return unsent(record, event.phase, now_ns, event.reason)
+
+
+def no_longer_waiting(record: OrderRecord, link_id: int) -> OrderRecord:
+    """Return the record without the link whose queue it has left."""
+    waiting = tuple(other for other in record.waiting_link_ids if other != link_id)
+    return replace(record, waiting_link_ids=waiting)

@@ -1,0 +1,95 @@
+"""The station's own times and limits, each with its reason."""
+
+from dataclasses import dataclass, field
+
+from recon.detection import DetectionSettings
+from recon.fleet.settings import FleetSettings
+from recon.forecast import ForecastSettings
+from recon.guidance.steering import SteeringSettings
+from recon.safety import SafetySettings
+from recon.station.state.recovery_settings import RestartSettings
+from recon.station.state.setpoint_lease import StreamSettings
+
+
+@dataclass(frozen=True, slots=True)
+class StationSettings:
+    """Times in seconds."""
+
+    fleet: FleetSettings = field(default_factory=FleetSettings)
+    safety: SafetySettings = field(default_factory=SafetySettings)
+    restart: RestartSettings = field(default_factory=RestartSettings)
+    detection: DetectionSettings = field(default_factory=DetectionSettings)
+    forecast: ForecastSettings = field(default_factory=ForecastSettings)
+
+    order_expiry_s: float = 5.0
+    """An order not on the wire by then is not what its giver sees any more."""
+
+    stop_waits_s: float = 30.0
+    """A hover that cannot be judged now, for telemetry is old or the connection is gone, waits this
+    long for the vehicle to be heard again: a stop must not be lost in a gap of telemetry."""
+
+    emergency_repeat_s: float = 0.7
+    emergency_repeats: int = 3
+    """Decisions on the ICD, 16: every 0.7 s, three at most, until telemetry confirms."""
+
+    emergency_answer_s: float = 3.5
+    """When the last repeat is out, telemetry gets little more than a second to show an effect."""
+
+    emergency_confirm_s: float = 10.0
+    """A hover that has begun: from 15 m/s an aircraft needs 6 s to stand still."""
+
+    mission_confirm_s: float = 8.0
+    """Upload and start of 99 waypoints take seconds; after this it was rejected silently."""
+
+    mission_takeoff_s: float = 20.0
+    """A mission that is seen to take off for it: motors, climb, then the mission's mode."""
+
+    mode_lasts_s: float = 1.0
+    """A sign of the pilot or a failsafe that an app may show in passing counts after this: three
+    reports of the mode at its usual rate."""
+
+    undecided_s: float = 30.0
+    """An order whose vehicle is in a mode that says nothing for this long is not carried out."""
+
+    parts_gap_s: float = 3.0
+    """A vehicle not heard for longer may have been flown by anybody: no next part is sent to it."""
+
+    unheard_s: float = 600.0
+    """What has become of an order whose vehicle is not heard for this long, nobody will learn."""
+
+    camera_confirm_s: float = 8.0
+    stick_confirm_s: float = 2.0
+
+    stick_zero_waits_s: float = 3.0
+    """After a stick's time the mode may still be on its way; later than this nothing flies it."""
+
+    steering: SteeringSettings = field(default_factory=SteeringSettings)
+    streams: StreamSettings = field(default_factory=StreamSettings)
+
+    orders_kept: int = 200
+    alarms_kept: int = 200
+    app_messages_kept: int = 8
+    """Unseen messages of one app: a talkative app must not push out what matters."""
+
+    frames_kept: int = 16
+    """The newest frame of this many vehicles: 25 MB each at most."""
+
+    imaging_trouble_after_s: float = 3.0
+    """A first frame comes before the eye's first telemetry, and one lost frame is no trouble."""
+
+    low_battery_fraction: float = 0.25
+    serious_battery_fraction: float = 0.10
+    """In flight; the aircraft's own warnings count as well, whichever says it first."""
+
+    serial_wait_s: float = 2.0
+    """Extended telemetry, which tells the serial, comes at 1 to 2 Hz: a link that flies longer
+    without one is a vehicle that nobody can name."""
+
+    first_telemetry_s: float = 3.0
+    """A vehicle known by its serial alone, without core telemetry this long, is unseen."""
+
+    landing_wait_s: float = 8.0
+    """A landing that waits for confirmation this long waits for somebody (decisions, 17)."""
+
+    pose_history_samples: int = 50
+    """Five seconds of the eye's telemetry, to look up what held when a late frame was taken."""

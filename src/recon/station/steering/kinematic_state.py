@@ -1,0 +1,76 @@
+"""What the station sees of a vehicle to steer it by, and where a steered order leads from there."""
+
+from dataclasses import replace
+from math import hypot
+
+from recon.geo.distance import moved_m
+from recon.guidance.steering import Goal, Seen, SteeringSettings, stopping_place
+from recon.model.command import GoTo, HoldPosition, Nudge, Refusal, SteeredBody
+from recon.model.units import wrap_degrees
+from recon.model.vehicle import VehicleState
+from recon.station.state.setpoint_lease import StreamSettings
+
+SIGHT = "sight"
+
+
+def sight(vehicle: VehicleState, now_ns: int) -> Seen | None:
+    """Return what steering needs to see of a vehicle, None while any part of it is unknown.
+
+    Its age is that of the oldest part.
+    """
+    position, velocity = vehicle.position.value, vehicle.velocity_ned.value
+    height_m, attitude = vehicle.height_above_takeoff_m.value, vehicle.attitude.value
+    if position is None or velocity is None or height_m is None or attitude is None:
+        return None
+    parts = vehicle.position, vehicle.velocity_ned, vehicle.height_above_takeoff_m, vehicle.attitude
+    return Seen(
+        position,
+        velocity.north_mps,
+        velocity.east_mps,
+        height_m,
+        attitude.yaw_deg,
+        max(part.age_s(now_ns) or 0.0 for part in parts),
+    )
+
+
+def unseen(vehicle: VehicleState, now_ns: int, settings: StreamSettings) -> Refusal | None:
+    """Refuse to begin steering what cannot be seen."""
+    seen = sight(vehicle, now_ns)
+    if seen is not None and seen.age_s <= settings.sight_s:
+        return None
+    return Refusal(
+        SIGHT,
+        f"{vehicle.display_name}: to be steered, its position, velocity, height and heading must "
+        f"be known and {settings.sight_s:g} s old at most: wait until its telemetry tells them",
+    )
+
+
+def goal_of(
+    body: SteeredBody, seen: Seen, steering: SteeringSettings, settings: StreamSettings
+) -> Goal:
+    """Return where an order leads a vehicle that is seen now."""
+    match body:
+        case GoTo():
+            yaw_deg = seen.yaw_deg if body.yaw_deg is None else wrap_degrees(body.yaw_deg)
+            return Goal(body.target, body.height_above_takeoff_m, body.speed_mps, yaw_deg)
+        case Nudge():
+            return Goal(
+                moved_m(seen.position, body.north_m, body.east_m),
+                seen.height_above_takeoff_m + body.up_m,
+                body.speed_mps,
+                wrap_degrees(seen.yaw_deg + body.turn_deg),
+            )
+        case HoldPosition():
+            place = stopping_place(seen, steering)
+            return Goal(place, seen.height_above_takeoff_m, settings.hold_speed_mps, seen.yaw_deg)
+
+
+def no_faster_than(seen: Seen, speed_mps: float) -> Seen:
+    """Return the same sight with its horizontal speed cut: no demand begins above a limit."""
+    speed = hypot(seen.velocity_north_mps, seen.velocity_east_mps)
+    share = 1.0 if speed <= speed_mps else speed_mps / speed
+    return replace(
+        seen,
+        velocity_north_mps=share * seen.velocity_north_mps,
+        velocity_east_mps=share * seen.velocity_east_mps,
+    )

@@ -1,0 +1,208 @@
+"""The watch: ten times a second the watchdogs look at a picture of the air.
+
+What they find becomes alarms, and holds: orders like any other, judged by the gate, on record and
+repeated until telemetry shows them.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from recon.model.authority import Lead
+from recon.model.command import Hover
+from recon.model.event import OperatorOrder, SeparationHoldSwitched
+from recon.model.intent import Intent
+from recon.model.replacing import replace
+from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.model.vehicle import VehicleState
+from recon.safety.watchdogs import (
+    WATCHDOGS,
+    Before,
+    Finding,
+    Held,
+    Picture,
+    Watchdog,
+    Watched,
+    hold_words,
+    take_picture,
+)
+from recon.station.control import order_gateway
+from recon.station.control.order_gateway import Stepped
+from recon.station.state.command_ids import take_id
+from recon.station.state.outputs import Output, SendCommand
+from recon.station.state.station import Station
+from recon.station.state.watchdog_state import HoldRefused, Kept, StickCount
+from recon.station.traffic import identity_grace
+from recon.station.traffic.known_traffic import in_the_air
+
+_NOBODY_YET = Lead()
+_TOLD_NOTHING = Intent()
+
+
+def look(station: Station, now_ns: int, watchdogs: Iterable[Watchdog] = WATCHDOGS) -> Stepped:
+    """Return the station after the watchdogs looked, if it is time, and the holds they want."""
+    looked_at_ns, settings = station.watch.looked_at_ns, station.settings.safety.watch
+    if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
+        return station, ()
+    station = identity_grace.with_nameless(_with_stick_counts(station, now_ns), now_ns)
+    refused = _lately_refused(station, now_ns)
+    station = replace(station, watch=replace(station.watch, holds_refused=refused))
+    kept = station.watch.findings
+    picture = take_picture(
+        _watched(station, now_ns),
+        station.airspace,
+        station.settings.safety,
+        now_ns,
+        {key: one.since_ns for key, one in kept.items()},
+        is_hold_on=station.watch.is_hold_on,
+    )
+    findings = [finding for watchdog in watchdogs for finding in watchdog(picture)]
+    watch = replace(
+        station.watch,
+        looked_at_ns=now_ns,
+        findings=_kept(kept, findings, now_ns, seconds_to_ns(settings.lingers_s)),
+        before=_before(picture),
+        held=_still_held(station),
+    )
+    return _hold(replace(station, watch=watch), findings, picture, now_ns)
+
+
+def switch_hold(station: Station, event: SeparationHoldSwitched) -> Station:
+    """Return the station after somebody switched the holds on or off."""
+    watch = replace(station.watch, is_hold_on=event.is_on, switched_by=event.by)
+    return replace(station, watch=watch)
+
+
+def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
+    watch, eye = station.watch, station.imaging.eye_serial
+    for vehicle, claimed in in_the_air(station):
+        if vehicle.serial != claimed:
+            continue  # a link in conflict: most likely it tells of the same aircraft
+        if identity_grace.is_new(station, vehicle, now_ns):
+            continue
+        serial = vehicle.serial or ""
+        count = watch.sticks.get(serial)
+        refused = watch.holds_refused.get(serial)
+        quiet_s = None if count is None else (now_ns - count.changed_at_ns) / NS_PER_S
+        yield Watched(
+            vehicle,
+            station.intents.get(serial, _TOLD_NOTHING),
+            station.leads.get(serial, _NOBODY_YET).leader,
+            held=watch.held.get(serial),
+            before=watch.before.get(serial),
+            is_eye=vehicle.serial is not None and vehicle.serial == eye,
+            stick_quiet_s=quiet_s,
+            hold_refused="" if refused is None else refused.why,
+        )
+
+
+def _with_stick_counts(station: Station, now_ns: int) -> Station:
+    """Note for each stream of sticks when its last one left."""
+    if not station.streams and not station.watch.sticks:
+        return station
+    counts: dict[str, StickCount] = {}
+    for serial, lease in station.streams.items():
+        if lease.closing is not None:
+            continue
+        before = station.watch.sticks.get(serial)
+        known = (lease.started_at_ns, lease.packets_sent)
+        is_same = before is not None and (before.started_at_ns, before.sent) == known
+        counts[serial] = before if before and is_same else StickCount(*known, now_ns)
+    return replace(station, watch=replace(station.watch, sticks=counts))
+
+
+def _kept(
+    kept: Mapping[str, Kept], findings: Iterable[Finding], now_ns: int, lingers_ns: int
+) -> dict[str, Kept]:
+    """What is found now, and what was found a moment ago: alarms must not flicker."""
+    still = {key: one for key, one in kept.items() if now_ns - one.seen_ns <= lingers_ns}
+    for finding in findings:
+        before = still.get(finding.key)
+        since_ns = now_ns if before is None else before.since_ns
+        still[finding.key] = Kept(finding, since_ns, now_ns)
+    return still
+
+
+def _before(picture: Picture) -> dict[str, Before]:
+    """Each vehicle's newest position, to compare the next one with."""
+    newest: dict[str, Before] = {}
+    for one in picture.watched:
+        serial, position = one.state.serial, one.state.position
+        if serial is None:
+            continue
+        if position.value is not None and position.received_at_ns is not None:
+            speed_mps = 0.0 if one.flyer is None else one.flyer.speed_mps
+            newest[serial] = Before(position.value, speed_mps, position.received_at_ns)
+        elif one.before is not None:
+            newest[serial] = one.before
+    return newest
+
+
+def _still_held(station: Station) -> dict[str, Held]:
+    """The holds that nothing has ended: no newer order, and not the ground."""
+    return {
+        serial: held
+        for serial, held in station.watch.held.items()
+        if held.holds_against(station.intents.get(serial, _TOLD_NOTHING))
+        and _may_fly(station.fleet.vehicles.get(serial))
+    }
+
+
+def _lately_refused(station: Station, now_ns: int) -> dict[str, HoldRefused]:
+    """The holds that could not be given, until they are to be tried again."""
+    retry_ns = seconds_to_ns(station.settings.safety.watch.hold_retry_s)
+    refused = station.watch.holds_refused.items()
+    return {serial: one for serial, one in refused if now_ns - one.at_ns < retry_ns}
+
+
+def _may_fly(vehicle: VehicleState | None) -> bool:
+    return vehicle is not None and vehicle.is_flying.value is not False
+
+
+def _hold(station: Station, findings: Iterable[Finding], picture: Picture, now_ns: int) -> Stepped:
+    """Order a hold for each vehicle that a finding wants held, once.
+
+    One is held only when the hold went to its link: one that was refused, or waits for the vehicle
+    to be heard, holds nobody.
+    """
+    wanted = {finding.holds: finding for finding in findings if finding.holds is not None}
+    speeds_mps = {
+        one.state.serial: one.flyer.speed_mps for one in picture.flying if one.flyer is not None
+    }
+    outputs: tuple[Output, ...] = ()
+    for serial, finding in wanted.items():
+        if serial is None:
+            continue
+        station, number = take_id(station)
+        order = OperatorOrder(number, Hover(), f"station: {finding.rule}", serial)
+        station, sent = order_gateway.place(station, order, now_ns)
+        outputs += sent
+        if any(isinstance(output, SendCommand) for output in sent):
+            held = Held(now_ns, speeds_mps.get(serial, 0.0))
+            station = _with_held(station, serial, held)
+        else:
+            refused = HoldRefused(now_ns, station.orders.records[number].note)
+            station = _with_refused(station, serial, refused)
+        station = _said(station, finding, serial)
+    return station, outputs
+
+
+def _with_held(station: Station, serial: str, held: Held) -> Station:
+    known = {**station.watch.held, serial: held}
+    return replace(station, watch=replace(station.watch, held=known))
+
+
+def _with_refused(station: Station, serial: str, refused: HoldRefused) -> Station:
+    known = {**station.watch.holds_refused, serial: refused}
+    return replace(station, watch=replace(station.watch, holds_refused=known))
+
+
+def _said(station: Station, finding: Finding, serial: str) -> Station:
+    """The finding says what became of the hold that it wanted, also when it is not made again."""
+    watch, vehicle = station.watch, station.fleet.vehicles[serial]
+    refused = watch.holds_refused.get(serial)
+    words = hold_words(watch.held.get(serial), "" if refused is None else refused.why)
+    outcome = f"; {vehicle.display_name} {words}"
+    if outcome in finding.text:
+        return station  # it was held before, and is held again
+    told = replace(finding, text=f"{finding.text}{outcome}")
+    kept = replace(watch.findings[finding.key], finding=told)
+    return replace(station, watch=replace(watch, findings={**watch.findings, finding.key: kept}))
