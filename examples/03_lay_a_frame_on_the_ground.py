@@ -17,17 +17,17 @@ from recon.site import demo_site_folder, load_site
 def main() -> None:
     """Lay one frame on the demo site's grid and say how much of the field it shows."""
     site = load_site(demo_site_folder())
-    assert site.eye is not None
+    assert site.imager is not None
     assert site.ground_grid is not None
-    solution = site.eye.solution
+    solution = site.imager.solution
     print(f"pose: {solution.rms_px:.2f} px rms, {solution.height_above_ground_m:.1f} m up")
 
-    rows, cols = site.eye.camera.rows, site.eye.camera.cols
+    rows, cols = site.imager.camera.rows, site.imager.camera.cols
     row, col = np.mgrid[0:rows, 0:cols]
     board = np.where((row // 40 + col // 40) % 2, 230, 40).astype(np.uint8)
-    frame = Frame(1, site.eye.serial, 0, 0, 0.0, rgb=np.repeat(board[..., None], 3, axis=2))
+    frame = Frame(1, site.imager.serial, 0, 0, 0.0, rgb=np.repeat(board[..., None], 3, axis=2))
 
-    projector = GroundProjector(site.ground_grid, site.eye.camera, site.eye.image_circle)
+    projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     image = projector.lay(frame, solution.pose)
     print(f"ground image: {image.rgb.shape}, {image.valid.mean():.0%} of the grid seen")
     if len(sys.argv) > 1:

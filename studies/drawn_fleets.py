@@ -27,7 +27,7 @@ from studies.places import NOW_NS, ORIGIN, FloatArray, degrees, lat_lon
 from studies.sampled_fleets import Course, Need
 from studies.sampled_flights import EAST, HIGH, LOW, NORTH, Aircraft, Flight
 
-TRAFFIC = ("mission", "set out", "goto", "stick", "hover", "return", "landing", "free", "ghost")
+TRAFFIC = ("mission", "set out", "goto", "stick", "hover", "return", "landing", "free", "hazard")
 TRAFFIC_SHARES = (0.16, 0.12, 0.13, 0.12, 0.12, 0.12, 0.09, 0.09, 0.05)
 ORDERS = ("mission", "goto", "nudge", "stick", "hold")
 IN_THE_WAY = ("stick", "hover", "landing", "free")
@@ -111,10 +111,10 @@ def _traffic(
     rng: np.random.Generator, kind: str, spread_m: float, ordered: Flight
 ) -> tuple[Aircraft, Intent, list[Course]]:
     """A vehicle, what it was told, and what the sampling makes of it; often in the order's way."""
-    aircraft = _aircraft(rng, GHOSTS_SPREAD_M if kind == "ghost" else spread_m)
+    aircraft = _aircraft(rng, GHOSTS_SPREAD_M if kind == "hazard" else spread_m)
     if kind in IN_THE_WAY and rng.random() < 0.4:
         aircraft = replace(aircraft, here_m=_beside(rng, ordered))
-    if kind in ("mission", "set out", "ghost"):
+    if kind in ("mission", "set out", "hazard"):
         return _flying_a_mission(rng, kind, aircraft, spread_m)
     intent, flight = _simply_told(rng, kind, aircraft, spread_m)
     return aircraft, intent, [Course.of(kind, flight)]
@@ -130,11 +130,11 @@ def _flying_a_mission(
     else:
         passed = int(rng.integers(0, len(route.points_m)))
         aircraft = _on_route(rng, aircraft, route, passed)
-    if kind == "ghost":
+    if kind == "hazard":
         aircraft = replace(aircraft, age_s=float(rng.uniform(3.2, 60.0)))
-    is_told = kind != "ghost" or bool(rng.random() < 0.5)
+    is_told = kind != "hazard" or bool(rng.random() < 0.5)
     courses = [Course.of(kind, sampled.on_mission(aircraft, route, passed))] if is_told else []
-    if kind == "ghost":
+    if kind == "hazard":
         told_mps = float(route.speeds_mps.max()) if is_told else 0.0
         courses += [Course.around(kind, volume) for volume in sampled.hidden(aircraft, told_mps)]
     mission = _mission(route, aircraft.takeoff_m)

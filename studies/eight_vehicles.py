@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from recon.geo import point_from_enu
 from recon.model.command import Body, FlyMission, GoTo, Hover
-from recon.model.event import HolderCame, OperatorOrder
+from recon.model.event import OperatorOrder, OwnerConnected
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import NS_PER_S, seconds_to_ns
@@ -19,16 +19,16 @@ from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import parse_fault
 from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldFrames
-from recon.sim.camera.rig import EyeRig
-from recon.sim.camera.settings import EyeSettings
-from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig, build_fleet
+from recon.sim.camera.rig import ImagerRig
+from recon.sim.camera.settings import ImagerSettings
+from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.kernel.build import first_state, worker_tasks
 from recon.station.kernel.virtual import FakeLink, VirtualDriver
 
 VEHICLES = 8
-HOLDER = "the study"
+OWNER = "the study"
 MISSION_EVERY_S = 60.0
 HOVER_AFTER_S, GOTO_AFTER_S = 40.0, 48.0
 """Of each minute: first a mission, then a hover breaks it off, then a stream of sticks."""
@@ -89,11 +89,11 @@ class EightVehicles:
             self.connected.run_for(min(WATCHED_EVERY_S, until_then_s))
             self._do_what_is_due()
 
-    def order(self, serial: str, body: Body, holder: str | None = None) -> None:
+    def order(self, serial: str, body: Body, owner: str | None = None) -> None:
         """Say a word to the station as an operator does."""
         number = len(self.orders) + 1
         self.orders.append(number)
-        self.driver.handle(OperatorOrder(number, body, "study", serial, holder=holder))
+        self.driver.handle(OperatorOrder(number, body, "study", serial, owner=owner))
 
     def _fly(self, serial: str) -> None:
         """A minute of one vehicle, and then the next."""
@@ -104,9 +104,9 @@ class EightVehicles:
         self._after(MISSION_EVERY_S, lambda: self._fly(serial))
 
     def _steer(self, serial: str) -> None:
-        self.driver.handle(HolderCame(HOLDER))
+        self.driver.handle(OwnerConnected(OWNER))
         place, height_m = self._place(PLACES_M[serial]), self._height_m(serial)
-        self.order(serial, GoTo(place, height_m, SPEED_MPS), HOLDER)
+        self.order(serial, GoTo(place, height_m, SPEED_MPS), OWNER)
 
     def mission(self, serial: str) -> FlyMission:
         """Return the rows that a drone flies again and again."""
@@ -165,25 +165,25 @@ def eight_vehicles(
 
 def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> SimulationConfig:
     assert site.frame is not None
-    assert site.eye is not None
-    assert site.eye.marked_frame is not None
-    marked = site.eye.marked_frame
-    rig = EyeRig(site.eye.camera, site.frame, site.eye.solution.pose, marked)
+    assert site.imager is not None
+    assert site.imager.marked_frame is not None
+    marked = site.imager.marked_frame
+    rig = ImagerRig(site.imager.camera, site.frame, site.imager.solution.pose, marked)
     origin = site.frame.origin
     sun = SunSettings(LatLon(origin.latitude_deg, origin.longitude_deg))
     clouds = LayerSettings(cover=0.35, outer_scale_m=2_500.0, softness=0.15)
     source = FieldFrames(
         rig.camera,
-        site.eye.image_circle,
+        site.imager.image_circle,
         seed,
         Sky(SkySettings(seed, sun, (clouds,))),
-        EyeSettings(seed),
+        ImagerSettings(seed),
     )
     pads = {s: profile.pad for s, profile in site.profiles.items() if profile.pad is not None}
     return SimulationConfig(
         home=origin,
         vehicle_count=VEHICLES,
-        eye=EyeSetup(source, FeedSettings(PICTURES_HZ, starts_on=sees), rig),
+        imager=ImagerSetup(source, FeedSettings(PICTURES_HZ, starts_on=sees), rig),
         airborne=Airborne.ALL,
         sensors=FIELD_SENSORS,
         seed=seed,

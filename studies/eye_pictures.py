@@ -1,6 +1,6 @@
 """Draws what the simulated eye sees, for docs/world.md.
 
-    python -m studies.eye_pictures docs/images/eye.jpg
+    python -m studies.imager_pictures docs/images/imager.jpg
 
 From the left: few clouds from 60 m over a farm, broken clouds from 120 m, many clouds from 400 m.
 """
@@ -30,11 +30,11 @@ SHOTS = (
 
 def shot(height_m: float, east_m: float, north_m: float, cover: float, time_s: float) -> np.ndarray:
     """Return one picture's square around the image circle, small."""
-    eye = load_site(demo_site_folder()).eye
-    assert eye is not None
+    imager = load_site(demo_site_folder()).imager
+    assert imager is not None
     clouds = LayerSettings(cover=cover, outer_scale_m=2_500.0, softness=0.15)
     frames = FieldFrames(
-        eye.camera, eye.image_circle, SEED, Sky(SkySettings(SEED, layers=(clouds,)))
+        imager.camera, imager.image_circle, SEED, Sky(SkySettings(SEED, layers=(clouds,)))
     )
     said = TelemetryReference(0.0, 0.0, height_m, 15.0)
     pose = level_pose(said, np.array([east_m, north_m, height_m]))

@@ -15,7 +15,7 @@ import time
 from collections import Counter
 from dataclasses import dataclass, field
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     Body,
     FlyMission,
@@ -207,7 +207,7 @@ class SessionStudy:
         number = len(self._orders) + 1
         body, mark = self._body(vehicle, number)
         serial, driver = vehicle.app.serial, self.driver
-        driver.handle(AuthorityTaken(serial, Leader.OPERATOR, "study"))
+        driver.handle(AuthorityTaken(serial, AuthorityHolder.OPERATOR, "study"))
         driver.handle(PreflightOverridden(serial, "study", "the session is studied"))
         driver.handle(OperatorOrder(number, body, "study", serial=serial))
         order = _Order(vehicle, body, mark, driver.now_ns)
@@ -245,7 +245,7 @@ class SessionStudy:
                 del self._open[number]
                 continue
             order.record = record
-            if not record.is_watched:
+            if not record.is_tracked:
                 order.ended_ns = self.driver.now_ns
                 del self._open[number]
             elif self.driver.now_ns - order.placed_ns > seconds_to_ns(OPEN_FOR_S):

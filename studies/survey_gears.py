@@ -36,7 +36,7 @@ limit_min = 60.0
 [fleet]
 survey_drones = {drones}
 endurance_min = 60.0
-[eye]
+[imager]
 radius_m = {radius}
 height_m = 120.0
 period_s = 5

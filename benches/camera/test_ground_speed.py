@@ -45,14 +45,14 @@ def maps_of_every_cell(
     return pixels[..., 0], pixels[..., 1]
 
 
-def test_a_frame_of_a_hovering_eye_is_laid_in_under_5_ms_on_one_core(
+def test_a_frame_of_a_hovering_imager_is_laid_in_under_5_ms_on_one_core(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     cv2.setNumThreads(1)
     site = load_site(demo_site_folder())
-    assert site.eye is not None
+    assert site.imager is not None
     assert site.ground_grid is not None
-    grid, camera = site.ground_grid, site.eye.camera
+    grid, camera = site.ground_grid, site.imager.camera
     assert (grid.rows, grid.cols) == (512, 512)
     rgb = np.random.default_rng(1).integers(0, 256, (720, 1280, 3), dtype=np.uint8)
     # A hovering eye is a little elsewhere in every frame, so no map can be used twice.
@@ -63,7 +63,7 @@ def test_a_frame_of_a_hovering_eye_is_laid_in_under_5_ms_on_one_core(
         )
         for turn in range(ROUNDS)
     ]
-    projector = GroundProjector(grid, camera, site.eye.image_circle)
+    projector = GroundProjector(grid, camera, site.imager.image_circle)
     fixed_maps = ground_maps(grid, camera, poses[0])
 
     def lay(turn: int) -> object:

@@ -8,7 +8,7 @@ from time import process_time
 import cv2
 import numpy as np
 import pytest
-from tests.detection.shaded_field import FRAME, DriftingShade, Eye, Land
+from tests.detection.shaded_field import FRAME, DriftingShade, Imager, Land
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
 from recon.model.geo import GroundGrid
@@ -25,8 +25,8 @@ def test_a_frame_of_512_by_512_takes_under_30_ms(
     method: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     cv2.setNumThreads(1)
-    eye, land, shade = Eye(grid=GRID), Land(1), DriftingShade(1)
-    images = [eye.see(land, shade, EVERY_S * i) for i in range(120)]
+    imager, land, shade = Imager(grid=GRID), Land(1), DriftingShade(1)
+    images = [imager.see(land, shade, EVERY_S * i) for i in range(120)]
     stack = np.stack([image.rgb[..., 1] for image in images[:24]]).astype(np.float32)
     settings, state = DetectionSettings(), DetectionState()
     taken_ms, copy_ms, percentile_ms = [], [], []

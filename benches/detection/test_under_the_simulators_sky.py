@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import pytest
 from tests.detection.flights import shade_of
-from tests.detection.shaded_field import FIELD, FOOTPRINT, DriftingShade, Eye, Land
+from tests.detection.shaded_field import FIELD, FOOTPRINT, DriftingShade, Imager, Land
 
 from recon.detection import DetectionSettings
 from recon.model.geo import GroundGrid
@@ -48,7 +48,7 @@ def test_share_of_cells_told_wrongly(cover: float, capsys: pytest.CaptureFixture
     covers = []
     for seed in SEEDS:
         shade = SkyShade(seed, cover=cover)
-        images = [Eye().see(Land(seed), shade, float(at_s)) for at_s in TIMES_S]
+        images = [Imager().see(Land(seed), shade, float(at_s)) for at_s in TIMES_S]
         is_shade = [shade.transmittance(FIELD, float(t)) < SUNLIT_TRANSMITTANCE for t in TIMES_S]
         covers.append(np.mean([truth[FOOTPRINT].mean() for truth in is_shade]))
         for name, settings in SETTINGS.items():

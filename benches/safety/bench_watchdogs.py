@@ -25,10 +25,10 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.stamped import Stamped
 from recon.model.vehicle import FlightMode, VehicleProfile, VehicleState, VelocityNed
 from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
-from recon.safety import Claimant, PreparedAirspace, SafetySettings, Situation, Traffic
+from recon.safety import ClaimingLink, PreparedAirspace, SafetySettings, Situation, Traffic
 from recon.safety.prediction.sampling import Samples
 from recon.safety.rules.separation import separation as rule
-from recon.safety.watchdogs import WATCHDOGS, Picture, Watched, take_picture
+from recon.safety.watchdogs import WATCHDOGS, Picture, WatchedVehicle, take_picture
 from recon.safety.watchdogs.closeness import closeness, near_pairs
 from recon.safety.watchdogs.separation import watched_separation
 from recon.station.kernel.driver import spare_what_is_loaded
@@ -81,7 +81,7 @@ def vehicle(serial: str, at: LatLon, velocity: VelocityNed, home: LatLon) -> Veh
     )
 
 
-def fleet(rng: Random) -> list[Watched]:
+def fleet(rng: Random) -> list[WatchedVehicle]:
     """Vehicles somewhere on their surveys; every eighth on its way into the one before."""
     found = []
     for number in range(VEHICLES):
@@ -103,7 +103,7 @@ def fleet(rng: Random) -> list[Watched]:
                 Intent(),
             )
         state = vehicle(f"V{number:02d}", at, VelocityNed(0.0, east_mps, 0.0), home)
-        found.append(Watched(state, intent))
+        found.append(WatchedVehicle(state, intent))
     return found
 
 
@@ -161,11 +161,11 @@ def vectorised(picture: Picture) -> int:
     return int((closeness(flies, first, flies, second, need)[0] < 1.0).any(axis=1).sum())
 
 
-def judge_ms(air: PreparedAirspace, watched: list[Watched], body: Body, times: int) -> float:
+def judge_ms(air: PreparedAirspace, watched: list[WatchedVehicle], body: Body, times: int) -> float:
     own, others = watched[0], watched[1:]
     traffic = tuple(Traffic(one.state, one.intent) for one in others)
-    claimants = (Claimant(1, own.state.is_flying),)
-    situation = Situation(NOW, own.state, claimants, airspace=air, traffic=traffic)
+    claiming_links = (ClaimingLink(1, own.state.is_flying),)
+    situation = Situation(NOW, own.state, claiming_links, airspace=air, traffic=traffic)
     command = Command(1, body, "bench", NOW, NOW + 5 * S, serial=own.state.serial)
     return float(np.median(timed_ms(lambda: rule(command, situation), times)))
 

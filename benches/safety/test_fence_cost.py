@@ -22,7 +22,7 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
 from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
-from recon.safety import Claimant, PreparedAirspace, Situation
+from recon.safety import ClaimingLink, PreparedAirspace, Situation
 from recon.safety.flown import flown
 from recon.safety.flown_path import FlownPath, Kind
 from recon.safety.rules.boundary import boundary
@@ -56,7 +56,7 @@ class Case:
         situation = Situation(
             self.situation.now_ns,
             self.situation.vehicle,
-            self.situation.claimants,
+            self.situation.claiming_links,
             airspace=self.situation.airspace,
         )
         for rule in RULES:
@@ -108,7 +108,9 @@ def vehicle() -> VehicleState:
 def case(name: str, body: Body, *, hilly: bool) -> Case:
     state = vehicle()
     order = Command(1, body, "bench", NOW, NOW + 10**9, serial="A")
-    situation = Situation(NOW, state, (Claimant(1, state.is_flying),), airspace=air(hilly=hilly))
+    situation = Situation(
+        NOW, state, (ClaimingLink(1, state.is_flying),), airspace=air(hilly=hilly)
+    )
     return Case(name, order, situation)
 
 

@@ -27,7 +27,7 @@ LEAST = 1_500.0
 def test_three_drones_fly_far_faster_than_time(capsys: pytest.CaptureFixture[str]) -> None:
     scenario = load_scenario(SCENARIO)
     scenario = replace(
-        scenario, methods=Methods("ideal", "none"), eye=replace(scenario.eye, cell_m=CELL_M)
+        scenario, methods=Methods("ideal", "none"), imager=replace(scenario.imager, cell_m=CELL_M)
     )
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)

@@ -35,11 +35,11 @@ def one_core():
 
 
 @pytest.mark.parametrize("height_m", [60.0, 120.0, 400.0])
-def test_a_hovering_eye(height_m: float) -> None:
-    eye = load_site(demo_site_folder()).eye
-    assert eye is not None
+def test_a_hovering_imager(height_m: float) -> None:
+    imager = load_site(demo_site_folder()).imager
+    assert imager is not None
     sky = Sky(SkySettings(3, layers=(LOW, HIGH)))
-    frames = FieldFrames(eye.camera, eye.image_circle, 0, sky)
+    frames = FieldFrames(imager.camera, imager.image_circle, 0, sky)
     pose = level_pose(TelemetryReference(0.0, 0.0, height_m, 20.0), np.array([0.0, 0.0, height_m]))
     frames.prepare()
     frames.render(View(0.0, 0, pose))

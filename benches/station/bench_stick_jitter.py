@@ -124,18 +124,18 @@ def _order_goto(driver: AsyncioDriver, number: int) -> None:
     order = OperatorOrder(number + 1, GoTo(target, 40.0, 5.0), "bench", serial(number))
     driver.handle(order)
     record = driver.station.orders.records[order.command_id]
-    if not record.is_watched:
+    if not record.is_tracked:
         raise RuntimeError(f"expected an order that is flown, got {record.note}")
 
 
 def _busy_worker(laid: list[int]) -> ThreadWorker:
     """Return a worker that lays one frame after another, and counts them."""
     site = load_site(demo_site_folder())
-    assert site.eye is not None
-    camera = site.eye.camera
+    assert site.imager is not None
+    camera = site.imager.camera
     rng = np.random.default_rng(1)
     pixels = rng.integers(0, 256, (camera.rows, camera.cols, 3), dtype=np.uint8)
-    frame = Frame(1, site.eye.serial, 0, 0, 0.0, rgb=pixels)
+    frame = Frame(1, site.imager.serial, 0, 0, 0.0, rgb=pixels)
     at = TelemetryReference(LATITUDE_DEG, LONGITUDE_DEG, 120.0, 10.0)
     work = StartWork(1, LAY_FRAME, LayFrame(frame, at, at))
 

@@ -26,7 +26,7 @@ from benches.station.app_load import (
 
 from recon import wire
 
-EYE_SERIAL = b"SIM-EYE"
+IMAGER_SERIAL = b"SIM-IMAGER"
 
 
 class StoppedApp(asyncio.Protocol):
@@ -34,7 +34,7 @@ class StoppedApp(asyncio.Protocol):
 
     def __init__(self, number: int, image: bytes | None, is_flying: bool = True) -> None:
         self.number = number
-        self.serial = EYE_SERIAL if number == 0 else f"STOP-{number:03d}".encode()
+        self.serial = IMAGER_SERIAL if number == 0 else f"STOP-{number:03d}".encode()
         self.image = image
         self.is_flying = is_flying
         self.stops: list[tuple[float, int]] = []

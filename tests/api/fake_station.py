@@ -21,7 +21,7 @@ from recon.api.schema import (
     WordResponse,
 )
 from recon.api.security import Access
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
@@ -72,12 +72,10 @@ class FakeStation:
         *,
         takeoff: bool,
         issued_by: str,
-        holder: str | None = None,
+        owner: str | None = None,
     ) -> OrderResponse:
         self.asked.append((serials, body, takeoff))
-        return self.service.order(
-            serials, body, takeoff=takeoff, issued_by=issued_by, holder=holder
-        )
+        return self.service.order(serials, body, takeoff=takeoff, issued_by=issued_by, owner=owner)
 
     def check(
         self,
@@ -86,20 +84,18 @@ class FakeStation:
         *,
         takeoff: bool,
         issued_by: str,
-        holder: str | None = None,
+        owner: str | None = None,
     ) -> OrderResponse:
-        return self.service.check(
-            serials, body, takeoff=takeoff, issued_by=issued_by, holder=holder
-        )
+        return self.service.check(serials, body, takeoff=takeoff, issued_by=issued_by, owner=owner)
 
     def audit(self, after: int, at_most: int) -> AuditPage:
         return self.service.audit(after, at_most)
 
-    def holder_came(self, holder: str) -> None:
-        self.service.holder_came(holder)
+    def owner_connected(self, owner: str) -> None:
+        self.service.owner_connected(owner)
 
-    def holder_gone(self, holder: str) -> None:
-        self.service.holder_gone(holder)
+    def owner_disconnected(self, owner: str) -> None:
+        self.service.owner_disconnected(owner)
 
     def all_stop(self, issued_by: str) -> OrderResponse:
         return self.service.all_stop(issued_by)
@@ -107,14 +103,14 @@ class FakeStation:
     def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
         return self.service.fleet_return(serials, issued_by)
 
-    def dismiss_ghost(self, name: str, by: str) -> bool:
-        return self.service.dismiss_ghost(name, by)
+    def dismiss_hazard(self, name: str, by: str) -> bool:
+        return self.service.dismiss_hazard(name, by)
 
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
         self.service.switch_separation_hold(is_on, by)
 
-    def take_authority(self, serial: str, leader: Leader, by: str) -> WordResponse:
-        return self.service.take_authority(serial, leader, by)
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> WordResponse:
+        return self.service.take_authority(serial, holder, by)
 
     def preflight(self, serial: str) -> PreflightView | None:
         return self.service.preflight(serial)

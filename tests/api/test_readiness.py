@@ -9,9 +9,9 @@ from tests.link.approved import core, extended
 
 from recon import wire
 from recon.api import schema
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.event import LinkOpened, PacketReceived
-from recon.station.control.authority import lead_of
+from recon.station.control.authority import authority_of
 from recon.vehicles.reports import to_report
 
 
@@ -35,42 +35,49 @@ def vehicle(client: Client) -> dict[str, Any]:
 
 
 class TestAuthority:
-    def take(self, client: Client, leader: str, serial: str = "A") -> dict[str, Any]:
-        response = client.post(f"/api/vehicles/{serial}/authority", json={"leader": leader})
+    def take(self, client: Client, holder: str, serial: str = "A") -> dict[str, Any]:
+        response = client.post(f"/api/vehicles/{serial}/authority", json={"holder": holder})
         assert response.status_code == 200
         answer: dict[str, Any] = response.json()
         return answer
 
     def test_at_first_the_operator_leads(self, client: Client) -> None:
-        assert vehicle(client)["lead"] == {
-            "leader": "operator",
-            "holder": "",
+        assert vehicle(client)["authority"] == {
+            "holder": "operator",
+            "holder_name": "",
             "age_s": None,
             "reason": "nobody has taken it yet",
         }
 
-    @pytest.mark.parametrize("leader", ["pilot", "guidance", "operator"])
+    @pytest.mark.parametrize("holder", ["pilot", "guidance", "operator"])
     def test_a_word_changes_who_leads(
-        self, client: Client, station: FakeStation, leader: str
+        self, client: Client, station: FakeStation, holder: str
     ) -> None:
-        taken = self.take(client, leader)
+        taken = self.take(client, holder)
         assert taken == {"accepted": True, "rule": None, "reason": None}
-        lead = lead_of(station.driver.station, "A")
-        assert (lead.leader, lead.holder) == (Leader(leader), "api 127.0.0.1")
-        told = vehicle(client)["lead"]
-        assert (told["leader"], told["holder"], told["age_s"]) == (leader, "api 127.0.0.1", 0.0)
+        authority = authority_of(station.driver.station, "A")
+        assert (authority.holder, authority.holder_name) == (
+            AuthorityHolder(holder),
+            "api 127.0.0.1",
+        )
+        told = vehicle(client)["authority"]
+        assert (told["holder"], told["holder_name"], told["age_s"]) == (
+            holder,
+            "api 127.0.0.1",
+            0.0,
+        )
 
     def test_a_refusal_is_an_answer(self, client: Client, station: FakeStation) -> None:
         self.take(client, "pilot")
         answer = self.take(client, "guidance")
         assert (answer["accepted"], answer["rule"]) == (False, "authority")
         assert "takes nothing from a pilot" in answer["reason"]
-        assert lead_of(station.driver.station, "A").leader is Leader.PILOT
+        assert authority_of(station.driver.station, "A").holder is AuthorityHolder.PILOT
 
     def test_nobody_leads_what_is_not_known(self, client: Client) -> None:
         assert "X is not known" in self.take(client, "operator", "X")["reason"]
 
-    @pytest.mark.parametrize("body", [{}, {"leader": "cat"}, {"leader": "pilot", "by": "me"}])
+    @pytest.mark.parametrize("body", [{}, {"holder": "cat"}, {"holder": "pilot", "by": "me"}])
     def test_another_form_is_not_taken(self, client: Client, body: dict[str, str]) -> None:
         assert client.post("/api/vehicles/A/authority", json=body).status_code == 422
 

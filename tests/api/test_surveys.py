@@ -6,8 +6,8 @@ import pytest
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 from tests.ready import ready_profile, ready_site
+from tests.station.imaging.test_shade_line import ground_image
 from tests.station.station_world import HOME
-from tests.station.test_shade_line import ground_image
 
 from recon.detection import DetectionState, RejectedFrame
 from recon.detection.rejected import FrameFault
@@ -202,9 +202,9 @@ class TestShade:
         is_foreseen = float(told) <= 300.0
         assert (drawn[..., 3] == 255).any() == is_foreseen
 
-    @pytest.mark.parametrize("lead", ["-1", "nan", "soon"])
-    def test_a_lead_that_is_none_is_refused(self, client: Client, lead: str) -> None:
-        assert client.get(f"/api/forecast.png?lead_s={lead}").status_code == 422
+    @pytest.mark.parametrize("authority", ["-1", "nan", "soon"])
+    def test_a_lead_that_is_none_is_refused(self, client: Client, authority: str) -> None:
+        assert client.get(f"/api/forecast.png?lead_s={authority}").status_code == 422
 
 
 def decoded(data: bytes) -> np.ndarray:
@@ -221,7 +221,7 @@ def found() -> tuple[ShadeMap, SunForecast]:
     )
     light = np.where(valid, light, np.float32(np.nan)).astype(np.float32)
     ones = np.ones((3, 4), np.float32)
-    shade = ShadeMap(grid, 0, ("EYE",), light, valid, ones, ones)
+    shade = ShadeMap(grid, 0, ("IMAGER",), light, valid, ones, ones)
     return shade, persisting(shade, 0.5, ForecastSettings())
 
 

@@ -116,13 +116,13 @@ def test_the_ground_gets_its_own_colours_back(rows: int, cols: int) -> None:
 
 
 def frame_of(rgb: np.ndarray | None = None, jpeg: bytes | None = None) -> Frame:
-    return Frame(41, "EYE", 2_000, 1_000, 0.25, rgb=rgb, jpeg=jpeg)
+    return Frame(41, "IMAGER", 2_000, 1_000, 0.25, rgb=rgb, jpeg=jpeg)
 
 
 def test_the_ground_image_says_where_from_and_when() -> None:
     rgb = np.full((720, 1280, 3), 90, np.uint8)
     image = GroundProjector(GRID, DEMO).lay(frame_of(rgb), POSE)
-    assert (image.frame_id, image.serial, image.captured_at_ns) == (41, "EYE", 1_000)
+    assert (image.frame_id, image.serial, image.captured_at_ns) == (41, "IMAGER", 1_000)
     assert image.registration is Registration.UNREGISTERED
     assert image.rgb.shape == (512, 512, 3)
     assert image.valid.dtype == np.bool_

@@ -30,7 +30,7 @@ limit_min = 10.0
 [fleet]
 survey_drones = 2
 
-[eye]
+[imager]
 radius_m = 100.0
 """
 

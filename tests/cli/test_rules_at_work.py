@@ -36,7 +36,7 @@ def beside_a_pilot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Told]:
 
 @pytest.fixture(scope="module")
 def unheard(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Told]:
-    """One alone: whoever flies beside a vehicle that is not heard is held for its ghost."""
+    """One alone: whoever flies beside a vehicle that is not heard is held for its hazard area."""
     with nudged(tmp_path_factory.mktemp("audit"), "telemetry-dropout:SIM-1:15:5") as told:
         yield told
 

@@ -35,7 +35,7 @@ command.command()(sim_command)
         (["--latency-s", "-1"], "--latency-s: expected"),
         (["--endurance-min", "-5"], "--endurance-min: expected a positive number"),
         (["--fault", "gremlins"], "expected one of ack-then-nothing"),
-        (["--fault", "no-ack:SIM-77"], "expected a vehicle of SIM-EYE"),
+        (["--fault", "no-ack:SIM-77"], "expected a vehicle of SIM-IMAGER"),
         (["--frames", "/no/such/folder"], "expected a folder of images"),
         (["--frames", "/", "--frame-size", "big"], "--frame-size: expected COLSxROWS"),
         (["--replay-site", "/no/such/folder"], "expected a folder with RefFrame.jpeg"),
@@ -112,7 +112,7 @@ def test_a_run_with_made_up_land_ends_politely() -> None:
     options = ["--fps", "5", "--latency-s", "0.05", "--airborne", "--wander"]
     packets, output, code = asyncio.run(_listen_until_spoken_to(options))
     assert code == 0
-    assert "simulating SIM-EYE, SIM-1, SIM-2, SIM-3" in output
+    assert "simulating SIM-IMAGER, SIM-1, SIM-2, SIM-3" in output
     assert output.endswith("simulation ended\n")
     image = next(p for p in packets if isinstance(p, wire.Image))
     assert image.pixels.shape == (720, 1280, 3)

@@ -138,8 +138,8 @@ class TestStart:
         assert kinds["survey.started"]["details"]["serials"] == ["SIM-1"]
         assert kinds["survey.aborted"]["details"]["id"] == number
         assert kinds["survey.refused"]["details"]["asked"] == "started"
-        leads = [e["details"]["leader"] for e in entries if e["kind"] == "authority.taken"]
-        assert leads[-2:] == ["guidance", "operator"]
+        authorities = [e["details"]["holder"] for e in entries if e["kind"] == "authority.taken"]
+        assert authorities[-2:] == ["guidance", "operator"]
 
     def test_what_its_vehicles_do_then_is_said(self, here: Flown) -> None:
         asked = ("survey", "create", "west field", *FLOWN, "--json")

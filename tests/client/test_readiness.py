@@ -19,12 +19,12 @@ def test_a_vehicle_is_taken_and_given_by_word() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
             assert await vehicle.give_to_guidance() is None
-            assert refused(await vehicle.fly(leg_north(vehicle))).rule == "leader"
+            assert refused(await vehicle.fly(leg_north(vehicle))).rule == "authority"
             assert await vehicle.take() is None
             accepted(await vehicle.fly(leg_north(vehicle)))
             assert await vehicle.give_to_pilot() is None
             async for state in vehicle.telemetry():
-                if state.lead.leader == "pilot":
+                if state.authority.holder == "pilot":
                     break
             answer = await vehicle.give_to_guidance()
             assert isinstance(answer, Refusal)

@@ -1,4 +1,4 @@
-"""Ghosts dismissed and separation holds switched from Python, on a real station."""
+"""Hazard areas dismissed and separation holds switched from Python, on a real station."""
 
 import asyncio
 
@@ -8,12 +8,12 @@ from tests.client.running_station import running_station
 from recon.client import RequestRefusedError, Station
 
 
-def test_a_vehicle_that_is_heard_is_no_ghost() -> None:
+def test_a_vehicle_that_is_heard_is_no_hazard() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            with pytest.raises(RequestRefusedError, match="no ghost"):
-                await vehicle.dismiss_ghost()
+            with pytest.raises(RequestRefusedError, match="no hazard area"):
+                await vehicle.dismiss_hazard()
 
     asyncio.run(main())
 

@@ -20,8 +20,10 @@ def vehicle(serial: str | None = "SIM-1", age_s: float | None = 0.05) -> schema.
         name="one",
         model="M300",
         is_simulated=True,
-        is_eye=False,
-        lead=schema.LeadView(leader="operator", holder="", age_s=None, reason="nobody yet"),
+        is_imager=False,
+        authority=schema.AuthorityView(
+            holder="operator", holder_name="", age_s=None, reason="nobody yet"
+        ),
         preflight_override=None,
         steering=None,
         staleness="live",

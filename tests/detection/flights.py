@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from tests.detection.shaded_field import FIELD, FOOTPRINT, DriftingShade, Eye, Land, shade_iou
+from tests.detection.shaded_field import FIELD, FOOTPRINT, DriftingShade, Imager, Land, shade_iou
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
 from recon.model.imagery import GroundImage
@@ -43,7 +43,7 @@ class Watch:
         wrong_m = np.random.default_rng(self.seed).normal(0.0, self.placed_m, (1_000, 2))
         times_s = np.arange(0.0, self.lasts_s, FRAME_EVERY_S)
         return [
-            Eye(offset_m=tuple(wrong_m[i])).see(
+            Imager(offset_m=tuple(wrong_m[i])).see(
                 land, shade, at_s, self.gains[int(at_s // 30.0) % len(self.gains)]
             )
             for i, at_s in enumerate(times_s)

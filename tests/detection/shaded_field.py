@@ -92,7 +92,7 @@ class Land:
 
 
 @dataclass(slots=True)
-class Eye:
+class Imager:
     """A camera over the field: exposure, noise, what it sees, where it hovers."""
 
     diffuse_share: float = 0.25
@@ -101,7 +101,7 @@ class Eye:
     offset_m: tuple[float, float] = (0.0, 0.0)
     """How far frames are placed wrongly."""
     grid: GroundGrid = GRID
-    serial: str = "EYE"
+    serial: str = "IMAGER"
 
     def see(
         self, land: Land, shade: DriftingShade, time_s: float, gain: float = 1.0

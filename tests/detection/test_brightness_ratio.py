@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.detection.flights import Watch, shade_of
-from tests.detection.shaded_field import FIELD, FOOTPRINT, GRID, DriftingShade, Eye, Land
+from tests.detection.shaded_field import FIELD, FOOTPRINT, GRID, DriftingShade, Imager, Land
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
 from recon.model.geo import GroundGrid
@@ -55,8 +55,8 @@ class TestExposure:
     def test_an_even_dimming_of_everything_counts_as_the_cameras_unless_it_is_locked(self) -> None:
         """What it cannot tell: the page says so, and the setting decides."""
         land, clear = Land(1), DriftingShade(1, cover=0.001)
-        eye = Eye()
-        images = [eye.see(land, clear, 5.0 * i, 0.5 if i == 20 else 1.0) for i in range(21)]
+        imager = Imager()
+        images = [imager.see(land, clear, 5.0 * i, 0.5 if i == 20 else 1.0) for i in range(21)]
         followed = shade_of(images, METHOD)[-1]
         locked = shade_of(images, METHOD, DetectionSettings(follows_exposure=False))[-1]
         assert followed.is_sunlit[FOOTPRINT].mean() > 0.99
@@ -76,7 +76,7 @@ class TestWhatIsNotKnown:
         """Clear sky, or one shadow over everything: its own past does not tell which."""
         for transmittance in (0.001, 0.999):
             land, still = Land(2), DriftingShade(2, cover=transmittance, velocity_mps=(0.0, 0.0))
-            maps = shade_of([Eye().see(land, still, 2.5 * i) for i in range(60)], METHOD)
+            maps = shade_of([Imager().see(land, still, 2.5 * i) for i in range(60)], METHOD)
             flat = DetectionSettings().flat_confidence
             assert maps[-1].confidence[FOOTPRINT].max() < flat + 0.25
             assert np.median(maps[-1].confidence[FOOTPRINT]) < flat + 0.05
@@ -99,7 +99,7 @@ class TestWhatIsNotKnown:
 
 
 class TestOneGridForAll:
-    def test_frames_laid_where_the_eye_drifts_to_give_maps_that_line_up(self) -> None:
+    def test_frames_laid_where_the_imager_drifts_to_give_maps_that_line_up(self) -> None:
         watch = Watch(9_102, lasts_s=90.0)
         land, shade = Land(watch.seed), watch.shade()
         drift_m = np.random.default_rng(5).uniform(-30.0, 30.0, (100, 2))
@@ -107,7 +107,7 @@ class TestOneGridForAll:
         for i, at_s in enumerate(np.arange(0.0, 90.0, 2.5)):
             west_m, north_m = -256.0 + drift_m[i, 0], 256.0 + drift_m[i, 1]
             laid = GroundGrid(GRID.frame, west_m, north_m, 2.0, 256, 256)
-            images.append(Eye(grid=laid).see(land, shade, at_s))
+            images.append(Imager(grid=laid).see(land, shade, at_s))
         fixed = shade_of(watch.images(), METHOD, DetectionSettings(grid=FIELD))
         moved = shade_of(images, METHOD, DetectionSettings(grid=FIELD))
         assert {m.grid for m in (*fixed, *moved)} == {FIELD}
@@ -116,19 +116,19 @@ class TestOneGridForAll:
         assert np.mean(moved[-1].is_sunlit[middle] != fixed[-1].is_sunlit[middle]) < 0.02
 
     def test_without_a_grid_the_first_frames_is_kept(self) -> None:
-        eye = Eye()
-        images = [eye.see(Land(3), DriftingShade(3), 5.0 * i) for i in range(3)]
+        imager = Imager()
+        images = [imager.see(Land(3), DriftingShade(3), 5.0 * i) for i in range(3)]
         shifted = replace(images[2], grid=replace(GRID, west_m=-200.0))
         maps = shade_of([*images[:2], shifted], METHOD)
         assert {m.grid for m in maps} == {FIELD}
         assert not maps[2].valid[:, :10].any()
 
-    def test_another_eye_begins_anew(self) -> None:
+    def test_another_imager_begins_anew(self) -> None:
         land, shade = Land(4), DriftingShade(4)
-        first = [Eye().see(land, shade, 5.0 * i) for i in range(6)]
-        second = [Eye(serial="EYE-2").see(land, shade, 30.0 + 5.0 * i) for i in range(6)]
+        first = [Imager().see(land, shade, 5.0 * i) for i in range(6)]
+        second = [Imager(serial="IMAGER-2").see(land, shade, 30.0 + 5.0 * i) for i in range(6)]
         maps = shade_of([*first, *second], METHOD)
-        assert [m.source_serials for m in maps[5:7]] == [("EYE",), ("EYE-2",)]
+        assert [m.source_serials for m in maps[5:7]] == [("IMAGER",), ("IMAGER-2",)]
         assert maps[5].valid.any()
         assert not maps[6].valid.any()
         assert maps[11].valid.any()
@@ -138,9 +138,9 @@ class TestOneGridForAll:
 def test_memory_is_bounded(method: str) -> None:
     settings = DetectionSettings(window_s=20.0, samples=5)
     state = DetectionState()
-    eye = Eye(grid=GroundGrid(GRID.frame, -256.0, 256.0, 16.0, 32, 32))
+    imager = Imager(grid=GroundGrid(GRID.frame, -256.0, 256.0, 16.0, 32, 32))
     for i in range(120):
-        image = eye.see(Land(5), DriftingShade(5), 1.0 * i)
+        image = imager.see(Land(5), DriftingShade(5), 1.0 * i)
         state, found = DETECTORS[method](state, image, settings)
         assert isinstance(found, ShadeMap), found
         assert state.history is None or len(state.history.samples) <= 5

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.detection.shaded_field import FRAME, DriftingShade, Eye, Land
+from tests.detection.shaded_field import FRAME, DriftingShade, Imager, Land
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
 from recon.model.geo import GroundGrid
@@ -25,15 +25,15 @@ def drawn_image(rng: np.random.Generator, i: int) -> GroundImage:
     west_m, north_m = rng.uniform(-60.0, -20.0), rng.uniform(20.0, 60.0)
     grid = GroundGrid(FRAME, west_m, north_m, 2.0, SMALL.rows, SMALL.cols)
     at_ns = round(i * 1.3e9) - (2_000_000_000 if rng.random() < 0.1 else 0)
-    pose = Eye(grid=SMALL).image(np.zeros((SMALL.rows, SMALL.cols, 3)), 0.0).pose
+    pose = Imager(grid=SMALL).image(np.zeros((SMALL.rows, SMALL.cols, 3)), 0.0).pose
     rgb = np.where(valid[..., np.newaxis], levels, 0).astype(np.uint8)
-    return GroundImage(grid, i, at_ns, rgb, valid, pose, serial="EYE")
+    return GroundImage(grid, i, at_ns, rgb, valid, pose, serial="IMAGER")
 
 
 def check(found: ShadeMap, image: GroundImage) -> None:
     shape = (found.grid.rows, found.grid.cols)
     assert found.captured_at_ns == image.captured_at_ns
-    assert found.source_serials == ("EYE",)
+    assert found.source_serials == ("IMAGER",)
     arrays = (found.transmittance, found.confidence, found.metres_per_pixel)
     assert all(array.shape == shape and array.dtype == np.float32 for array in arrays)
     assert found.valid.dtype == np.bool_
@@ -76,17 +76,17 @@ def test_whatever_comes_maps_are_sound_and_runs_are_repeatable(method: str, seed
 @methods
 def test_a_step_from_an_old_state_gives_the_same_again(method: str) -> None:
     """States are values: what came after does not reach back into them."""
-    step, eye, land, shade = DETECTORS[method], Eye(grid=SMALL), Land(8), DriftingShade(8)
+    step, imager, land, shade = DETECTORS[method], Imager(grid=SMALL), Land(8), DriftingShade(8)
     settings_ = DetectionSettings(least_samples=1, cell_m=4.0)
     states = [DetectionState()]
     maps = []
     for i in range(6):
-        state, found = step(states[-1], eye.see(land, shade, 6.0 * i), settings_)
+        state, found = step(states[-1], imager.see(land, shade, 6.0 * i), settings_)
         assert isinstance(found, ShadeMap)
         states.append(state)
         maps.append(found)
     for i in (4, 1):
-        _, again = step(states[i], eye.see(land, shade, 6.0 * i), settings_)
+        _, again = step(states[i], imager.see(land, shade, 6.0 * i), settings_)
         assert isinstance(again, ShadeMap)
         assert np.array_equal(again.transmittance, maps[i].transmittance, equal_nan=True)
 
@@ -95,12 +95,12 @@ def test_a_step_from_an_old_state_gives_the_same_again(method: str) -> None:
 def test_a_dark_patch_that_comes_is_shade(method: str) -> None:
     """On even ground, where any method must see it."""
     rng = np.random.default_rng(3)
-    state, eye = DetectionState(), Eye(grid=SMALL)
+    state, imager = DetectionState(), Imager(grid=SMALL)
     for i in range(8):
         levels = rng.normal(150.0, 3.0, (SMALL.rows, SMALL.cols, 3))
         if i == 7:
             levels[10:20, 10:20] *= 0.6
-        image = eye.image(np.rint(levels).astype(np.uint8), 5.0 * i)
+        image = imager.image(np.rint(levels).astype(np.uint8), 5.0 * i)
         state, found = DETECTORS[method](state, image, DetectionSettings())
     assert isinstance(found, ShadeMap)
     expected = np.zeros((20, 18), bool)

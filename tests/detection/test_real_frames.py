@@ -43,7 +43,7 @@ def laid(folder: Path, name: str) -> GroundImage:
     grid = GroundGrid(frame, east_m - 256.0, north_m + 256.0, 1.0, 512, 512)
     rgb = decode_jpeg((folder / name / "RefFrame.jpeg").read_bytes())
     found, valid = GroundProjector(grid, camera).lay_pixels(rgb, pose)
-    return GroundImage(grid, 1, 0, found, valid, pose, serial="EYE")
+    return GroundImage(grid, 1, 0, found, valid, pose, serial="IMAGER")
 
 
 def under(image: GroundImage, shade: DriftingShade, i: int, seed: int) -> GroundImage:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.detection.shaded_field import GRID, DriftingShade, Eye, Land
+from tests.detection.shaded_field import GRID, DriftingShade, Imager, Land
 
 from recon.detection import (
     DETECTORS,
@@ -19,7 +19,7 @@ from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap
 
 SETTINGS = DetectionSettings()
-LAND, SHADE, EYE = Land(7), DriftingShade(7), Eye()
+LAND, SHADE, IMAGER = Land(7), DriftingShade(7), Imager()
 
 
 @pytest.fixture(params=sorted(DETECTORS))
@@ -32,7 +32,7 @@ def flown(detector: Detector) -> DetectionState:
     """The state after a minute of good frames."""
     state = DetectionState()
     for i in range(12):
-        state, found = detector(state, EYE.see(LAND, SHADE, 5.0 * i), SETTINGS)
+        state, found = detector(state, IMAGER.see(LAND, SHADE, 5.0 * i), SETTINGS)
         assert isinstance(found, ShadeMap)
     return state
 
@@ -48,7 +48,7 @@ def rejected(
 
 
 def good() -> GroundImage:
-    return EYE.see(LAND, SHADE, 60.0)
+    return IMAGER.see(LAND, SHADE, 60.0)
 
 
 def test_the_good_frame_itself_is_read(detector: Detector, flown: DetectionState) -> None:
@@ -57,7 +57,7 @@ def test_the_good_frame_itself_is_read(detector: Detector, flown: DetectionState
 
 def test_black(detector: Detector, flown: DetectionState) -> None:
     noise = np.random.default_rng(1).integers(0, 9, (*good().valid.shape, 3), dtype=np.uint8)
-    reason = rejected(detector, flown, EYE.image(noise, 60.0), FrameFault.BLACK)
+    reason = rejected(detector, flown, IMAGER.image(noise, 60.0), FrameFault.BLACK)
     assert reason.startswith("expected a picture, got black")
 
 
@@ -65,18 +65,18 @@ def test_black(detector: Detector, flown: DetectionState) -> None:
 def test_torn(detector: Detector, flown: DetectionState, filled_with: int) -> None:
     rgb = good().rgb.copy()
     rgb[160:] = filled_with
-    reason = rejected(detector, flown, EYE.image(rgb, 60.0), FrameFault.TORN)
+    reason = rejected(detector, flown, IMAGER.image(rgb, 60.0), FrameFault.TORN)
     assert f"at the one level {filled_with} of 255" in reason
 
 
 def test_the_same_picture_again(detector: Detector, flown: DetectionState) -> None:
-    again = EYE.image(EYE.see(LAND, SHADE, 55.0).rgb, 60.0)
+    again = IMAGER.image(IMAGER.see(LAND, SHADE, 55.0).rgb, 60.0)
     assert "to the bit" in rejected(detector, flown, again, FrameFault.REPEATED)
 
 
 @pytest.mark.parametrize("at_s", [55.0, 54.0, 0.0])
 def test_older_than_the_last_one(detector: Detector, flown: DetectionState, at_s: float) -> None:
-    reason = rejected(detector, flown, EYE.see(LAND, SHADE, at_s), FrameFault.NOT_NEWER)
+    reason = rejected(detector, flown, IMAGER.see(LAND, SHADE, at_s), FrameFault.NOT_NEWER)
     assert f"taken {55.0 - at_s:.1f} s before" in reason
 
 
@@ -92,5 +92,5 @@ def test_of_another_place(detector: Detector, flown: DetectionState) -> None:
 
 def test_a_first_frame_that_is_bad_leaves_nothing_behind(detector: Detector) -> None:
     start = DetectionState()
-    black = EYE.image(np.zeros((*good().valid.shape, 3), np.uint8), 0.0)
+    black = IMAGER.image(np.zeros((*good().valid.shape, 3), np.uint8), 0.0)
     rejected(detector, start, black, FrameFault.BLACK)

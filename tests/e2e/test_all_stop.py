@@ -25,7 +25,7 @@ from recon.station.audit.log import LogPrinter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
 
-FLYING, STANDING, NAMELESS, STREAMS, STOPS = 12, 4, 2, 3, 5
+FLYING, STANDING, UNIDENTIFIED, STREAMS, STOPS = 12, 4, 2, 3, 5
 NOW_NS = 1_800_000_000_000_000_000
 HOVER = 0
 PATIENCE_S = 30.0
@@ -56,7 +56,7 @@ async def station_with_apps(audit: Path) -> AsyncIterator[Here]:
         image = wire.encode(wire.Image(target_fps_hz=5.0, pixels=np.zeros((90, 160, 3), np.uint8)))
         apps = [
             await connect(links.port, number, image if number < STREAMS else None, stack)
-            for number in range(FLYING + STANDING + NAMELESS)
+            for number in range(FLYING + STANDING + UNIDENTIFIED)
         ]
         flying = [app for app in apps if app.is_flying]
         service = Service.around(driver, site, None, log)
@@ -84,7 +84,7 @@ async def until(is_so: object) -> None:
 def test_each_flying_link_gets_one_hover_for_each_all_stop(tmp_path: Path) -> None:
     async def main() -> None:
         async with station_with_apps(tmp_path) as here:
-            expected = FLYING + NAMELESS
+            expected = FLYING + UNIDENTIFIED
 
             def are_known() -> bool:
                 told = here.service.state().vehicles
@@ -107,4 +107,4 @@ def test_each_flying_link_gets_one_hover_for_each_all_stop(tmp_path: Path) -> No
     (path,) = tmp_path.glob("*.jsonl")
     lines = [json.loads(line) for line in path.read_text(encoding="ascii").splitlines()]
     sent = [line["details"]["id"] for line in lines if line["kind"] == "order.sent"]
-    assert len(sent) == len(set(sent)) == STOPS * (FLYING + NAMELESS)
+    assert len(sent) == len(set(sent)) == STOPS * (FLYING + UNIDENTIFIED)

@@ -11,7 +11,7 @@ from recon.camera import GroundProjector
 from recon.model.imagery import Frame, GroundImage, Registration
 from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.camera.replay import load_replay
-from recon.sim.fleet import EYE_SERIAL, EyeSetup, SimulationConfig, build_fleet
+from recon.sim.fleet import IMAGER_SERIAL, ImagerSetup, SimulationConfig, build_fleet
 from recon.site import Site, load_site
 from recon.station.kernel.build import first_state, worker_tasks
 from recon.station.kernel.virtual import VirtualDriver
@@ -29,7 +29,7 @@ name = "{name}"
 latitude_deg = {latitude}
 longitude_deg = {longitude}
 ground_altitude_m = {altitude}
-[eye]
+[imager]
 serial = "{serial}"
 control_points_image_size_px = [3840, 2160]
 """
@@ -46,7 +46,7 @@ def field(
     shutil.copy(folder.parent / "camera-model.txt", tmp_path)
     shutil.copy(folder / "GCPs.txt", tmp_path)
     text = SITE_TOML.format(
-        name=name, latitude=latitude, longitude=longitude, altitude=altitude, serial=EYE_SERIAL
+        name=name, latitude=latitude, longitude=longitude, altitude=altitude, serial=IMAGER_SERIAL
     )
     (tmp_path / "site.toml").write_text(text, encoding="utf-8")
     return folder, load_site(tmp_path), rms_px
@@ -57,16 +57,16 @@ def test_a_real_frame_comes_over_the_wire_and_lies_on_its_field(
     field: tuple[Path, Site, float], image_format: ImageFormat
 ) -> None:
     folder, site, rms_px = field
-    assert site.eye is not None
-    assert site.eye.solution.rms_px == pytest.approx(rms_px, abs=0.02)
+    assert site.imager is not None
+    assert site.imager.solution.rms_px == pytest.approx(rms_px, abs=0.02)
 
     sent = load_replay(folder)[1].rgb
     image = _ground_image(folder, site, image_format)
     assert image.registration is Registration.UNREGISTERED
 
     assert site.ground_grid is not None
-    projector = GroundProjector(site.ground_grid, site.eye.camera, site.eye.image_circle)
-    expected, valid = projector.lay_pixels(sent, site.eye.solution.pose)
+    projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
+    expected, valid = projector.lay_pixels(sent, site.imager.solution.pose)
     assert np.mean(valid == image.valid) > 0.97
     assert np.hypot(*_shift_m(image.rgb, expected, site.ground_grid.cell_m)) < 1.5
 
@@ -75,14 +75,14 @@ def _ground_image(folder: Path, site: Site, image_format: ImageFormat) -> Ground
     """What the station makes of ten seconds of the eye's bytes."""
     rig, still = load_replay(folder)
     feed = FeedSettings(image_format=image_format)
-    eye = EyeSetup(still, feed, rig)
-    config = SimulationConfig(home=rig.frame.origin, vehicle_count=1, eye=eye)
+    imager = ImagerSetup(still, feed, rig)
+    config = SimulationConfig(home=rig.frame.origin, vehicle_count=1, imager=imager)
     driver = VirtualDriver(first_state(site), tasks=worker_tasks(site))
     (app,) = build_fleet(config, start_ns=driver.now_ns)
     app.connected(driver.now_ns)
     driver.connect(app)
     driver.run_for(10.0)
-    assert isinstance(driver.station.frames[EYE_SERIAL], Frame)
+    assert isinstance(driver.station.frames[IMAGER_SERIAL], Frame)
     assert driver.station.imaging.latest_error is None
     image = driver.station.imaging.ground_image
     assert image is not None

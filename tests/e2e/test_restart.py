@@ -113,7 +113,7 @@ def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: 
     flying = by_serial(vehicles)
     assert all(vehicle["is_flying"]["value"] for vehicle in flying.values())
     assert flying["SIM-1"]["flight_mode"]["value"] == "gps_waypoint"
-    assert {s: v["lead"]["leader"] for s, v in flying.items()} == {
+    assert {s: v["authority"]["holder"] for s, v in flying.items()} == {
         "SIM-1": "operator",
         "SIM-2": "pilot",
         "SIM-3": "operator",

@@ -8,10 +8,10 @@ import pytest
 from recon.fleet.flight_table import (
     KIND_OF_MODE,
     TABLE,
+    Instruction,
     ModeKind,
     Place,
     Reading,
-    Told,
     Verdict,
     kind_of,
     read,
@@ -31,11 +31,17 @@ C, S, F, PILOT, FAILSAFE, UNDECIDED = (
 )
 END, ELSEWHERE, DOWN_AT_END, DOWN = Place
 MODE = FlightMode
-UNDER_WAY = (Told.MISSION, Told.MISSION_TO_LAND, Told.STICK, Told.RETURN, Told.LAND)
+UNDER_WAY = (
+    Instruction.MISSION,
+    Instruction.MISSION_TO_LAND,
+    Instruction.STICK,
+    Instruction.RETURN,
+    Instruction.LAND,
+)
 
 
 def seen(
-    told: Told,
+    told: Instruction,
     mode: FlightMode | None,
     place: Place = ELSEWHERE,
     *,
@@ -47,8 +53,8 @@ def seen(
 
 def test_every_mode_of_the_icd_has_a_kind_and_every_cell_a_verdict() -> None:
     assert set(KIND_OF_MODE) == set(FlightMode)
-    assert set(TABLE) == set(product(Told, ModeKind, Place))
-    for told, mode, place, gnss in product(Told, FlightMode, Place, (None, 0, 5)):
+    assert set(TABLE) == set(product(Instruction, ModeKind, Place))
+    for told, mode, place, gnss in product(Instruction, FlightMode, Place, (None, 0, 5)):
         reading = read(told, mode, gnss, place)
         assert isinstance(reading, Reading)
         assert reading.why
@@ -60,29 +66,29 @@ def test_the_page_is_written_from_the_table() -> None:
 
 class TestMissions:
     def test_mode_10_in_the_air_is_its_start(self) -> None:
-        assert seen(Told.MISSION_SENT, MODE.GPS_WAYPOINT) is S
-        assert seen(Told.MISSION_SENT, MODE.GPS_WAYPOINT, DOWN) is UNDECIDED
-        assert seen(Told.MISSION, MODE.GPS_WAYPOINT) is C
+        assert seen(Instruction.MISSION_SENT, MODE.GPS_WAYPOINT) is S
+        assert seen(Instruction.MISSION_SENT, MODE.GPS_WAYPOINT, DOWN) is UNDECIDED
+        assert seen(Instruction.MISSION, MODE.GPS_WAYPOINT) is C
 
     @pytest.mark.parametrize("mode", [MODE.AUTO_TAKEOFF, MODE.MOTORS_JUST_STARTED])
     @pytest.mark.parametrize("place", Place)
     def test_taking_off_for_it_is_no_start_and_no_fault(
         self, mode: FlightMode, place: Place
     ) -> None:
-        assert seen(Told.MISSION_SENT, mode, place) is C
+        assert seen(Instruction.MISSION_SENT, mode, place) is C
 
     @pytest.mark.parametrize("mode", [MODE.GPS_ATTI, MODE.GPS_NOVICE])
     def test_leaving_mode_10_at_its_end_is_its_end_and_elsewhere_the_pilot(
         self, mode: FlightMode
     ) -> None:
-        assert seen(Told.MISSION, mode, END) is F
-        assert seen(Told.MISSION, mode) is PILOT
+        assert seen(Instruction.MISSION, mode, END) is F
+        assert seen(Instruction.MISSION, mode) is PILOT
 
     @pytest.mark.parametrize("place", Place)
     def test_going_home_is_its_failsafe_and_the_words_name_the_pilots_button(
         self, place: Place
     ) -> None:
-        reading = read(Told.MISSION, MODE.GO_HOME, 4, place)
+        reading = read(Instruction.MISSION, MODE.GO_HOME, 4, place)
         assert reading.verdict is FAILSAFE
         assert "failsafe, or the pilot" in reading.why
 
@@ -91,42 +97,44 @@ class TestMissions:
     def test_landing_that_was_not_ordered_is_its_failsafe(
         self, mode: FlightMode, place: Place
     ) -> None:
-        assert seen(Told.MISSION, mode, place) is FAILSAFE
+        assert seen(Instruction.MISSION, mode, place) is FAILSAFE
 
     @pytest.mark.parametrize("mode", [MODE.AUTO_LANDING, MODE.CONFIRM_LANDING])
     def test_one_that_lands_at_its_end_lands_there(self, mode: FlightMode) -> None:
-        assert seen(Told.MISSION_TO_LAND, mode, END) is C
-        assert seen(Told.MISSION_TO_LAND, mode) is FAILSAFE
+        assert seen(Instruction.MISSION_TO_LAND, mode, END) is C
+        assert seen(Instruction.MISSION_TO_LAND, mode) is FAILSAFE
 
     @pytest.mark.parametrize("mode", FlightMode)
     def test_one_that_lands_is_finished_on_the_ground_at_its_end_alone(
         self, mode: FlightMode
     ) -> None:
-        assert seen(Told.MISSION_TO_LAND, mode, DOWN_AT_END) is F
-        assert seen(Told.MISSION_TO_LAND, mode, DOWN) is FAILSAFE
+        assert seen(Instruction.MISSION_TO_LAND, mode, DOWN_AT_END) is F
+        assert seen(Instruction.MISSION_TO_LAND, mode, DOWN) is FAILSAFE
 
     @pytest.mark.parametrize("place", [END, ELSEWHERE])
     def test_one_that_lands_and_hovers_instead_was_stopped_by_the_pilot(self, place: Place) -> None:
-        assert seen(Told.MISSION_TO_LAND, MODE.GPS_ATTI, place) is PILOT
+        assert seen(Instruction.MISSION_TO_LAND, MODE.GPS_ATTI, place) is PILOT
 
     def test_sticks_that_nobody_here_sends_are_not_the_stations(self) -> None:
-        assert seen(Told.MISSION, MODE.JOYSTICK) is PILOT
-        assert seen(Told.HOLD, MODE.JOYSTICK, END) is PILOT
+        assert seen(Instruction.MISSION, MODE.JOYSTICK) is PILOT
+        assert seen(Instruction.HOLD, MODE.JOYSTICK, END) is PILOT
 
 
 class TestThePilot:
-    @pytest.mark.parametrize("told", [told for told in Told if told is not Told.NOTHING])
+    @pytest.mark.parametrize(
+        "told", [told for told in Instruction if told is not Instruction.NOTHING]
+    )
     @pytest.mark.parametrize("mode", [MODE.GPS_SPORT, MODE.MANUAL, MODE.TRIPOD, MODE.TAP_FLY])
     def test_a_mode_only_a_person_selects_is_the_pilot_at_once(
-        self, told: Told, mode: FlightMode
+        self, told: Instruction, mode: FlightMode
     ) -> None:
         reading = read(told, mode, None, ELSEWHERE)
         assert (reading.verdict, reading.is_at_once) == (PILOT, True)
 
-    @pytest.mark.parametrize("told", [told for told in Told if told is not Told.HOLD])
+    @pytest.mark.parametrize("told", [told for told in Instruction if told is not Instruction.HOLD])
     @pytest.mark.parametrize("mode", [MODE.GPS_SPORT, MODE.ATTI, MODE.GPS_ATTI, MODE.JOYSTICK])
     def test_a_mode_that_held_before_says_nothing_of_the_pilot(
-        self, told: Told, mode: FlightMode
+        self, told: Instruction, mode: FlightMode
     ) -> None:
         assert seen(told, mode, before=mode) is not PILOT
 
@@ -136,66 +144,74 @@ class TestThePilot:
         ("gnss", "verdict"), [(5, PILOT), (3, PILOT), (2, UNDECIDED), (None, UNDECIDED)]
     )
     def test_atti_is_the_pilots_while_gnss_is_good(
-        self, told: Told, mode: FlightMode, gnss: int | None, verdict: Verdict
+        self, told: Instruction, mode: FlightMode, gnss: int | None, verdict: Verdict
     ) -> None:
         assert seen(told, mode, gnss=gnss) is verdict
 
     def test_hovering_instead_of_landing_or_going_home_is_the_pilot(self) -> None:
-        assert seen(Told.LAND, MODE.GPS_ATTI) is PILOT
-        assert seen(Told.RETURN, MODE.GPS_ATTI) is PILOT
-        assert seen(Told.STICK, MODE.GPS_ATTI) is PILOT
+        assert seen(Instruction.LAND, MODE.GPS_ATTI) is PILOT
+        assert seen(Instruction.RETURN, MODE.GPS_ATTI) is PILOT
+        assert seen(Instruction.STICK, MODE.GPS_ATTI) is PILOT
 
     def test_before_an_order_shows_position_mode_says_nothing(self) -> None:
-        for told in (Told.LAND_SENT, Told.RETURN_SENT, Told.STICK_SENT, Told.MISSION_SENT):
+        for told in (
+            Instruction.LAND_SENT,
+            Instruction.RETURN_SENT,
+            Instruction.STICK_SENT,
+            Instruction.MISSION_SENT,
+        ):
             assert seen(told, MODE.GPS_ATTI) is UNDECIDED
 
     def test_a_hold_that_moved_away_was_moved(self) -> None:
-        assert seen(Told.HOLD, MODE.GPS_ATTI, END) is C
-        assert seen(Told.HOLD, MODE.GPS_ATTI, before=MODE.GPS_ATTI) is PILOT
-        assert seen(Told.HOLD, MODE.JOYSTICK, before=MODE.JOYSTICK) is UNDECIDED
+        assert seen(Instruction.HOLD, MODE.GPS_ATTI, END) is C
+        assert seen(Instruction.HOLD, MODE.GPS_ATTI, before=MODE.GPS_ATTI) is PILOT
+        assert seen(Instruction.HOLD, MODE.JOYSTICK, before=MODE.JOYSTICK) is UNDECIDED
 
     def test_only_modes_of_the_pilots_own_count_at_once(self) -> None:
-        assert not read(Told.MISSION, MODE.GPS_ATTI, 4, ELSEWHERE).is_at_once
-        assert not read(Told.MISSION, MODE.GO_HOME, 4, ELSEWHERE).is_at_once
-        assert read(Told.MISSION, MODE.ATTI, 4, ELSEWHERE).is_at_once
+        assert not read(Instruction.MISSION, MODE.GPS_ATTI, 4, ELSEWHERE).is_at_once
+        assert not read(Instruction.MISSION, MODE.GO_HOME, 4, ELSEWHERE).is_at_once
+        assert read(Instruction.MISSION, MODE.ATTI, 4, ELSEWHERE).is_at_once
 
 
 class TestOrders:
     def test_a_hold_is_carried_out_outside_of_missions_ways_home_landings_and_sticks(self) -> None:
         for mode in (MODE.GPS_WAYPOINT, MODE.GO_HOME, MODE.AUTO_LANDING, MODE.JOYSTICK):
-            assert seen(Told.HOLD_SENT, mode, END) is UNDECIDED
+            assert seen(Instruction.HOLD_SENT, mode, END) is UNDECIDED
         for mode in (MODE.GPS_ATTI, MODE.GPS_NOVICE, MODE.OTHER):
-            assert seen(Told.HOLD_SENT, mode, END) is C
+            assert seen(Instruction.HOLD_SENT, mode, END) is C
 
     def test_a_mission_that_begins_while_a_stop_is_sent_does_not_end_the_stop(self) -> None:
-        assert seen(Told.HOLD_SENT, MODE.GPS_WAYPOINT) is UNDECIDED
-        assert seen(Told.HOLD, MODE.GPS_WAYPOINT) is PILOT
+        assert seen(Instruction.HOLD_SENT, MODE.GPS_WAYPOINT) is UNDECIDED
+        assert seen(Instruction.HOLD, MODE.GPS_WAYPOINT) is PILOT
 
     def test_a_return_lands_and_a_landing_does_not_return(self) -> None:
-        assert seen(Told.RETURN_SENT, MODE.GO_HOME) is C
-        assert seen(Told.RETURN_SENT, MODE.AUTO_LANDING) is UNDECIDED
-        assert seen(Told.RETURN, MODE.AUTO_LANDING) is C
-        assert seen(Told.LAND_SENT, MODE.CONFIRM_LANDING) is C
-        assert seen(Told.LAND, MODE.GO_HOME) is FAILSAFE
+        assert seen(Instruction.RETURN_SENT, MODE.GO_HOME) is C
+        assert seen(Instruction.RETURN_SENT, MODE.AUTO_LANDING) is UNDECIDED
+        assert seen(Instruction.RETURN, MODE.AUTO_LANDING) is C
+        assert seen(Instruction.LAND_SENT, MODE.CONFIRM_LANDING) is C
+        assert seen(Instruction.LAND, MODE.GO_HOME) is FAILSAFE
 
-    @pytest.mark.parametrize("told", [Told.LAND, Told.RETURN, Told.LAND_SENT, Told.RETURN_SENT])
+    @pytest.mark.parametrize(
+        "told",
+        [Instruction.LAND, Instruction.RETURN, Instruction.LAND_SENT, Instruction.RETURN_SENT],
+    )
     @pytest.mark.parametrize("mode", [MODE.GPS_ATTI, MODE.AUTO_LANDING, MODE.UNKNOWN])
-    def test_the_ground_ends_them(self, told: Told, mode: FlightMode) -> None:
+    def test_the_ground_ends_them(self, told: Instruction, mode: FlightMode) -> None:
         assert seen(told, mode, DOWN) is F
 
-    @pytest.mark.parametrize("told", Told)
+    @pytest.mark.parametrize("told", Instruction)
     @pytest.mark.parametrize("mode", [MODE.UNKNOWN, MODE.OTHER])
     def test_an_unknown_mode_never_blames_anybody_in_the_air(
-        self, told: Told, mode: FlightMode
+        self, told: Instruction, mode: FlightMode
     ) -> None:
         assert seen(told, mode) in (UNDECIDED, C)
 
-    @pytest.mark.parametrize("told", Told)
+    @pytest.mark.parametrize("told", Instruction)
     @pytest.mark.parametrize("place", Place)
-    def test_no_mode_is_no_verdict(self, told: Told, place: Place) -> None:
+    def test_no_mode_is_no_verdict(self, told: Instruction, place: Place) -> None:
         assert seen(told, None, place) is UNDECIDED
 
     def test_told_nothing_only_the_pilots_own_modes_say_something(self) -> None:
         for mode, place in product(FlightMode, (END, ELSEWHERE)):
             is_pilots = kind_of(mode, 4) in (ModeKind.PILOT, ModeKind.ATTI_GOOD)
-            assert seen(Told.NOTHING, mode, place) is (PILOT if is_pilots else UNDECIDED)
+            assert seen(Instruction.NOTHING, mode, place) is (PILOT if is_pilots else UNDECIDED)

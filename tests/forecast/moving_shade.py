@@ -21,7 +21,7 @@ def shade_map(
     return ShadeMap(
         grid=grid,
         captured_at_ns=round(at_s * 1e9),
-        source_serials=("EYE",),
+        source_serials=("IMAGER",),
         transmittance=np.where(seen, transmittance, nowhere).astype(np.float32),
         valid=seen,
         confidence=np.where(seen, confidence, 0.0).astype(np.float32),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.detection.shaded_field import FIELD, FOOTPRINT, DriftingShade, Eye, Land
+from tests.detection.shaded_field import FIELD, FOOTPRINT, DriftingShade, Imager, Land
 from tests.forecast.moving_shade import is_sunlit
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
@@ -19,7 +19,7 @@ def line(seed: int, velocity: tuple[float, float]) -> tuple[DriftingShade, dict[
     told: dict[str, SunForecast] = {}
     wrong_m = np.random.default_rng(seed).normal(0.0, 1.0, (25, 2))
     for i in range(25):
-        image = Eye(offset_m=tuple(wrong_m[i])).see(land, shade, 5.0 * i)
+        image = Imager(offset_m=tuple(wrong_m[i])).see(land, shade, 5.0 * i)
         detection, found = DETECTORS["brightness_ratio"](detection, image, DetectionSettings())
         assert isinstance(found, ShadeMap), found
         for method, step in FORECASTERS.items():

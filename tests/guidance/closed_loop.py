@@ -14,7 +14,7 @@ from random import Random
 from recon.geo.distance import moved_m, offset_north_east_m
 from recon.guidance.steering import (
     Goal,
-    Seen,
+    KinematicState,
     Steered,
     SteeringSettings,
     begin,
@@ -70,12 +70,12 @@ class Loop:
         """True north and east of the start, in metres."""
         return self.motion.north_m, self.motion.east_m
 
-    def seen(self) -> Seen | None:
+    def seen(self) -> KinematicState | None:
         if self.last is None:
             return None
         received_ns, motion = self.last
         sigma = self.way.noise_m
-        return Seen(
+        return KinematicState(
             moved_m(
                 START,
                 motion.north_m + self.rng.gauss(0.0, sigma),

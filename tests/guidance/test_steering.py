@@ -12,7 +12,7 @@ from tests.guidance.closed_loop import SETTINGS, START, Loop, Way
 from recon.geo.distance import horizontal_distance_m, moved_m, offset_north_east_m
 from recon.guidance.steering import (
     Goal,
-    Seen,
+    KinematicState,
     approach_speed_mps,
     begin,
     halted,
@@ -36,8 +36,10 @@ def goal(
     return Goal(moved_m(START, north_m, east_m), 30.0 + up_m, speed_mps, yaw_deg)
 
 
-def seen(north_m: float = 0.0, velocity_north_mps: float = 0.0, age_s: float = 0.1) -> Seen:
-    return Seen(moved_m(START, north_m, 0.0), velocity_north_mps, 0.0, 30.0, 0.0, age_s)
+def seen(
+    north_m: float = 0.0, velocity_north_mps: float = 0.0, age_s: float = 0.1
+) -> KinematicState:
+    return KinematicState(moved_m(START, north_m, 0.0), velocity_north_mps, 0.0, 30.0, 0.0, age_s)
 
 
 ways = st.builds(
@@ -134,13 +136,13 @@ class TestClosedLoop:
 
 class TestParts:
     def test_it_goes_on_from_the_present_motion(self) -> None:
-        moving = Seen(START, 3.0, -1.0, 25.0, 80.0, 0.2)
+        moving = KinematicState(START, 3.0, -1.0, 25.0, 80.0, 0.2)
         first = begin(moving, S)
         assert (first.velocity_north_mps, first.velocity_east_mps) == (3.0, -1.0)
         assert (first.height_above_takeoff_m, first.yaw_deg) == (25.0, 80.0)
 
     def test_a_halt_is_zero_at_once_and_keeps_height_and_heading(self) -> None:
-        stopped = halted(begin(Seen(START, 3.0, -1.0, 25.0, 80.0, 0.2), S), None, 2 * S)
+        stopped = halted(begin(KinematicState(START, 3.0, -1.0, 25.0, 80.0, 0.2), S), None, 2 * S)
         assert (stopped.velocity_north_mps, stopped.velocity_east_mps) == (0.0, 0.0)
         assert (stopped.height_above_takeoff_m, stopped.yaw_deg, stopped.at_ns) == (
             25.0,
@@ -149,7 +151,7 @@ class TestParts:
         )
 
     def test_a_halt_in_a_climb_asks_for_the_height_last_heard(self) -> None:
-        climbing = begin(Seen(START, 0.0, 0.0, 25.0, 80.0, 0.2), S)
+        climbing = begin(KinematicState(START, 0.0, 0.0, 25.0, 80.0, 0.2), S)
         assert halted(climbing, 23.5, 2 * S).height_above_takeoff_m == 23.5
 
     def test_a_late_step_changes_no_more_than_a_bounded_time_allows(self) -> None:

@@ -8,7 +8,7 @@ from recon import wire
 from recon.model.command import Body, Command, FlyMission, StickFrame, VirtualStick
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import seconds_to_ns
-from recon.safety import ApprovedCommand, Claimant, approve
+from recon.safety import ApprovedCommand, ClaimingLink, approve
 
 LINK_ID = 7
 MS = 1_000_000
@@ -35,8 +35,8 @@ def approved(
         expires_at_ns=now_ns + seconds_to_ns(expires_after_s),
         serial="A",
     )
-    claimants = tuple(Claimant(link_id, vehicle.is_flying) for link_id in link_ids)
-    now = replace(cases.situation(vehicle), now_ns=now_ns, claimants=claimants)
+    claiming_links = tuple(ClaimingLink(link_id, vehicle.is_flying) for link_id in link_ids)
+    now = replace(cases.situation(vehicle), now_ns=now_ns, claiming_links=claiming_links)
     judged = approve(command, now)
     assert isinstance(judged, ApprovedCommand), judged
     return judged

@@ -12,13 +12,13 @@ from recon.model.replacing import replace
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.station.state.station import Station
-from recon.station.state.tracking import Following
+from recon.station.state.tracking import Tracking
 
 COPIED_OFTEN = (
     VehicleState("SIM-1", 3),
     LinkRecord(1, "here", 0, VehicleState(None, 1)),
     Fleet(),
-    Following(),
+    Tracking(),
     Station(),
 )
 copied_often = pytest.mark.parametrize("value", COPIED_OFTEN, ids=lambda one: type(one).__name__)

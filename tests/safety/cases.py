@@ -18,7 +18,7 @@ from recon.model.vehicle import (
     VehicleState,
     VelocityNed,
 )
-from recon.safety import ApprovedCommand, Claimant, PreparedAirspace, Situation
+from recon.safety import ApprovedCommand, ClaimingLink, PreparedAirspace, Situation
 from recon.safety.facts import ClockReading, StationFacts
 
 S = 1_000_000_000
@@ -108,10 +108,10 @@ def vehicle(
 def situation(state: VehicleState | None = None, *rivals: Stamped[bool]) -> Situation:
     """The vehicle on link 1; each rival on link 2, 3, ..."""
     state = state or vehicle()
-    others = tuple(Claimant(number, flying) for number, flying in enumerate(rivals, start=2))
-    state = replace(state, rival_link_ids=tuple(claimant.link_id for claimant in others))
-    claimants = (Claimant(1, state.is_flying), *others)
-    return Situation(NOW, state, claimants, airspace=AIRSPACE, facts=FACTS)
+    others = tuple(ClaimingLink(number, flying) for number, flying in enumerate(rivals, start=2))
+    state = replace(state, rival_link_ids=tuple(claiming_link.link_id for claiming_link in others))
+    claiming_links = (ClaimingLink(1, state.is_flying), *others)
+    return Situation(NOW, state, claiming_links, airspace=AIRSPACE, facts=FACTS)
 
 
 def approved(judged: ApprovedCommand | Refusal) -> ApprovedCommand:

@@ -34,8 +34,8 @@ from recon.safety.prediction import (
     Plane,
     foresee_order,
     foresee_traffic,
-    ghost_courses,
-    ghost_of,
+    hazard_area_of,
+    hazard_courses,
     part_words,
 )
 from recon.safety.prediction import flyer as placed
@@ -346,7 +346,7 @@ class TestFlyers:
         assert found.takeoff_up_m == 0.0
 
 
-class TestGhosts:
+class TestHazards:
     def test_it_grows_with_what_it_was_told_to_fly(self) -> None:
         mission = Mission((waypoint(0.0, 0.0, speed_mps=3.0), waypoint(90.0, 0.0, speed_mps=12.0)))
         still = aircraft(age_s=5.0)
@@ -356,14 +356,16 @@ class TestGhosts:
             (Intent(Commanded.STICK, speed_mps=7.0), 7.0),
             (Intent(Commanded.STICK), 2.0),
         ):
-            found = ghost_of(seen(still), intent, SETTINGS)
+            found = hazard_area_of(seen(still), intent, SETTINGS)
             assert found is not None
             assert found.growth_mps == expected
             assert found.radius_m == pytest.approx(5.0 * expected)
 
     def test_a_fast_one_may_be_farther_than_150_m(self) -> None:
-        quick = replace(SETTINGS, ghost_radius_m=50.0)
-        fast = ghost_of(seen(aircraft(velocity=(15.0, 0.0, 0.0), age_s=60.0)), Intent(), quick)
+        quick = replace(SETTINGS, hazard_radius_m=50.0)
+        fast = hazard_area_of(
+            seen(aircraft(velocity=(15.0, 0.0, 0.0), age_s=60.0)), Intent(), quick
+        )
         assert fast is not None
         assert fast.largest_m == fast.radius_m == pytest.approx(60.0)
 
@@ -376,17 +378,17 @@ class TestGhosts:
             (aircraft(age_s=60.0, failsafe=Failsafe.HOVER, velocity=(0.0, 0.0, 2.0)), 60.0),
             (aircraft(age_s=5.0, go_home_m=None), 540.0),
         ):
-            found = ghost_of(seen(state), Intent(), SETTINGS)
+            found = hazard_area_of(seen(state), Intent(), SETTINGS)
             assert found is not None
             assert found.high_m == pytest.approx(top_m)
 
     def test_its_courses_are_the_circle_the_way_and_the_landing(self) -> None:
-        young = ghost_of(seen(aircraft(place=(0.0, 300.0), age_s=5.0)), Intent(), SETTINGS)
-        old = ghost_of(seen(aircraft(home=None, age_s=500.0)), Intent(), SETTINGS)
+        young = hazard_area_of(seen(aircraft(place=(0.0, 300.0), age_s=5.0)), Intent(), SETTINGS)
+        old = hazard_area_of(seen(aircraft(home=None, age_s=500.0)), Intent(), SETTINGS)
         assert young is not None
         assert old is not None
-        assert [len(course.rows) for course in ghost_courses(young)] == [2, 1, 1]
-        assert [len(course.rows) for course in ghost_courses(old)] == [1]
+        assert [len(course.rows) for course in hazard_courses(young)] == [2, 1, 1]
+        assert [len(course.rows) for course in hazard_courses(old)] == [1]
 
     def test_one_with_a_mission_is_foreseen_to_fly_it_on(self) -> None:
         stale = seen(aircraft(age_s=5.0))

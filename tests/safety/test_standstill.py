@@ -12,7 +12,7 @@ from tests.safety.cases import (
     vehicle,
 )
 
-from recon.model.authority import Lead, Leader
+from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Hover, VirtualStick
 from recon.model.stamped import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
@@ -97,8 +97,11 @@ class TestTakeoff:
         assert approved(approve(command(body, takeoff=True), on_ground()))
 
     def test_it_is_the_leaders_to_order(self, body: Hover | VirtualStick) -> None:
-        led = replace(on_ground(), lead=Lead(Leader.PILOT, "pilot", 0, "the pilot has it"))
-        assert refused_by(approve(command(body, takeoff=True), led)) == "leader"
+        led = replace(
+            on_ground(),
+            authority=ControlAuthority(AuthorityHolder.PILOT, "pilot", 0, "the pilot has it"),
+        )
+        assert refused_by(approve(command(body, takeoff=True), led)) == "authority"
 
     @pytest.mark.parametrize(
         ("changes", "rule"),

@@ -15,7 +15,7 @@ from recon.model.vehicle import (
     VehicleState,
     VelocityNed,
 )
-from recon.safety import Claimant, PreparedAirspace, Situation, Traffic
+from recon.safety import ClaimingLink, PreparedAirspace, Situation, Traffic
 from recon.safety.prediction import Flyer, Plane, PredictionSettings, flyer
 from recon.safety.rules.separation import separation
 
@@ -109,7 +109,7 @@ def judged(
 ) -> Refusal | None:
     """What the rule says to an order for `own` among others."""
     others = tuple(t if isinstance(t, Traffic) else Traffic(t) for t in traffic)
-    claimants = (Claimant(1, own.is_flying),)
-    situation = Situation(NOW, own, claimants, airspace=airspace, traffic=others)
+    claiming_links = (ClaimingLink(1, own.is_flying),)
+    situation = Situation(NOW, own, claiming_links, airspace=airspace, traffic=others)
     asked = FlyMission(body) if isinstance(body, Mission) else body
     return separation(Command(1, asked, "test", NOW, NOW + 5 * S, serial="A"), situation)

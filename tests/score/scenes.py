@@ -23,7 +23,7 @@ limit_min = 10.0
 [fleet]
 survey_drones = 2
 
-[eye]
+[imager]
 radius_m = 160.0
 
 [[clouds]]

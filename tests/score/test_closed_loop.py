@@ -80,7 +80,7 @@ def test_once_flies_what_again_flies_first(folder: Path) -> None:
     assert once.in_sun_share[-1] <= again.in_sun_share[-1]
 
 
-def test_an_ideal_eye_has_no_fault(cumulus: RunScore) -> None:
+def test_an_ideal_imager_has_no_fault(cumulus: RunScore) -> None:
     assert (cumulus.shade.iou, cumulus.known_share) == (1.0, 1.0)
     assert cumulus.boundary_error_m in (0.0, None)
     assert cumulus.wrongly_in_sun_share is not None

@@ -163,8 +163,8 @@ def test_gusts_cost_time_at_each_stop() -> None:
         "restart",
     ],
 )
-def test_without_pictures_the_eye_tells_nothing(tmp_path: Path, kind: str) -> None:
-    scenario = faulty(tmp_path, f"{kind}:SIM-EYE:30:120")
+def test_without_pictures_the_imager_tells_nothing(tmp_path: Path, kind: str) -> None:
+    scenario = faulty(tmp_path, f"{kind}:SIM-IMAGER:30:120")
     assert blind_spans(scenario) == ((30.0, 150.0),)
     assert mishaps_of(scenario) == []
     found, sees = run(scenario, 0), run(faulty(tmp_path), 0)
@@ -173,13 +173,13 @@ def test_without_pictures_the_eye_tells_nothing(tmp_path: Path, kind: str) -> No
     assert found.missions > sees.missions
 
 
-def test_an_eye_that_fell_never_tells_anything_again(tmp_path: Path) -> None:
+def test_an_imager_that_fell_never_tells_anything_again(tmp_path: Path) -> None:
     assert blind_spans(faulty(tmp_path, "falls-silent:*:30")) == ((30.0, inf),)
 
 
 def test_faults_that_change_nothing_here_are_named(tmp_path: Path) -> None:
-    felt = ["gusts:1", "camera-stops:*", "telemetry-dropout:SIM-EYE", "ignored-missions:2"]
-    unfelt = ["bursts:1", "camera-stops:1", "gusts:SIM-EYE", "half-open:2"]
+    felt = ["gusts:1", "camera-stops:*", "telemetry-dropout:SIM-IMAGER", "ignored-missions:2"]
+    unfelt = ["bursts:1", "camera-stops:1", "gusts:SIM-IMAGER", "half-open:2"]
     assert without_effect(faulty(tmp_path, *felt)) == []
     assert without_effect(faulty(tmp_path, *felt, *unfelt)) == [
         "bursts",

@@ -73,7 +73,7 @@ def test_a_scenario_says_what_its_file_says(tmp_path: Path) -> None:
     assert scenario.sky.sun.start_utc_s == 1_750_435_200.0
     assert scenario.frame.origin.ellipsoid_height_m == 280.0
     assert scenario.fleet.pads_m == ((90.0, -30.0), (110.0, -30.0))
-    assert scenario.eye.over_m == (100.0, 75.0)
+    assert scenario.imager.over_m == (100.0, 75.0)
     assert [layer.cover for layer in scenario.sky.layers] == [0.4]
     assert scenario.faults[0].start_s == 40.0
 
@@ -110,7 +110,7 @@ def test_the_methods_that_may_be_named_are_those_that_are_there() -> None:
         ("[200.0, 150.0]", "[inf, 150.0]", "task.region_m[2][0]: expected a number of -50000 to"),
         ("2025-06-20T16:00:00Z", "2025-06-20T16:00:00", "expected a moment like 2025-06-20T16:00"),
         ("2025-06-20T16:00:00Z", '"today"', "start_utc: expected a moment like 2025-06-20T16:00"),
-        ("[eye]", '[methods]\nplanner = "magic"\n[eye]', "or 'lawnmower_once', got 'magic'"),
+        ("[imager]", '[methods]\nplanner = "magic"\n[imager]', "or 'lawnmower_once', got 'magic'"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_line(

@@ -12,7 +12,7 @@ from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.fault_effects import with_chances, without_effect
 from recon.score.simulation import simulation_of
 from recon.sim.app.faults import FaultKind
-from recon.sim.fleet import EYE_SERIAL, build_fleet
+from recon.sim.fleet import IMAGER_SERIAL, build_fleet
 
 FOLDER = Path(__file__).parents[2] / "scenarios"
 ON_DEMO = SMALL.replace(
@@ -41,7 +41,7 @@ def test_all_that_is_flown_over_lies_well_inside_the_fence(scenarios: list[Scena
 
 def test_ways_home_are_in_layers_and_under_the_ceiling(scenarios: list[Scenario]) -> None:
     for scenario in scenarios:
-        serials = (*scenario.fleet.serials, EYE_SERIAL)
+        serials = (*scenario.fleet.serials, IMAGER_SERIAL)
         told = [scenario.site.profiles[serial].go_home_height_m for serial in serials]
         heights_m = sorted(height_m for height_m in told if height_m is not None)
         assert len(heights_m) == len(serials)
@@ -50,11 +50,11 @@ def test_ways_home_are_in_layers_and_under_the_ceiling(scenarios: list[Scenario]
         assert heights_m[-1] < limits.max_height_above_ground_m
 
 
-def test_a_sites_folder_says_where_drones_and_eye_are(tmp_path: Path) -> None:
+def test_a_sites_folder_says_where_drones_and_imager_are(tmp_path: Path) -> None:
     scenario = small(tmp_path, ON_DEMO)
     assert scenario.fleet.pads_m[0] == pytest.approx((-24.0, -8.0), abs=0.01)
-    assert scenario.eye.over_m == pytest.approx((0.0, 0.0), abs=0.2)
-    assert scenario.eye.height_m == pytest.approx(120.0, abs=0.5)
+    assert scenario.imager.over_m == pytest.approx((0.0, 0.0), abs=0.2)
+    assert scenario.imager.height_m == pytest.approx(120.0, abs=0.5)
     assert scenario.frame.origin.ellipsoid_height_m == 275.0
 
 
@@ -63,7 +63,7 @@ def test_a_sites_folder_says_where_drones_and_eye_are(tmp_path: Path) -> None:
     [
         ("/demo", "/none", "small.toml:6: site.folder: expected a site's folder, got: "),
         ("[task]", "latitude_deg = 41.9\n[task]", "site: expected a folder alone, got an origin"),
-        ("radius_m", "over_m = [0.0, 0.0]\nradius_m", "eye.over_m: expected none, for the site"),
+        ("radius_m", "over_m = [0.0, 0.0]\nradius_m", "imager.over_m: expected none, for the site"),
         ("survey_drones = 2", "survey_drones = 9", "expected no more than have pads on the site"),
         (
             "survey_drones = 2",
@@ -88,7 +88,7 @@ def test_a_site_is_told_whole(tmp_path: Path) -> None:
 def test_the_simulator_flies_the_scenarios_fleet_from_its_pads(tmp_path: Path) -> None:
     scenario = small(tmp_path)
     apps = build_fleet(simulation_of(scenario, 3), 0)
-    assert [app.settings.serial for app in apps] == [EYE_SERIAL, "SIM-1", "SIM-2"]
+    assert [app.settings.serial for app in apps] == [IMAGER_SERIAL, "SIM-1", "SIM-2"]
     for app, pad_m in zip(apps[1:], scenario.fleet.pads_m, strict=True):
         home_m = enu_from_point(scenario.frame, app.settings.home)
         assert home_m[:2] == pytest.approx(pad_m, abs=0.01)
@@ -122,10 +122,10 @@ def with_storm(folder: Path, storm: str) -> Scenario:
 def test_a_file_of_faults_stands_beside_the_scenario(tmp_path: Path) -> None:
     scenario = with_storm(tmp_path, STORM)
     assert [fault.kind.value for fault in scenario.faults] == ["pilot-takes", "gusts"]
-    eye, first, second = build_fleet(simulation_of(scenario, 5), 0)
+    imager, first, second = build_fleet(simulation_of(scenario, 5), 0)
     assert "gusts" in [fault.kind.value for fault in second.settings.faults]
     assert "gusts" not in [fault.kind.value for fault in first.settings.faults]
-    assert "telemetry-dropout" in [fault.kind.value for fault in eye.settings.faults]
+    assert "telemetry-dropout" in [fault.kind.value for fault in imager.settings.faults]
 
 
 def test_chance_has_the_same_for_a_seed_in_both_gears(tmp_path: Path) -> None:
@@ -147,7 +147,11 @@ def test_chance_has_the_same_for_a_seed_in_both_gears(tmp_path: Path) -> None:
     ("old", "new", "words"),
     [
         ('"gusts"', '"gremlins"', "storm.toml: line 2"),
-        ('vehicle = "2"', 'vehicle = "7"', "expected a vehicle of SIM-1, SIM-2, SIM-EYE, its numb"),
+        (
+            'vehicle = "2"',
+            'vehicle = "7"',
+            "expected a vehicle of SIM-1, SIM-2, SIM-IMAGER, its numb",
+        ),
         ("per_hour = 30.0", "per_hour = -1.0", "storm.toml: line 9"),
     ],
 )
@@ -160,15 +164,15 @@ def test_a_bad_file_of_faults_is_told_with_its_line(
     assert "small.toml:5: fault_file" in str(told.value)
 
 
-def test_the_eye_may_have_faults_of_its_own(tmp_path: Path) -> None:
-    scenario = small(tmp_path, SMALL.replace("pilot-takes:1:40:30", "frames-black:SIM-EYE:5:5"))
-    eye, first, _second = build_fleet(simulation_of(scenario, 0), 0)
-    assert (len(eye.settings.faults), len(first.settings.faults)) == (1, 0)
+def test_the_imager_may_have_faults_of_its_own(tmp_path: Path) -> None:
+    scenario = small(tmp_path, SMALL.replace("pilot-takes:1:40:30", "frames-black:SIM-IMAGER:5:5"))
+    imager, first, _second = build_fleet(simulation_of(scenario, 0), 0)
+    assert (len(imager.settings.faults), len(first.settings.faults)) == (1, 0)
 
 
 def test_the_land_rolls_when_that_is_asked_for(tmp_path: Path) -> None:
     flat = simulation_of(small(tmp_path), 1)
     text = SMALL.replace("ground_altitude_m = 280.0", "ground_altitude_m = 280.0\nrelief_m = 6.0")
     rolling = simulation_of(small(tmp_path, text), 1)
-    sources = [config.eye.source for config in (flat, rolling) if config.eye is not None]
+    sources = [config.imager.source for config in (flat, rolling) if config.imager is not None]
     assert [getattr(source, "relief", None) is None for source in sources] == [True, False]

@@ -13,7 +13,7 @@ from recon.score.whole import run_whole
 from recon.score.whole.run import WholeRun
 from recon.score.whole.ways import TrueWay, begins, encounters
 from recon.sim.app.app import AppSettings, SimulatedApp
-from recon.sim.fleet import EYE_SERIAL
+from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.flight.aircraft import Aircraft
 from recon.sim.flight.flight_modes import Hold
 from recon.sim.flight.kinematics import Motion
@@ -67,7 +67,7 @@ def test_shade_is_read_from_rendered_frames(folder: Path) -> None:
         whole.pass_a_second()
     shade = whole.driver.station.shade.shade
     assert shade is not None
-    assert shade.source_serials == (EYE_SERIAL,)
+    assert shade.source_serials == (IMAGER_SERIAL,)
     assert 0.5 < shade.valid.mean() <= 1.0
 
 

@@ -9,8 +9,8 @@ from recon.geo import Polygon, enu_from_points
 from recon.model.units import NS_PER_S
 from recon.model.zone import ZoneKind
 from recon.sim.app.camera_feed import FeedSettings
-from recon.sim.camera.rig import EyeRig
-from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig, build_fleet
+from recon.sim.camera.rig import ImagerRig
+from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.site import Site, demo_site_folder, load_site
 
 SIMULATED_S = 600
@@ -26,15 +26,15 @@ class NoPictures:
 
 
 def config(site: Site, seed: int, vehicle_count: int) -> SimulationConfig:
-    eye = site.eye
-    assert eye is not None
-    assert eye.marked_frame is not None
+    imager = site.imager
+    assert imager is not None
+    assert imager.marked_frame is not None
     assert site.frame is not None
-    rig = EyeRig(eye.camera, site.frame, eye.solution.pose, eye.marked_frame)
+    rig = ImagerRig(imager.camera, site.frame, imager.solution.pose, imager.marked_frame)
     return SimulationConfig(
         home=site.frame.origin,
         vehicle_count=vehicle_count,
-        eye=EyeSetup(NoPictures(), FeedSettings(1.0), rig),
+        imager=ImagerSetup(NoPictures(), FeedSettings(1.0), rig),
         airborne=Airborne.ALL,
         wanders=True,
         endurance_s=36_000.0,

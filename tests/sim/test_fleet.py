@@ -11,24 +11,24 @@ from recon.sim.app.app import SimulatedApp
 from recon.sim.app.faults import parse_fault
 from recon.sim.camera.replay import StillFrame
 from recon.sim.errors import FaultError
-from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig, build_fleet, fleet_serials
+from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet, fleet_serials
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
-EYE = EyeSetup(StillFrame(np.zeros((9, 16, 3), dtype=np.uint8)))
-CONFIG = SimulationConfig(home=HOME, eye=EYE)
+IMAGER = ImagerSetup(StillFrame(np.zeros((9, 16, 3), dtype=np.uint8)))
+CONFIG = SimulationConfig(home=HOME, imager=IMAGER)
 
 
 def heights(apps: list[SimulatedApp]) -> list[float]:
     return [app.aircraft.motion.height_m for app in apps]
 
 
-def test_the_eye_is_the_first_of_the_number_asked_for() -> None:
-    assert fleet_serials(CONFIG) == ("SIM-EYE", "SIM-1", "SIM-2", "SIM-3")
-    assert fleet_serials(replace(CONFIG, eye=None)) == ("SIM-1", "SIM-2", "SIM-3", "SIM-4")
-    assert fleet_serials(replace(CONFIG, vehicle_count=1)) == ("SIM-EYE",)
+def test_the_imager_is_the_first_of_the_number_asked_for() -> None:
+    assert fleet_serials(CONFIG) == ("SIM-IMAGER", "SIM-1", "SIM-2", "SIM-3")
+    assert fleet_serials(replace(CONFIG, imager=None)) == ("SIM-1", "SIM-2", "SIM-3", "SIM-4")
+    assert fleet_serials(replace(CONFIG, vehicle_count=1)) == ("SIM-IMAGER",)
 
 
-def test_only_the_eye_starts_in_the_air_unless_told_otherwise() -> None:
+def test_only_the_imager_starts_in_the_air_unless_told_otherwise() -> None:
     assert heights(build_fleet(CONFIG, 0)) == [130.0, 0.0, 0.0, 0.0]
     assert heights(build_fleet(replace(CONFIG, airborne=Airborne.NONE), 0)) == [0.0] * 4
     in_air = heights(build_fleet(replace(CONFIG, airborne=Airborne.ALL), 0))
@@ -86,7 +86,7 @@ def test_wandering_vehicles_on_the_ground_take_off_first(flights) -> None:
 
 
 def test_a_fault_of_no_vehicle_is_refused() -> None:
-    with pytest.raises(FaultError, match="SIM-EYE, SIM-1, SIM-2, SIM-3"):
+    with pytest.raises(FaultError, match="SIM-IMAGER, SIM-1, SIM-2, SIM-3"):
         build_fleet(replace(CONFIG, faults=(parse_fault("no-ack:SIM-9"),)), 0)
 
 

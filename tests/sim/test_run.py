@@ -14,7 +14,7 @@ from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import Fault, FaultKind
 from recon.sim.camera.replay import StillFrame
 from recon.sim.errors import FrameSourceError
-from recon.sim.fleet import EyeSetup, SimulationConfig
+from recon.sim.fleet import ImagerSetup, SimulationConfig
 from recon.sim.run import run_fleet
 
 LIMIT_S = 20.0
@@ -101,14 +101,14 @@ def with_fault(kind: FaultKind, start_s: float, duration_s: float) -> Simulation
 
 def test_four_vehicles_connect_speak_and_end() -> None:
     async def scenario() -> None:
-        eye = EyeSetup(StillFrame(PICTURE), FeedSettings(largest_fps_hz=10.0, latency_s=0.05))
-        async with flying(replace(CONFIG, vehicle_count=4, eye=eye)) as station:
+        imager = ImagerSetup(StillFrame(PICTURE), FeedSettings(largest_fps_hz=10.0, latency_s=0.05))
+        async with flying(replace(CONFIG, vehicle_count=4, imager=imager)) as station:
             await station.until(
                 lambda: len(station.links) == 4 and all(len(x.packets) > 8 for x in station.links)
             )
             await station.until(lambda: any(x.of(wire.Image) for x in station.links))
             serials = set().union(*(link.serials for link in station.links))
-            assert serials == {b"SIM-EYE", b"SIM-1", b"SIM-2", b"SIM-3"}
+            assert serials == {b"SIM-IMAGER", b"SIM-1", b"SIM-2", b"SIM-3"}
             for link in station.links:
                 assert isinstance(link.packets[0], wire.MessageString)
             image = next(x for x in station.links if x.of(wire.Image)).of(wire.Image)[0]
@@ -228,8 +228,8 @@ class Broken:
 
 def test_a_picture_that_cannot_be_rendered_is_told_and_the_flight_goes_on() -> None:
     async def scenario() -> None:
-        eye = EyeSetup(Broken(), FeedSettings(largest_fps_hz=10.0))
-        async with flying(replace(CONFIG, eye=eye)) as station:
+        imager = ImagerSetup(Broken(), FeedSettings(largest_fps_hz=10.0))
+        async with flying(replace(CONFIG, imager=imager)) as station:
             await station.until(lambda: sum("picture lost" in x for x in station.lines) > 2)
             await station.until(lambda: len(station.links[0].packets) > 5)
 

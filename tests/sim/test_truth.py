@@ -131,6 +131,6 @@ def test_transmittance_is_the_skys() -> None:
     assert truth.sun_at(60 * NS_PER_S) == sky.sun_at(60.0)
 
 
-def test_a_world_without_an_eye_has_no_true_pose() -> None:
+def test_a_world_without_an_imager_has_no_true_pose() -> None:
     with pytest.raises(SimulationError, match="expected an eye"):
-        WorldTruth(Sky(SkySettings())).eye_pose(View(0.0, 0, None))
+        WorldTruth(Sky(SkySettings())).imager_pose(View(0.0, 0, None))

@@ -16,8 +16,8 @@ from recon.site.layers import _Named, _PadProperties, _ZoneProperties
 from recon.site.limits import LimitsTable
 from recon.site.reading import convert
 from recon.site.schema import (
-    EyeTable,
     GroundImageTable,
+    ImagerTable,
     LayersTable,
     OriginTable,
     SiteTable,
@@ -26,7 +26,15 @@ from recon.site.schema import (
 from recon.site.validation_errors import in_words, said_value
 
 TABLES: list[Any] = [
-    *(SiteTable, OriginTable, LimitsTable, EyeTable, GroundImageTable, LayersTable, VehicleTable),
+    *(
+        SiteTable,
+        OriginTable,
+        LimitsTable,
+        ImagerTable,
+        GroundImageTable,
+        LayersTable,
+        VehicleTable,
+    ),
     *(ElevationTable, _Named, _ZoneProperties, _PadProperties),
 ]
 MSGSPECS_OWN = re.compile(r"Expected|Object|Invalid|`|\$|msgspec|float|str\b|int\b|regex|null")

@@ -24,8 +24,8 @@ from recon.site import demo_site_folder, load_site
 from recon.site.demo_elevation import ELEVATION_FILE, demo_elevation_bytes
 from recon.site.demo_layers import BOUNDARY
 from recon.site.demo_site import (
-    EYE_HEIGHT_M,
-    EYE_SERIAL,
+    IMAGER_HEIGHT_M,
+    IMAGER_SERIAL,
     ORIGIN,
     SERIALS,
     demo_camera,
@@ -71,18 +71,18 @@ def test_the_lens_is_an_equisolid_fisheye_of_170_degrees() -> None:
 
 def test_it_loads_and_its_pose_is_the_one_it_was_made_with() -> None:
     site = load_site(demo_site_folder())
-    assert site.eye is not None
+    assert site.imager is not None
     assert site.frame is not None
-    solution = site.eye.solution
+    solution = site.imager.solution
     assert 0.0 < solution.rms_px < 0.5
-    assert solution.height_above_ground_m == pytest.approx(EYE_HEIGHT_M, abs=0.3)
-    made_with = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, EYE_HEIGHT_M]))
+    assert solution.height_above_ground_m == pytest.approx(IMAGER_HEIGHT_M, abs=0.3)
+    made_with = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, IMAGER_HEIGHT_M]))
     assert np.abs(solution.pose.position_enu_m - made_with.position_enu_m).max() < 0.4
     assert solution.pose.rotation_enu_camera == pytest.approx(
         made_with.rotation_enu_camera, abs=0.003
     )
-    assert site.eye.marked_frame == demo_marked_telemetry()
-    assert not site.eye.first_frame_stands_for_marked_frame
+    assert site.imager.marked_frame == demo_marked_telemetry()
+    assert not site.imager.first_frame_stands_for_marked_frame
 
 
 def test_its_layers_lie_where_they_were_drawn_and_keep_apart() -> None:
@@ -125,28 +125,28 @@ def test_two_can_land_at_once_and_all_ways_home_are_apart_and_legal() -> None:
     assert np.diff(heights) == pytest.approx(8.0)
     assert heights[0] >= max(zone.floor_m or 0.0 for zone in site.layers.zones) + 5.0
     assert heights[-1] <= limits.max_height_above_ground_m
-    assert limits.max_height_above_ground_m > EYE_HEIGHT_M
+    assert limits.max_height_above_ground_m > IMAGER_HEIGHT_M
 
 
 def test_every_vehicle_of_the_demonstration_has_a_profile_that_can_fly_missions() -> None:
     site = load_site(demo_site_folder())
-    assert set(site.profiles) == {EYE_SERIAL, *SERIALS}
+    assert set(site.profiles) == {IMAGER_SERIAL, *SERIALS}
     for profile in site.profiles.values():
         assert profile.waypoint_altitude is AltitudeReference.TAKEOFF
         assert profile.pad is not None
         assert profile.name
         assert profile.endurance_s == 1500.0
         assert profile.failsafe is Failsafe.GO_HOME
-        assert (profile.camera_interval_s is None) == (profile.serial == EYE_SERIAL)
+        assert (profile.camera_interval_s is None) == (profile.serial == IMAGER_SERIAL)
 
 
-def test_the_eye_sees_the_whole_ground_image() -> None:
+def test_the_imager_sees_the_whole_ground_image() -> None:
     site = load_site(demo_site_folder())
-    assert site.eye is not None
+    assert site.imager is not None
     assert site.ground_grid is not None
-    projector = GroundProjector(site.ground_grid, site.eye.camera, site.eye.image_circle)
+    projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     grey = np.full((720, 1280, 3), 128, np.uint8)
-    _, valid = projector.lay_pixels(grey, site.eye.solution.pose)
+    _, valid = projector.lay_pixels(grey, site.imager.solution.pose)
     assert valid.all()
     assert valid.shape == (512, 512)
-    assert find_image_circle(grey, site.eye.camera) is None
+    assert find_image_circle(grey, site.imager.camera) is None

@@ -14,7 +14,7 @@ from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfi
 from recon.site import SiteError, default_site, demo_site_folder, load_site
 
 ORIGIN = "[origin]\nlatitude_deg = 41.9012\nlongitude_deg = -93.6034\nground_altitude_m = 275.0\n"
-EYE = '[eye]\nserial = "EYE"\ncontrol_points_image_size_px = [3840, 2160]\n'
+IMAGER = '[imager]\nserial = "IMAGER"\ncontrol_points_image_size_px = [3840, 2160]\n'
 MINIMAL = 'name = "a field"\n' + ORIGIN
 
 
@@ -42,7 +42,7 @@ def refusal(folder: Path, text: str) -> str:
 def test_name_and_origin_are_enough(folder: Path) -> None:
     site = load_site(write(folder, MINIMAL))
     assert site.name == "a field"
-    assert site.eye is None
+    assert site.imager is None
     assert site.frame is not None
     assert site.frame.origin == GeoPoint(41.9012, -93.6034, 275.0)
     grid = site.ground_grid
@@ -52,22 +52,22 @@ def test_name_and_origin_are_enough(folder: Path) -> None:
     assert dict(site.profiles) == {}
 
 
-def test_the_eye_uses_the_usual_file_names_and_says_what_stands_for_the_marked_frame(
+def test_the_imager_uses_the_usual_file_names_and_says_what_stands_for_the_marked_frame(
     folder: Path,
 ) -> None:
-    site = load_site(write(folder, MINIMAL + EYE))
-    assert site.eye is not None
-    assert site.eye.first_frame_stands_for_marked_frame
-    assert site.eye.image_circle is None
-    assert site.eye.control_points_image_size_px == (3840, 2160)
-    assert len(site.eye.control_points) == 8
-    assert site.eye.solution.rms_px < 0.5
-    assert site.profiles["EYE"] == VehicleProfile("EYE")
+    site = load_site(write(folder, MINIMAL + IMAGER))
+    assert site.imager is not None
+    assert site.imager.first_frame_stands_for_marked_frame
+    assert site.imager.image_circle is None
+    assert site.imager.control_points_image_size_px == (3840, 2160)
+    assert len(site.imager.control_points) == 8
+    assert site.imager.solution.rms_px < 0.5
+    assert site.profiles["IMAGER"] == VehicleProfile("IMAGER")
 
 
 def test_without_a_folder_nothing_is_known() -> None:
     site = default_site()
-    assert (site.frame, site.ground_grid, site.eye) == (None, None, None)
+    assert (site.frame, site.ground_grid, site.imager) == (None, None, None)
     assert dict(site.profiles) == {}
 
 
@@ -203,26 +203,37 @@ def vehicle(line: str) -> str:
         (vehicle('serial = "B"\nmax_waypoints = 9.5'), "a whole number of 2 to 99, got 9.5"),
         (vehicle('serial = "B"\npad = { latitude_deg = 1 }'), "pad.longitude_deg: expected a numb"),
         (vehicle('serial = "B"\nspeed = 3'), "packet_gap_s, got 'speed'"),
-        (MINIMAL + '[eye]\nserial = "E"', "eye.control_points_image_size_px: expected a list"),
-        (MINIMAL + EYE.replace("2160", "3000"), "GCPs.txt: expected a frame of 3840 x 3000"),
-        (MINIMAL + EYE.replace("3840", "0"), "_px[0]: expected a whole number of 2 to 16384"),
-        (MINIMAL + EYE + 'camera = "other.txt"', "got 'other.txt', and there is no such file"),
-        (MINIMAL + EYE + 'camera = "."', "got '.', and there is no such file"),
-        (MINIMAL + EYE + 'camera = "GCPs.txt"', "/GCPs.txt, line"),
-        (MINIMAL + EYE + 'control_points = "site.toml"', "/site.toml, line 1: expected 6 values"),
-        (MINIMAL + EYE + "[eye.marked_frame]\nyaw_deg = 3", "eye.marked_frame.latitude_deg: "),
         (
-            MINIMAL + EYE + "[eye.marked_frame]\nlatitude_deg = 41.903\nlongitude_deg = -93.6034\n"
-            "height_above_takeoff_m = 120\nyaw_deg = 0\n",
-            "eye.marked_frame: expected telemetry within 100 m of where",
+            MINIMAL + '[imager]\nserial = "E"',
+            "imager.control_points_image_size_px: expected a list",
+        ),
+        (MINIMAL + IMAGER.replace("2160", "3000"), "GCPs.txt: expected a frame of 3840 x 3000"),
+        (MINIMAL + IMAGER.replace("3840", "0"), "_px[0]: expected a whole number of 2 to 16384"),
+        (MINIMAL + IMAGER + 'camera = "other.txt"', "got 'other.txt', and there is no such file"),
+        (MINIMAL + IMAGER + 'camera = "."', "got '.', and there is no such file"),
+        (MINIMAL + IMAGER + 'camera = "GCPs.txt"', "/GCPs.txt, line"),
+        (
+            MINIMAL + IMAGER + 'control_points = "site.toml"',
+            "/site.toml, line 1: expected 6 values",
         ),
         (
-            (MINIMAL + EYE).replace("275.0", "305.0"),
+            MINIMAL + IMAGER + "[imager.marked_frame]\nyaw_deg = 3",
+            "imager.marked_frame.latitude_deg: ",
+        ),
+        (
+            MINIMAL
+            + IMAGER
+            + "[imager.marked_frame]\nlatitude_deg = 41.903\nlongitude_deg = -93.6034\n"
+            "height_above_takeoff_m = 120\nyaw_deg = 0\n",
+            "imager.marked_frame: expected telemetry within 100 m of where",
+        ),
+        (
+            (MINIMAL + IMAGER).replace("275.0", "305.0"),
             "GCPs.txt: expected altitudes within 15 m of origin.ground_altitude_m in site.toml, "
             "got -30.0 m",
         ),
         (
-            (MINIMAL + EYE).replace("41.9012", "41.99"),
+            (MINIMAL + IMAGER).replace("41.9012", "41.99"),
             "control point A: expected within 5000 m of the site's origin, got",
         ),
     ],
@@ -242,23 +253,23 @@ def test_no_file_outside_the_folder_is_read(tmp_path: Path, name: str) -> None:
     shutil.copy(demo_site_folder() / "GCPs.txt", inside)
     shutil.copy(demo_site_folder() / "camera-model.txt", tmp_path / "lens.txt")
     (inside / "link.txt").symlink_to(tmp_path / "lens.txt")
-    assert "leads out of it" in refusal(inside, MINIMAL + EYE + f'camera = "{name}"')
+    assert "leads out of it" in refusal(inside, MINIMAL + IMAGER + f'camera = "{name}"')
 
 
 def test_names_no_file_system_takes_are_refused(folder: Path) -> None:
     (folder / "loop.txt").symlink_to(folder / "loop.txt")
-    assert "no such file" in refusal(folder, MINIMAL + EYE + 'camera = "loop.txt"')
-    assert "no such file" in refusal(folder, MINIMAL + EYE + f'camera = "{chr(0x1F681) * 150}"')
+    assert "no such file" in refusal(folder, MINIMAL + IMAGER + 'camera = "loop.txt"')
+    assert "no such file" in refusal(folder, MINIMAL + IMAGER + f'camera = "{chr(0x1F681) * 150}"')
     assert "a file's name of 1 to 200 characters without control" in refusal(
-        folder, MINIMAL + EYE + 'camera = "a\\u0000b"'
+        folder, MINIMAL + IMAGER + 'camera = "a\\u0000b"'
     )
 
 
 def test_a_file_in_a_folder_below_is_read(folder: Path) -> None:
     (folder / "lens").mkdir()
     shutil.move(folder / "camera-model.txt", folder / "lens" / "model.txt")
-    site = load_site(write(folder, MINIMAL + EYE + 'camera = "lens/model.txt"'))
-    assert site.eye is not None
+    site = load_site(write(folder, MINIMAL + IMAGER + 'camera = "lens/model.txt"'))
+    assert site.imager is not None
 
 
 def test_a_missing_folder_a_huge_file_and_deep_nesting_are_refused(tmp_path: Path) -> None:
@@ -274,7 +285,7 @@ def test_a_missing_folder_a_huge_file_and_deep_nesting_are_refused(tmp_path: Pat
 def test_a_file_with_fewer_than_four_points_gives_no_site(folder: Path) -> None:
     lines = (folder / "GCPs.txt").read_text().splitlines()
     (folder / "GCPs.txt").write_text("\n".join(lines[:6]))
-    assert "expected at least 4 control points, got 3" in refusal(folder, MINIMAL + EYE)
+    assert "expected at least 4 control points, got 3" in refusal(folder, MINIMAL + IMAGER)
 
 
 values = st.recursive(
@@ -291,7 +302,7 @@ values = st.recursive(
     ),
     max_leaves=6,
 )
-TABLES = ["name", "origin", "limits", "eye", "ground_image", "layers", "elevation", "vehicles"]
+TABLES = ["name", "origin", "limits", "imager", "ground_image", "layers", "elevation", "vehicles"]
 keys = st.sampled_from([*TABLES, "colour"])
 
 

@@ -17,8 +17,8 @@ name = "Becker"
 latitude_deg = 45.3455
 longitude_deg = -93.8590
 ground_altitude_m = 288.0
-[eye]
-serial = "EYE"
+[imager]
+serial = "IMAGER"
 control_points_image_size_px = [3840, 2160]
 [ground_image]
 width_m = 600.0
@@ -38,17 +38,17 @@ def becker(fisheye_data: Path, tmp_path: Path) -> Path:
 
 def test_a_real_frame_lies_on_the_ground_of_its_site(becker: Path) -> None:
     site = load_site(becker)
-    assert site.eye is not None
+    assert site.imager is not None
     assert site.frame is not None
     assert site.ground_grid is not None
-    assert site.eye.solution.rms_px == pytest.approx(3.62, abs=0.02)
+    assert site.imager.solution.rms_px == pytest.approx(3.62, abs=0.02)
     jpeg = (becker / "RefFrame.jpeg").read_bytes()
-    projector = GroundProjector(site.ground_grid, site.eye.camera, site.eye.image_circle)
-    frame = Frame(1, "EYE", 10, 5, 0.2, jpeg=jpeg)
-    image = projector.lay(frame, site.eye.solution.pose)
+    projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
+    frame = Frame(1, "IMAGER", 10, 5, 0.2, jpeg=jpeg)
+    image = projector.lay(frame, site.imager.solution.pose)
     assert image.valid.mean() > 0.75
     # Point A is where a pale track forks: brighter than the meadow beside it.
-    enu = enu_from_points(site.frame, [point.place for point in site.eye.control_points])
+    enu = enu_from_points(site.frame, [point.place for point in site.imager.control_points])
     rows = np.floor(site.ground_grid.north_m - enu[:, 1]).astype(int)
     cols = np.floor(enu[:, 0] - site.ground_grid.west_m).astype(int)
     assert image.valid[rows, cols].all()

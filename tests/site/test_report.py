@@ -19,12 +19,12 @@ from recon.site.warnings import site_advice
 
 def test_the_report_tells_the_fit_and_every_residual() -> None:
     site = load_site(demo_site_folder())
-    assert site.eye is not None
+    assert site.imager is not None
     lines = site_report(site)
-    solution = site.eye.solution
+    solution = site.imager.solution
     assert lines[0] == "site demo field: 8 vehicle profiles"
     assert "512 x 512 cells of 1 m" in lines[1]
-    assert lines[2] == "eye SIM-EYE: 1280 x 720 lens model"
+    assert lines[2] == "eye SIM-IMAGER: 1280 x 720 lens model"
     assert f"8 control points fit to {solution.rms_px:.2f} px RMS" in lines[3]
     assert f"height {solution.height_above_ground_m:.1f} +-" in lines[3]
     points = [line.split(":")[0] for line in lines[4:12]]
@@ -148,8 +148,8 @@ def test_a_model_with_gaps_says_how_much_of_the_boundary_it_leaves_out() -> None
 
 def test_the_report_says_when_the_first_frame_stands_for_the_marked_one() -> None:
     site = load_site(demo_site_folder())
-    assert site.eye is not None
-    guessed = Site(site.name, site.frame, site.ground_grid, replace(site.eye, marked_frame=None))
+    assert site.imager is not None
+    guessed = Site(site.name, site.frame, site.ground_grid, replace(site.imager, marked_frame=None))
     assert any("first frame received in flight stands for it" in x for x in site_report(guessed))
 
 

@@ -35,7 +35,7 @@ CLOCK = Clock(EPOCH_NS, EPOCH_NS, EPOCH_NS)
 AIRSPACE = PreparedAirspace(ready_airspace(HOME))
 
 
-class Told:
+class CommandedStation:
     """Links carry an order at once, unless `is_stuck`; time goes on in ticks of 0.1 s."""
 
     def __init__(self) -> None:
@@ -49,7 +49,7 @@ class Told:
         """What each link says every 0.1 s."""
         self._next_order = 1
 
-    def happens(self, event: Event) -> "Told":
+    def happens(self, event: Event) -> "CommandedStation":
         self.station, outputs = step(self.station, event, self.now_ns)
         for output in outputs:
             if isinstance(output, SendCommand):
@@ -62,24 +62,24 @@ class Told:
             self.sent.append((self.now_ns / S, link_id, approved.command.id))
             self.happens(CommandSent(link_id, approved.command.id))
 
-    def opens(self, link_id: int, *reports: Report) -> "Told":
+    def opens(self, link_id: int, *reports: Report) -> "CommandedStation":
         self.happens(LinkOpened(link_id, f"10.0.0.{link_id}:5000"))
         return self.says(link_id, *reports)
 
-    def closes(self, link_id: int) -> "Told":
+    def closes(self, link_id: int) -> "CommandedStation":
         self.talk.pop(link_id, None)
         return self.happens(LinkClosed(link_id, "gone"))
 
-    def says(self, link_id: int, *reports: Report) -> "Told":
+    def says(self, link_id: int, *reports: Report) -> "CommandedStation":
         for report in reports:
             self.happens(PacketReceived(link_id, report))
         return self
 
-    def keeps_saying(self, link_id: int, *reports: Report) -> "Told":
+    def keeps_saying(self, link_id: int, *reports: Report) -> "CommandedStation":
         self.talk[link_id] = reports
         return self
 
-    def passes(self, seconds: float) -> "Told":
+    def passes(self, seconds: float) -> "CommandedStation":
         for _ in range(round(seconds * 10)):
             self.now_ns += S // 10
             for link_id, reports in self.talk.items():
@@ -100,10 +100,10 @@ class Told:
         self.happens(OperatorOrder(number, body, "test", serial, link, takeoff))
         return number
 
-    def answered(self, order: int, positive: bool | None, link_id: int = 1) -> "Told":
+    def answered(self, order: int, positive: bool | None, link_id: int = 1) -> "CommandedStation":
         return self.happens(CommandAnswered(link_id, order, positive))
 
-    def dropped(self, order: int, phase: Phase, link_id: int = 1) -> "Told":
+    def dropped(self, order: int, phase: Phase, link_id: int = 1) -> "CommandedStation":
         return self.happens(CommandDropped(link_id, order, phase, "dropped"))
 
     def record(self, order: int) -> OrderRecord:
@@ -127,7 +127,7 @@ class Told:
         return {alarm.condition.rule for alarm in every if alarm.is_active is active}
 
 
-def flying(serial: str = "A") -> Told:
+def flying(serial: str = "A") -> CommandedStation:
     """One vehicle on link 1 that flies a mission and goes on doing so whatever it is told."""
     reports = (core(velocity=(5.0, 0.0, 0.0)), extended(serial, mode=FlightMode.GPS_WAYPOINT))
-    return Told().opens(1, *reports).keeps_saying(1, *reports).passes(0.5)
+    return CommandedStation().opens(1, *reports).keeps_saying(1, *reports).passes(0.5)

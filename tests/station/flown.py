@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from tests.fleet.said import PLACE, core, extended
 from tests.safety.cases import mission, waypoint
-from tests.station.commanded import Told
+from tests.station.commanded import CommandedStation
 
 from recon.model.command import Body, FlyMission
 from recon.model.geo import LatLon
@@ -31,18 +31,18 @@ def at(
     return said, extended(mode=mode, gnss_level=gnss_level)
 
 
-def hovering() -> Told:
+def hovering() -> CommandedStation:
     """A vehicle that hovers at the first waypoint."""
     said = at(0.0, GPS)
-    return Told().opens(1, *said).keeps_saying(1, *said).passes(0.5)
+    return CommandedStation().opens(1, *said).keeps_saying(1, *said).passes(0.5)
 
 
-def ordered(body: Body) -> tuple[Told, int]:
+def ordered(body: Body) -> tuple[CommandedStation, int]:
     """A vehicle that hovers, and an order to it that its app acknowledged."""
-    told = hovering()
-    order = told.order(body)
-    told.answered(order, True)
-    return told, order
+    scene = hovering()
+    order = scene.order(body)
+    scene.answered(order, True)
+    return scene, order
 
 
 def to_land(flown: FlyMission) -> FlyMission:
@@ -50,23 +50,23 @@ def to_land(flown: FlyMission) -> FlyMission:
     return FlyMission(replace(flown.mission, land_at_end=True))
 
 
-def flies(told: Told, *norths_m: float) -> Told:
+def flies(scene: CommandedStation, *norths_m: float) -> CommandedStation:
     """The vehicle flies its mission past these places, a second at each."""
     for north_m in norths_m:
-        told.keeps_saying(1, *at(north_m, WAYPOINT, velocity=NORTHWARD)).passes(1.0)
-    return told
+        scene.keeps_saying(1, *at(north_m, WAYPOINT, velocity=NORTHWARD)).passes(1.0)
+    return scene
 
 
-def under_way(body: FlyMission | None = None) -> tuple[Told, int]:
+def under_way(body: FlyMission | None = None) -> tuple[CommandedStation, int]:
     """A vehicle half way along a mission of 50 m northwards."""
-    told, order = ordered(body or mission())
-    return flies(told, 0.0, 10.0, 25.0), order
+    scene, order = ordered(body or mission())
+    return flies(scene, 0.0, 10.0, 25.0), order
 
 
-def at_the_end(body: FlyMission | None = None) -> tuple[Told, int]:
+def at_the_end(body: FlyMission | None = None) -> tuple[CommandedStation, int]:
     """A vehicle that has come to the end of that mission, and is still in it."""
-    told, order = under_way(body)
-    return flies(told, 35.0, 45.0, 50.0), order
+    scene, order = under_way(body)
+    return flies(scene, 35.0, 45.0, 50.0), order
 
 
 def row(count: int, spacing_m: float = 10.0) -> FlyMission:

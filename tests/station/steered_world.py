@@ -10,16 +10,16 @@ from tests.station.station_world import World, world
 from recon import wire
 from recon.geo.distance import moved_m
 from recon.model.command import Body, GoTo, Phase
-from recon.model.event import HolderCame, HolderGone, OperatorOrder
+from recon.model.event import OperatorOrder, OwnerConnected, OwnerDisconnected
 from recon.model.geo import LatLon
 from recon.sim.app.app import MAIN_LINK, SimulatedApp
 from recon.sim.flight.aircraft import Aircraft
 from recon.station.kernel.virtual import FakeLink
-from recon.station.state.setpoint_lease import Lease
+from recon.station.state.setpoint_lease import SetpointLease
 from recon.station.steering.stream_ends import RULE
 
 SERIAL = "SIM-1"
-HOLDER = "a-stream-of-a-program"
+OWNER = "a-stream-of-a-program"
 HEIGHT_M = 40.0
 """Of SIM-1 at the start."""
 
@@ -66,13 +66,13 @@ class Steered:
         return self.tap.app.aircraft
 
     @property
-    def lease(self) -> Lease | None:
+    def lease(self) -> SetpointLease | None:
         return self.w.driver.station.streams.get(SERIAL)
 
-    def order(self, body: Body, holder: str | None = None) -> int:
+    def order(self, body: Body, owner: str | None = None) -> int:
         number = self.w._next_order
         self.w._next_order += 1
-        self.w.driver.handle(OperatorOrder(number, body, "test", SERIAL, holder=holder))
+        self.w.driver.handle(OperatorOrder(number, body, "test", SERIAL, owner=owner))
         return number
 
     def goto(
@@ -84,12 +84,12 @@ class Steered:
         speed_mps: float = 8.0,
     ) -> int:
         """Order a goto held by an open stream."""
-        self.w.driver.handle(HolderCame(HOLDER))
+        self.w.driver.handle(OwnerConnected(OWNER))
         body = GoTo(self.there(north_m, east_m), height_m, speed_mps)
-        return self.order(body, HOLDER)
+        return self.order(body, OWNER)
 
     def holder_goes(self) -> None:
-        self.w.driver.handle(HolderGone(HOLDER))
+        self.w.driver.handle(OwnerDisconnected(OWNER))
 
     def run_for(self, seconds: float) -> None:
         self.w.run_for(seconds)

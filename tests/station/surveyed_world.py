@@ -7,12 +7,12 @@ import numpy as np
 from tests.station.returning_world import ReturningWorld, returning_world
 
 from recon.guidance.survey import SurveyFigures, SurveyState, figures
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission
 from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyPhase
 from recon.model.zone import Region
-from recon.station.control.authority import lead_of
+from recon.station.control.authority import authority_of
 from recon.station.state.orders import OrderRecord
 from recon.station.state.survey_record import SurveyRecord
 
@@ -95,8 +95,8 @@ class SurveyedWorld:
             if isinstance(each.command.body, FlyMission) and serial in (None, each.command.serial)
         ]
 
-    def leader(self, serial: str) -> Leader:
-        return lead_of(self.driver.station, serial).leader
+    def holder(self, serial: str) -> AuthorityHolder:
+        return authority_of(self.driver.station, serial).holder
 
 
 def surveyed_world(

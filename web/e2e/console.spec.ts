@@ -79,7 +79,7 @@ test("keeps the labels of vehicles close together apart", async ({ page }) => {
   const labels = page.locator(".craft-label");
   await expect(labels).toHaveCount(4);
   await expect.poll(() => overlaps(page, ".craft-label")).toEqual([]);
-  await expect(page.locator(".craft-leader:visible")).not.toHaveCount(0);
+  await expect(page.locator(".craft-holder:visible")).not.toHaveCount(0);
   const places = () => labels.evaluateAll((all) => all.map((one) => one.style.transform));
   const before = await places();
   for (let message = 1; message <= 10; message += 1) {

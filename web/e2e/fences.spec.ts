@@ -24,7 +24,7 @@ async function hold(page: Page, button: Locator, until: () => Promise<void>): Pr
   await page.keyboard.up("Enter");
 }
 
-test("draws fences with their heights, pads, a ghost and a steered vehicle's target", async ({
+test("draws fences with their heights, pads, a hazard area and a steered vehicle's target", async ({
   page,
 }) => {
   await open(page);
@@ -36,7 +36,9 @@ test("draws fences with their heights, pads, a ghost and a steered vehicle's tar
   await expect(page.getByText("Separation holds are OFF.")).toBeVisible();
 });
 
-test("takes a vehicle over, overrides its checklist and dismisses a ghost", async ({ page }) => {
+test("takes a vehicle over, overrides its checklist and dismisses a hazard area", async ({
+  page,
+}) => {
   const fake = await open(page);
   await page.keyboard.press("1");
   await hold(page, page.getByRole("button", { name: "Take over 1 Alder" }), () =>
@@ -48,13 +50,13 @@ test("takes a vehicle over, overrides its checklist and dismisses a ghost", asyn
   await page.getByLabel("Fly missions all the same, because").fill("height read off the app");
   await hold(page, override, () => expect.poll(() => fake.said.length).toBe(2));
   await page.keyboard.press("3");
-  await hold(page, page.getByRole("button", { name: "Dismiss the ghost of 3 Cedar" }), () =>
+  await hold(page, page.getByRole("button", { name: "Dismiss the hazard of 3 Cedar" }), () =>
     expect.poll(() => fake.said.length).toBe(3),
   );
   expect(fake.said).toEqual([
-    ["/api/vehicles/SN-001/authority", { leader: "operator" }],
+    ["/api/vehicles/SN-001/authority", { holder: "operator" }],
     ["/api/vehicles/SN-001/preflight/override", { reason: "height read off the app" }],
-    ["/api/vehicles/SN-003/ghost/dismiss", null],
+    ["/api/vehicles/SN-003/hazard/dismiss", null],
   ]);
 });
 
@@ -74,7 +76,7 @@ test("flies a vehicle to a press on the map only when the gate allows it", async
   await hold(page, go, () => expect.poll(() => fake.orders.length).toBe(1));
   const [given] = fake.orders;
   expect(given).toMatchObject({ serials: ["SN-001"], takeoff: false, order: { kind: "goto" } });
-  expect(given?.holder).toMatch(/^[0-9a-f]{32}$/);
+  expect(given?.owner).toMatch(/^[0-9a-f]{32}$/);
   await page.locator("body").press("Escape");
   await expect(page.locator(".fly")).toBeHidden();
 });

@@ -21,7 +21,7 @@ from recon.api.security import Access, Doorman
 from recon.api.stream import StateStream
 from recon.api.sun_routes import add_sun_routes
 from recon.api.survey_routes import add_survey_routes
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 
 CONSOLE_MISSING = """<!doctype html><title>Recon</title><p>The console is not built.
 Run <code>make web</code> in the project's folder, then start the station again.
@@ -119,7 +119,7 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
             to_body(asked.order),
             takeoff=asked.takeoff,
             issued_by=who(request),
-            holder=asked.holder,
+            owner=asked.owner,
         )
 
     @app.post("/api/orders/check")
@@ -130,7 +130,7 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
             to_body(asked.order),
             takeoff=asked.takeoff,
             issued_by=who(request),
-            holder=asked.holder,
+            owner=asked.owner,
         )
 
     @app.post("/api/all-stop")
@@ -150,14 +150,16 @@ def _add_order_routes(app: FastAPI, port: StationPort) -> None:
 
 
 def _add_hazard_routes(app: FastAPI, port: StationPort) -> None:
-    @app.post("/api/vehicles/{serial}/ghost/dismiss", responses=PROBLEMS, status_code=204)
-    async def dismiss_ghost(serial: str, request: Request) -> None:
+    @app.post("/api/vehicles/{serial}/hazard/dismiss", responses=PROBLEMS, status_code=204)
+    async def dismiss_hazard(serial: str, request: Request) -> None:
         """Say that somebody knows where a vehicle is that is not heard: it is a hazard no more.
 
-        A vehicle without a serial is named as its ghost's `dismissed_as` says.
+        A vehicle without a serial is named as its hazard area's `dismissed_as` says.
         """
-        if not port.dismiss_ghost(serial, who(request)):
-            raise HTTPException(404, f"{serial!r} is heard, on the ground, or not known: no ghost")
+        if not port.dismiss_hazard(serial, who(request)):
+            raise HTTPException(
+                404, f"No hazard area for {serial!r}: it is connected, landed or unknown"
+            )
 
     @app.post("/api/separation-hold/{switch}", status_code=204)
     async def separation_hold(switch: Literal["on", "off"], request: Request) -> None:
@@ -176,8 +178,8 @@ def _add_readiness_routes(app: FastAPI, port: StationPort) -> None:
     async def authority(
         serial: str, asked: schema.AuthorityRequest, request: Request
     ) -> schema.WordResponse:
-        """Take a vehicle over, or give it away: from now on only `leader` sets it in motion."""
-        return port.take_authority(serial, Leader(asked.leader), who(request))
+        """Take a vehicle over, or give it away: from now on only `holder` sets it in motion."""
+        return port.take_authority(serial, AuthorityHolder(asked.holder), who(request))
 
     @app.get("/api/vehicles/{serial}/preflight", responses=PROBLEMS)
     async def preflight(serial: str) -> schema.PreflightView:

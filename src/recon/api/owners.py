@@ -1,6 +1,6 @@
 """Readers of the stream that hold steered orders: alive as long as they say so.
 
-A stream that names a holder (`/api/stream?holder=NAME`) must say anything at all, an empty text
+A stream that names a owner (`/api/stream?owner=NAME`) must say anything at all, an empty text
 will do, twice a second. When it ends, or is silent for two seconds (a computer that sleeps, a
 program that hangs), what it holds ends with it: the vehicle is stopped. A name is used by one
 stream at a time, and a new connection takes a new one: nothing held comes back to life.
@@ -23,7 +23,7 @@ LONGEST_NAME = 64
 _LETTERS = frozenset(string.ascii_letters + string.digits + "-_")
 
 
-class Holders:
+class Owners:
     """The names of the streams that hold orders now."""
 
     def __init__(self, port: StationPort) -> None:
@@ -36,10 +36,10 @@ class Holders:
             return None
         if not SHORTEST_NAME <= len(name) <= LONGEST_NAME or not _LETTERS.issuperset(name):
             return (
-                f"holder: {SHORTEST_NAME} to {LONGEST_NAME} letters, digits and -_ make a name, "
+                f"owner: {SHORTEST_NAME} to {LONGEST_NAME} letters, digits and -_ make a name, "
                 "best drawn at random"
             )
-        return f"holder: {name[:8]}... is in use by another stream" if name in self._names else None
+        return f"owner: {name[:8]}... is in use by another stream" if name in self._names else None
 
     @asynccontextmanager
     async def holding(self, name: str | None) -> AsyncIterator[None]:
@@ -48,16 +48,16 @@ class Holders:
             yield
             return
         self._names.add(name)
-        self._port.holder_came(name)
+        self._port.owner_connected(name)
         try:
             yield
         finally:
             self._names.discard(name)
-            self._port.holder_gone(name)
+            self._port.owner_disconnected(name)
 
 
 async def until_silent(socket: WebSocket) -> None:
-    """Read what a holder says until it goes, or says nothing for too long."""
+    """Read what a owner says until it goes, or says nothing for too long."""
     try:
         while True:
             async with asyncio.timeout(SILENT_S):

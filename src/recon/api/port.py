@@ -17,7 +17,7 @@ from recon.api.schema import (
     SurveyWays,
     WordResponse,
 )
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Body
 from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
@@ -45,11 +45,11 @@ class StationPort(Protocol):
         *,
         takeoff: bool,
         issued_by: str,
-        holder: str | None = None,
+        owner: str | None = None,
     ) -> OrderResponse:
         """Give one order to each named vehicle; refusals are results, not errors.
 
-        `holder` names the stream whose end ends a steered order.
+        `owner` names the stream whose end ends a steered order.
         """
 
     def check(
@@ -59,14 +59,14 @@ class StationPort(Protocol):
         *,
         takeoff: bool,
         issued_by: str,
-        holder: str | None = None,
+        owner: str | None = None,
     ) -> OrderResponse:
         """Return what `order` would answer now, without giving it."""
 
-    def holder_came(self, holder: str) -> None:
+    def owner_connected(self, owner: str) -> None:
         """Tell that a stream is open that may hold steered orders."""
 
-    def holder_gone(self, holder: str) -> None:
+    def owner_disconnected(self, owner: str) -> None:
         """Tell that it has ended, or says nothing any more."""
 
     def all_stop(self, issued_by: str) -> OrderResponse:
@@ -78,13 +78,13 @@ class StationPort(Protocol):
         The results tell of the hold that each begins with; flights and waves are in the state.
         """
 
-    def dismiss_ghost(self, name: str, by: str) -> bool:
-        """Take a vehicle that is not heard out of the air; False when it is no ghost."""
+    def dismiss_hazard(self, name: str, by: str) -> bool:
+        """Take a vehicle that is not heard out of the air; False when it is no hazard area."""
 
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
         """Switch on or off that the watchdogs hold vehicles."""
 
-    def take_authority(self, serial: str, leader: Leader, by: str) -> WordResponse:
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> WordResponse:
         """Let somebody else lead a vehicle; refusals are answers, not errors."""
 
     def preflight(self, serial: str) -> PreflightView | None:

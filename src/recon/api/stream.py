@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from recon.api.owners import Holders, until_silent
+from recon.api.owners import Owners, until_silent
 from recon.api.port import StationPort
 from recon.api.security import PROTOCOL
 
@@ -28,15 +28,15 @@ class StateStream:
         self._text = ""
         self._made_at_s = float("-inf")
         self._readers = 0
-        self._holders = Holders(port)
+        self._owners = Owners(port)
 
     async def serve(self, socket: WebSocket) -> None:
         """Send states to one reader until it goes."""
         if self._readers >= MOST_READERS:
             await socket.close(1013, f"{MOST_READERS} readers are connected already")
             return
-        holder = socket.query_params.get("holder")
-        fault = self._holders.fault(holder)
+        owner = socket.query_params.get("owner")
+        fault = self._owners.fault(owner)
         if fault is not None:
             await socket.close(1008, fault)
             return
@@ -44,17 +44,17 @@ class StateStream:
         try:
             offered = socket.scope.get("subprotocols", [])
             await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
-            await self._send_until_gone(socket, holder)
-            if holder is not None:
-                await socket.close(1008, "holder: it has said nothing for too long")
+            await self._send_until_gone(socket, owner)
+            if owner is not None:
+                await socket.close(1008, "owner: it has said nothing for too long")
         except (WebSocketDisconnect, RuntimeError):
             return
         finally:
             self._readers -= 1
 
-    async def _send_until_gone(self, socket: WebSocket, holder: str | None) -> None:
+    async def _send_until_gone(self, socket: WebSocket, owner: str | None) -> None:
         # Listening is a task of its own: sending waits as long as the reader takes nothing.
-        gone = asyncio.ensure_future(self._listen(socket, holder))
+        gone = asyncio.ensure_future(self._listen(socket, owner))
         try:
             while not gone.done():
                 await socket.send_text(self._newest())
@@ -62,11 +62,11 @@ class StateStream:
         finally:
             gone.cancel()
 
-    async def _listen(self, socket: WebSocket, holder: str | None) -> None:
-        if holder is None:
+    async def _listen(self, socket: WebSocket, owner: str | None) -> None:
+        if owner is None:
             await until_gone(socket)
             return
-        async with self._holders.holding(holder):
+        async with self._owners.holding(owner):
             await until_silent(socket)
 
     def _newest(self) -> str:

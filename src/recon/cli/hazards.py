@@ -40,7 +40,7 @@ def dismiss_command(
             (named,) = serials_of(at, [vehicle])
         except NamingError:
             named = vehicle
-        await at.known(named).dismiss_ghost()
+        await at.known(named).dismiss_hazard()
         say(f"{named}: no longer counted as in the air; your word is in the audit")
         return DONE
 

@@ -11,7 +11,7 @@ from typing import Any
 from recon.client import ClientError, Refusal, Station, Survey, Telemetry
 from recon.geo import point_from_enu
 from recon.score import Scenario
-from recon.sim.fleet import EYE_SERIAL
+from recon.sim.fleet import IMAGER_SERIAL
 
 LOOK_EVERY_S = 1.0
 LIVE_WITHIN_S = 60.0
@@ -29,7 +29,7 @@ async def fly_surveys(url: str, scenario: Scenario, say: Say) -> None:
     """
     serials = scenario.fleet.serials
     async with Station(url) as station:
-        for serial in (EYE_SERIAL, *serials):
+        for serial in (IMAGER_SERIAL, *serials):
             await station.vehicle(serial, LIVE_WITHIN_S)
         while True:
             survey = await _begun(station, scenario, serials, say)

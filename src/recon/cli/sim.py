@@ -13,7 +13,6 @@ from recon.cli.sim_options import (
     AltitudeBiasMOption,
     AltitudeReferenceOption,
     EnduranceMinOption,
-    EyeOption,
     FaultOption,
     FaultsOption,
     FeedOption,
@@ -23,6 +22,7 @@ from recon.cli.sim_options import (
     HomeOption,
     HoverOnGroundOption,
     ImageFormatOption,
+    ImagerOption,
     LatencySOption,
     MissionIdsOption,
     ReplaySiteOption,
@@ -45,24 +45,24 @@ from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import parse_fault
 from recon.sim.app.telemetry import FIELD_SENSORS
-from recon.sim.camera import EyeSettings
+from recon.sim.camera import ImagerSettings
 from recon.sim.camera.field import FieldFrames
 from recon.sim.camera.frame_files import folder_frames
 from recon.sim.camera.replay import load_replay
-from recon.sim.camera.rig import EyeRig
+from recon.sim.camera.rig import ImagerRig
 from recon.sim.errors import SimulationError
-from recon.sim.fleet import Airborne, EyeSetup, SimulationConfig
+from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
-from recon.site import Eye, Site, SiteError, demo_site_folder, load_site
+from recon.site import Imager, Site, SiteError, demo_site_folder, load_site
 
 LONGEST_LATENCY_S = 60.0
 
 
-class EyeWorld(NamedTuple):
+class ImagerWorld(NamedTuple):
     """Where the eye hangs (None: above home) and what it sees."""
 
-    rig: EyeRig | None
+    rig: ImagerRig | None
     source: FrameSource
 
 
@@ -72,7 +72,7 @@ def sim_command(
     station: StationOption = "127.0.0.1:3001",
     altitude_reference: AltitudeReferenceOption = WaypointAltitude.TAKEOFF,
     hover_on_ground: HoverOnGroundOption = HoverOnGround.NOTHING,
-    eye: EyeOption = True,
+    imager: ImagerOption = True,
     airborne: AirborneOption = None,
     wander: WanderOption = False,
     home: HomeOption = None,
@@ -102,15 +102,15 @@ def sim_command(
         script = FaultScript() if faults is None else load_faults(faults)
         place = _place(site)
         feed_settings = FeedSettings(fps, image_format, latency_s, feed)
-        if not eye and (frames is not None or replay_site is not None):
+        if not imager and (frames is not None or replay_site is not None):
             raise SimulationError("--no-eye: expected neither --frames nor --replay-site, got one")
-        world = _eye_world(place, replay_site, frames, frame_size, seed) if eye else None
+        world = _imager_world(place, replay_site, frames, frame_size, seed) if imager else None
         config = SimulationConfig(
             home=_home(home, place, world),
             station_host=host,
             station_port=port,
             vehicle_count=vehicles,
-            eye=None if world is None else EyeSetup(world.source, feed_settings, world.rig),
+            imager=None if world is None else ImagerSetup(world.source, feed_settings, world.rig),
             altitude_reference=AltitudeReference(altitude_reference.value),
             hover_on_ground=hover_on_ground,
             airborne=_AIRBORNE[airborne],
@@ -132,7 +132,7 @@ def sim_command(
         raise typer.Exit(2) from None
 
 
-_AIRBORNE = {None: Airborne.EYE, True: Airborne.ALL, False: Airborne.NONE}
+_AIRBORNE = {None: Airborne.IMAGER, True: Airborne.ALL, False: Airborne.NONE}
 
 
 def parse_station(text: str) -> tuple[str, int]:
@@ -189,7 +189,7 @@ def _place(folder: Path | None) -> Site:
     return place
 
 
-def _home(text: str | None, place: Site, world: EyeWorld | None) -> GeoPoint:
+def _home(text: str | None, place: Site, world: ImagerWorld | None) -> GeoPoint:
     frame = place.frame if world is None or world.rig is None else world.rig.frame
     assert frame is not None
     if text is None:
@@ -197,23 +197,25 @@ def _home(text: str | None, place: Site, world: EyeWorld | None) -> GeoPoint:
     return GeoPoint(*parse_home(text), frame.origin.ellipsoid_height_m)
 
 
-def _eye_world(
+def _imager_world(
     place: Site, replay: Path | None, frames: Path | None, frame_size: str, seed: int
-) -> EyeWorld:
+) -> ImagerWorld:
     """Return where the eye hangs and what it sees: a real field, a folder, or made-up land."""
     if replay is not None and frames is not None:
         raise SimulationError("expected --replay-site or --frames, got both")
     if replay is not None:
-        return EyeWorld(*load_replay(replay))
+        return ImagerWorld(*load_replay(replay))
     cols, rows = parse_size(frame_size)
-    rig = None if place.eye is None else _rig(place, place.eye)
+    rig = None if place.imager is None else _rig(place, place.imager)
     if frames is not None:
-        return EyeWorld(rig, folder_frames(frames, rows, cols))
-    if rig is None or place.eye is None:
-        raise SimulationError("expected a site with an [eye], or --frames, or --no-eye, got none")
-    sky, eye = _sky(rig.frame.origin, seed), EyeSettings(seed)
-    land = FieldFrames(rig.camera, place.eye.image_circle, seed, sky, eye)
-    return EyeWorld(rig, land)
+        return ImagerWorld(rig, folder_frames(frames, rows, cols))
+    if rig is None or place.imager is None:
+        raise SimulationError(
+            "expected a site with an [imager], or --frames, or --no-eye, got none"
+        )
+    sky, imager = _sky(rig.frame.origin, seed), ImagerSettings(seed)
+    land = FieldFrames(rig.camera, place.imager.image_circle, seed, sky, imager)
+    return ImagerWorld(rig, land)
 
 
 def _sky(origin: GeoPoint, seed: int) -> Sky:
@@ -223,6 +225,6 @@ def _sky(origin: GeoPoint, seed: int) -> Sky:
     return Sky(SkySettings(seed, sun, (clouds,)))
 
 
-def _rig(place: Site, eye: Eye) -> EyeRig:
+def _rig(place: Site, imager: Imager) -> ImagerRig:
     assert place.frame is not None
-    return rig_of(place.frame, eye)
+    return rig_of(place.frame, imager)

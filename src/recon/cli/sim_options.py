@@ -30,7 +30,7 @@ AltitudeReferenceOption = Annotated[
 HoverOnGroundOption = Annotated[
     HoverOnGround, typer.Option(help="What hover and return do on the ground.")
 ]
-EyeOption = Annotated[
+ImagerOption = Annotated[
     bool, typer.Option("--eye/--no-eye", help="Whether the first vehicle has a camera.")
 ]
 AirborneOption = Annotated[

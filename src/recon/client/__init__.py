@@ -22,7 +22,7 @@ from recon.client.readiness import Preflight, PreflightOverride, PreflightPoint
 from recon.client.returning import Returning
 from recon.client.station import Station
 from recon.client.surveys import Survey, SurveyFigures, Surveying, Surveys
-from recon.client.telemetry import Aged, Heading, Lead, Position, Telemetry, Velocity
+from recon.client.telemetry import Aged, ControlAuthority, Heading, Position, Telemetry, Velocity
 from recon.client.vehicle import Vehicle
 from recon.client.watched import Alarm, AuditEntry, AuditPage, StopAnswer
 from recon.model.command import Phase, Refusal, StickFrame
@@ -38,9 +38,9 @@ __all__ = [
     "BadAnswerError",
     "ClientError",
     "ConnectionLostError",
+    "ControlAuthority",
     "Fleet",
     "Heading",
-    "Lead",
     "Life",
     "MaybeSentError",
     "Mission",

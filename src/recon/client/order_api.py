@@ -28,7 +28,7 @@ class OrderDesk:
         run_started_ns = self._run_started_ns()
         asked = {"serials": list(serials), "order": form, "takeoff": takeoff}
         if isinstance(body, STEERED_BODIES):
-            asked["holder"] = self._holder()
+            asked["owner"] = self._owner()
         try:
             answer = await self.http.post("/api/orders", asked, OrderMessage, "results of an order")
         except OrderInvalidError as problem:
@@ -53,7 +53,7 @@ class OrderDesk:
             return form
         asked = {"serials": [serial], "order": form, "takeoff": takeoff}
         if isinstance(body, STEERED_BODIES):
-            asked["holder"] = self._holder()
+            asked["owner"] = self._owner()
         try:
             answer = await self.http.post(
                 "/api/orders/check", asked, OrderMessage, "results of a check"
@@ -89,14 +89,14 @@ class OrderDesk:
             )
         return self.stream.newest.message.run_started_ns
 
-    def _holder(self) -> str:
+    def _owner(self) -> str:
         """The present connection of the stream: when it ends, the vehicle stops."""
-        if self.stream.holder is None:
+        if self.stream.owner is None:
             raise ConnectionLostError(
                 "expected an open stream of states to hold the order by, got none at present "
                 f"({self.stream.trouble}); nothing was sent: give the order again when it is back"
             )
-        return self.stream.holder
+        return self.stream.owner
 
     def _answer(self, result: ResultMessage, run_started_ns: int) -> VehicleAnswer:
         answer: Order | Refusal

@@ -3,7 +3,7 @@
 import msgspec
 
 from recon.client.http import Http
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Refusal
 
 
@@ -49,9 +49,9 @@ class WordMessage(msgspec.Struct, frozen=True):
     reason: str | None
 
 
-async def say_leader(http: Http, vehicle_path: str, leader: Leader) -> Refusal | None:
+async def say_holder(http: Http, vehicle_path: str, holder: AuthorityHolder) -> Refusal | None:
     """Take a vehicle over or give it away; None when that is done."""
-    asked = {"leader": leader.value}
+    asked = {"holder": holder.value}
     return await _say(http, f"{vehicle_path}/authority", asked)
 
 

@@ -28,7 +28,7 @@ SILENT_CONNECTION_S = 5.0
 """Ten states come each second; a connection without one for so long is dead, however open."""
 
 BEAT_S = 0.5
-"""The station gives a holder up after two seconds of silence."""
+"""The station gives a owner up after two seconds of silence."""
 
 FIRST_PAUSE_S = 0.2
 LONGEST_PAUSE_S = 2.0
@@ -54,7 +54,7 @@ class Stream:
     def __init__(self, address: Address, now_ns: Callable[[], int] = time.monotonic_ns) -> None:
         self.now_ns = now_ns
         self.newest: Heard | None = None
-        self.holder: str | None = None
+        self.owner: str | None = None
         """The name by which the present connection holds steered orders; each has its own."""
         self.trouble = "it has not answered yet"
         """Why nothing comes at present, for people."""
@@ -112,10 +112,10 @@ class Stream:
             await asyncio.sleep(min(pause_s, LONGEST_PAUSE_S))
 
     async def _read_connection(self) -> None:
-        holder = token_urlsafe(24)
+        owner = token_urlsafe(24)
         try:
-            async with _open(self._address, holder) as connection, _beating(connection):
-                self.holder = holder
+            async with _open(self._address, owner) as connection, _beating(connection):
+                self.owner = owner
                 await self._read(connection)
         except InvalidStatus as problem:
             status = problem.response.status_code
@@ -134,7 +134,7 @@ class Stream:
                 ) from problem
             raise
         finally:
-            self.holder = None
+            self.owner = None
 
     async def _read(self, connection: ClientConnection) -> None:
         while True:
@@ -183,9 +183,9 @@ async def _beating(connection: ClientConnection) -> AsyncIterator[None]:
         beats.cancel()
 
 
-def _open(address: Address, holder: str) -> connect:
+def _open(address: Address, owner: str) -> connect:
     return _Straight(
-        f"{address.stream}?holder={holder}",
+        f"{address.stream}?owner={owner}",
         additional_headers=address.headers,
         compression=None,
         proxy=None,

@@ -47,14 +47,14 @@ class Heading(msgspec.Struct, frozen=True):
     age_s: float | None
 
 
-class Lead(msgspec.Struct, frozen=True):
+class ControlAuthority(msgspec.Struct, frozen=True):
     """Who may set a vehicle in motion: pilot, operator or guidance, and how that came about.
 
     `age_s` is None when nobody has taken it since the station began.
     """
 
-    leader: str
     holder: str
+    holder_name: str
     age_s: float | None
     reason: str
 
@@ -70,7 +70,7 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     link_id: int | None
     name: str
     is_simulated: bool
-    lead: Lead
+    authority: ControlAuthority
     staleness: Staleness
     telemetry_age_s: float | None
     is_flying: Aged[bool]
@@ -101,7 +101,9 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
         changes: dict[str, Any] = {
             name: msgspec.structs.replace(part, age_s=_older(part.age_s, seconds))
             for name in self.__struct_fields__
-            if isinstance(part := getattr(self, name), Aged | Position | Velocity | Heading | Lead)
+            if isinstance(
+                part := getattr(self, name), Aged | Position | Velocity | Heading | ControlAuthority
+            )
         }
         age_s = _older(self.telemetry_age_s, seconds)
         worse = max(self.staleness, staleness_at(age_s), key=_GROWING_WORSE.index)

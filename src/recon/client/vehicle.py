@@ -6,10 +6,10 @@ from urllib.parse import quote
 from recon.client.errors import ConnectionLostError
 from recon.client.order import Order
 from recon.client.order_api import OrderDesk
-from recon.client.readiness import Preflight, ask_preflight, say_leader, say_override
+from recon.client.readiness import Preflight, ask_preflight, say_holder, say_override
 from recon.client.stream import Heard
 from recon.client.telemetry import Telemetry
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     FlyMission,
     GoTo,
@@ -136,15 +136,15 @@ class Vehicle:
 
         Nobody else sets it in motion from now on. What it was told before goes on.
         """
-        return await say_leader(self._desk.http, self._path, Leader.OPERATOR)
+        return await say_holder(self._desk.http, self._path, AuthorityHolder.OPERATOR)
 
     async def give_to_pilot(self) -> Refusal | None:
         """Leave the vehicle to its pilot: the station moves it no more; None when done."""
-        return await say_leader(self._desk.http, self._path, Leader.PILOT)
+        return await say_holder(self._desk.http, self._path, AuthorityHolder.PILOT)
 
     async def give_to_guidance(self) -> Refusal | None:
         """Leave the vehicle to the station's own planning; None when done."""
-        return await say_leader(self._desk.http, self._path, Leader.GUIDANCE)
+        return await say_holder(self._desk.http, self._path, AuthorityHolder.GUIDANCE)
 
     async def preflight(self) -> Preflight:
         """Return the checklist as of now: what holds missions back, and what to do about it."""
@@ -157,13 +157,13 @@ class Vehicle:
         """
         return await say_override(self._desk.http, self._path, reason)
 
-    async def dismiss_ghost(self) -> None:
+    async def dismiss_hazard(self) -> None:
         """Say that somebody knows where the vehicle is, though it is not heard.
 
         Until then others keep clear of where it may be. Raises `RequestRefusedError` when it is
-        no ghost.
+        no hazard area.
         """
-        await self._desk.http.tell(f"{self._path}/ghost/dismiss")
+        await self._desk.http.tell(f"{self._path}/hazard/dismiss")
 
     def now(self) -> Telemetry:
         """Return what is known now, with ages as of now; raises `ConnectionLostError`."""

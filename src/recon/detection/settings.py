@@ -39,7 +39,7 @@ class DetectionSettings:
     """Of a cell's samples, taken for its light in full sun; above it are glints and noise."""
 
     least_samples: int = 4
-    """Seen for less than 15 s nothing is said of a cell: most shadows stay longer."""
+    """PositionSample for less than 15 s nothing is said of a cell: most shadows stay longer."""
 
     flat_confidence: float = 0.4
     """Of a cell that did not change for the whole window: it may have been in shade throughout."""

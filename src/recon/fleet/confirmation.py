@@ -10,7 +10,7 @@ from enum import IntEnum
 from math import atan2, degrees, hypot
 from typing import Any
 
-from recon.fleet.flight_table import ModeKind, Place, Reading, Told, Verdict, read
+from recon.fleet.flight_table import Instruction, ModeKind, Place, Reading, Verdict, read
 from recon.geo.distance import offset_north_east_m
 from recon.model.command import (
     Body,
@@ -36,12 +36,12 @@ AT_WAYPOINT_M = 5.0
 CAMERA_QUIET_S = 2.0
 """No image for this long after a stop was sent: the feed has stopped."""
 
-_TOLD: dict[type, Told] = {
-    Hover: Told.HOLD_SENT,
-    LandNow: Told.LAND_SENT,
-    ReturnHome: Told.RETURN_SENT,
-    FlyMission: Told.MISSION_SENT,
-    VirtualStick: Told.STICK_SENT,
+_TOLD: dict[type, Instruction] = {
+    Hover: Instruction.HOLD_SENT,
+    LandNow: Instruction.LAND_SENT,
+    ReturnHome: Instruction.RETURN_SENT,
+    FlyMission: Instruction.MISSION_SENT,
+    VirtualStick: Instruction.STICK_SENT,
 }
 
 

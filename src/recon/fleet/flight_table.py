@@ -23,7 +23,7 @@ class Verdict(Enum):
     UNDECIDED = "undecided"
 
 
-class Told(Enum):
+class Instruction(Enum):
     """What the station has told a vehicle; "sent" until telemetry shows it carried out."""
 
     NOTHING = "nothing"
@@ -123,23 +123,23 @@ VERDICT_OF_LETTER = {
 # One row for each thing told, one cell for each kind of mode in the order of ModeKind, and in each
 # cell four letters: in the air at its end, elsewhere; on the ground at its end, elsewhere.
 # The columns: mission go-home landing stick position takeoff pilot ATTI+ ATTI- unknown.
-_ROWS: dict[Told, str] = {
-    Told.NOTHING: "         ---- ---- ---- ---- ---- ---- PP-- PP-- ---- ----",
+_ROWS: dict[Instruction, str] = {
+    Instruction.NOTHING: "         ---- ---- ---- ---- ---- ---- PP-- PP-- ---- ----",
     # A mission sent just before may still begin: a stop is repeated until it holds.
-    Told.HOLD_SENT: "       ---- ---- ---- ---- cc-- ---- PP-- PP-- cc-- cc--",
-    Told.HOLD: "            PP-- XX-- XX-- PP-- cP-- ---- PP-- PP-- ---- ----",
-    Told.MISSION_SENT: "    ss-- XX-- XX-- ---- ---- cccc PP-- PP-- ---- ----",
-    Told.MISSION: "         ccXX XXXX XXXX PPXX fPXX --XX PPXX PPXX --XX --XX",
-    Told.MISSION_TO_LAND: " ccfX XXfX cXfX PPfX PPfX --fX PPfX PPfX --fX --fX",
-    Told.STICK_SENT: "      ---- XX-- XX-- cc-- ---- ---- PP-- PP-- ---- ----",
-    Told.STICK: "           PPXX XXXX XXXX ccXX PPXX --XX PPXX PPXX --XX --XX",
-    Told.RETURN_SENT: "     --ff ccff --ff --ff --ff --ff PPff PPff --ff --ff",
-    Told.RETURN: "          PPff ccff ccff PPff PPff --ff PPff PPff --ff --ff",
-    Told.LAND_SENT: "       --ff --ff ccff --ff --ff --ff PPff PPff --ff --ff",
-    Told.LAND: "            PPff XXff ccff PPff PPff --ff PPff PPff --ff --ff",
+    Instruction.HOLD_SENT: "       ---- ---- ---- ---- cc-- ---- PP-- PP-- cc-- cc--",
+    Instruction.HOLD: "            PP-- XX-- XX-- PP-- cP-- ---- PP-- PP-- ---- ----",
+    Instruction.MISSION_SENT: "    ss-- XX-- XX-- ---- ---- cccc PP-- PP-- ---- ----",
+    Instruction.MISSION: "         ccXX XXXX XXXX PPXX fPXX --XX PPXX PPXX --XX --XX",
+    Instruction.MISSION_TO_LAND: " ccfX XXfX cXfX PPfX PPfX --fX PPfX PPfX --fX --fX",
+    Instruction.STICK_SENT: "      ---- XX-- XX-- cc-- ---- ---- PP-- PP-- ---- ----",
+    Instruction.STICK: "           PPXX XXXX XXXX ccXX PPXX --XX PPXX PPXX --XX --XX",
+    Instruction.RETURN_SENT: "     --ff ccff --ff --ff --ff --ff PPff PPff --ff --ff",
+    Instruction.RETURN: "          PPff ccff ccff PPff PPff --ff PPff PPff --ff --ff",
+    Instruction.LAND_SENT: "       --ff --ff ccff --ff --ff --ff PPff PPff --ff --ff",
+    Instruction.LAND: "            PPff XXff ccff PPff PPff --ff PPff PPff --ff --ff",
 }
 
-TABLE: dict[tuple[Told, ModeKind, Place], Verdict] = {
+TABLE: dict[tuple[Instruction, ModeKind, Place], Verdict] = {
     (told, kind, place): VERDICT_OF_LETTER[letter]
     for told, row in _ROWS.items()
     for kind, cell in zip(COLUMNS, row.split(), strict=True)
@@ -176,7 +176,7 @@ def kind_of(mode: FlightMode, gnss_level: int | None) -> ModeKind:
 
 
 def read(
-    told: Told,
+    told: Instruction,
     mode: FlightMode | None,
     gnss_level: int | None,
     place: Place,
@@ -193,12 +193,12 @@ def read(
     return Reading(verdict, kind, _why(verdict, told, kind, place))
 
 
-def _is_moved_hold(told: Told, kind: ModeKind) -> bool:
+def _is_moved_hold(told: Instruction, kind: ModeKind) -> bool:
     """Whether the place is the news: a vehicle that holds is in position mode anyway."""
-    return told is Told.HOLD and kind is ModeKind.NEUTRAL
+    return told is Instruction.HOLD and kind is ModeKind.NEUTRAL
 
 
-def _why(verdict: Verdict, told: Told, kind: ModeKind, place: Place) -> str:
+def _why(verdict: Verdict, told: Instruction, kind: ModeKind, place: Place) -> str:
     if verdict is Verdict.FAILSAFE:
         return _why_failsafe(kind, place)
     if verdict is Verdict.PILOT:
@@ -214,7 +214,7 @@ def _why_failsafe(kind: ModeKind, place: Place) -> str:
     return "it lands, which was not ordered: its failsafe, or the pilot's button"
 
 
-def _why_pilot(told: Told, kind: ModeKind) -> str:
+def _why_pilot(told: Instruction, kind: ModeKind) -> str:
     if kind is ModeKind.WAYPOINT:
         return "it flies a mission not ordered now: the pilot's, or one carried out late"
     if kind is ModeKind.JOYSTICK:
@@ -226,12 +226,12 @@ def _why_pilot(told: Told, kind: ModeKind) -> str:
     return "a flight mode was selected that only a pilot selects"
 
 
-_LEFT: dict[Told, str] = {
-    Told.HOLD: f"it has moved more than {AT_END_M:g} m from where it was to hold: the pilot",
-    Told.MISSION: f"it left its mission more than {AT_END_M:g} m from its end without going home "
-    "or landing: the pilot",
-    Told.MISSION_TO_LAND: "it left its mission and does not land: the pilot",
-    Told.STICK: "it is no longer flown by the station's sticks: the pilot",
-    Told.RETURN: "it has stopped its way home and hovers: the pilot",
-    Told.LAND: "it has stopped landing and hovers: the pilot",
+_LEFT: dict[Instruction, str] = {
+    Instruction.HOLD: f"it has moved more than {AT_END_M:g} m from where it was to hold: the pilot",
+    Instruction.MISSION: f"it left its mission more than {AT_END_M:g} m from its end without going "
+    "home or landing: the pilot",
+    Instruction.MISSION_TO_LAND: "it left its mission and does not land: the pilot",
+    Instruction.STICK: "it is no longer flown by the station's sticks: the pilot",
+    Instruction.RETURN: "it has stopped its way home and hovers: the pilot",
+    Instruction.LAND: "it has stopped landing and hovers: the pilot",
 }

@@ -6,9 +6,9 @@ from recon.fleet.flight_table import (
     GOOD_GNSS_LEVEL,
     KIND_OF_MODE,
     TABLE,
+    Instruction,
     ModeKind,
     Place,
-    Told,
     Verdict,
 )
 
@@ -47,7 +47,7 @@ more; below, the aircraft may have fallen back to it by itself.
 def markdown() -> str:
     """Return the whole page."""
     kinds = (f"| {kind.value} | {', '.join(_modes(kind))} |\n" for kind in COLUMNS)
-    return "".join([_INTRODUCTION, *kinds, *(_section(told) for told in Told)])
+    return "".join([_INTRODUCTION, *kinds, *(_section(told) for told in Instruction)])
 
 
 def _modes(kind: ModeKind) -> list[str]:
@@ -55,7 +55,7 @@ def _modes(kind: ModeKind) -> list[str]:
     return [f"{m.value} {m.name}" for m, of in KIND_OF_MODE.items() if of is counted]
 
 
-def _section(told: Told) -> str:
+def _section(told: Instruction) -> str:
     """What one thing told means: kinds of modes with the same verdicts share a row."""
     rows: dict[tuple[Verdict, ...], list[str]] = {}
     for kind in COLUMNS:

@@ -29,26 +29,26 @@ def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
     if link.claimed_serial is not None:
         # What was heard under the old serial belongs to the old vehicle.
         fleet = release(fleet, replace(link, own_state=_blank(link)), now_ns)
-    holder = fleet.vehicles.get(serial)
-    if holder is None and has_no_room(fleet):
+    owner = fleet.vehicles.get(serial)
+    if owner is None and has_no_room(fleet):
         unknown = replace(fleet.links[link_id], claimed_serial=None, serial_not_taken=serial)
         return _put_link(fleet, unknown)
-    has_holder = holder is not None and holder.link_id is not None
+    has_owner = owner is not None and owner.link_id is not None
     fleet = _put_link(
         fleet,
         replace(
             fleet.links[link_id],
             claimed_serial=serial,
             serial_not_taken=None,
-            rival_since_ns=now_ns if has_holder else None,
+            rival_since_ns=now_ns if has_owner else None,
             in_conflict=False,
         ),
     )
-    return _mark_rivals(fleet, serial) if has_holder else _bind(fleet, link_id, serial)
+    return _mark_rivals(fleet, serial) if has_owner else _bind(fleet, link_id, serial)
 
 
 def heard(fleet: Fleet, link_id: int, now_ns: int) -> Fleet:
-    """Return the fleet after a link delivered a valid packet: a holder with rivals objects."""
+    """Return the fleet after a link delivered a valid packet: a owner with rivals objects."""
     serial = fleet.links[link_id].claimed_serial
     vehicle = fleet.vehicles.get(serial or "")
     if vehicle is None or vehicle.link_id != link_id or not vehicle.rival_link_ids:
@@ -122,8 +122,8 @@ def may_fly(vehicle: VehicleState) -> bool:
 
 def has_no_room(fleet: Fleet) -> bool:
     """Return whether so many vehicles that may fly are without a link that no new one is taken."""
-    ghosts = sum(v.link_id is None and may_fly(v) for v in fleet.vehicles.values())
-    return ghosts >= fleet.settings.vehicles_kept
+    hazards = sum(v.link_id is None and may_fly(v) for v in fleet.vehicles.values())
+    return hazards >= fleet.settings.vehicles_kept
 
 
 def _heir(fleet: Fleet, vehicle: VehicleState, now_ns: int) -> LinkRecord | None:
@@ -168,7 +168,7 @@ def _bind(fleet: Fleet, link_id: int, serial: str) -> Fleet:
 
 
 def _restart_rivals(fleet: Fleet, serial: str, now_ns: int) -> Fleet:
-    """The remaining rivals begin their wait anew against the new holder."""
+    """The remaining rivals begin their wait anew against the new owner."""
     for rival in _rivals(fleet, serial):
         fleet = _put_link(fleet, replace(rival, rival_since_ns=now_ns, in_conflict=False))
     return _mark_rivals(fleet, serial)

@@ -24,7 +24,7 @@ class LinkRecord:
     rival_since_ns: int | None = None
     """When it brought a serial that another open link holds."""
     in_conflict: bool = False
-    """Whether the holder spoke after that."""
+    """Whether the owner spoke after that."""
     packets: int = 0
     images: int = 0
     meaningless: int = 0

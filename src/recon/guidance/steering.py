@@ -83,7 +83,7 @@ class Goal:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class KinematicState:
     """The newest telemetry that steering needs, and its age."""
 
     position: LatLon
@@ -117,7 +117,7 @@ class Steered:
     recent: tuple[tuple[int, float, float], ...] = ()
 
 
-def begin(seen: Seen, now_ns: int) -> Steered:
+def begin(seen: KinematicState, now_ns: int) -> Steered:
     """Return the demand that keeps the present motion, to be changed from there."""
     return Steered(
         now_ns,
@@ -129,7 +129,7 @@ def begin(seen: Seen, now_ns: int) -> Steered:
 
 
 def steer(
-    before: Steered, goal: Goal, seen: Seen, now_ns: int, settings: SteeringSettings
+    before: Steered, goal: Goal, seen: KinematicState, now_ns: int, settings: SteeringSettings
 ) -> Steered:
     """Return the demand now: velocity, height and heading that lead to the goal."""
     step_s = min(ns_to_seconds(now_ns - before.at_ns), settings.longest_step_s)
@@ -166,7 +166,7 @@ def halted(before: Steered, height_above_takeoff_m: float | None, now_ns: int) -
     )
 
 
-def has_arrived(goal: Goal, seen: Seen, settings: SteeringSettings) -> bool:
+def has_arrived(goal: Goal, seen: KinematicState, settings: SteeringSettings) -> bool:
     """Return whether telemetry shows the vehicle at its goal, at rest."""
     turn_deg = abs(wrap_degrees(goal.yaw_deg - seen.yaw_deg))
     height_m = abs(goal.height_above_takeoff_m - seen.height_above_takeoff_m)
@@ -178,7 +178,7 @@ def has_arrived(goal: Goal, seen: Seen, settings: SteeringSettings) -> bool:
     )
 
 
-def stopping_place(seen: Seen, settings: SteeringSettings) -> LatLon:
+def stopping_place(seen: KinematicState, settings: SteeringSettings) -> LatLon:
     """Return where the vehicle comes to rest when it brakes from now on."""
     lead_s = _lead_s(seen, settings) + 0.5 * seen.speed_mps / settings.braking_mps2
     return moved_m(seen.position, seen.velocity_north_mps * lead_s, seen.velocity_east_mps * lead_s)
@@ -194,7 +194,7 @@ def approach_speed_mps(distance_m: float, settings: SteeringSettings) -> float:
 
 
 def _wanted_velocity(
-    goal: Goal, seen: Seen, push_mps: tuple[float, float], settings: SteeringSettings
+    goal: Goal, seen: KinematicState, push_mps: tuple[float, float], settings: SteeringSettings
 ) -> tuple[float, float]:
     lead_s = _lead_s(seen, settings)
     north_m, east_m = offset_north_east_m(seen.position, goal.target)
@@ -208,12 +208,12 @@ def _wanted_velocity(
     return _clipped(north_m * share - push_mps[0], east_m * share - push_mps[1], goal.speed_mps)
 
 
-def _lead_s(seen: Seen, settings: SteeringSettings) -> float:
+def _lead_s(seen: KinematicState, settings: SteeringSettings) -> float:
     return min(seen.age_s + settings.latency_s, settings.longest_lead_s)
 
 
 def _push(
-    before: Steered, seen: Seen, step_s: float, settings: SteeringSettings
+    before: Steered, seen: KinematicState, step_s: float, settings: SteeringSettings
 ) -> tuple[float, float]:
     """What the velocity differs by from the demand, learnt slowly while the demand is steady."""
     push = before.push_north_mps, before.push_east_mps
@@ -247,7 +247,7 @@ def _recent(
 
 
 def _height_m(
-    before: Steered, goal: Goal, seen: Seen, step_s: float, settings: SteeringSettings
+    before: Steered, goal: Goal, seen: KinematicState, step_s: float, settings: SteeringSettings
 ) -> float:
     last_m, lead_m = before.height_above_takeoff_m, settings.longest_height_lead_m
     change_m = goal.height_above_takeoff_m - last_m

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 
-class Leader(Enum):
+class AuthorityHolder(Enum):
     """Who may set a vehicle in motion. Anyone may stop it."""
 
     PILOT = "pilot"
@@ -16,10 +16,10 @@ class Leader(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Lead:
+class ControlAuthority:
     """Who leads a vehicle, since when, and how that came about."""
 
-    leader: Leader = Leader.OPERATOR
-    holder: str = ""
+    holder: AuthorityHolder = AuthorityHolder.OPERATOR
+    holder_name: str = ""
     since_ns: int = 0
     reason: str = "nobody has taken it yet"

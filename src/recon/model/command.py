@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
 
@@ -126,7 +126,7 @@ class Command:
     """One order to one vehicle, or (all stop only) to one link that has no identity.
 
     `takeoff` is the operator's explicit word that the vehicle may leave the ground. `asked_as` is
-    the role of whoever asks: only the vehicle's leader sets it in motion.
+    the role of whoever asks: only the vehicle's holder sets it in motion.
     """
 
     id: int
@@ -137,7 +137,7 @@ class Command:
     serial: str | None = None
     link_id: int | None = None
     takeoff: bool = False
-    asked_as: Leader = Leader.OPERATOR
+    asked_as: AuthorityHolder = AuthorityHolder.OPERATOR
 
     @property
     def name(self) -> str:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, Phase
 from recon.model.report import Report
 from recon.model.survey import Survey
@@ -73,7 +73,7 @@ class SticksDue:
 class OperatorOrder:
     """Somebody orders one body for one vehicle (or one link without identity).
 
-    `command_id` is given by whoever asks, so that the answer can be told apart. `holder` names the
+    `command_id` is given by whoever asks, so that the answer can be told apart. `owner` names the
     connection whose end ends a stream of sticks; None for orders that outlive their giver.
     """
 
@@ -83,31 +83,31 @@ class OperatorOrder:
     serial: str | None = None
     link_id: int | None = None
     takeoff: bool = False
-    asked_as: Leader = Leader.OPERATOR
-    holder: str | None = None
+    asked_as: AuthorityHolder = AuthorityHolder.OPERATOR
+    owner: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class AuthorityTaken:
-    """Somebody explicitly takes a vehicle over, or gives it away: `leader` leads it from now on."""
+    """Somebody explicitly takes a vehicle over, or gives it away: `holder` leads it from now on."""
 
     serial: str
-    leader: Leader
+    holder: AuthorityHolder
     by: str
 
 
 @dataclass(frozen=True, slots=True)
-class HolderCame:
+class OwnerConnected:
     """A connection has opened that may hold streams of sticks."""
 
-    holder: str
+    owner: str
 
 
 @dataclass(frozen=True, slots=True)
-class HolderGone:
+class OwnerDisconnected:
     """The connection that held streams of sticks has ended."""
 
-    holder: str
+    owner: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ class PreflightOverridden:
 
 
 @dataclass(frozen=True, slots=True)
-class GhostDismissed:
+class HazardDismissed:
     """Somebody has seen where a stale vehicle is, and takes it out of the air."""
 
     serial: str
@@ -238,11 +238,11 @@ Event = (
     | SticksDue
     | OperatorOrder
     | AuthorityTaken
-    | HolderCame
-    | HolderGone
+    | OwnerConnected
+    | OwnerDisconnected
     | ClockRead
     | PreflightOverridden
-    | GhostDismissed
+    | HazardDismissed
     | SeparationHoldSwitched
     | FleetReturnOrdered
     | SurveyAsked

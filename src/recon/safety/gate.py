@@ -125,9 +125,9 @@ def _link_ids(command: Command, situation: Situation) -> tuple[int, ...]:
     is_hover = isinstance(command.body, Hover) and not command.takeoff
     wakes = is_hover or isinstance(command.body, ReturnHome)
     return tuple(
-        claimant.link_id
-        for claimant in situation.claimants
-        if not (wakes and claimant.is_flying.value is False)
+        claiming_link.link_id
+        for claiming_link in situation.claiming_links
+        if not (wakes and claiming_link.is_flying.value is False)
     )
 
 

@@ -6,7 +6,7 @@ from recon.safety.energy_settings import EnergySettings
 from recon.safety.fence_settings import FenceSettings
 from recon.safety.prediction.settings import PredictionSettings
 from recon.safety.preflight_settings import PreflightSettings
-from recon.safety.watchdog_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchdogSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,5 +83,5 @@ class SafetySettings:
     prediction: PredictionSettings = field(default_factory=PredictionSettings)
     """How far and how surely vehicles' paths are foreseen."""
 
-    watch: WatchSettings = field(default_factory=WatchSettings)
+    watch: WatchdogSettings = field(default_factory=WatchdogSettings)
     """When the watchdogs bark and when they act."""

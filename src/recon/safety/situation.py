@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from recon.model.authority import Lead
+from recon.model.authority import ControlAuthority
 from recon.model.command import Command
 from recon.model.intent import Intent
 from recon.model.stamped import Stamped
@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Claimant:
+class ClaimingLink:
     """An open link that says it is the vehicle, and what it says about flying."""
 
     link_id: int
@@ -46,17 +46,17 @@ class Situation:
     """What is known when a command is judged.
 
     `vehicle` is the state of the command's vehicle, or of the unidentified link it names; None when
-    there is neither. `claimants` are its open links, its own first; more than one while its
+    there is neither. `claiming_links` are its open links, its own first; more than one while its
     identity is unsettled. `stick_height_above_takeoff_m` is what its newest stick asked for.
     `traffic` are the other vehicles in the air, those not heard included.
     """
 
     now_ns: int
     vehicle: VehicleState | None
-    claimants: tuple[Claimant, ...]
+    claiming_links: tuple[ClaimingLink, ...]
     settings: SafetySettings = SafetySettings()
     airspace: PreparedAirspace = OPEN_AIRSPACE
-    lead: Lead = Lead()
+    authority: ControlAuthority = ControlAuthority()
     intent: Intent = Intent()
     stick_height_above_takeoff_m: float | None = None
     traffic: tuple[Traffic, ...] = ()

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class WatchSettings:
+class WatchdogSettings:
     """Times in seconds, lengths in metres."""
 
     period_s: float = 0.1

@@ -20,7 +20,7 @@ from recon.model.units import seconds_to_ns
 from recon.score.drone import Doing, Drone
 from recon.score.fault_effects import Mishap, gusty_spans, mishaps_of, with_chances
 from recon.score.flight import whereabouts
-from recon.score.imager import Eye
+from recon.score.imager import Imager
 from recon.score.missions import survey_points, way_home
 from recon.score.photos import Imaged, imaged, phases_s, photos_of
 from recon.score.run_score import ENOUGH, RunScore, encounters, shares_by, time_to_share
@@ -47,7 +47,7 @@ class EventRun:
         scenario = with_chances(scenario, seed)
         self._scenario, self._seed = scenario, seed
         self._sky = Sky(replace(scenario.sky, seed=seed))
-        self._eye = Eye(scenario, self._sky, seed)
+        self._imager = Imager(scenario, self._sky, seed)
         self._drones = _drones(scenario, seed)
         self._plan, self._state = _begun(scenario)
         self._mishaps: list[Mishap] = mishaps_of(scenario)
@@ -79,7 +79,7 @@ class EventRun:
 
     def _next_s(self, only_watching: bool) -> float:
         """When something happens next: a look of the eye, an end, a mishap, or a wait is over."""
-        due_s = [self._looks * self._scenario.eye.period_s]
+        due_s = [self._looks * self._scenario.imager.period_s]
         if not only_watching:
             due_s += [drone.free_at_s for drone in self._drones]
             due_s += [mishap.at_s for mishap in self._mishaps[:1]]
@@ -97,10 +97,10 @@ class EventRun:
         self._send_home()
 
     def _look(self) -> None:
-        if self._now_s < self._looks * self._scenario.eye.period_s:
+        if self._now_s < self._looks * self._scenario.imager.period_s:
             return
         self._looks += 1
-        shade = self._eye.look(self._now_s)
+        shade = self._imager.look(self._now_s)
         if shade is not None:
             self._state = observe_shade(self._state, shade)
 
@@ -136,20 +136,20 @@ class EventRun:
                 drone.come_home(way_home(at_m, drone.pad_m, layer), self._now_s)
 
     def _summed_up(self, landed_s: float) -> RunScore:
-        scenario, eye, plan = self._scenario, self._eye.score, self._plan
+        scenario, imager, plan = self._scenario, self._imager.score, self._plan
         found = self._imaged()
         inside = plan.cells.is_inside
         first_in_sun_s = found.first_in_sun_s[inside]
         limit_s = scenario.limit_s
         curve_s = np.array([60.0 * m for m in CURVE_MIN if 60.0 * m <= limit_s])
-        errors_m = eye.boundary_errors_m
+        errors_m = imager.boundary_errors_m
         return RunScore(
             seed=self._seed,
-            shade=eye.shade,
+            shade=imager.shade,
             boundary_error_m=float(np.mean(errors_m)) if errors_m else None,
-            known_share=float(np.mean(eye.known_shares)),
-            shade_share=float(np.mean(eye.shade_shares)),
-            leads=eye.leads,
+            known_share=float(np.mean(imager.known_shares)),
+            shade_share=float(np.mean(imager.shade_shares)),
+            leads=imager.leads,
             in_sun_share=shares_by(first_in_sun_s, curve_s),
             to_95_imaged_s=time_to_share(found.first_s[inside], ENOUGH, limit_s),
             to_95_in_sun_s=time_to_share(first_in_sun_s, ENOUGH, limit_s),

@@ -10,7 +10,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from recon.guidance.survey import Seen, Surveyor
+from recon.guidance.survey import PositionSample, Surveyor
 from recon.model.units import seconds_to_ns
 from recon.score.autopilot import Autopilot, Point
 from recon.score.flight import Hop, Spot
@@ -248,9 +248,9 @@ class Drone:
             self.pad_m,
         )
 
-    def seen(self, now_s: float) -> list[Seen]:
+    def seen(self, now_s: float) -> list[PositionSample]:
         """Return the positions since the last time, oldest first; on rows alone."""
-        found: list[Seen] = []
+        found: list[PositionSample] = []
         for hop in self.hops[self.told :]:
             if hop.start_s > now_s:
                 break
@@ -259,7 +259,7 @@ class Drone:
             self.told += hop.end_s <= now_s
         return found
 
-    def _on(self, hop: Hop, now_s: float) -> list[Seen]:
+    def _on(self, hop: Hop, now_s: float) -> list[PositionSample]:
         """The positions on a hop that were not told yet."""
         times_s = hop.samples_s(self.settings.sample_s)
         times_s = times_s[(times_s > self.told_s) & (times_s <= now_s)]
@@ -268,7 +268,7 @@ class Drone:
         self.told_s = float(times_s[-1])
         places = hop.places_m(times_s).tolist()
         return [
-            Seen(seconds_to_ns(at_s), east_m, north_m, up_m)
+            PositionSample(seconds_to_ns(at_s), east_m, north_m, up_m)
             for at_s, (east_m, north_m, up_m) in zip(times_s.tolist(), places, strict=True)
             if not self._is_unheard(at_s)
         ]

@@ -8,7 +8,7 @@ from recon.score.drone import Drone
 from recon.score.scenario import Scenario
 from recon.sim.app.fault_chance import drawn_faults
 from recon.sim.app.faults import FAILED_CELL_FRACTION, Fault, FaultKind
-from recon.sim.fleet import EYE_SERIAL
+from recon.sim.fleet import IMAGER_SERIAL
 
 HOLDING = (FaultKind.PILOT_TAKES, FaultKind.GNSS_LOSS)
 """The drone hovers, or drifts with the wind, and cannot be had for as long."""
@@ -24,7 +24,7 @@ OF_DRONES = (
     FaultKind.FALLS_SILENT,
     FaultKind.GUSTS,
 )
-OF_THE_EYE = (
+OF_THE_IMAGER = (
     *UNHEARD,
     FaultKind.FALLS_SILENT,
     FaultKind.CAMERA_STOPS,
@@ -73,7 +73,7 @@ def with_chances(scenario: Scenario, seed: int) -> Scenario:
     numbered = [(serial, index + 1) for index, serial in enumerate(scenario.fleet.serials)]
     drawn = [
         replace(fault, vehicle=serial)
-        for serial, number in (*numbered, (EYE_SERIAL, len(numbered) + 1))
+        for serial, number in (*numbered, (IMAGER_SERIAL, len(numbered) + 1))
         for fault in drawn_faults(scenario.chances, seed, serial, number)
     ]
     return replace(scenario, faults=(*scenario.faults, *drawn), chances=())
@@ -105,7 +105,7 @@ def blind_spans(scenario: Scenario) -> tuple[Span, ...]:
     return tuple(
         _span(fault)
         for fault in scenario.faults
-        if fault.kind in OF_THE_EYE and _is_for_the_eye(scenario, fault)
+        if fault.kind in OF_THE_IMAGER and _is_for_the_imager(scenario, fault)
     )
 
 
@@ -120,13 +120,13 @@ def without_effect(scenario: Scenario) -> list[str]:
             fault.kind.value
             for fault in scenario.faults
             if fault not in struck
-            and not (fault.kind in OF_THE_EYE and _is_for_the_eye(scenario, fault))
+            and not (fault.kind in OF_THE_IMAGER and _is_for_the_imager(scenario, fault))
         }
     )
 
 
-def _is_for_the_eye(scenario: Scenario, fault: Fault) -> bool:
-    return fault.is_for(EYE_SERIAL, len(scenario.fleet.serials) + 1)
+def _is_for_the_imager(scenario: Scenario, fault: Fault) -> bool:
+    return fault.is_for(IMAGER_SERIAL, len(scenario.fleet.serials) + 1)
 
 
 def _span(fault: Fault) -> Span:

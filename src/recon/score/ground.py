@@ -32,7 +32,7 @@ GROUND_STREAM, NOISE_STREAM = 11, 12
 
 
 @dataclass(frozen=True)
-class CoarseEye:
+class CoarseImager:
     """Makes the eye's pictures, laid on the ground already."""
 
     grid: GroundGrid
@@ -67,5 +67,5 @@ class CoarseEye:
             np.dstack([grey] * 3),
             self.is_seen,
             CameraPose(LOOKS_DOWN, np.array(self.pose_m)),
-            serial="EYE",
+            serial="IMAGER",
         )

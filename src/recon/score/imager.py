@@ -20,7 +20,7 @@ from recon.model.shade import (
 from recon.model.units import seconds_to_ns
 from recon.score.fault_effects import blind_spans
 from recon.score.forecast_metrics import Ahead, LeadScore, score_lead
-from recon.score.ground import CoarseEye
+from recon.score.ground import CoarseImager
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.settings import RUN, RunSettings
 from recon.score.shade_metrics import Overlap, boundary_error_m, overlap, told_shade
@@ -31,7 +31,7 @@ PIXELS_PER_RADIAN = 250.0
 
 
 @dataclass(slots=True)
-class EyeScore:
+class ImagerScore:
     """What is summed up of one run."""
 
     shade: Overlap = field(default_factory=Overlap)
@@ -42,7 +42,7 @@ class EyeScore:
     leads: dict[tuple[float, Ahead], LeadScore] = field(default_factory=dict)
 
 
-class Eye:
+class Imager:
     """Looks once a period; remembers what its methods remember."""
 
     def __init__(
@@ -51,17 +51,17 @@ class Eye:
         self._scenario, self._sky, self._settings = scenario, sky, settings
         self.grid, self.footprint = _footprint(scenario)
         self._middles_m = _middles_m(self.grid, self.footprint)
-        fine_m = np.float32(scenario.eye.height_m / PIXELS_PER_RADIAN)
+        fine_m = np.float32(scenario.imager.height_m / PIXELS_PER_RADIAN)
         self._sure = self.footprint.astype(np.float32)
         self._fine = np.where(self.footprint, fine_m, np.float32(np.nan))
-        over_m = scenario.eye.over_m
-        place_m = (over_m[0], over_m[1], scenario.eye.height_m)
+        over_m = scenario.imager.over_m
+        place_m = (over_m[0], over_m[1], scenario.imager.height_m)
         self._blind_s = blind_spans(scenario)
-        self._camera = CoarseEye(self.grid, self.footprint, place_m, seed)
+        self._camera = CoarseImager(self.grid, self.footprint, place_m, seed)
         self._detection, self._forecast = DetectionState(), ForecastState()
         self._to_check: dict[float, list[tuple[float, SunForecast]]] = {}
         self._number = 0
-        self.score = EyeScore()
+        self.score = ImagerScore()
 
     def look(self, time_s: float) -> ShadeMap | None:
         """Return the shade map of a moment; None when there is no picture, or it is rejected.
@@ -103,7 +103,7 @@ class Eye:
         seen = self.footprint
         told = np.where(seen, truth, np.float32(np.nan))
         at_ns = seconds_to_ns(time_s)
-        return ShadeMap(self.grid, at_ns, ("EYE",), told, seen, self._sure, self._fine)
+        return ShadeMap(self.grid, at_ns, ("IMAGER",), told, seen, self._sure, self._fine)
 
     def _score_map(self, shade: ShadeMap | None, is_shade: MaskMap) -> None:
         seen, score = self.footprint, self.score
@@ -139,13 +139,13 @@ class Eye:
 
 def _footprint(scenario: Scenario) -> tuple[GroundGrid, MaskMap]:
     """The grid around what the eye sees, and the circle in it; or the region's part of that."""
-    eye = scenario.eye
-    half = int(np.ceil(eye.radius_m / eye.cell_m))
-    side_m = half * eye.cell_m
-    west_m, north_m = eye.over_m[0] - side_m, eye.over_m[1] + side_m
-    grid = GroundGrid(scenario.frame, west_m, north_m, eye.cell_m, 2 * half, 2 * half)
-    off_m = (np.arange(2 * half) + 0.5) * eye.cell_m - side_m
-    circle: MaskMap = np.hypot.outer(off_m, off_m) <= eye.radius_m
+    imager = scenario.imager
+    half = int(np.ceil(imager.radius_m / imager.cell_m))
+    side_m = half * imager.cell_m
+    west_m, north_m = imager.over_m[0] - side_m, imager.over_m[1] + side_m
+    grid = GroundGrid(scenario.frame, west_m, north_m, imager.cell_m, 2 * half, 2 * half)
+    off_m = (np.arange(2 * half) + 0.5) * imager.cell_m - side_m
+    circle: MaskMap = np.hypot.outer(off_m, off_m) <= imager.radius_m
     if scenario.methods.is_guidance_alone:
         circle &= _region_cells(scenario, grid)
     return grid, circle

@@ -34,7 +34,7 @@ class Fleet:
 
 
 @dataclass(frozen=True, slots=True)
-class ScenarioEye:
+class ScenarioImager:
     """The eye hovers over a place and sees a circle of the ground."""
 
     over_m: Place
@@ -72,7 +72,7 @@ class Scenario:
     site: Site
     """A folder's, or made up around the task; it has a frame and an eye."""
     fleet: Fleet
-    eye: ScenarioEye
+    imager: ScenarioImager
     sky: SkySettings
     light: LightSettings
     wind: WindSettings

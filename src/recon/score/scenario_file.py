@@ -22,7 +22,7 @@ from recon.score.validation_errors import Complaints
 from recon.sim.app.fault_chance import Chance
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import Fault, parse_fault
-from recon.sim.fleet import EYE_SERIAL
+from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import (
     LayerSettings,
     LightSettings,
@@ -97,7 +97,7 @@ def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
         about=file.about,
         site=place.site,
         fleet=place.fleet,
-        eye=place.eye,
+        imager=place.imager,
         sky=_sky(file, origin, complain),
         light=LightSettings(altitude_m=origin.ellipsoid_height_m),
         wind=_wind(file, complain),
@@ -184,10 +184,10 @@ def _check_faulty(scenario: Scenario, complain: Complaints) -> None:
     serials = scenario.fleet.serials
     asked: list[Fault | Chance] = [*scenario.faults, *scenario.chances]
     for index, fault in enumerate(asked):
-        if fault.is_for(EYE_SERIAL, 0):
+        if fault.is_for(IMAGER_SERIAL, 0):
             continue
         if not any(fault.is_for(serial, i + 1) for i, serial in enumerate(serials)):
-            known = ", ".join((*serials, EYE_SERIAL))
+            known = ", ".join((*serials, IMAGER_SERIAL))
             said = f"expected a vehicle of {known}, its number or *, got {fault.vehicle!a}"
             if fault.told_at:
                 raise complain.about(f"{fault.told_at}{said}", "fault_file")

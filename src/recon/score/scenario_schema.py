@@ -70,7 +70,7 @@ class FleetTable(Table, frozen=True):
     swap_min: Annotated[float, Meta(ge=0.0, le=60.0)] = 3.0
 
 
-class EyeTable(Table, frozen=True):
+class ImagerTable(Table, frozen=True):
     """The eye; without a place it hovers over the middle of the region, 120 m high.
 
     With a site's folder it hovers where the site's marked frame was taken.
@@ -132,7 +132,7 @@ class ScenarioFile(Table, frozen=True):
     site: SiteTable
     task: TaskTable
     fleet: FleetTable
-    eye: EyeTable = EyeTable()
+    imager: ImagerTable = ImagerTable()
     methods: MethodsTable = MethodsTable()
     clouds: list[CloudsTable] = []
     wind: WindTable = WindTable()

@@ -11,9 +11,9 @@ from recon.model.airspace import FlightLimits
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.model.zone import LandingPad, Region
-from recon.score.scenario import Fleet, Place, ScenarioEye
-from recon.sim.fleet import EYE_SERIAL
-from recon.site import Eye, Site
+from recon.score.scenario import Fleet, Place, ScenarioImager
+from recon.sim.fleet import IMAGER_SERIAL
+from recon.site import Imager, Site
 from recon.site.demo_site import (
     CENTRE_COL_PX,
     CENTRE_ROW_PX,
@@ -26,12 +26,12 @@ FENCE_OFF_M = 80.0
 """Of all that is flown over: turns, gusts and the margin to the fence."""
 BEYOND_HOME_M = 150.0
 """A distance limit this much past the farthest corner is not what a study is about."""
-ABOVE_EYE_M = 10.0
+ABOVE_IMAGER_M = 10.0
 USUAL_CEILING_M = 120.0
 LOWEST_WAY_HOME_M, WAYS_HOME_APART_M = 40.0, 8.0
 """The eye's, and so far above it the next one's; nearer to each other when they are many."""
 BELOW_CEILING_M = 5.0
-EYE_PRIORITY = 10
+IMAGER_PRIORITY = 10
 """Of two in conflict the eye is held last: it sees the whole field."""
 IMAGE_CELL_M = 1.0
 
@@ -41,20 +41,20 @@ def made_up_site(
     frame: LocalFrame,
     region: Region,
     fleet: Fleet,
-    eye: ScenarioEye,
+    imager: ScenarioImager,
     photo_interval_s: float,
 ) -> Site:
     """Return a site on level ground where a task can be flown and nothing else is in the way."""
-    ceiling_m = max(USUAL_CEILING_M, eye.height_m + ABOVE_EYE_M)
+    ceiling_m = max(USUAL_CEILING_M, imager.height_m + ABOVE_IMAGER_M)
     return Site(
         name=name,
         frame=frame,
-        ground_grid=_grid(frame, eye),
-        eye=_eye(frame, eye),
-        profiles=_profiles(frame, fleet, eye, photo_interval_s, ceiling_m),
+        ground_grid=_grid(frame, imager),
+        imager=_imager(frame, imager),
+        profiles=_profiles(frame, fleet, imager, photo_interval_s, ceiling_m),
         layers=Layers(
-            boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, eye.over_m]),
-            landing_pads=_pads(frame, fleet, eye),
+            boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, imager.over_m]),
+            landing_pads=_pads(frame, fleet, imager),
             survey_regions={name: region},
         ),
         limits=FlightLimits(
@@ -65,8 +65,8 @@ def made_up_site(
     )
 
 
-def _pads(frame: LocalFrame, fleet: Fleet, eye: ScenarioEye) -> tuple[LandingPad, ...]:
-    serials, places_m = (*fleet.serials, EYE_SERIAL), (*fleet.pads_m, eye.over_m)
+def _pads(frame: LocalFrame, fleet: Fleet, imager: ScenarioImager) -> tuple[LandingPad, ...]:
+    serials, places_m = (*fleet.serials, IMAGER_SERIAL), (*fleet.pads_m, imager.over_m)
     return tuple(
         LandingPad(serial, serial, point_from_enu(frame, (*pad_m, 0.0)))
         for serial, pad_m in zip(serials, places_m, strict=True)
@@ -87,24 +87,24 @@ def _farthest_m(pads_m: tuple[Place, ...], region: Region) -> float:
     return max(hypot(east - e, north - n) for e, n in pads_m for east, north in corners)
 
 
-def _grid(frame: LocalFrame, eye: ScenarioEye) -> GroundGrid:
-    half = ceil(eye.radius_m / IMAGE_CELL_M)
-    west_m, north_m = eye.over_m[0] - half * IMAGE_CELL_M, eye.over_m[1] + half * IMAGE_CELL_M
+def _grid(frame: LocalFrame, imager: ScenarioImager) -> GroundGrid:
+    half = ceil(imager.radius_m / IMAGE_CELL_M)
+    west_m, north_m = imager.over_m[0] - half * IMAGE_CELL_M, imager.over_m[1] + half * IMAGE_CELL_M
     return GroundGrid(frame, west_m, north_m, IMAGE_CELL_M, 2 * half, 2 * half)
 
 
-def _eye(frame: LocalFrame, eye: ScenarioEye) -> Eye:
+def _imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
     """The demonstration's lens, looking straight down; its pose is known without control points."""
-    beneath = point_from_enu(frame, (*eye.over_m, 0.0))
-    marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, eye.height_m, 0.0)
+    beneath = point_from_enu(frame, (*imager.over_m, 0.0))
+    marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, imager.height_m, 0.0)
     camera = demo_camera()
-    pose = level_pose(marked, np.array([*eye.over_m, eye.height_m]))
-    return Eye(
-        serial=EYE_SERIAL,
+    pose = level_pose(marked, np.array([*imager.over_m, imager.height_m]))
+    return Imager(
+        serial=IMAGER_SERIAL,
         camera=camera,
         control_points=(),
         control_points_image_size_px=(camera.cols, camera.rows),
-        solution=PoseSolution(pose, 0.0, (), eye.height_m, 0.0, 0.0, 0.0),
+        solution=PoseSolution(pose, 0.0, (), imager.height_m, 0.0, 0.0, 0.0),
         marked_frame=marked,
         image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, RADIUS_AT_HALF_FIELD_PX),
     )
@@ -113,7 +113,7 @@ def _eye(frame: LocalFrame, eye: ScenarioEye) -> Eye:
 def _profiles(
     frame: LocalFrame,
     fleet: Fleet,
-    over: ScenarioEye,
+    over: ScenarioImager,
     photo_interval_s: float,
     ceiling_m: float,
 ) -> dict[str, VehicleProfile]:
@@ -133,15 +133,15 @@ def _profiles(
         )
         for number, (serial, pad_m) in enumerate(zip(fleet.serials, fleet.pads_m, strict=True))
     }
-    eye = VehicleProfile(
-        EYE_SERIAL,
-        name="Eye",
+    imager = VehicleProfile(
+        IMAGER_SERIAL,
+        name="Imager",
         model="simulated",
         waypoint_altitude=AltitudeReference.TAKEOFF,
         pad=point_from_enu(frame, (*over.over_m, 0.0)),
         endurance_s=fleet.endurance_s,
         go_home_height_m=LOWEST_WAY_HOME_M,
         failsafe=Failsafe.GO_HOME,
-        priority=EYE_PRIORITY,
+        priority=IMAGER_PRIORITY,
     )
-    return {**drones, EYE_SERIAL: eye}
+    return {**drones, IMAGER_SERIAL: imager}

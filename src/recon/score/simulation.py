@@ -9,18 +9,18 @@ from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.fault_chance import Chance
 from recon.sim.app.faults import Fault
 from recon.sim.app.telemetry import FIELD_SENSORS
-from recon.sim.camera import EyeSettings
+from recon.sim.camera import ImagerSettings
 from recon.sim.camera.field import FieldFrames
 from recon.sim.camera.replay import rig_over
-from recon.sim.camera.rig import EyeRig
-from recon.sim.fleet import EYE_SERIAL, Airborne, EyeSetup, SimulationConfig
+from recon.sim.camera.rig import ImagerRig
+from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
 from recon.sim.world import Sky, Wind
 from recon.sim.world.relief import Relief, ReliefSettings
-from recon.site import Eye, Site
+from recon.site import Imager, Site
 
 Asked = TypeVar("Asked", Fault, Chance)
 
-EYE_ENDURANCE_S = 36_000.0
+IMAGER_ENDURANCE_S = 36_000.0
 """The eye stays up for as long as a scenario lasts: its change of batteries is not looked at."""
 
 
@@ -31,25 +31,25 @@ def simulation_of(
     at the usual port; without a feed the eye sends no pictures."""
     site = scenario.site
     fleet = scenario.fleet
-    frame, eye = scenario.frame, site.eye
-    assert eye is not None  # or it would not have been read
-    rig = rig_of(frame, eye)
+    frame, imager = scenario.frame, site.imager
+    assert imager is not None  # or it would not have been read
+    rig = rig_of(frame, imager)
     source = FieldFrames(
         rig.camera,
-        eye.image_circle,
+        imager.image_circle,
         seed,
         sky_of(scenario, seed),
-        EyeSettings(seed),
+        ImagerSettings(seed),
         _relief(scenario, seed),
     )
     silent = FeedSettings(starts_on=False)
     return SimulationConfig(
         home=frame.origin,
         vehicle_count=len(fleet.serials) + 1,
-        eye=EyeSetup(source, silent if feed is None else feed, rig),
-        airborne=Airborne.EYE,
+        imager=ImagerSetup(source, silent if feed is None else feed, rig),
+        airborne=Airborne.IMAGER,
         endurance_s=fleet.endurance_s,
-        endurances_s={EYE_SERIAL: EYE_ENDURANCE_S},
+        endurances_s={IMAGER_SERIAL: IMAGER_ENDURANCE_S},
         battery_swap_s=fleet.swap_s,
         sensors=FIELD_SENSORS,
         wind=replace(scenario.wind, seed=seed),
@@ -82,12 +82,12 @@ def wind_of(scenario: Scenario, seed: int) -> Wind:
     return Wind(replace(scenario.wind, seed=seed))
 
 
-def rig_of(frame: LocalFrame, eye: Eye) -> EyeRig:
+def rig_of(frame: LocalFrame, imager: Imager) -> ImagerRig:
     """Return the eye's camera on its aircraft, over a site's frame."""
-    pose = eye.solution.pose
-    if eye.marked_frame is None:
-        return rig_over(eye.camera, frame, pose)
-    return EyeRig(eye.camera, frame, pose, eye.marked_frame)
+    pose = imager.solution.pose
+    if imager.marked_frame is None:
+        return rig_over(imager.camera, frame, pose)
+    return ImagerRig(imager.camera, frame, pose, imager.marked_frame)
 
 
 def _relief(scenario: Scenario, seed: int) -> Relief | None:

@@ -9,17 +9,17 @@ from recon.geo import enu_from_point
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey
 from recon.model.zone import Region
-from recon.score.scenario import Fleet, Place, ScenarioEye
-from recon.score.scenario_schema import EyeTable, FleetTable, ScenarioFile
+from recon.score.scenario import Fleet, Place, ScenarioImager
+from recon.score.scenario_schema import FleetTable, ImagerTable, ScenarioFile
 from recon.score.scenario_site import made_up_site
 from recon.score.validation_errors import Complaints
-from recon.sim.fleet import EYE_SERIAL
+from recon.sim.fleet import IMAGER_SERIAL
 from recon.site import Site, SiteError, load_site
 
 PADS_APART_M = 20.0
 PADS_OFF_M = 30.0
 """South of the region."""
-USUAL_EYE_HEIGHT_M = 120.0
+USUAL_IMAGER_HEIGHT_M = 120.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Staged:
     site: Site
     frame: LocalFrame
     fleet: Fleet
-    eye: ScenarioEye
+    imager: ScenarioImager
 
 
 def staged(path: Path, file: ScenarioFile, survey: Survey, complain: Complaints) -> Staged:
@@ -50,9 +50,9 @@ def staged(path: Path, file: ScenarioFile, survey: Survey, complain: Complaints)
         raise complain.about(f"{wanted}, got neither whole", "site")
     frame = LocalFrame(GeoPoint(latitude, longitude, altitude))
     fleet = _fleet(file.fleet, _pads_m(file.fleet, survey.region, complain))
-    eye = _eye(file.eye, _middle_m(survey.region))
-    site = made_up_site(survey.name, frame, survey.region, fleet, eye, survey.camera.interval_s)
-    return Staged(site, frame, fleet, eye)
+    imager = _imager(file.imager, _middle_m(survey.region))
+    site = made_up_site(survey.name, frame, survey.region, fleet, imager, survey.camera.interval_s)
+    return Staged(site, frame, fleet, imager)
 
 
 def _on_folder(folder: Path, file: ScenarioFile, complain: Complaints) -> Staged:
@@ -60,9 +60,11 @@ def _on_folder(folder: Path, file: ScenarioFile, complain: Complaints) -> Staged
     told = (table.latitude_deg, table.longitude_deg, table.ground_altitude_m)
     if any(each is not None for each in told):
         raise complain.about("expected a folder alone, got an origin too", "site")
-    for key, value in (("over_m", file.eye.over_m), ("height_m", file.eye.height_m)):
+    for key, value in (("over_m", file.imager.over_m), ("height_m", file.imager.height_m)):
         if value is not None:
-            raise complain.about(f"{key}: expected none, for the site says where, got one", "eye")
+            raise complain.about(
+                f"{key}: expected none, for the site says where, got one", "imager"
+            )
     if file.fleet.pads_m is not None:
         raise complain.about("pads_m: expected none, for the site has pads, got some", "fleet")
     try:
@@ -70,13 +72,13 @@ def _on_folder(folder: Path, file: ScenarioFile, complain: Complaints) -> Staged
     except SiteError as problem:
         raise complain.about(f"folder: expected a site's folder, got: {problem}", "site") from None
     frame = site.frame
-    if frame is None or site.eye is None or site.eye.serial != EYE_SERIAL:
-        said = f"folder: expected a site with an eye of the serial {EYE_SERIAL}, got none"
+    if frame is None or site.imager is None or site.imager.serial != IMAGER_SERIAL:
+        said = f"folder: expected a site with an eye of the serial {IMAGER_SERIAL}, got none"
         raise complain.about(said, "site")
     fleet = _fleet(file.fleet, _site_pads_m(site, frame, file.fleet, complain))
-    east_m, north_m, up_m = site.eye.solution.pose.position_enu_m.tolist()
-    eye = _eye(file.eye, (east_m, north_m), up_m)
-    return Staged(site, frame, fleet, eye)
+    east_m, north_m, up_m = site.imager.solution.pose.position_enu_m.tolist()
+    imager = _imager(file.imager, (east_m, north_m), up_m)
+    return Staged(site, frame, fleet, imager)
 
 
 def _site_pads_m(
@@ -117,7 +119,9 @@ def _middle_m(region: Region) -> Place:
     return (east_m, north_m)
 
 
-def _eye(table: EyeTable, beneath_m: Place, height_m: float = USUAL_EYE_HEIGHT_M) -> ScenarioEye:
+def _imager(
+    table: ImagerTable, beneath_m: Place, height_m: float = USUAL_IMAGER_HEIGHT_M
+) -> ScenarioImager:
     over_m = beneath_m if table.over_m is None else (table.over_m[0], table.over_m[1])
     told_m = height_m if table.height_m is None else table.height_m
-    return ScenarioEye(over_m, told_m, table.radius_m, float(table.period_s), table.cell_m)
+    return ScenarioImager(over_m, told_m, table.radius_m, float(table.period_s), table.cell_m)

@@ -14,7 +14,7 @@ from recon.sim.app.commands import AppHabits, HoverOnGround
 from recon.sim.app.fault_chance import Chance, drawn_faults
 from recon.sim.app.faults import Fault
 from recon.sim.app.telemetry import SensorSettings
-from recon.sim.camera.rig import EyeRig
+from recon.sim.camera.rig import ImagerRig
 from recon.sim.errors import FaultError
 from recon.sim.flight.air import Air
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
@@ -23,8 +23,8 @@ from recon.sim.flight.flight_modes import Grounded, Hold, Manoeuvre, TakeOff, Wa
 from recon.sim.flight.kinematics import Motion
 from recon.sim.world import Wind, WindSettings
 
-EYE_SERIAL = "SIM-EYE"
-EYE_HEIGHT_M = 130.0
+IMAGER_SERIAL = "SIM-IMAGER"
+IMAGER_HEIGHT_M = 130.0
 PADS_TO_A_ROW, PAD_SPACING_M = 8, 20.0
 LARGEST_BIAS_M = 40.0
 """DJI's absolute altitude is off by tens of metres."""
@@ -34,17 +34,17 @@ class Airborne(Enum):
     """Who is in the air at the start."""
 
     NONE = "none"
-    EYE = "eye"
+    IMAGER = "imager"
     ALL = "all"
 
 
 @dataclass(frozen=True, slots=True)
-class EyeSetup:
+class ImagerSetup:
     """The imaging vehicle's pictures; with a rig it starts where the rig's marked frame was."""
 
     source: FrameSource
     feed: FeedSettings = field(default_factory=FeedSettings)
-    rig: EyeRig | None = None
+    rig: ImagerRig | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,10 +55,10 @@ class SimulationConfig:
     station_host: str = "127.0.0.1"
     station_port: int = 3001
     vehicle_count: int = 4
-    eye: EyeSetup | None = None
+    imager: ImagerSetup | None = None
     altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
-    airborne: Airborne = Airborne.EYE
+    airborne: Airborne = Airborne.IMAGER
     wanders: bool = False
     """Survey vehicles fly back and forth by themselves until ordered otherwise."""
     altitude_bias_m: float | None = None
@@ -85,9 +85,9 @@ class SimulationConfig:
 
 def fleet_serials(config: SimulationConfig) -> tuple[str, ...]:
     """Return the serials: the eye first, if there is one, then SIM-1, SIM-2, ..."""
-    survey_count = config.vehicle_count - (config.eye is not None)
-    eye = (EYE_SERIAL,) if config.eye is not None else ()
-    return eye + tuple(f"SIM-{number}" for number in range(1, survey_count + 1))
+    survey_count = config.vehicle_count - (config.imager is not None)
+    imager = (IMAGER_SERIAL,) if config.imager is not None else ()
+    return imager + tuple(f"SIM-{number}" for number in range(1, survey_count + 1))
 
 
 def build_fleet(
@@ -133,30 +133,30 @@ def _build_app(
         ),
         renders_inline=renders_inline,
     )
-    is_eye = serial == EYE_SERIAL
+    is_imager = serial == IMAGER_SERIAL
     settings = AircraftSettings(
         go_home_height_m=config.go_home_heights_m.get(serial, _go_home_height_m(number)),
         endurance_s=endurance_s,
         battery_swap_s=config.battery_swap_s,
     )
-    motion = _eye_start(config) if is_eye else _survey_start(config, number)
+    motion = _imager_start(config) if is_imager else _survey_start(config, number)
     manoeuvre: Manoeuvre = Grounded() if motion.height_m == 0.0 else Hold()
     east_m, north_m = (float(v) for v in enu_from_point(LocalFrame(config.home), home)[:2])
-    if config.wanders and not is_eye:
+    if config.wanders and not is_imager:
         manoeuvre = _wandering(settings, motion, number, random, (north_m, east_m))
     wind = None if config.wind is None else Wind(config.wind)
     air = Air(wind, north_m, east_m, start_ns)
     aircraft = Aircraft(start_ns, settings, motion, manoeuvre, battery=battery, air=air)
-    if not is_eye or config.eye is None:
+    if not is_imager or config.imager is None:
         return SimulatedApp(app, aircraft)
     feed_random = Random(f"{config.seed}/{serial}/feed")
-    feed = CameraFeed(config.eye.source, config.eye.feed, feed_random, start_ns)
-    return SimulatedApp(app, aircraft, feed, config.eye.rig)
+    feed = CameraFeed(config.imager.source, config.imager.feed, feed_random, start_ns)
+    return SimulatedApp(app, aircraft, feed, config.imager.rig)
 
 
 def _home_of(config: SimulationConfig, serial: str, number: int) -> GeoPoint:
     """Return the takeoff point: the eye's under its marked position, others in a row of pads."""
-    rig = config.eye.rig if config.eye is not None and serial == EYE_SERIAL else None
+    rig = config.imager.rig if config.imager is not None and serial == IMAGER_SERIAL else None
     if rig is not None:
         ground_m = rig.frame.origin.ellipsoid_height_m
         beneath = GeoPoint(rig.marked.latitude_deg, rig.marked.longitude_deg, ground_m)
@@ -174,12 +174,12 @@ def _go_home_height_m(number: int) -> float:
     return 40.0 + 8.0 * ((number - 1) % 10)
 
 
-def _eye_start(config: SimulationConfig) -> Motion:
-    rig = config.eye.rig if config.eye is not None else None
+def _imager_start(config: SimulationConfig) -> Motion:
+    rig = config.imager.rig if config.imager is not None else None
     yaw_deg = 0.0 if rig is None else rig.marked.yaw_deg
     if config.airborne is Airborne.NONE:
         return Motion(yaw_deg=yaw_deg)
-    height_m = EYE_HEIGHT_M if rig is None else rig.marked.height_above_takeoff_m
+    height_m = IMAGER_HEIGHT_M if rig is None else rig.marked.height_above_takeoff_m
     return Motion(height_m=height_m, yaw_deg=yaw_deg)
 
 

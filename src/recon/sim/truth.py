@@ -29,7 +29,7 @@ class WorldTruth:
     """
 
     sky: Sky
-    eye: FieldFrames | None = None
+    imager: FieldFrames | None = None
     seed: int = 0
     """The fleet's: survey cameras' timers are drawn from it."""
 
@@ -47,11 +47,11 @@ class WorldTruth:
         """Return the direct beam's share at a grid's cells (rows, cols)."""
         return self.sky.on_grid(grid, time_ns / NS_PER_S)
 
-    def eye_pose(self, view: View) -> CameraPose:
+    def imager_pose(self, view: View) -> CameraPose:
         """Return where the eye's camera truly was for a picture; `SimulationError` without one."""
-        if self.eye is None:
+        if self.imager is None:
             raise SimulationError("true poses: expected an eye in this world, got none")
-        return self.eye.true_pose(view)
+        return self.imager.true_pose(view)
 
     def survey_photos(
         self,

@@ -4,10 +4,10 @@ from recon.site.demo_folder import demo_site_folder
 from recon.site.errors import SiteError
 from recon.site.load import load_site
 from recon.site.report import pose_report, site_report
-from recon.site.site import Eye, Layers, Site, default_site
+from recon.site.site import Imager, Layers, Site, default_site
 
 __all__ = [
-    "Eye",
+    "Imager",
     "Layers",
     "Site",
     "SiteError",

@@ -23,7 +23,7 @@ TREES: Outline = ((-200, 210), (120, 214), (120, 234), (-200, 230))
 TREES_FLOOR_M = 35.0
 """Trees of 25 m and room above them."""
 PADS: Mapping[str, tuple[str | None, tuple[float, float]]] = {
-    "Eye": ("SIM-EYE", (0.0, 0.0)),
+    "Imager": ("SIM-IMAGER", (0.0, 0.0)),
     "Drone 1": ("SIM-1", (-24.0, -8.0)),
     "Drone 2": ("SIM-2", (-4.0, -26.0)),
     "Drone 3": ("SIM-3", (20.0, -16.0)),

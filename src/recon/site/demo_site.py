@@ -23,11 +23,11 @@ from recon.site.demo_folder import demo_site_folder
 from recon.site.demo_layers import demo_layer_files
 
 ORIGIN = GeoPoint(41.9012, -93.6034, 275.0)
-EYE_SERIAL = "SIM-EYE"
-SERIALS = ("SIM-1", "SIM-2", "SIM-3", EYE_SERIAL, "SIM-4", "SIM-5", "SIM-6", "SIM-7")
+IMAGER_SERIAL = "SIM-IMAGER"
+SERIALS = ("SIM-1", "SIM-2", "SIM-3", IMAGER_SERIAL, "SIM-4", "SIM-5", "SIM-6", "SIM-7")
 """A demonstration of four vehicles, the eye among them, has the first four numbers."""
-EYE_HEIGHT_M = 120.0
-EYE_YAW_DEG = 20.0
+IMAGER_HEIGHT_M = 120.0
+IMAGER_YAW_DEG = 20.0
 
 ROWS, COLS = 720, 1280
 CENTRE_ROW_PX, CENTRE_COL_PX = 361.2, 637.8
@@ -96,11 +96,13 @@ def demo_camera() -> OmnidirectionalCamera:
 
 def demo_marked_telemetry() -> TelemetryReference:
     """Return the eye's telemetry when the marked frame was taken: level, over the origin."""
-    return TelemetryReference(ORIGIN.latitude_deg, ORIGIN.longitude_deg, EYE_HEIGHT_M, EYE_YAW_DEG)
+    return TelemetryReference(
+        ORIGIN.latitude_deg, ORIGIN.longitude_deg, IMAGER_HEIGHT_M, IMAGER_YAW_DEG
+    )
 
 
 def _control_points(camera: OmnidirectionalCamera) -> tuple[ControlPoint, ...]:
-    pose = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, EYE_HEIGHT_M]))
+    pose = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, IMAGER_HEIGHT_M]))
     points_enu = np.array([(*point, 0.0) for point in POINTS_EAST_NORTH_M.values()])
     marked_camera = camera.scaled_to(MARKED_SIZE_PX[1], MARKED_SIZE_PX[0])
     pixels = marked_camera.project((points_enu - pose.position_enu_m) @ pose.rotation_enu_camera)
@@ -132,24 +134,24 @@ longitude_deg = {ORIGIN.longitude_deg}
 ground_altitude_m = {ORIGIN.ellipsoid_height_m}
 
 [limits]
-max_height_above_ground_m = 130.0  # the eye hovers at {EYE_HEIGHT_M:g} m
+max_height_above_ground_m = 130.0  # the eye hovers at {IMAGER_HEIGHT_M:g} m
 max_distance_from_home_m = 500.0
 
-[eye]
-serial = "{EYE_SERIAL}"
+[imager]
+serial = "{IMAGER_SERIAL}"
 camera = "camera-model.txt"
 control_points = "GCPs.txt"
 control_points_image_size_px = [{MARKED_SIZE_PX[0]}, {MARKED_SIZE_PX[1]}]
 
-[eye.marked_frame]
+[imager.marked_frame]
 latitude_deg = {ORIGIN.latitude_deg}
 longitude_deg = {ORIGIN.longitude_deg}
-height_above_takeoff_m = {EYE_HEIGHT_M}
-yaw_deg = {EYE_YAW_DEG}
+height_above_takeoff_m = {IMAGER_HEIGHT_M}
+yaw_deg = {IMAGER_YAW_DEG}
 pitch_deg = 0.0
 roll_deg = 0.0
 
-[eye.image_circle]
+[imager.image_circle]
 col_px = {CENTRE_COL_PX}
 row_px = {CENTRE_ROW_PX}
 radius_px = {RADIUS_AT_HALF_FIELD_PX}
@@ -174,12 +176,12 @@ datum = "wgs84"
 
 
 def _vehicle_toml(serial: str) -> str:
-    is_eye = serial == EYE_SERIAL
-    name = "Eye" if is_eye else f"Drone {serial[-1]}"
-    number = 0 if is_eye else int(serial[-1])
+    is_imager = serial == IMAGER_SERIAL
+    name = "Imager" if is_imager else f"Drone {serial[-1]}"
+    number = 0 if is_imager else int(serial[-1])
     go_home_height_m = LOWEST_WAY_HOME_M + number * WAYS_HOME_APART_M
     # The eye sees the whole field: of two in conflict it is held last.
-    more = "priority = 10" if is_eye else "camera_interval_s = 2.0"
+    more = "priority = 10" if is_imager else "camera_interval_s = 2.0"
     return f"""
 [[vehicles]]
 serial = "{serial}"

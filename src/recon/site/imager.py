@@ -17,8 +17,8 @@ from recon.geo import enu_from_geo, enu_from_points
 from recon.model.geo import LocalFrame
 from recon.site.errors import SiteError
 from recon.site.reading import file_inside
-from recon.site.schema import EyeTable
-from recon.site.site import Eye
+from recon.site.schema import ImagerTable
+from recon.site.site import Imager
 
 LARGEST_ALTITUDE_GAP_M = 15.0
 """Between the control points and the site's ground: more is a geoid height forgotten, or a slip."""
@@ -28,13 +28,13 @@ LARGEST_MARKED_GAP_M = 100.0
 """Between the marked frame's telemetry and its solved pose: GNSS and fit are off by metres."""
 
 
-def eye_from_table(site_file: Path, table: EyeTable, frame: LocalFrame) -> Eye:
+def imager_from_table(site_file: Path, table: ImagerTable, frame: LocalFrame) -> Imager:
     """Return the eye with its files read and its pose solved.
 
     Files lie in the site file's folder. Raises `SiteError` naming file, line or key.
     """
-    camera_file = file_inside(site_file, table.camera, "eye.camera")
-    points_file = file_inside(site_file, table.control_points, "eye.control_points")
+    camera_file = file_inside(site_file, table.camera, "imager.camera")
+    points_file = file_inside(site_file, table.control_points, "imager.control_points")
     try:
         camera = load_camera(camera_file)
         points = load_control_points(points_file)
@@ -47,7 +47,7 @@ def eye_from_table(site_file: Path, table: EyeTable, frame: LocalFrame) -> Eye:
         )
     except CameraError as problem:
         raise SiteError(f"{points_file}: {problem}") from problem
-    eye = Eye(
+    imager = Imager(
         serial=table.serial,
         camera=camera,
         control_points=points,
@@ -56,39 +56,39 @@ def eye_from_table(site_file: Path, table: EyeTable, frame: LocalFrame) -> Eye:
         marked_frame=_reference(table),
         image_circle=_circle(table),
     )
-    _refuse_other_place(points_file, eye, frame)
-    _refuse_other_marked_frame(site_file, eye, frame)
-    return eye
+    _refuse_other_place(points_file, imager, frame)
+    _refuse_other_marked_frame(site_file, imager, frame)
+    return imager
 
 
-def _reference(table: EyeTable) -> TelemetryReference | None:
+def _reference(table: ImagerTable) -> TelemetryReference | None:
     marked = table.marked_frame
     return None if marked is None else TelemetryReference(**msgspec.structs.asdict(marked))
 
 
-def _circle(table: EyeTable) -> ImageCircle | None:
+def _circle(table: ImagerTable) -> ImageCircle | None:
     circle = table.image_circle
     return None if circle is None else ImageCircle(circle.col_px, circle.row_px, circle.radius_px)
 
 
-def _refuse_other_marked_frame(path: Path, eye: Eye, frame: LocalFrame) -> None:
+def _refuse_other_marked_frame(path: Path, imager: Imager, frame: LocalFrame) -> None:
     """The telemetry must be of the place where the control points put the camera."""
-    marked = eye.marked_frame
+    marked = imager.marked_frame
     if marked is None:
         return
     enu = enu_from_geo(
         frame, marked.latitude_deg, marked.longitude_deg, frame.origin.ellipsoid_height_m
     )[0]
-    apart_m = float(np.hypot(*(enu - eye.solution.pose.position_enu_m)[:2]))
+    apart_m = float(np.hypot(*(enu - imager.solution.pose.position_enu_m)[:2]))
     if apart_m > LARGEST_MARKED_GAP_M:
         raise SiteError(
-            f"{path}: eye.marked_frame: expected telemetry within {LARGEST_MARKED_GAP_M:g} m of "
+            f"{path}: imager.marked_frame: expected telemetry within {LARGEST_MARKED_GAP_M:g} m of "
             f"where the control points put the camera, got {apart_m:.0f} m; is it of that frame?"
         )
 
 
-def _refuse_other_place(points_file: Path, eye: Eye, frame: LocalFrame) -> None:
-    for point in eye.control_points:
+def _refuse_other_place(points_file: Path, imager: Imager, frame: LocalFrame) -> None:
+    for point in imager.control_points:
         enu = enu_from_geo(
             frame, point.latitude_deg, point.longitude_deg, point.ellipsoid_height_m
         )[0]
@@ -99,7 +99,7 @@ def _refuse_other_place(points_file: Path, eye: Eye, frame: LocalFrame) -> None:
                 f"{LARGEST_DISTANCE_M:g} m of the site's origin, got {distance_m:.0f} m; is the "
                 "origin right, and the latitude before the longitude?"
             )
-    gap_m = float(np.mean([p.ellipsoid_height_m for p in eye.control_points]))
+    gap_m = float(np.mean([p.ellipsoid_height_m for p in imager.control_points]))
     gap_m -= frame.origin.ellipsoid_height_m
     if abs(gap_m) > LARGEST_ALTITUDE_GAP_M:
         raise SiteError(

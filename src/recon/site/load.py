@@ -12,14 +12,14 @@ from recon.model.vehicle import VehicleProfile
 from recon.site.agreement import refuse_high_ways_home, refuse_misplaced_pads, refuse_sunken_pads
 from recon.site.elevation import ElevationTable, read_elevation
 from recon.site.errors import SiteError
-from recon.site.imager import eye_from_table
+from recon.site.imager import imager_from_table
 from recon.site.layers import read_layers
 from recon.site.limits import LimitsTable, limits_from_table
 from recon.site.profiles import profile_from_table
 from recon.site.reading import convert, read_bounded, refuse_non_finite
 from recon.site.schema import (
-    EyeTable,
     GroundImageTable,
+    ImagerTable,
     LayersTable,
     OriginTable,
     SiteTable,
@@ -51,16 +51,16 @@ def load_site(folder: Path) -> Site:
     ground = convert(path, table.ground_image or {}, GroundImageTable, "ground_image")
     grid = _ground_grid(path, ground, frame)
     profiles = _profiles(path, table.vehicles)
-    eye = None
-    if table.eye is not None:
-        eye = eye_from_table(path, convert(path, table.eye, EyeTable, "eye"), frame)
-        profiles.setdefault(eye.serial, VehicleProfile(eye.serial))
+    imager = None
+    if table.imager is not None:
+        imager = imager_from_table(path, convert(path, table.imager, ImagerTable, "imager"), frame)
+        profiles.setdefault(imager.serial, VehicleProfile(imager.serial))
     layers = read_layers(path, convert(path, table.layers, LayersTable, "layers"), frame)
     _give_pads(path, layers, profiles)
     limits = limits_from_table(
         convert(path, table.limits, LimitsTable, "limits"), f"{path}: limits"
     )
-    site = Site(table.name, frame, grid, eye, profiles, layers, limits)
+    site = Site(table.name, frame, grid, imager, profiles, layers, limits)
     refuse_high_ways_home(str(path), profiles, limits)
     refuse_misplaced_pads(path, site)
     if table.elevation is not None:

@@ -6,7 +6,7 @@ from recon.camera import PoseSolution
 from recon.geo import Polygon
 from recon.model.airspace import FlightLimits
 from recon.model.zone import ZoneKind
-from recon.site.site import Eye, Layers, Site
+from recon.site.site import Imager, Layers, Site
 from recon.site.warnings import site_advice
 
 
@@ -20,10 +20,10 @@ def site_report(site: Site) -> tuple[str, ...]:
         lines.append(
             f"ground image {grid.cols} x {grid.rows} cells of {grid.cell_m:g} m around the origin"
         )
-    if site.eye is None:
+    if site.imager is None:
         lines.append("no eye: frames are shown as they come, none is laid on the ground")
     else:
-        lines += _eye_report(site.eye)
+        lines += _imager_report(site.imager)
     lines += _layers_report(site.layers)
     lines += [_terrain_report(site), _limits_report(site.limits)]
     lines += [f"warning: {advice}" for advice in site_advice(site)]
@@ -70,10 +70,10 @@ def _layers_report(layers: Layers) -> list[str]:
     return lines
 
 
-def _eye_report(eye: Eye) -> list[str]:
-    lines = [f"eye {eye.serial}: {eye.camera.cols} x {eye.camera.rows} lens model"]
-    lines += pose_report(eye.solution)
-    if eye.first_frame_stands_for_marked_frame:
+def _imager_report(imager: Imager) -> list[str]:
+    lines = [f"eye {imager.serial}: {imager.camera.cols} x {imager.camera.rows} lens model"]
+    lines += pose_report(imager.solution)
+    if imager.first_frame_stands_for_marked_frame:
         lines.append(
             "the marked frame's telemetry is not given: the first frame received in flight stands "
             "for it, which is right only where that frame was taken"

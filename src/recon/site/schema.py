@@ -56,7 +56,7 @@ class OriginTable(_Table, frozen=True):
 
 
 class MarkedFrameTable(_Table, frozen=True):
-    """[eye.marked_frame]: telemetry when the frame with the control points was taken."""
+    """[imager.marked_frame]: telemetry when the frame with the control points was taken."""
 
     latitude_deg: Latitude
     longitude_deg: Longitude
@@ -67,15 +67,15 @@ class MarkedFrameTable(_Table, frozen=True):
 
 
 class ImageCircleTable(_Table, frozen=True):
-    """[eye.image_circle]: the lens's lit circle, in pixels at the camera file's size."""
+    """[imager.image_circle]: the lens's lit circle, in pixels at the camera file's size."""
 
     col_px: Annotated[float, Meta(ge=0.0, le=16_384.0)]
     row_px: Annotated[float, Meta(ge=0.0, le=16_384.0)]
     radius_px: Annotated[float, Meta(gt=0.0, le=16_384.0)]
 
 
-class EyeTable(_Table, frozen=True):
-    """[eye]: the vehicle whose frames are laid on the ground, its lens and its control points."""
+class ImagerTable(_Table, frozen=True):
+    """[imager]: the imaging drone, its lens and its ground control points."""
 
     serial: Serial
     control_points_image_size_px: tuple[Pixels, Pixels]
@@ -140,7 +140,7 @@ class SiteTable(_Table, frozen=True):
     name: Text
     origin: dict[str, Any]
     limits: dict[str, Any] = {}
-    eye: dict[str, Any] | None = None
+    imager: dict[str, Any] | None = None
     ground_image: dict[str, Any] | None = None
     layers: dict[str, Any] = {}
     elevation: dict[str, Any] | None = None

@@ -17,7 +17,7 @@ from recon.model.zone import LandingPad, Region, Zone
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Eye:
+class Imager:
     """The imaging vehicle: its lens, its control points and the pose these give.
 
     `solution` is the camera's pose when the marked frame was taken; `marked_frame` what telemetry
@@ -64,7 +64,7 @@ class Site:
     name: str
     frame: LocalFrame | None = None
     ground_grid: GroundGrid | None = None
-    eye: Eye | None = None
+    imager: Imager | None = None
     profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
     layers: Layers = field(default_factory=Layers)
     limits: FlightLimits = field(default_factory=FlightLimits)

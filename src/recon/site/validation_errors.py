@@ -23,25 +23,25 @@ def complaint(problem: msgspec.ValidationError, data: object, kind: object, key:
     """Return "key: expected this, got that" for data that is not of its type; `key` is its own."""
     what, _, where = str(problem).rpartition(" - at `$")
     steps = [name or int(index) for name, index in _STEP.findall(where.rstrip("`"))]
-    holders, kinds = [data], [inspect.type_info(kind)]
+    owners, kinds = [data], [inspect.type_info(kind)]
     try:
         for step in steps:
-            holders.append(holders[-1][step])  # type: ignore[index]
+            owners.append(owners[-1][step])  # type: ignore[index]
             kinds.append(_inner(kinds[-1], step))
     except (LookupError, TypeError, StopIteration):
         # The place was part of a key that the file's author made up: the fault is at the top.
-        what, steps, holders, kinds = str(problem), [], holders[:1], kinds[:1]
+        what, steps, owners, kinds = str(problem), [], owners[:1], kinds[:1]
     what = what or str(problem)
     if what.startswith("Object contains unknown field"):
-        return _unknown_key(_path(key, steps), holders[-1], kinds[-1])
+        return _unknown_key(_path(key, steps), owners[-1], kinds[-1])
     if what.startswith("Object missing required field"):
-        missing = _missing(holders[-1], kinds[-1])
+        missing = _missing(owners[-1], kinds[-1])
         words = in_words(_inner(kinds[-1], missing))
         return f"{_path(key, [*steps, missing])}: expected {words}, got nothing"
-    hint = _swapped(holders, steps)
+    hint = _swapped(owners, steps)
     place = _path(key, steps)
     lead = f"{place}: " if place else ""
-    return f"{lead}expected {in_words(kinds[-1])}, got {said_value(holders[-1])}{hint}"
+    return f"{lead}expected {in_words(kinds[-1])}, got {said_value(owners[-1])}{hint}"
 
 
 def in_words(kind: inspect.Type) -> str:
@@ -79,30 +79,30 @@ def said_value(value: object) -> str:
     return text if len(text) <= LONGEST_SAID else text[: LONGEST_SAID - 3] + "..."
 
 
-def _unknown_key(place: str, holder: object, kind: inspect.Type) -> str:
+def _unknown_key(place: str, owner: object, kind: inspect.Type) -> str:
     known = [field.encode_name for field in _struct(kind).fields]
-    unknown = next(str(name) for name in _keys(holder) if name not in known)
+    unknown = next(str(name) for name in _keys(owner) if name not in known)
     near = get_close_matches(unknown, known, n=1)
     advice = f"; did you mean {near[0]!r}?" if near else ""
     lead = f"{place}: " if place else ""
     return f"{lead}expected only the keys {', '.join(known)}, got {said_value(unknown)}{advice}"
 
 
-def _missing(holder: object, kind: inspect.Type) -> str:
-    there = set(_keys(holder))
+def _missing(owner: object, kind: inspect.Type) -> str:
+    there = set(_keys(owner))
     fields = _struct(kind).fields
     return next(f.encode_name for f in fields if f.required and f.encode_name not in there)
 
 
-def _keys(holder: object) -> Sequence[object]:
-    return list(holder) if isinstance(holder, Mapping) else []
+def _keys(owner: object) -> Sequence[object]:
+    return list(owner) if isinstance(owner, Mapping) else []
 
 
-def _swapped(holders: Sequence[object], steps: Sequence[str | int]) -> str:
+def _swapped(owners: Sequence[object], steps: Sequence[str | int]) -> str:
     """Whether a latitude that is none would be a longitude, and the other way round."""
-    if not steps or steps[-1] != "latitude_deg" or not isinstance(holders[-2], Mapping):
+    if not steps or steps[-1] != "latitude_deg" or not isinstance(owners[-2], Mapping):
         return ""
-    latitude, longitude = holders[-1], holders[-2].get("longitude_deg")
+    latitude, longitude = owners[-1], owners[-2].get("longitude_deg")
     if not (_is_degrees(latitude, 180.0) and _is_degrees(longitude, 90.0)):
         return ""
     return "; latitude and longitude look swapped"

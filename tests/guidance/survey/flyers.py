@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from recon.geo import enu_from_geo
 from recon.guidance.survey import (
-    Seen,
+    PositionSample,
     Surveyor,
     SurveyPlan,
     SurveyState,
@@ -194,7 +194,7 @@ class Flights:
     def _tell(self, flyer: Flyer) -> None:
         east_m, north_m = (float(at + flyer.rng.normal(0.0, flyer.off_m)) for at in flyer.place_m)
         at_ns = round((self.time_s + flyer.late_s) * NS_PER_S)
-        seen = Seen(at_ns, east_m, north_m, flyer.height_m)
+        seen = PositionSample(at_ns, east_m, north_m, flyer.height_m)
         self.state = observe(self.state, flyer.serial, [seen])
 
     def _photograph(self, flyer: Flyer) -> None:

@@ -8,7 +8,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 from tests.guidance.survey.fields import planned, rectangle, survey_of
 
 from recon.guidance.survey import (
-    Seen,
+    PositionSample,
     Surveyor,
     SurveyState,
     abort,
@@ -98,7 +98,10 @@ class SurveyLife(RuleBasedStateMachine):
     @rule(serial=st.sampled_from(SERIALS), row=st.integers(0, 9))
     def fly_a_row(self, serial: str, row: int) -> None:
         north_m = 10.0 + 20.0 * row
-        seen = [Seen(self._now_ns() + seconds_to_ns(s), 8.0 * s, north_m, 60.0) for s in range(38)]
+        seen = [
+            PositionSample(self._now_ns() + seconds_to_ns(s), 8.0 * s, north_m, 60.0)
+            for s in range(38)
+        ]
         self.state = observe(self.state, serial, seen)
         self.now_s += 40.0
 

@@ -12,8 +12,8 @@ from tests.guidance.survey.fields import FRAME, planned, rectangle, survey_of
 from tests.guidance.survey.flyers import middles_m
 
 from recon.guidance.survey import (
+    PositionSample,
     Progress,
-    Seen,
     SurveyPlan,
     SurveyState,
     create,
@@ -39,16 +39,17 @@ ROW_M = float(PLAN.lattice.east_north_m([(0.0, PLAN.lattice.row_across_m(3))])[0
 LATE_NS = seconds_to_ns(1_000.0)
 
 
-def row_flown(speed_mps: float = 8.0, hz: float = 1.0, **changes: float) -> list[Seen]:
+def row_flown(speed_mps: float = 8.0, hz: float = 1.0, **changes: float) -> list[PositionSample]:
     """Positions along a whole row from the west, from 10 s on."""
     count = int(300.0 / speed_mps * hz)
     seen = [
-        Seen(seconds_to_ns(10.0 + i / hz), speed_mps * i / hz, ROW_M, 60.0) for i in range(count)
+        PositionSample(seconds_to_ns(10.0 + i / hz), speed_mps * i / hz, ROW_M, 60.0)
+        for i in range(count)
     ]
     return [replace(each, **changes) for each in seen]
 
 
-def counted(seen: list[Seen], *shade: ShadeMap, plan: SurveyPlan = PLAN) -> Progress:
+def counted(seen: list[PositionSample], *shade: ShadeMap, plan: SurveyPlan = PLAN) -> Progress:
     progress = no_progress(plan.cells)
     for each in shade:
         progress = with_shade(progress, each, plan)
@@ -124,7 +125,7 @@ class TestImaged:
         ],
     )
     def test_what_is_not_flown_as_a_row_counts_for_nothing(
-        self, seen: list[Seen], why: str
+        self, seen: list[PositionSample], why: str
     ) -> None:
         assert not imaged(counted(seen)).any(), why
 
@@ -166,7 +167,7 @@ class TestImaged:
         assert 0 < imaged(later).sum() < imaged(settled(later, PLAN, LATE_NS)).sum()
 
     def test_what_waits_is_bounded(self) -> None:
-        many = [Seen(seconds_to_ns(i), 1.0 * i, 0.0, 60.0) for i in range(3_000)]
+        many = [PositionSample(seconds_to_ns(i), 1.0 * i, 0.0, 60.0) for i in range(3_000)]
         progress = with_seen(no_progress(PLAN.cells), "A", many, PLAN)
         assert len(progress.waiting["A"]) == PLAN.settings.positions_kept
         for second in range(100):

@@ -38,7 +38,7 @@ STEERED = [GoTo(PLACE, 40.0, 5.0), Nudge(1.0, 0.0, 0.0), HoldPosition()]
 
 def test_of_a_vehicle_nobody_knows_another_rule_speaks() -> None:
     asked = command(Hover(), takeoff=True)
-    nobody = replace(situation(), vehicle=None, claimants=())
+    nobody = replace(situation(), vehicle=None, claiming_links=())
     assert flying(asked, nobody) is None
     assert refused_by(approve(asked, nobody)) == "reachable"
 
@@ -175,7 +175,7 @@ class TestWhatItSays:
         )
 
     def test_telemetry_of_just_the_age_is_not_too_old_to_be_heard(self) -> None:
-        answer = flying(command(Hover()), replace(situation(vehicle(age_s=3.0)), claimants=()))
+        answer = flying(command(Hover()), replace(situation(vehicle(age_s=3.0)), claiming_links=()))
         assert answer is not None
         assert answer.is_unheard is False
 

@@ -16,7 +16,7 @@ from tests.safety.cases import (
 
 from recon.model.command import Body, Hover, LandNow, Refusal, ReturnHome, StartCamera, StopCamera
 from recon.model.stamped import Stamped
-from recon.safety import Claimant, Situation, approve
+from recon.safety import ClaimingLink, Situation, approve
 
 OTHERS = [mission(), STICK, StartCamera(1.0), StopCamera()]
 EMERGENCIES = [Hover(), LandNow(), ReturnHome()]
@@ -24,7 +24,7 @@ EMERGENCIES = [Hover(), LandNow(), ReturnHome()]
 
 def unidentified() -> Situation:
     state = replace(vehicle(), serial=None, profile=None)
-    return Situation(NOW, state, (Claimant(1, state.is_flying),))
+    return Situation(NOW, state, (ClaimingLink(1, state.is_flying),))
 
 
 @pytest.mark.parametrize("body", OTHERS)

@@ -261,14 +261,14 @@ class TestLeadingApart:
 class TestUnseen:
     def test_a_ghost_is_kept_clear_of_as_wide_as_it_may_grow(self) -> None:
         own = aircraft("A", (0.0, -400.0))
-        ghost = aircraft("B", (0.0, 0.0), age_s=3.1, failsafe=Failsafe.HOVER)
+        hazard = aircraft("B", (0.0, 0.0), age_s=3.1, failsafe=Failsafe.HOVER)
         for east_m, passes in ((-170.0, True), (-160.0, False)):
-            found = judged(route((0.0, -400.0), (0.0, east_m)), own, ghost)
+            found = judged(route((0.0, -400.0), (0.0, east_m)), own, hazard)
             assert (found is None) is passes
         refused(
-            judged(route((0.0, -400.0), (0.0, -100.0)), own, ghost),
+            judged(route((0.0, -400.0), (0.0, -100.0)), own, hazard),
             "of where B may be, which is not heard any more",
-            "dismiss its ghost",
+            "dismiss its hazard area",
         )
 
     def test_at_3_s_it_is_still_a_vehicle(self) -> None:
@@ -281,38 +281,38 @@ class TestUnseen:
         [(Failsafe.GO_HOME, False), (None, False), (Failsafe.HOVER, True), (Failsafe.LAND, True)],
     )
     def test_its_way_home_is_kept_clear_of(self, failsafe: Failsafe | None, passes: bool) -> None:
-        ghost = aircraft("B", (0.0, 800.0), failsafe=failsafe, age_s=60.0)
+        hazard = aircraft("B", (0.0, 800.0), failsafe=failsafe, age_s=60.0)
         crossing = route((-100.0, 400.0, 50.0), (100.0, 400.0, 50.0))
-        found = judged(crossing, aircraft("A", (-100.0, 400.0), 50.0), ghost)
+        found = judged(crossing, aircraft("A", (-100.0, 400.0), 50.0), hazard)
         assert (found is None) is passes
 
     @pytest.mark.parametrize(("height_m", "passes"), [(30.0, True), (50.0, False), (70.0, True)])
     def test_the_way_home_has_all_heights_between(self, height_m: float, passes: bool) -> None:
-        ghost = aircraft("B", (0.0, 800.0), age_s=60.0)
+        hazard = aircraft("B", (0.0, 800.0), age_s=60.0)
         crossing = route((-100.0, 400.0, height_m), (100.0, 400.0, height_m))
-        found = judged(crossing, aircraft("A", (-100.0, 400.0), height_m), ghost)
+        found = judged(crossing, aircraft("A", (-100.0, 400.0), height_m), hazard)
         assert (found is None) is passes
 
     def test_an_unheard_vehicle_may_fly_its_mission_on(self) -> None:
         far = route((0.0, 800.0), (0.0, 1800.0))
-        ghost = aircraft("B", (0.0, 800.0), age_s=10.0, failsafe=Failsafe.HOVER)
+        hazard = aircraft("B", (0.0, 800.0), age_s=10.0, failsafe=Failsafe.HOVER)
         own = aircraft("A", (-100.0, 1200.0))
         crossing = route((-100.0, 1200.0), (5.0, 1200.0))
-        assert judged(crossing, own, Traffic(ghost)) is None
-        refused(judged(crossing, own, Traffic(ghost, flies(far, passed=1))))
+        assert judged(crossing, own, Traffic(hazard)) is None
+        refused(judged(crossing, own, Traffic(hazard, flies(far, passed=1))))
 
     def test_one_may_be_led_out_of_a_ghosts_circle(self) -> None:
-        ghost = aircraft("B", (0.0, 0.0), age_s=60.0, failsafe=Failsafe.HOVER)
+        hazard = aircraft("B", (0.0, 0.0), age_s=60.0, failsafe=Failsafe.HOVER)
         own = aircraft("A", (0.0, 80.0))
-        assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, ghost) is None
-        refused(judged(GoTo(at(0.0, -200.0), 40.0, 10.0), own, ghost))
+        assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, hazard) is None
+        refused(judged(GoTo(at(0.0, -200.0), 40.0, 10.0), own, hazard))
 
     def test_one_may_be_led_away_from_where_a_ghost_will_have_grown_to(self) -> None:
         """Unheard for 4 s it is within 8 m; 80 m away it may still come."""
-        ghost = aircraft("B", (0.0, 0.0), age_s=4.0, failsafe=Failsafe.HOVER)
+        hazard = aircraft("B", (0.0, 0.0), age_s=4.0, failsafe=Failsafe.HOVER)
         own = aircraft("A", (0.0, 80.0))
-        assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, ghost) is None
-        refused(judged(GoTo(at(0.0, 60.0), 40.0, 10.0), own, ghost), "of where B may be")
+        assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, hazard) is None
+        refused(judged(GoTo(at(0.0, 60.0), 40.0, 10.0), own, hazard), "of where B may be")
 
     def test_a_vehicle_without_a_position_is_where_it_was_last_seen(self) -> None:
         last = at(100.0, 0.0)

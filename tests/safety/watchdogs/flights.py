@@ -10,12 +10,12 @@ from random import Random
 
 from tests.safety.traffic import AIR, S, aircraft, route
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.intent import Commanded, Intent
 from recon.model.vehicle import FlightMode
 from recon.safety import PreparedAirspace
 from recon.safety.settings import SafetySettings
-from recon.safety.watchdogs import WATCHDOGS, Finding, Held, Watchdog, Watched, take_picture
+from recon.safety.watchdogs import WATCHDOGS, Finding, Held, Watchdog, WatchedVehicle, take_picture
 from recon.safety.watchdogs.separation import separation
 
 STEP_S = 0.01
@@ -35,7 +35,7 @@ class Aircraft:
     intent: Intent = field(default_factory=Intent)
     mode: FlightMode = FlightMode.GPS_ATTI
     priority: int = 0
-    leader: Leader = Leader.OPERATOR
+    holder: AuthorityHolder = AuthorityHolder.OPERATOR
     delay_s: float = 1.0
     """From the order to hold to the first deceleration."""
     noise_m: float = 0.0
@@ -57,7 +57,7 @@ class Aircraft:
         if self.holds_at_s is None:
             self.holds_at_s = now_s + self.delay_s
 
-    def watched(self, now_s: float, rng: Random) -> Watched:
+    def watched(self, now_s: float, rng: Random) -> WatchedVehicle:
         """What telemetry of the last tenth of a second tells."""
         north_m, east_m, up_m = self.place
         noisy = (north_m + rng.gauss(0.0, self.noise_m), east_m + rng.gauss(0.0, self.noise_m))
@@ -75,7 +75,7 @@ class Aircraft:
         if self.held_at_s is not None:
             speed = hypot(*self.velocity[:2])
             held = Held(round(self.held_at_s * S), speed)
-        return Watched(state, intent, self.leader, held=held)
+        return WatchedVehicle(state, intent, self.holder, held=held)
 
 
 @dataclass(slots=True)
@@ -108,7 +108,7 @@ class Air:
     def looks(self) -> list[Finding]:
         now_ns = round(self.now_s * S)
         picture = take_picture(
-            [one.watched(self.now_s, self.rng) for one in self.fleet],
+            [one.tracked(self.now_s, self.rng) for one in self.fleet],
             self.airspace,
             SETTINGS,
             now_ns,

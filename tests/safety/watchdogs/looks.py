@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from tests.safety.traffic import AIR, NOW, S, aircraft
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.intent import Commanded, Intent
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import PreparedAirspace
@@ -16,7 +16,7 @@ from recon.safety.watchdogs import (
     Held,
     Picture,
     Watchdog,
-    Watched,
+    WatchedVehicle,
     take_picture,
 )
 
@@ -25,18 +25,18 @@ LONG_AGO: Mapping[str, int] = {}
 
 
 def picture(
-    *vehicles: Watched | VehicleState,
+    *vehicles: WatchedVehicle | VehicleState,
     airspace: PreparedAirspace = AIR,
     since_ns: Mapping[str, int] = LONG_AGO,
     is_hold_on: bool = True,
 ) -> Picture:
-    watched = [v if isinstance(v, Watched) else Watched(v) for v in vehicles]
+    watched = [v if isinstance(v, WatchedVehicle) else WatchedVehicle(v) for v in vehicles]
     return take_picture(watched, airspace, SETTINGS, NOW, since_ns, is_hold_on=is_hold_on)
 
 
 def looks(
     watchdog: Watchdog,
-    *vehicles: Watched | VehicleState,
+    *vehicles: WatchedVehicle | VehicleState,
     airspace: PreparedAirspace = AIR,
     lasted_s: float = 5.0,
     is_hold_on: bool = True,
@@ -48,9 +48,9 @@ def looks(
     return list(watchdog(again))
 
 
-def told(state: VehicleState, **changes: object) -> Watched:
+def told(state: VehicleState, **changes: object) -> WatchedVehicle:
     """A vehicle and what the station knows beside its state."""
-    return replace(Watched(state), **changes)  # type: ignore[arg-type]
+    return replace(WatchedVehicle(state), **changes)  # type: ignore[arg-type]
 
 
 def held(seconds_ago: float, speed_mps: float = 0.0) -> Held:
@@ -60,10 +60,10 @@ def held(seconds_ago: float, speed_mps: float = 0.0) -> Held:
 __all__ = [
     "NOW",
     "WATCHDOGS",
+    "AuthorityHolder",
     "Commanded",
     "FlightMode",
     "Intent",
-    "Leader",
     "S",
     "aircraft",
     "held",

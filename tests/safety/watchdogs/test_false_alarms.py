@@ -13,7 +13,7 @@ from tests.safety.watchdogs.flights import SETTINGS
 
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
-from recon.safety.watchdogs import Watched, take_picture
+from recon.safety.watchdogs import WatchedVehicle, take_picture
 from recon.safety.watchdogs.separation import separation
 
 LINE_M, LINES = 300.0, 2
@@ -60,7 +60,7 @@ class Surveyor:
             max(-1.0, min(1.0, b + self.rng.gauss(0.0, 0.02))) for b in self.bias_m
         )
 
-    def watched(self, now_ns: int) -> Watched:
+    def watched(self, now_ns: int) -> WatchedVehicle:
         start, end = self.places[self.leg], self.places[self.leg + 1]
         long_m = abs(end[0] - start[0]) + abs(end[1] - start[1])
         way = ((end[0] - start[0]) / long_m, (end[1] - start[1]) / long_m)
@@ -77,7 +77,7 @@ class Surveyor:
             mode=FlightMode.GPS_WAYPOINT,
             now_ns=now_ns,
         )
-        return Watched(state, flies(self.mission, self.leg + 1))
+        return WatchedVehicle(state, flies(self.mission, self.leg + 1))
 
 
 def strip(number: int, apart_m: float) -> list[tuple[float, float]]:
@@ -100,7 +100,7 @@ def alarms_and_holds(apart_m: float) -> tuple[int, int]:
         now_ns = 100 * S + round(step * LOOK_S * S)
         for one in fleet:
             one.flies_on(LOOK_S)
-        picture = take_picture([v.watched(now_ns) for v in fleet], AIR, SETTINGS, now_ns, since)
+        picture = take_picture([v.tracked(now_ns) for v in fleet], AIR, SETTINGS, now_ns, since)
         found = list(separation(picture))
         began += sum(f.key not in since for f in found)
         since = {f.key: since.get(f.key, now_ns) for f in found}

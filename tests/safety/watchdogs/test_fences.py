@@ -7,10 +7,10 @@ import pytest
 from tests.safety.traffic import FRAME, aircraft, at, flies, route
 from tests.safety.watchdogs.looks import (
     NOW,
+    AuthorityHolder,
     Commanded,
     FlightMode,
     Intent,
-    Leader,
     held,
     looks,
     picture,
@@ -88,7 +88,7 @@ class TestBoundary:
     def test_a_pilot_and_one_coming_down_are_alarmed_about_only(self) -> None:
         leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
         for one in (
-            told(leaving, leader=Leader.PILOT),
+            told(leaving, holder=AuthorityHolder.PILOT),
             told(leaving, intent=Intent(Commanded.RETURN, NOW)),
             told(leaving, held=held(1.0, 10.0), intent=Intent()),
         ):

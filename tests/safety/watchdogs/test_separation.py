@@ -6,10 +6,10 @@ import pytest
 from tests.safety.traffic import at, flies, route
 from tests.safety.watchdogs.looks import (
     NOW,
+    AuthorityHolder,
     Commanded,
     FlightMode,
     Intent,
-    Leader,
     S,
     aircraft,
     held,
@@ -140,12 +140,12 @@ class TestHolds:
         assert only(looks(separation, a, b)).holds == holds
         assert only(looks(separation, b, a)).holds == holds
 
-    def test_the_eye_yields_after_others_and_an_operators_after_guidances(self) -> None:
+    def test_the_imager_yields_after_others_and_an_operators_after_guidances(self) -> None:
         a, b = head_on()
-        assert only(looks(separation, a, told(b, is_eye=True))).holds == "A"
-        guided = told(a, leader=Leader.GUIDANCE)
+        assert only(looks(separation, a, told(b, is_imager=True))).holds == "A"
+        guided = told(a, holder=AuthorityHolder.GUIDANCE)
         assert only(looks(separation, guided, b)).holds == "A"
-        low = told(aircraft("A", velocity=NORTH, priority=-1), is_eye=True)
+        low = told(aircraft("A", velocity=NORTH, priority=-1), is_imager=True)
         assert only(looks(separation, low, b)).holds == "A"
 
     def test_a_vehicle_without_a_profile_has_no_priority(self) -> None:
@@ -159,8 +159,8 @@ class TestHolds:
 
     def test_what_the_pilot_leads_is_never_held(self) -> None:
         a, b = head_on()
-        assert only(looks(separation, a, told(b, leader=Leader.PILOT))).holds == "A"
-        both = [told(v, leader=Leader.PILOT) for v in (a, b)]
+        assert only(looks(separation, a, told(b, holder=AuthorityHolder.PILOT))).holds == "A"
+        both = [told(v, holder=AuthorityHolder.PILOT) for v in (a, b)]
         found = only(looks(separation, *both))
         assert found.holds is None
         assert "told to hold" not in found.text
@@ -184,7 +184,7 @@ class TestHolds:
 
     def test_the_one_in_front_of_a_pilot_is_held_by_nobody(self) -> None:
         front = aircraft("B", (60.0, 0.0), velocity=(4.0, 0.0, 0.0))
-        behind = told(aircraft("A", velocity=(12.0, 0.0, 0.0)), leader=Leader.PILOT)
+        behind = told(aircraft("A", velocity=(12.0, 0.0, 0.0)), holder=AuthorityHolder.PILOT)
         assert only(looks(separation, front, behind)).holds is None
 
 
@@ -250,13 +250,13 @@ class TestComingDown:
 
     def test_it_is_held_when_that_helps_and_the_other_cannot_be(self) -> None:
         a, b = head_on(mode=FlightMode.GO_HOME)
-        pilot = told(a, leader=Leader.PILOT)
+        pilot = told(a, holder=AuthorityHolder.PILOT)
         coming = told(b, intent=Intent(Commanded.RETURN, NOW))
         assert only(looks(separation, pilot, coming)).holds == "B"
 
     def test_one_that_sinks_out_of_the_others_way_is_not_held(self) -> None:
         lands = aircraft("B", (60.0, 0.0), 38.0, (0.0, 0.0, -3.0), mode=FlightMode.AUTO_LANDING)
-        pilot = told(aircraft("A", velocity=NORTH), leader=Leader.PILOT)
+        pilot = told(aircraft("A", velocity=NORTH), holder=AuthorityHolder.PILOT)
         for finding in looks(separation, lands, pilot):
             assert finding.holds is None
 
@@ -270,15 +270,15 @@ class TestComingDown:
         assert looks(separation, coming, aircraft("A", (0.0, 40.0), 40.0)) == []
 
 
-class TestGhosts:
-    ghost = aircraft("G", (0.0, 0.0), velocity=NORTH, age_s=10.0, failsafe=Failsafe.HOVER)
+class TestHazards:
+    hazard = aircraft("G", (0.0, 0.0), velocity=NORTH, age_s=10.0, failsafe=Failsafe.HOVER)
 
     def test_a_vehicle_on_its_way_into_the_circle_is_alarmed_about_and_held(self) -> None:
         coming = aircraft("A", (0.0, 230.0), velocity=(0.0, -10.0, 0.0))
-        found = only(looks(separation, self.ghost, coming))
+        found = only(looks(separation, self.hazard, coming))
         assert found.holds == "A"
         assert "where G may be, which has not been heard for 10 s" in found.text
-        assert looks(separation, self.ghost, aircraft("A", (0.0, 230.0))) == []
+        assert looks(separation, self.hazard, aircraft("A", (0.0, 230.0))) == []
 
     def test_one_in_the_circle_is_alarmed_about_and_held_only_if_it_flies_in_deeper(self) -> None:
         for velocity, holds in (
@@ -287,25 +287,25 @@ class TestGhosts:
             ((0.0, -10.0, 0.0), "A"),
         ):
             inside = aircraft("A", (0.0, 80.0), velocity=velocity)
-            assert only(looks(separation, self.ghost, inside)).holds == holds
+            assert only(looks(separation, self.hazard, inside)).holds == holds
 
     def test_the_circle_grows(self) -> None:
         """At 10 m/s: 40 m after 4 s, 140 m ten seconds later."""
-        ghost = aircraft("G", velocity=NORTH, age_s=4.0, failsafe=Failsafe.HOVER)
+        hazard = aircraft("G", velocity=NORTH, age_s=4.0, failsafe=Failsafe.HOVER)
         for east_m, count in ((150.0, 1), (160.0, 0)):
-            assert len(looks(separation, ghost, aircraft("A", (0.0, east_m)))) == count
+            assert len(looks(separation, hazard, aircraft("A", (0.0, east_m)))) == count
 
     def test_it_grows_no_further_than_150_m(self) -> None:
-        ghost = aircraft("G", velocity=NORTH, age_s=600.0, failsafe=Failsafe.HOVER)
+        hazard = aircraft("G", velocity=NORTH, age_s=600.0, failsafe=Failsafe.HOVER)
         for east_m, count in ((165.0, 1), (170.0, 0)):
-            assert len(looks(separation, ghost, aircraft("A", (0.0, east_m)))) == count
+            assert len(looks(separation, hazard, aircraft("A", (0.0, east_m)))) == count
 
     def test_above_it_all_heights_pass_and_below_none(self) -> None:
         for height_m, count in ((50.0, 0), (46.0, 1), (10.0, 1)):
-            assert len(looks(separation, self.ghost, aircraft("A", (0.0, 5.0), height_m))) == count
+            assert len(looks(separation, self.hazard, aircraft("A", (0.0, 5.0), height_m))) == count
 
     def test_its_way_home_is_kept_clear_of(self) -> None:
-        ghost = aircraft("G", (0.0, 800.0), age_s=60.0)
+        hazard = aircraft("G", (0.0, 800.0), age_s=60.0)
         for place, height_m, count in (
             ((20.0, 400.0), 50.0, 1),
             ((30.0, 400.0), 50.0, 0),
@@ -314,37 +314,40 @@ class TestGhosts:
             ((20.0, 0.0), 5.0, 1),
             ((0.0, -30.0), 5.0, 0),
         ):
-            assert len(looks(separation, ghost, aircraft("A", place, height_m))) == count, place
+            assert len(looks(separation, hazard, aircraft("A", place, height_m))) == count, place
 
     def test_one_that_may_fly_its_mission_on_is_foreseen_to(self) -> None:
         """Sent 900 m east at 5 m/s and not heard for 100 s: half-way, give or take 50 m."""
         mission = route((0.0, 0.0), (0.0, 900.0))
         state = aircraft("G", velocity=(0.0, 5.0, 0.0), age_s=100.0, failsafe=Failsafe.HOVER)
-        ghost = told(state, intent=flies(mission, 1))
-        found = only(looks(separation, ghost, aircraft("A", (0.0, 540.0))))
+        hazard = told(state, intent=flies(mission, 1))
+        found = only(looks(separation, hazard, aircraft("A", (0.0, 540.0))))
         assert found.vehicle_name == "A"
         assert "to G (not heard for 100 s, if it flies its mission on)" in found.text
         assert looks(separation, told(state), aircraft("A", (0.0, 540.0))) == []
-        assert looks(separation, ghost, aircraft("A", (0.0, 800.0))) == []
+        assert looks(separation, hazard, aircraft("A", (0.0, 800.0))) == []
         coming = aircraft("A", (0.0, 660.0), velocity=(0.0, -10.0, 0.0))
-        assert only(looks(separation, ghost, coming)).holds == "A"
+        assert only(looks(separation, hazard, coming)).holds == "A"
 
     def test_two_that_may_fly_their_missions_on_are_no_conflict(self) -> None:
         mission = flies(route((0.0, 0.0), (0.0, 900.0)), 1)
-        ghosts = [
+        hazards = [
             told(aircraft(n, (0.0, e), age_s=20.0, failsafe=Failsafe.HOVER), intent=mission)
             for n, e in (("G", 0.0), ("H", 10.0))
         ]
         far = aircraft("A", (500.0, 0.0))
-        assert looks(separation, far, *ghosts) == []
+        assert looks(separation, far, *hazards) == []
 
     def test_two_ghosts_are_no_conflict(self) -> None:
-        assert looks(separation, self.ghost, replace(self.ghost, serial="H")) == []
+        assert looks(separation, self.hazard, replace(self.hazard, serial="H")) == []
 
     def test_a_pilots_vehicle_is_not_held_for_one(self) -> None:
         inside = aircraft("A", (0.0, 80.0), velocity=(0.0, -10.0, 0.0))
-        assert only(looks(separation, self.ghost, told(inside, leader=Leader.PILOT))).holds is None
-        off = looks(separation, self.ghost, inside, is_hold_on=False)
+        assert (
+            only(looks(separation, self.hazard, told(inside, holder=AuthorityHolder.PILOT))).holds
+            is None
+        )
+        off = looks(separation, self.hazard, inside, is_hold_on=False)
         assert "holding is switched off" in only(off).text
 
 

@@ -5,7 +5,7 @@ import { alarm, at, command, link, station, vehicle } from "../../src/testing/wo
 export function busyState(elapsed_s: number): StationState {
   const vehicles = [
     vehicle(1, {
-      is_eye: true,
+      is_imager: true,
       frame: { id: 12, received_age_s: 0.3, captured_age_s: 0.8, captured_sigma_s: 0.2 },
     }),
     vehicle(2, { flight_mode: { value: "auto_landing", age_s: 0.4 } }),

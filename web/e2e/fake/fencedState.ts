@@ -1,12 +1,17 @@
 import type { PreflightView, StationState } from "../../src/protocol";
-import { alarm, area, at, command, ghost, station, vehicle } from "../../src/testing/world";
+import { alarm, area, at, command, hazard, station, vehicle } from "../../src/testing/world";
 
 /** A field with fences, a vehicle that is not heard, one that is steered, and a fleet on its way home. */
 export function fencedState(elapsed_s: number): StationState {
   const [longitude_deg, latitude_deg] = at(40, 110);
   const vehicles = [
     vehicle(1, {
-      lead: { leader: "guidance", holder: "survey", age_s: 64, reason: "it flies the survey" },
+      authority: {
+        holder: "guidance",
+        holder_name: "survey",
+        age_s: 64,
+        reason: "it flies the survey",
+      },
     }),
     vehicle(2, {
       steering: {
@@ -22,7 +27,7 @@ export function fencedState(elapsed_s: number): StationState {
     vehicle(3, {
       staleness: "lost",
       telemetry_age_s: 5 + elapsed_s,
-      ghost: ghost([30, 30], { corridor: [at(30, 30), at(-120, -100)], radius_m: 60 }),
+      hazard: hazard([30, 30], { corridor: [at(30, 30), at(-120, -100)], radius_m: 60 }),
     }),
     vehicle(4, { is_flying: { value: false, age_s: 0.1 } }),
   ];

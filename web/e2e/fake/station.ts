@@ -28,7 +28,7 @@ export class FakeStation {
   /** Takes the place of the station for `page`, before it is opened. */
   static async behind(page: Page, state: StationState): Promise<FakeStation> {
     const fake = new FakeStation(state);
-    await page.routeWebSocket(/\/api\/stream\?holder=[0-9a-f]{32}$/, (socket) =>
+    await page.routeWebSocket(/\/api\/stream\?owner=[0-9a-f]{32}$/, (socket) =>
       fake.accept(socket),
     );
     await page.route("**/api/**", (route) => {

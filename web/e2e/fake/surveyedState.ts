@@ -9,12 +9,17 @@ const ROWS = [-60, -30, 0, 30, 60].map((east_m): [number, number][] => [
 
 /** A field that is surveyed: one vehicle flies rows, one goes home for a battery, one waits. */
 export function surveyedState(elapsed_s: number): StationState {
-  const lead = { leader: "guidance", holder: "survey", age_s: 64, reason: "it flies the survey" };
+  const authority = {
+    holder: "guidance",
+    holder_name: "survey",
+    age_s: 64,
+    reason: "it flies the survey",
+  };
   const vehicles = [
-    vehicle(1, { lead: { ...lead, leader: "guidance" } }),
-    vehicle(2, { lead: { ...lead, leader: "guidance" } }),
+    vehicle(1, { authority: { ...authority, holder: "guidance" } }),
+    vehicle(2, { authority: { ...authority, holder: "guidance" } }),
     vehicle(3, { is_flying: { value: false, age_s: 0.1 } }),
-    vehicle(4, { is_eye: true }),
+    vehicle(4, { is_imager: true }),
   ];
   const plain = station(vehicles, { time_ns: 1e9 * (1 + elapsed_s) });
   const waits = {

@@ -12,9 +12,9 @@ import { createGroundOnMap } from "./createGroundOnMap";
 import { FlyHereLayer } from "./flyHereLayer";
 import { ForecastLayer } from "./forecastLayer";
 import { GroundImageNote } from "./GroundImageNote";
-import { GhostLayer } from "./ghostLayer";
 import { GraticuleLayer } from "./graticuleLayer";
 import { GroundImageLayer } from "./groundImageLayer";
+import { HazardLayer } from "./hazardLayer";
 import { HeightZoneLayer } from "./heightZoneLayer";
 import { KeepOutLayer } from "./keepOutLayer";
 import type { Layer } from "./layer";
@@ -62,7 +62,7 @@ export function MapView() {
       new KeepOutLayer(),
       new BoundaryLayer(),
       new PadLayer(),
-      new GhostLayer(),
+      new HazardLayer(),
       new TrailLayer(),
       new SteeringLayer(),
       new FlyHereLayer(),

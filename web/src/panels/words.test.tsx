@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it } from "vitest";
-import type { CheckView, Leader, PreflightView, StationState } from "../protocol";
+import type { AuthorityHolder, CheckView, PreflightView, StationState } from "../protocol";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
-import { ghost, station, vehicle } from "../testing/world";
+import { hazard, station, vehicle } from "../testing/world";
 import { VehicleDetail } from "./detail/VehicleDetail";
 import { SeparationBanner } from "./separation/SeparationBanner";
 import { SeparationSwitch } from "./separation/SeparationSwitch";
@@ -51,47 +51,48 @@ function list(changes: Partial<PreflightView> = {}): PreflightView {
 }
 
 describe("who leads a vehicle", () => {
-  const lead = (leader: Leader) => ({
-    leader,
-    holder: "survey 3",
+  const authority = (holder: AuthorityHolder) => ({
+    holder,
+    holder_name: "survey 3",
     age_s: 20,
     reason: "the survey began",
   });
-  const led = (leader: Leader) => station([vehicle(1, { lead: lead(leader) })]);
+  const heldBy = (holder: AuthorityHolder) =>
+    station([vehicle(1, { authority: authority(holder) })]);
 
-  it("is told with the holder, the time and the reason", () => {
-    const root = show(VehicleDetail, led("guidance"));
+  it("is told with the holder_name, the time and the reason", () => {
+    const root = show(VehicleDetail, heldBy("guidance"));
     page.shared.selection.only(1);
     expect(find(root, "[aria-label='Who leads it']").textContent).toContain(
-      "Led by guidance (survey 3) for 20 s: the survey began",
+      "Controlled by guidance (survey 3) for 20 s: the survey began",
     );
   });
 
   it("changes by a press that is held, and by no brush of the hand", async () => {
-    show(VehicleDetail, led("guidance"));
+    show(VehicleDetail, heldBy("guidance"));
     page.shared.selection.only(1);
     await hold("Take over 1 Alder", 300);
     button("Take over").dispatchEvent(new PointerEvent("pointerup", { bubbles: true }));
     await hold("Give 1 Alder", 450);
-    expect(page.said).toEqual([{ lead: "pilot", serial: "SN-001" }]);
+    expect(page.said).toEqual([{ authority: "pilot", serial: "SN-001" }]);
   });
 
   it("has no button for whom it has already, and tells a refusal with its rule", async () => {
-    page = renderPage(VehicleDetail, led("guidance"));
+    page = renderPage(VehicleDetail, heldBy("guidance"));
     page.answerWordsWith({ accepted: false, rule: "link_age", reason: "it is not heard" });
     page.shared.selection.only(1);
     await hold("Take over", 450);
     expect(page.root.textContent).toContain("Refused (link age): it is not heard");
-    page.say(led("operator"));
+    page.say(heldBy("operator"));
     expect(page.root.querySelector("[aria-label^='Take over']")).toBeNull();
   });
 
   it("gives nothing when somebody else takes it while the button is held", async () => {
-    show(VehicleDetail, led("guidance"));
+    show(VehicleDetail, heldBy("guidance"));
     page.shared.selection.only(1);
     press("Take over");
     page.clock.advance(300);
-    page.say(led("pilot"));
+    page.say(heldBy("pilot"));
     page.clock.advance(2000);
     await settled();
     expect(page.said).toEqual([]);
@@ -150,13 +151,13 @@ describe("the checklist", () => {
   });
 });
 
-describe("a ghost", () => {
+describe("a hazard area", () => {
   it("is dismissed by a long press, under the name the station gave it", async () => {
-    const one = vehicle(3, { ghost: ghost([0, 0], { dismissed_as: "link-7" }) });
+    const one = vehicle(3, { hazard: hazard([0, 0], { dismissed_as: "link-7" }) });
     const root = show(VehicleDetail, station([one]));
     page.shared.selection.only(3);
     expect(root.textContent).toContain("anywhere within 50\u00a0m of where it was last seen");
-    await hold("Dismiss the ghost of 3 Cedar", 1000);
+    await hold("Dismiss the hazard of 3 Cedar", 1000);
     expect(page.said).toEqual([]);
     page.clock.advance(600);
     await settled();

@@ -464,7 +464,7 @@ export interface paths {
         put?: never;
         /**
          * Authority
-         * @description Take a vehicle over, or give it away: from now on only `leader` sets it in motion.
+         * @description Take a vehicle over, or give it away: from now on only `holder` sets it in motion.
          */
         post: operations["authority_api_vehicles__serial__authority_post"];
         delete?: never;
@@ -493,7 +493,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/vehicles/{serial}/ghost/dismiss": {
+    "/api/vehicles/{serial}/hazard/dismiss": {
         parameters: {
             query?: never;
             header?: never;
@@ -503,12 +503,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Dismiss Ghost
+         * Dismiss Hazard
          * @description Say that somebody knows where a vehicle is that is not heard: it is a hazard no more.
          *
-         *     A vehicle without a serial is named as its ghost's `dismissed_as` says.
+         *     A vehicle without a serial is named as its hazard area's `dismissed_as` says.
          */
-        post: operations["dismiss_ghost_api_vehicles__serial__ghost_dismiss_post"];
+        post: operations["dismiss_hazard_api_vehicles__serial__hazard_dismiss_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -709,10 +709,30 @@ export interface components {
          */
         AuthorityRequest: {
             /**
-             * Leader
+             * Holder
              * @enum {string}
              */
-            leader: "pilot" | "operator" | "guidance";
+            holder: "pilot" | "operator" | "guidance";
+        };
+        /**
+         * AuthorityView
+         * @description Who may set a vehicle in motion, and how that came about; anybody may stop it.
+         */
+        AuthorityView: {
+            /**
+             * Age S
+             * @description null: since the station began
+             */
+            age_s: number | null;
+            /**
+             * Holder
+             * @enum {string}
+             */
+            holder: "pilot" | "operator" | "guidance";
+            /** Holder Name */
+            holder_name: string;
+            /** Reason */
+            reason: string;
         };
         /**
          * CameraStartOrder
@@ -894,41 +914,6 @@ export interface components {
             received_age_s: number;
         };
         /**
-         * GhostView
-         * @description Where a vehicle may be that is not heard any more: a circle that grows, and its way home.
-         *
-         *     It stays until telemetry comes, or until somebody who knows where the vehicle is dismisses it.
-         */
-        GhostView: {
-            /** Age S */
-            age_s: number;
-            /**
-             * Corridor
-             * @description longitude, latitude: from the last place to home; empty when it goes nowhere
-             */
-            corridor: [
-                number,
-                number
-            ][];
-            /** Corridor Half Width M */
-            corridor_half_width_m: number;
-            /**
-             * Dismissed As
-             * @description what to name when dismissing it: the serial, or a link
-             */
-            dismissed_as: string;
-            /** Growth Mps */
-            growth_mps: number;
-            /** Largest Radius M */
-            largest_radius_m: number;
-            /** Latitude Deg */
-            latitude_deg: number;
-            /** Longitude Deg */
-            longitude_deg: number;
-            /** Radius M */
-            radius_m: number;
-        };
-        /**
          * GoToOrder
          * @description Fly straight to a place and hold there; `yaw_deg` null keeps the heading.
          */
@@ -988,6 +973,41 @@ export interface components {
             serial: string;
         };
         /**
+         * HazardView
+         * @description Where a vehicle may be that is not heard any more: a circle that grows, and its way home.
+         *
+         *     It stays until telemetry comes, or until somebody who knows where the vehicle is dismisses it.
+         */
+        HazardView: {
+            /** Age S */
+            age_s: number;
+            /**
+             * Corridor
+             * @description longitude, latitude: from the last place to home; empty when it goes nowhere
+             */
+            corridor: [
+                number,
+                number
+            ][];
+            /** Corridor Half Width M */
+            corridor_half_width_m: number;
+            /**
+             * Dismissed As
+             * @description what to name when dismissing it: the serial, or a link
+             */
+            dismissed_as: string;
+            /** Growth Mps */
+            growth_mps: number;
+            /** Largest Radius M */
+            largest_radius_m: number;
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /** Radius M */
+            radius_m: number;
+        };
+        /**
          * HoldPositionOrder
          * @description Hold this place against wind and drift, steered by the station.
          */
@@ -1034,26 +1054,6 @@ export interface components {
             file: string;
             /** Name */
             name: string;
-        };
-        /**
-         * LeadView
-         * @description Who may set a vehicle in motion, and how that came about; anybody may stop it.
-         */
-        LeadView: {
-            /**
-             * Age S
-             * @description null: since the station began
-             */
-            age_s: number | null;
-            /** Holder */
-            holder: string;
-            /**
-             * Leader
-             * @enum {string}
-             */
-            leader: "pilot" | "operator" | "guidance";
-            /** Reason */
-            reason: string;
         };
         /**
          * LimitsView
@@ -1189,14 +1189,14 @@ export interface components {
          * OrderRequest
          * @description An order to named vehicles. `takeoff` is the explicit word that they may leave the ground.
          *
-         *     `goto`, `nudge` and `hold_position` need a `holder`: the name of an open stream of states
-         *     (`/api/stream?holder=NAME`). When that stream ends, the vehicle is stopped and holds.
+         *     `goto`, `nudge` and `hold_position` need a `owner`: the name of an open stream of states
+         *     (`/api/stream?owner=NAME`). When that stream ends, the vehicle is stopped and holds.
          */
         OrderRequest: {
-            /** Holder */
-            holder?: string | null;
             /** Order */
             order: components["schemas"]["HoverOrder"] | components["schemas"]["LandOrder"] | components["schemas"]["ReturnHomeOrder"] | components["schemas"]["CameraStartOrder"] | components["schemas"]["CameraStopOrder"] | components["schemas"]["MissionOrder"] | components["schemas"]["StickOrder"] | components["schemas"]["GoToOrder"] | components["schemas"]["NudgeOrder"] | components["schemas"]["HoldPositionOrder"];
+            /** Owner */
+            owner?: string | null;
             /** Serials */
             serials: string[];
             /**
@@ -1471,10 +1471,10 @@ export interface components {
              * @description how many areas are too many to be drawn
              */
             areas_left_out: number;
-            /** Eye Serial */
-            eye_serial: string | null;
             /** Ground Altitude M */
             ground_altitude_m: number | null;
+            /** Imager Serial */
+            imager_serial: string | null;
             /** Latitude Deg */
             latitude_deg: number | null;
             /** Layers */
@@ -1923,6 +1923,7 @@ export interface components {
          */
         VehicleView: {
             attitude: components["schemas"]["AttitudeView"];
+            authority: components["schemas"]["AuthorityView"];
             battery_fraction: components["schemas"]["AgedNumber"];
             battery_warning: components["schemas"]["AgedText"];
             camera_state: components["schemas"]["AgedText"];
@@ -1930,16 +1931,15 @@ export interface components {
             conflict_link_ids: number[];
             flight_mode: components["schemas"]["AgedText"];
             frame: components["schemas"]["FrameView"] | null;
-            ghost: components["schemas"]["GhostView"] | null;
             gnss_satellite_count: components["schemas"]["AgedNumber"];
             gnss_signal_level: components["schemas"]["AgedNumber"];
+            hazard: components["schemas"]["HazardView"] | null;
             height_above_takeoff_m: components["schemas"]["AgedNumber"];
-            /** Is Eye */
-            is_eye: boolean;
             is_flying: components["schemas"]["AgedFlag"];
+            /** Is Imager */
+            is_imager: boolean;
             /** Is Simulated */
             is_simulated: boolean;
-            lead: components["schemas"]["LeadView"];
             /** Link Id */
             link_id: number | null;
             mission_id: components["schemas"]["AgedNumber"];
@@ -2853,7 +2853,7 @@ export interface operations {
             };
         };
     };
-    dismiss_ghost_api_vehicles__serial__ghost_dismiss_post: {
+    dismiss_hazard_api_vehicles__serial__hazard_dismiss_post: {
         parameters: {
             query?: never;
             header?: never;

@@ -52,7 +52,7 @@ describe("the live source", () => {
 
   it("opens the stream of the address the page came from", () => {
     const { sockets } = setUp(() => json({}));
-    expect(sockets[0]?.url).toBe(`ws://127.0.0.1:8080/api/stream?holder=${"01".repeat(16)}`);
+    expect(sockets[0]?.url).toBe(`ws://127.0.0.1:8080/api/stream?owner=${"01".repeat(16)}`);
     expect(sockets[0]?.protocols).toEqual(["recon.v1"]);
   });
 
@@ -69,7 +69,7 @@ describe("the live source", () => {
     expect(requests.map(({ url }) => new URL(url).pathname)).toEqual(["/api/state"]);
   });
 
-  it("names its newest stream as the holder of steered orders, and of no others", async () => {
+  it("names its newest stream as the owner of steered orders, and of no others", async () => {
     const { source, sockets, requests, clock } = setUp(() => json({ results: [] }));
     sockets[0]?.fail();
     clock.advance(1000);
@@ -86,11 +86,7 @@ describe("the live source", () => {
       "/api/orders",
       "/api/orders",
     ]);
-    expect(bodies.map(({ holder }) => holder)).toEqual([
-      "02".repeat(16),
-      "02".repeat(16),
-      undefined,
-    ]);
+    expect(bodies.map(({ owner }) => owner)).toEqual(["02".repeat(16), "02".repeat(16), undefined]);
   });
 
   it("brings words about one vehicle to the vehicle named, however it is called", async () => {
@@ -109,9 +105,9 @@ describe("the live source", () => {
     expect(await requests[1]?.json()).toEqual({ reason: "test flight" });
   });
 
-  it("tells why a ghost was not dismissed", async () => {
+  it("tells why a hazard area was not dismissed", async () => {
     const { source } = setUp(() => json({ error: "'A' is heard" }, 404));
-    expect(await source.dismissGhost("A")).toEqual({ kind: "failed", problem: "'A' is heard" });
+    expect(await source.dismissHazard("A")).toEqual({ kind: "failed", problem: "'A' is heard" });
   });
 
   it("gives orders to the vehicles named and never allows a takeoff", async () => {

@@ -1,8 +1,8 @@
 import { createSignal } from "solid-js";
-import type { Leader, StationState } from "../protocol";
+import type { AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
-import { newHolder } from "./holder";
 import { StreamLag } from "./lag";
+import { newOwner } from "./owner";
 import { Requests } from "./requests";
 import type { Connection, NamedOrder, NewSurvey, StationSource } from "./stationSource";
 import { type Socket, Stream } from "./stream";
@@ -30,7 +30,7 @@ export class LiveSource implements StationSource {
   private readonly lag = new StreamLag();
   private readonly stream: Stream;
   private readonly requests: Requests;
-  private holder = "";
+  private owner = "";
 
   constructor(surroundings: Surroundings) {
     const { clock, origin, token } = surroundings;
@@ -42,8 +42,8 @@ export class LiveSource implements StationSource {
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
     const open = () => {
       // Nothing that an earlier connection held comes back to life.
-      this.holder = newHolder((bytes) => surroundings.random(bytes));
-      return surroundings.openSocket(`${url}?holder=${this.holder}`, streamProtocols(token));
+      this.owner = newOwner((bytes) => surroundings.random(bytes));
+      return surroundings.openSocket(`${url}?owner=${this.owner}`, streamProtocols(token));
     };
     this.stream = new Stream(open, clock, {
       onConnection: (next) => {
@@ -73,19 +73,19 @@ export class LiveSource implements StationSource {
   }
 
   order(order: NamedOrder) {
-    return this.requests.order(order, this.holder);
+    return this.requests.order(order, this.owner);
   }
 
   check(order: NamedOrder) {
-    return this.requests.check(order, this.holder);
+    return this.requests.check(order, this.owner);
   }
 
   fleetReturn(serials: readonly string[] | null) {
     return this.requests.fleetReturn(serials);
   }
 
-  takeAuthority(serial: string, leader: Leader) {
-    return this.requests.takeAuthority(serial, leader);
+  takeAuthority(serial: string, holder: AuthorityHolder) {
+    return this.requests.takeAuthority(serial, holder);
   }
 
   preflight(serial: string) {
@@ -96,8 +96,8 @@ export class LiveSource implements StationSource {
     return this.requests.overridePreflight(serial, reason);
   }
 
-  dismissGhost(name: string) {
-    return this.requests.dismissGhost(name);
+  dismissHazard(name: string) {
+    return this.requests.dismissHazard(name);
   }
 
   switchSeparationHold(isOn: boolean) {

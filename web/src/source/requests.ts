@@ -1,6 +1,6 @@
 import createClient from "openapi-fetch";
 import type {
-  Leader,
+  AuthorityHolder,
   OrderResult,
   PreflightView,
   SurveyRequest,
@@ -31,17 +31,17 @@ export class Requests {
     this.client = createClient<paths>({ baseUrl: origin, headers: this.headers, fetch });
   }
 
-  /** `holder` names the stream whose end ends a steered order; left out of all others. */
-  order(named: NamedOrder, holder: string): Promise<Outcome<readonly OrderResult[]>> {
-    const body = orderBody(named, holder);
+  /** `owner` names the stream whose end ends a steered order; left out of all others. */
+  order(named: NamedOrder, owner: string): Promise<Outcome<readonly OrderResult[]>> {
+    const body = orderBody(named, owner);
     return answered(
       () => this.client.POST("/api/orders", { body, signal: soon() }),
       (data) => data.results,
     );
   }
 
-  check(named: NamedOrder, holder: string): Promise<Outcome<readonly OrderResult[]>> {
-    const body = orderBody(named, holder);
+  check(named: NamedOrder, owner: string): Promise<Outcome<readonly OrderResult[]>> {
+    const body = orderBody(named, owner);
     return answered(
       () => this.client.POST("/api/orders/check", { body, signal: soon() }),
       (data) => data.results,
@@ -56,8 +56,8 @@ export class Requests {
     );
   }
 
-  takeAuthority(serial: string, leader: Leader): Promise<Outcome<WordResponse>> {
-    const options = { params: { path: { serial } }, body: { leader }, signal: soon() };
+  takeAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>> {
+    const options = { params: { path: { serial } }, body: { holder }, signal: soon() };
     return answered(() => this.client.POST("/api/vehicles/{serial}/authority", options), same);
   }
 
@@ -103,9 +103,9 @@ export class Requests {
     );
   }
 
-  dismissGhost(serial: string): Promise<Outcome<null>> {
+  dismissHazard(serial: string): Promise<Outcome<null>> {
     const options = { params: { path: { serial } }, signal: soon() };
-    return taken(() => this.client.POST("/api/vehicles/{serial}/ghost/dismiss", options));
+    return taken(() => this.client.POST("/api/vehicles/{serial}/hazard/dismiss", options));
   }
 
   switchSeparationHold(isOn: boolean): Promise<Outcome<null>> {
@@ -157,9 +157,9 @@ function frameIdOf(response: Response): number | null {
 /** Orders that the station steers by sticks for as long as the page's stream lasts. */
 const STEERED: readonly string[] = ["goto", "nudge", "hold_position"];
 
-function orderBody({ serials, order }: NamedOrder, holder: string) {
+function orderBody({ serials, order }: NamedOrder, owner: string) {
   const body = { serials: [...serials], order, takeoff: false };
-  return STEERED.includes(order.kind) ? { ...body, holder } : body;
+  return STEERED.includes(order.kind) ? { ...body, owner } : body;
 }
 
 function soon(): AbortSignal {

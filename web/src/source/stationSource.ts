@@ -1,6 +1,6 @@
 import type { Accessor } from "solid-js";
 import type {
-  Leader,
+  AuthorityHolder,
   Order,
   OrderResult,
   PreflightView,
@@ -54,11 +54,11 @@ export interface StationSource {
   check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Calls vehicles home as landing missions at heights of their own; null: all that fly or may. */
   fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
-  takeAuthority(serial: string, leader: Leader): Promise<Outcome<WordResponse>>;
+  takeAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>>;
   preflight(serial: string): Promise<Outcome<PreflightView>>;
   overridePreflight(serial: string, reason: string): Promise<Outcome<WordResponse>>;
   /** Says that somebody knows where a vehicle is that is not heard. */
-  dismissGhost(name: string): Promise<Outcome<null>>;
+  dismissHazard(name: string): Promise<Outcome<null>>;
   switchSeparationHold(isOn: boolean): Promise<Outcome<null>>;
   acknowledge(alarmId: number): Promise<Outcome<null>>;
   vehicleFrame(serial: string, frameId: number): Promise<Outcome<Picture>>;

@@ -1,6 +1,6 @@
 import type { StationState } from "../protocol";
 import type { Clock } from "./clock";
-import { BEAT_MS } from "./holder";
+import { BEAT_MS } from "./owner";
 import type { Connection } from "./stationSource";
 
 /** Waits between attempts: soon at first, since most losses are short, then calm. */

@@ -2,7 +2,13 @@ import { createRoot, createSignal, type JSX } from "solid-js";
 import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
 import type { ThemeSwitch } from "../look/theme";
-import type { Leader, OrderResult, PreflightView, StationState, WordResponse } from "../protocol";
+import type {
+  AuthorityHolder,
+  OrderResult,
+  PreflightView,
+  StationState,
+  WordResponse,
+} from "../protocol";
 import type {
   Connection,
   NamedOrder,
@@ -41,7 +47,7 @@ export interface RenderedPage {
 
 /** Something said to the station that is no order of a vehicle. */
 export type Said =
-  | { readonly lead: Leader; readonly serial: string }
+  | { readonly authority: AuthorityHolder; readonly serial: string }
   | { readonly override: string; readonly serial: string }
   | { readonly dismissed: string }
   | { readonly separationHold: boolean }
@@ -162,8 +168,8 @@ function fakeSource(
       asked.said.push({ fleetReturn: serials });
       return { kind: "answered", value: asked.answer };
     },
-    takeAuthority: async (serial, lead) => {
-      asked.said.push({ lead, serial });
+    takeAuthority: async (serial, authority) => {
+      asked.said.push({ authority, serial });
       return { kind: "answered", value: asked.word };
     },
     preflight: async () => asked.preflight,
@@ -171,7 +177,7 @@ function fakeSource(
       asked.said.push({ override, serial });
       return { kind: "answered", value: asked.word };
     },
-    dismissGhost: async (dismissed) => {
+    dismissHazard: async (dismissed) => {
       asked.said.push({ dismissed });
       return { kind: "answered", value: null };
     },

@@ -2,7 +2,7 @@ import type {
   AlarmView,
   AreaView,
   CommandView,
-  GhostView,
+  HazardView,
   LinkView,
   OrderResult,
   ShadeLineView,
@@ -36,8 +36,13 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     name: ["Alder", "Birch", "Cedar", "Dogwood", "Elm", "Fir"][number - 1] ?? `Vehicle ${number}`,
     model: "DJI Mavic 2 Pro",
     is_simulated: false,
-    is_eye: false,
-    lead: { leader: "operator", holder: "", age_s: null, reason: "nobody has taken it yet" },
+    is_imager: false,
+    authority: {
+      holder: "operator",
+      holder_name: "",
+      age_s: null,
+      reason: "nobody has taken it yet",
+    },
     preflight_override: null,
     steering: null,
     staleness: "live",
@@ -62,7 +67,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
       at(60 * number - 150 - 8 * (12 - i), 30 * number - 60 - 40 * Math.sin((12 - i) / 4)),
     ),
     frame: null,
-    ghost: null,
+    hazard: null,
     ...changes,
   };
 }
@@ -175,7 +180,7 @@ export function station(
       latitude_deg: FIELD.lat,
       longitude_deg: FIELD.lon,
       ground_altitude_m: 281.5,
-      eye_serial: "SN-001",
+      imager_serial: "SN-001",
       pose_rms_px: 3.62,
       pose_height_m: 133.2,
       limits: {
@@ -233,11 +238,11 @@ export function area(
   };
 }
 
-/** A ghost at a place of the field that grows 10 m in a second. */
-export function ghost(
+/** A hazard area at a place of the field that grows 10 m in a second. */
+export function hazard(
   [east_m, north_m]: readonly [number, number],
-  changes: Partial<GhostView> = {},
-): GhostView {
+  changes: Partial<HazardView> = {},
+): HazardView {
   const [longitude_deg, latitude_deg] = at(east_m, north_m);
   return {
     dismissed_as: "SN-003",

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from recon.api.schema.message import Message
-from recon.api.schema.vehicles import LeaderWord
+from recon.api.schema.vehicles import AuthorityWord
 
 
 class Asked(Message):
@@ -126,14 +126,14 @@ AnyOrder = Annotated[
 class OrderRequest(Asked):
     """An order to named vehicles. `takeoff` is the explicit word that they may leave the ground.
 
-    `goto`, `nudge` and `hold_position` need a `holder`: the name of an open stream of states
-    (`/api/stream?holder=NAME`). When that stream ends, the vehicle is stopped and holds.
+    `goto`, `nudge` and `hold_position` need a `owner`: the name of an open stream of states
+    (`/api/stream?owner=NAME`). When that stream ends, the vehicle is stopped and holds.
     """
 
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=256)
     order: AnyOrder
     takeoff: bool = False
-    holder: Annotated[str, Field(max_length=64)] | None = None
+    owner: Annotated[str, Field(max_length=64)] | None = None
 
     @model_validator(mode="after")
     def _takes_off_with_what_can(self) -> Self:
@@ -145,11 +145,11 @@ class OrderRequest(Asked):
         return self
 
     @model_validator(mode="after")
-    def _names_its_holder(self) -> Self:
-        if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.holder:
+    def _names_its_owner(self) -> Self:
+        if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.owner:
             raise ValueError(
-                f"{self.order.kind} needs a holder, the name of an open stream "
-                "(/api/stream?holder=NAME) whose end stops the vehicle"
+                f"{self.order.kind} needs a owner, the name of an open stream "
+                "(/api/stream?owner=NAME) whose end stops the vehicle"
             )
         return self
 
@@ -165,7 +165,7 @@ class FleetReturnRequest(Asked):
 class AuthorityRequest(Asked):
     """Who is to lead a vehicle from now on."""
 
-    leader: LeaderWord
+    holder: AuthorityWord
 
 
 class PreflightOverrideRequest(Asked):

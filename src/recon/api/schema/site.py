@@ -70,7 +70,7 @@ class SiteView(Message):
     latitude_deg: float | None
     longitude_deg: float | None
     ground_altitude_m: float | None
-    eye_serial: str | None
+    imager_serial: str | None
     pose_rms_px: float | None
     pose_height_m: float | None
     limits: LimitsView

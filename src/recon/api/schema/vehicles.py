@@ -63,7 +63,7 @@ class FrameView(Message):
     captured_sigma_s: float
 
 
-class GhostView(Message):
+class HazardView(Message):
     """Where a vehicle may be that is not heard any more: a circle that grows, and its way home.
 
     It stays until telemetry comes, or until somebody who knows where the vehicle is dismisses it.
@@ -82,14 +82,14 @@ class GhostView(Message):
     corridor_half_width_m: float
 
 
-LeaderWord = Literal["pilot", "operator", "guidance"]
+AuthorityWord = Literal["pilot", "operator", "guidance"]
 
 
-class LeadView(Message):
+class AuthorityView(Message):
     """Who may set a vehicle in motion, and how that came about; anybody may stop it."""
 
-    leader: LeaderWord
-    holder: str
+    holder: AuthorityWord
+    holder_name: str
     age_s: float | None = Field(description="null: since the station began")
     reason: str
 
@@ -127,8 +127,8 @@ class VehicleView(Message):
     name: str
     model: str
     is_simulated: bool
-    is_eye: bool
-    lead: LeadView
+    is_imager: bool
+    authority: AuthorityView
     preflight_override: OverrideView | None
     steering: SteeringView | None
     staleness: StalenessWord
@@ -151,4 +151,4 @@ class VehicleView(Message):
     conflict_link_ids: list[int]
     track: list[tuple[float, float]] = Field(description="longitude, latitude; oldest first")
     frame: FrameView | None
-    ghost: GhostView | None
+    hazard: HazardView | None

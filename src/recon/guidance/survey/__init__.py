@@ -17,7 +17,7 @@ from recon.guidance.survey.life import (
 )
 from recon.guidance.survey.plan import Surroundings, SurveyPlan, plan_survey
 from recon.guidance.survey.planners import PLANNERS, Planner, lawnmower_again, lawnmower_once
-from recon.guidance.survey.progress import Progress, Seen
+from recon.guidance.survey.progress import PositionSample, Progress
 from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.spent import spent
 from recon.guidance.survey.state import Flight, Surveyor, SurveyState
@@ -26,8 +26,8 @@ __all__ = [
     "PLANNERS",
     "Flight",
     "Planner",
+    "PositionSample",
     "Progress",
-    "Seen",
     "Surroundings",
     "SurveyFigures",
     "SurveyPlan",

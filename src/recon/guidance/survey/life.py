@@ -10,7 +10,13 @@ from types import MappingProxyType
 
 from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.planners import PLANNERS
-from recon.guidance.survey.progress import Seen, no_progress, settled, with_seen, with_shade
+from recon.guidance.survey.progress import (
+    PositionSample,
+    no_progress,
+    settled,
+    with_seen,
+    with_shade,
+)
 from recon.guidance.survey.rounds import Step, ended
 from recon.guidance.survey.state import Refused, Surveyor, SurveyState
 from recon.model.command import Refusal
@@ -81,7 +87,7 @@ def refused(state: SurveyState, serial: str, number: int, reason: str, now_ns: i
     )
 
 
-def observe(state: SurveyState, serial: str, seen: Sequence[Seen]) -> SurveyState:
+def observe(state: SurveyState, serial: str, seen: Sequence[PositionSample]) -> SurveyState:
     """Return the survey after positions of a vehicle; nothing changes for one that is not of it.
 
     What is flown while it is paused counts as well; before the start and after the end nothing.

@@ -31,7 +31,7 @@ NEVER = -1
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class PositionSample:
     """Where a vehicle was, in east-north metres of the site, and when; as received, so late."""
 
     at_ns: int
@@ -64,7 +64,9 @@ class Progress:
     state: StateArray
     is_sun_known: BoolArray
     shade: tuple[ShadeMap, ...] = ()
-    waiting: Mapping[str, tuple[Seen, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    waiting: Mapping[str, tuple[PositionSample, ...]] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
     """By serial: positions whose way from the first on does not count yet."""
     in_view: Mapping[str, InView] = field(default_factory=lambda: MappingProxyType({}))
     imaged_95_at_ns: int | None = None
@@ -84,7 +86,9 @@ def with_shade(progress: Progress, shade: ShadeMap, plan: SurveyPlan) -> Progres
     return replace(progress, shade=kept)
 
 
-def with_seen(progress: Progress, serial: str, seen: Sequence[Seen], plan: SurveyPlan) -> Progress:
+def with_seen(
+    progress: Progress, serial: str, seen: Sequence[PositionSample], plan: SurveyPlan
+) -> Progress:
     """Return the progress with more of a vehicle's way, oldest first; it counts when settled.
 
     Positions that are out of order, or too near in time to the one before, are left out; of a
@@ -153,7 +157,7 @@ class _Count:
             in_view=MappingProxyType(self._in_view),
         )
 
-    def way(self, serial: str, a: Seen, b: Seen) -> None:
+    def way(self, serial: str, a: PositionSample, b: PositionSample) -> None:
         """Count a vehicle's way between two positions."""
         plan = self._plan
         before = self._in_view.pop(serial, None)
@@ -198,7 +202,7 @@ class _Count:
 
 
 def _is_photographed(
-    plan: SurveyPlan, ends: tuple[Seen, Seen], moved_m: tuple[float, float]
+    plan: SurveyPlan, ends: tuple[PositionSample, PositionSample], moved_m: tuple[float, float]
 ) -> bool:
     """Whether a way is flown as the rows are: height, course, speed, and no gap in time."""
     settings, survey = plan.settings, plan.survey

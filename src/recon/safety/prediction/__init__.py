@@ -3,7 +3,7 @@
 from recon.safety.prediction.course import FOREVER_S, Course, Part, part_words
 from recon.safety.prediction.flyer import Flyer, flyer
 from recon.safety.prediction.foresee import foresee_order, foresee_traffic
-from recon.safety.prediction.hazard_area import Ghost, ghost_courses, ghost_of
+from recon.safety.prediction.hazard_area import HazardArea, hazard_area_of, hazard_courses
 from recon.safety.prediction.intents import Follower
 from recon.safety.prediction.meetings import Meeting, Separation, first_meeting
 from recon.safety.prediction.plane import Plane
@@ -14,7 +14,7 @@ __all__ = [
     "Course",
     "Flyer",
     "Follower",
-    "Ghost",
+    "HazardArea",
     "Meeting",
     "Part",
     "Plane",
@@ -24,7 +24,7 @@ __all__ = [
     "flyer",
     "foresee_order",
     "foresee_traffic",
-    "ghost_courses",
-    "ghost_of",
+    "hazard_area_of",
+    "hazard_courses",
     "part_words",
 ]

@@ -23,7 +23,7 @@ from recon.safety.prediction.course import (
     Course,
 )
 from recon.safety.prediction.flyer import Flyer
-from recon.safety.prediction.hazard_area import ghost_courses, ghost_of
+from recon.safety.prediction.hazard_area import hazard_area_of, hazard_courses
 from recon.safety.prediction.intents import UNHOMED_RADIUS_M, Follower
 from recon.safety.prediction.legs import STANDING_MPS, stopping_distance_m
 from recon.safety.prediction.meetings import Separation
@@ -45,14 +45,15 @@ def foresee_order(flyer: Flyer, body: Body, settings: PredictionSettings) -> Cou
 def foresee_traffic(
     flyer: Flyer, intent: Intent, settings: PredictionSettings, until_s: float
 ) -> tuple[Course, ...]:
-    """Return what others must keep clear of: a vehicle's course; of a stale one, its ghost too.
+    """Return what others must keep clear of: a vehicle's course; of a stale one, its hazard area
+    too.
 
-    The ghost does not replace the course: an app that loses the station flies its mission on. A
-    mission that has not begun may begin late, as one under judgement may.
+    The hazard area does not replace the course: an app that loses the station flies its mission on.
+    A mission that has not begun may begin late, as one under judgement may.
     """
-    ghost = ghost_of(flyer, intent, settings)
-    volumes = () if ghost is None else ghost_courses(ghost)
-    if ghost is not None and intent.commanded is not Commanded.MISSION:
+    hazard = hazard_area_of(flyer, intent, settings)
+    volumes = () if hazard is None else hazard_courses(hazard)
+    if hazard is not None and intent.commanded is not Commanded.MISSION:
         return volumes
     follower = Follower(flyer, settings, until_s=until_s)
     follower.follow(intent)
@@ -148,7 +149,7 @@ def _reach_m(flyer: Flyer, intent: Intent, seconds: float, settings: PredictionS
         return own_m
     home_m = (0.0, 0.0) if flyer.home_m is None else flyer.home_m
     home_far_m = hypot(home_m[0] - flyer.east_m, home_m[1] - flyer.north_m)
-    hidden_m = max(settings.ghost_radius_m, UNHOMED_RADIUS_M, home_far_m + settings.corridor_m)
+    hidden_m = max(settings.hazard_radius_m, UNHOMED_RADIUS_M, home_far_m + settings.corridor_m)
     return max(own_m, hidden_m)
 
 

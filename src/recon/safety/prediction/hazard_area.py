@@ -18,7 +18,7 @@ LONGEST_RISE_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class Ghost:
+class HazardArea:
     """Where a stale vehicle may be, in the plane; heights are bands of up metres.
 
     `radius_m` is now's, and grows by `growth_mps` up to `largest_m`. `home_m` ends its corridor,
@@ -40,17 +40,17 @@ class Ghost:
     corridor_half_m: float
 
 
-def ghost_of(flyer: Flyer, intent: Intent, settings: PredictionSettings) -> Ghost | None:
-    """Return the ghost of a vehicle that is too long unheard; None of one that is heard."""
+def hazard_area_of(flyer: Flyer, intent: Intent, settings: PredictionSettings) -> HazardArea | None:
+    """Return the hazard area of a vehicle that is too long unheard; None of one that is heard."""
     if flyer.age_s <= settings.stale_s:
         return None
-    growth_mps = max(_plausible_mps(flyer, intent), settings.ghost_least_speed_mps)
-    largest_m = max(settings.ghost_radius_m, stopping_distance_m(growth_mps, settings))
+    growth_mps = max(_plausible_mps(flyer, intent), settings.hazard_least_speed_mps)
+    largest_m = max(settings.hazard_radius_m, stopping_distance_m(growth_mps, settings))
     rise_m = max(0.0, flyer.velocity_mps[2]) * min(flyer.age_s, LONGEST_RISE_S)
     top_m = flyer.high_m + rise_m
     if flyer.goes_home:
         top_m = max(top_m, go_home_top_m(flyer, settings))
-    return Ghost(
+    return HazardArea(
         name=flyer.name,
         serial=flyer.state.serial,
         age_s=flyer.age_s,
@@ -67,24 +67,24 @@ def ghost_of(flyer: Flyer, intent: Intent, settings: PredictionSettings) -> Ghos
     )
 
 
-def ghost_courses(ghost: Ghost) -> tuple[Course, ...]:
-    """Return the ghost's volumes as courses: the circle, the way home, the place of landing."""
-    circle = CourseWriter(ghost.east_m, ghost.north_m, ghost.low_m, ghost.high_m)
-    circle.radius_m = ghost.radius_m
-    if ghost.radius_m < ghost.largest_m:
-        grows_s = (ghost.largest_m - ghost.radius_m) / ghost.growth_mps
-        circle.grows(ghost.largest_m, grows_s, Part.UNSEEN)
+def hazard_courses(hazard: HazardArea) -> tuple[Course, ...]:
+    """Return the hazard area's volumes as courses: the circle, the way home, the landing."""
+    circle = CourseWriter(hazard.east_m, hazard.north_m, hazard.low_m, hazard.high_m)
+    circle.radius_m = hazard.radius_m
+    if hazard.radius_m < hazard.largest_m:
+        grows_s = (hazard.largest_m - hazard.radius_m) / hazard.growth_mps
+        circle.grows(hazard.largest_m, grows_s, Part.UNSEEN)
     circle.stays(Part.UNSEEN)
     writers = [circle]
-    if ghost.home_m is not None:
-        way = CourseWriter(ghost.east_m, ghost.north_m, ghost.corridor_low_m, ghost.high_m)
-        way.radius_m = ghost.corridor_half_m
-        way.moves(*ghost.home_m, FOREVER_S, Part.UNSEEN)
-        landing = CourseWriter(*ghost.home_m, ghost.low_m, ghost.high_m)
-        landing.radius_m = ghost.corridor_half_m
+    if hazard.home_m is not None:
+        way = CourseWriter(hazard.east_m, hazard.north_m, hazard.corridor_low_m, hazard.high_m)
+        way.radius_m = hazard.corridor_half_m
+        way.moves(*hazard.home_m, FOREVER_S, Part.UNSEEN)
+        landing = CourseWriter(*hazard.home_m, hazard.low_m, hazard.high_m)
+        landing.radius_m = hazard.corridor_half_m
         landing.stays(Part.UNSEEN)
         writers += [way, landing]
-    return tuple(writer.course(ghost.name, ghost.serial) for writer in writers)
+    return tuple(writer.course(hazard.name, hazard.serial) for writer in writers)
 
 
 def _plausible_mps(flyer: Flyer, intent: Intent) -> float:

@@ -22,7 +22,7 @@ UNDER_WAY_MPS = 2.0
 """A returning vehicle this fast towards its home is under way, be it higher or lower than told."""
 
 UNHOMED_RADIUS_M = 150.0
-"""A vehicle told to return whose home nobody knows: the station's ghosts grow as far."""
+"""A vehicle told to return whose home nobody knows: the station's hazard areas grow as far."""
 
 
 class Follower:

@@ -64,10 +64,10 @@ class PredictionSettings:
     stale_s: float = 3.0
     """Core telemetry older than this: the vehicle is a hazard somewhere near its last place."""
 
-    ghost_radius_m: float = 150.0
+    hazard_radius_m: float = 150.0
     """How far such a hazard grows, or to its own stopping volume when that is larger."""
 
-    ghost_least_speed_mps: float = 2.0
+    hazard_least_speed_mps: float = 2.0
     """How fast it grows at least: one that hung still may have begun to move since."""
 
     corridor_m: float = 10.0

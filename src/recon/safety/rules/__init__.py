@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from recon.model.command import Command, Refusal
 from recon.safety.rules.altitude_reference import altitude_reference
-from recon.safety.rules.authority import leader
+from recon.safety.rules.authority import authority
 from recon.safety.rules.battery import battery
 from recon.safety.rules.boundary import boundary
 from recon.safety.rules.dji_limits import dji_limits
@@ -34,7 +34,7 @@ RULES: tuple[Rule, ...] = (
     identified,
     not_expired,
     finite_numbers,
-    leader,
+    authority,
     dji_limits,
     altitude_reference,
     flying,

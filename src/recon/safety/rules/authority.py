@@ -1,30 +1,30 @@
-"""Who leads a vehicle sets it in motion; hold, land and return come from anybody."""
+"""Only the holder of control authority may set a vehicle in motion; anybody may stop it."""
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Command, Refusal
 from recon.safety.situation import Situation
 
-RULE = "leader"
+RULE = "authority"
 
 _WHAT_TO_DO = {
-    Leader.PILOT: "the pilot has the sticks and is not fought: ask the pilot, then take it over",
-    Leader.OPERATOR: "a person at the station leads it: guidance flies it once it is given to it",
-    Leader.GUIDANCE: "the station's own planning flies it: hold it, or take it over, first",
+    AuthorityHolder.PILOT: "ask the pilot, then take control",
+    AuthorityHolder.OPERATOR: "give control to guidance first",
+    AuthorityHolder.GUIDANCE: "hold the vehicle, or take control, first",
 }
 
 
-def leader(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse an order to move from anybody but the vehicle's leader.
+def authority(command: Command, situation: Situation) -> Refusal | None:
+    """Refuse a motion order from anybody but the vehicle's authority holder.
 
-    The station's own zero at the end of a stick is asked as the stick was, so it passes with it.
+    The station's own neutral setpoint carries the authority of the stick it ends, so it passes too.
     """
-    lead, vehicle = situation.lead, situation.vehicle
+    held, vehicle = situation.authority, situation.vehicle
     if vehicle is None or not command.moves:
         return None
-    if command.asked_as is lead.leader:
+    if command.asked_as is held.holder:
         return None
     return Refusal(
         RULE,
-        f"{vehicle.display_name} is led by {lead.leader.value} ({lead.reason}), and the order "
-        f"comes as the {command.asked_as.value}'s; {_WHAT_TO_DO[lead.leader]}",
+        f"{vehicle.display_name} is controlled by {held.holder.value} ({held.reason}), and the "
+        f"order comes from {command.asked_as.value}: {_WHAT_TO_DO[held.holder]}",
     )

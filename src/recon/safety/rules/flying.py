@@ -15,7 +15,7 @@ from recon.model.command import (
     VirtualStick,
 )
 from recon.model.vehicle import VehicleState
-from recon.safety.situation import Claimant, Situation
+from recon.safety.situation import ClaimingLink, Situation
 
 RULE = "flying"
 _NEEDS_FLIGHT = (Hover, ReturnHome, FlyMission, VirtualStick, *STEERED_BODIES)
@@ -32,7 +32,7 @@ def flying(command: Command, situation: Situation) -> Refusal | None:
         return _no_takeoff(command, vehicle)
     if vehicle is None or not isinstance(command.body, _NEEDS_FLIGHT):
         return None
-    if any(_says_flying(claimant, situation) for claimant in situation.claimants):
+    if any(_says_flying(claiming_link, situation) for claiming_link in situation.claiming_links):
         return None
     reason = f"{vehicle.display_name}: {_why(vehicle, situation)}"
     return Refusal(RULE, reason, is_unheard=_is_unheard(vehicle, situation))
@@ -52,10 +52,10 @@ def _no_takeoff(command: Command, vehicle: VehicleState | None) -> Refusal | Non
     )
 
 
-def _says_flying(claimant: Claimant, situation: Situation) -> bool:
-    age_s = claimant.is_flying.age_s(situation.now_ns)
+def _says_flying(claiming_link: ClaimingLink, situation: Situation) -> bool:
+    age_s = claiming_link.is_flying.age_s(situation.now_ns)
     is_fresh = age_s is not None and age_s <= situation.settings.fresh_telemetry_s
-    return is_fresh and claimant.is_flying.value is True
+    return is_fresh and claiming_link.is_flying.value is True
 
 
 def _is_unheard(vehicle: VehicleState, situation: Situation) -> bool:

@@ -29,4 +29,4 @@ def identified(command: Command, situation: Situation) -> Refusal | None:
 
 
 def _listed(situation: Situation) -> str:
-    return " and ".join(str(claimant.link_id) for claimant in situation.claimants)
+    return " and ".join(str(claiming_link.link_id) for claiming_link in situation.claiming_links)

@@ -9,7 +9,7 @@ def reachable(command: Command, situation: Situation) -> Refusal | None:
     who = command.serial if command.serial is not None else f"link {command.link_id}"
     if situation.vehicle is None:
         return Refusal("reachable", f"{who} is not known: no app has said this serial")
-    if not situation.claimants:
+    if not situation.claiming_links:
         name = situation.vehicle.display_name
         return Refusal(
             "reachable",

@@ -93,8 +93,8 @@ def _words(meeting: Meeting, other: Course, need: Separation) -> str:
     if meeting.other_part == Part.UNSEEN:
         return (
             f"{where}, about {when_s} s from now, it would come within "
-            f"{meeting.horizontal_m:.0f} m of where {other.name} may be, which is not heard any "
-            "more; wait until it is heard, or dismiss its ghost when you have seen where it is"
+            f"{meeting.horizontal_m:.0f} m of where {other.name} may be, telemetry lost; "
+            "wait until it reconnects, or dismiss its hazard area once you have located it"
         )
     return (
         f"{where}, about {when_s} s from now, it could come within {meeting.horizontal_m:.0f} m "

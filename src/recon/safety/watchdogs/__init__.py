@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Iterable
 
-from recon.safety.watchdog_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchdogSettings
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.fences import fences
 from recon.safety.watchdogs.finding import Finding
 from recon.safety.watchdogs.heights import heights
 from recon.safety.watchdogs.jumps import jumps
 from recon.safety.watchdogs.link import link
-from recon.safety.watchdogs.picture import Before, Held, Picture, Watched, hold_words
+from recon.safety.watchdogs.picture import Before, Held, Picture, WatchedVehicle, hold_words
 from recon.safety.watchdogs.separation import separation
 from recon.safety.watchdogs.sticks import sticks
 from recon.safety.watchdogs.take import plane_of, take_picture
@@ -32,9 +32,9 @@ __all__ = [
     "Finding",
     "Held",
     "Picture",
-    "WatchSettings",
     "Watchdog",
-    "Watched",
+    "WatchdogSettings",
+    "WatchedVehicle",
     "hold_words",
     "plane_of",
     "take_picture",

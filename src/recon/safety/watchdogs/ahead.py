@@ -15,7 +15,7 @@ from recon.safety.prediction import Flyer, Follower, PredictionSettings
 from recon.safety.prediction.course import FloatArray, Part, Row
 from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
 from recon.safety.prediction.sampling import Samples, sample
-from recon.safety.watchdog_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchdogSettings
 
 FASTEST_TOLD_MPS = 15.0
 """Of a vehicle told to hold, when nobody has noted how fast it was: no order flies faster."""
@@ -62,7 +62,7 @@ class Ahead:
 
 
 def look_ahead(
-    rows: Sequence[Sequence[Row]], settings: WatchSettings, prediction: PredictionSettings
+    rows: Sequence[Sequence[Row]], settings: WatchdogSettings, prediction: PredictionSettings
 ) -> Ahead:
     """Return the next seconds of courses; of none, arrays without vehicles."""
     times_s = _moments_s(settings)
@@ -73,7 +73,7 @@ def look_ahead(
 
 
 @lru_cache(maxsize=1)
-def _moments_s(settings: WatchSettings) -> FloatArray:
+def _moments_s(settings: WatchdogSettings) -> FloatArray:
     count = round(settings.horizon_s / settings.sample_s) + 1
     moments_s = np.linspace(0.0, settings.horizon_s, count)
     moments_s.setflags(write=False)

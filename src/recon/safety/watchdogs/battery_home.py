@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from recon.model.severity import Severity
 from recon.safety.energy import fraction_to_get_home
 from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.picture import Picture, Watched
+from recon.safety.watchdogs.picture import Picture, WatchedVehicle
 
 RULE = "battery_home"
 
@@ -21,7 +21,9 @@ def battery_home(picture: Picture) -> Iterator[Finding]:
             yield from _compared(watched, has, needs, picture)
 
 
-def _compared(watched: Watched, has: float, needs: float, picture: Picture) -> Iterator[Finding]:
+def _compared(
+    watched: WatchedVehicle, has: float, needs: float, picture: Picture
+) -> Iterator[Finding]:
     """Below what a landing must leave it is critical; below the reserve it is time to turn back."""
     least, reserve = picture.energy.landing_fraction, _reserve(picture)
     told = f"its battery is at {has:.0%} and the way home takes {needs:.0%}"

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from recon.safety.prediction import Ghost, Separation
+from recon.safety.prediction import HazardArea, Separation
 from recon.safety.prediction.course import FloatArray
 from recon.safety.prediction.sampling import Samples
 
@@ -69,20 +69,20 @@ def closeness(
     return _shares(horizontal_m, vertical_m, need), horizontal_m, vertical_m
 
 
-def ghost_closeness(
-    ahead: Samples, times_s: FloatArray, ghost: Ghost, need: Separation
+def hazard_closeness(
+    ahead: Samples, times_s: FloatArray, hazard: HazardArea, need: Separation
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the same of V vehicles to where a ghost may be, each (V, K)."""
-    radius_m = np.minimum(ghost.largest_m, ghost.radius_m + ghost.growth_mps * times_s)
-    circle_m = np.hypot(ahead.east_m - ghost.east_m, ahead.north_m - ghost.north_m) - radius_m
-    over_m = ahead.low_m - ghost.high_m
-    vertical_m = np.maximum(over_m, ghost.low_m - ahead.high_m)
+    """Return the same of V vehicles to where a hazard area may be, each (V, K)."""
+    radius_m = np.minimum(hazard.largest_m, hazard.radius_m + hazard.growth_mps * times_s)
+    circle_m = np.hypot(ahead.east_m - hazard.east_m, ahead.north_m - hazard.north_m) - radius_m
+    over_m = ahead.low_m - hazard.high_m
+    vertical_m = np.maximum(over_m, hazard.low_m - ahead.high_m)
     least, horizontal_m = _shares(circle_m, vertical_m, need), circle_m
-    if ghost.home_m is not None:
-        landing_m = np.hypot(ahead.east_m - ghost.home_m[0], ahead.north_m - ghost.home_m[1])
-        landing_m -= ghost.corridor_half_m
-        way_m = _to_way_m(ahead, ghost, ghost.home_m) - ghost.corridor_half_m
-        beside_m = np.maximum(over_m, ghost.corridor_low_m - ahead.high_m)
+    if hazard.home_m is not None:
+        landing_m = np.hypot(ahead.east_m - hazard.home_m[0], ahead.north_m - hazard.home_m[1])
+        landing_m -= hazard.corridor_half_m
+        way_m = _to_way_m(ahead, hazard, hazard.home_m) - hazard.corridor_half_m
+        beside_m = np.maximum(over_m, hazard.corridor_low_m - ahead.high_m)
         least = np.minimum(least, _shares(landing_m, vertical_m, need))
         least = np.minimum(least, _shares(way_m, beside_m, need))
         horizontal_m = np.minimum(horizontal_m, np.minimum(landing_m, way_m))
@@ -111,11 +111,11 @@ def _shares(horizontal_m: FloatArray, vertical_m: FloatArray, need: Separation) 
     return np.where(shares < 1.0, shares + DEPTH_WEIGHT * np.minimum(level, 0.0), shares)
 
 
-def _to_way_m(ahead: Samples, ghost: Ghost, home_m: tuple[float, float]) -> FloatArray:
+def _to_way_m(ahead: Samples, hazard: HazardArea, home_m: tuple[float, float]) -> FloatArray:
     """How far each is from the straight line home."""
-    along = np.array(home_m) - (ghost.east_m, ghost.north_m)
+    along = np.array(home_m) - (hazard.east_m, hazard.north_m)
     squared = max(float(along @ along), 1e-9)
-    east_m, north_m = ahead.east_m - ghost.east_m, ahead.north_m - ghost.north_m
+    east_m, north_m = ahead.east_m - hazard.east_m, ahead.north_m - hazard.north_m
     share = np.clip((east_m * along[0] + north_m * along[1]) / squared, 0.0, 1.0)
     far: FloatArray = np.hypot(east_m - share * along[0], north_m - share * along[1])
     return far

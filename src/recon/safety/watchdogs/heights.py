@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from recon.model.intent import Commanded
 from recon.model.severity import Severity
 from recon.model.vehicle import AltitudeReference, FlightMode
-from recon.safety.watchdog_settings import WatchSettings
+from recon.safety.watchdog_settings import WatchdogSettings
 from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.picture import Picture, Watched
+from recon.safety.watchdogs.picture import Picture, WatchedVehicle
 
 RULE = "altitude_mismatch"
 WGS84_DRIFT_M = 2.0
@@ -22,7 +22,7 @@ def heights(picture: Picture) -> Iterator[Finding]:
         yield from _off_its_leg(watched, picture.settings)
 
 
-def _drift(watched: Watched, settings: WatchSettings) -> Iterator[Finding]:
+def _drift(watched: WatchedVehicle, settings: WatchdogSettings) -> Iterator[Finding]:
     state = watched.state
     offset_m, at_takeoff_m = state.altitude_offset_m.value, state.altitude_offset_at_takeoff_m
     if offset_m is None or at_takeoff_m is None:
@@ -39,7 +39,7 @@ def _drift(watched: Watched, settings: WatchSettings) -> Iterator[Finding]:
         yield watched.finding(RULE, severity, text, about=":drift", after_s=1.0)
 
 
-def _off_its_leg(watched: Watched, settings: WatchSettings) -> Iterator[Finding]:
+def _off_its_leg(watched: WatchedVehicle, settings: WatchdogSettings) -> Iterator[Finding]:
     """On a leg between two waypoints every height between theirs is right, and no other."""
     intent, height_m = watched.intent, watched.state.height_above_takeoff_m.value
     flies_it = watched.state.flight_mode.value is FlightMode.GPS_WAYPOINT

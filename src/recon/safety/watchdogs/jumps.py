@@ -6,7 +6,7 @@ from math import hypot
 from recon.model.severity import Severity
 from recon.model.units import NS_PER_S
 from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.picture import Picture, Watched
+from recon.safety.watchdogs.picture import Picture, WatchedVehicle
 
 RULE = "position_jump"
 
@@ -20,7 +20,7 @@ def jumps(picture: Picture) -> Iterator[Finding]:
             yield watched.finding(RULE, Severity.ERROR, text)
 
 
-def _jump_m(watched: Watched, picture: Picture) -> float | None:
+def _jump_m(watched: WatchedVehicle, picture: Picture) -> float | None:
     """How far, when that is more than its speed and the times' uncertainty allow."""
     before, flyer, at_ns = watched.before, watched.flyer, watched.state.position.received_at_ns
     if before is None or flyer is None or at_ns is None or at_ns <= before.at_ns:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.geo import LatLon
 from recon.model.intent import Commanded, Intent
 from recon.model.severity import Severity
@@ -11,8 +11,8 @@ from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.energy_settings import EnergySettings
-from recon.safety.prediction import Flyer, Ghost, PredictionSettings
-from recon.safety.watchdog_settings import WatchSettings
+from recon.safety.prediction import Flyer, HazardArea, PredictionSettings
+from recon.safety.watchdog_settings import WatchdogSettings
 from recon.safety.watchdogs.ahead import Ahead
 from recon.safety.watchdogs.finding import Finding
 
@@ -50,22 +50,22 @@ class Before:
 
 
 @dataclass(frozen=True, slots=True)
-class Watched:
+class WatchedVehicle:
     """A vehicle that flies or may, and what the station knows beside its state.
 
-    `flyer` is None while it has never told where it is; `ghost` is set while it is not heard.
+    `flyer` is None while it has never told where it is; `hazard area` is set while it is not heard.
     `stick_quiet_s` is set while sticks are streamed to it: how long none was sent.
     `hold_refused` tells why a hold could not be given to it just now.
     """
 
     state: VehicleState
     intent: Intent = Intent()
-    leader: Leader = Leader.OPERATOR
+    holder: AuthorityHolder = AuthorityHolder.OPERATOR
     flyer: Flyer | None = None
-    ghost: Ghost | None = None
+    hazard: HazardArea | None = None
     held: Held | None = None
     before: Before | None = None
-    is_eye: bool = False
+    is_imager: bool = False
     stick_quiet_s: float | None = None
     hold_refused: str = ""
 
@@ -82,12 +82,12 @@ class Watched:
     @property
     def is_heard_flying(self) -> bool:
         """Whether it tells of itself that it flies, and where."""
-        return self.flyer is not None and self.ghost is None and self.state.is_flying.value is True
+        return self.flyer is not None and self.hazard is None and self.state.is_flying.value is True
 
     @property
     def may_fly_on_unseen(self) -> bool:
         """Whether it is not heard and was sent a mission: its app may fly that on by itself."""
-        return self.ghost is not None and self.intent.commanded is Commanded.MISSION
+        return self.hazard is not None and self.intent.commanded is Commanded.MISSION
 
     @property
     def is_coming_down(self) -> bool:
@@ -103,7 +103,7 @@ class Watched:
         return (
             self.is_heard_flying
             and self.state.serial is not None
-            and self.leader is not Leader.PILOT
+            and self.holder is not AuthorityHolder.PILOT
             and not self.hold_refused
         )
 
@@ -142,19 +142,19 @@ class Picture:
     """
 
     now_ns: int
-    watched: tuple[Watched, ...]
-    flying: tuple[Watched, ...]
-    unseen: tuple[Watched, ...]
+    watched: tuple[WatchedVehicle, ...]
+    flying: tuple[WatchedVehicle, ...]
+    unseen: tuple[WatchedVehicle, ...]
     ahead: Ahead
     airspace: PreparedAirspace
-    settings: WatchSettings = field(default_factory=WatchSettings)
+    settings: WatchdogSettings = field(default_factory=WatchdogSettings)
     prediction: PredictionSettings = field(default_factory=PredictionSettings)
     energy: EnergySettings = field(default_factory=EnergySettings)
     since_ns: Mapping[str, int] = field(default_factory=dict)
     is_hold_on: bool = True
 
     @property
-    def foreseen(self) -> tuple[Watched, ...]:
+    def foreseen(self) -> tuple[WatchedVehicle, ...]:
         """Those that `ahead` is of."""
         return self.flying + self.unseen
 

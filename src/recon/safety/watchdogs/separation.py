@@ -7,41 +7,41 @@ show, or when the other's own time to stop runs out, the other one too.
 Who yields: first the one with the lower `priority` in its profile, then any other before the eye,
 then what guidance leads before what an operator leads, then the later serial. A vehicle that lands
 or returns yields last, for it is leaving the air and its battery may not last. And nobody is held
-whom that does not help: the one in front of a faster one behind, one that flies out of a ghost's
-circle, one that lands out of another's way. What a pilot leads is never held, only alarmed about;
-what is on the ground is neither held nor a reason to hold.
+whom that does not help: the one in front of a faster one behind, one that flies out of a hazard
+area's circle, one that lands out of another's way. What a pilot leads is never held, only alarmed
+about; what is on the ground is neither held nor a reason to hold.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.severity import Severity
-from recon.safety.prediction import Ghost, Separation
+from recon.safety.prediction import HazardArea, Separation
 from recon.safety.watchdogs.closeness import (
     Approach,
     IntArray,
     approach,
     closeness,
-    ghost_closeness,
+    hazard_closeness,
     near_pairs,
 )
 from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.picture import Picture, Watched
+from recon.safety.watchdogs.picture import Picture, WatchedVehicle
 
 RULE = "separation"
 SWITCHED_OFF = "holding is switched off"
 
 
 def separation(picture: Picture) -> Iterator[Finding]:
-    """Find the pairs, and the vehicles and ghosts, that come too near within the next seconds."""
+    """Find the pairs of vehicles, and of vehicles and hazard areas, that come too near."""
     if not picture.flying:
         return
     need, heard = watched_separation(picture), len(picture.flying)
     for watched in picture.watched:
-        if watched.ghost is not None:
-            yield from _ghost(picture, watched.ghost, need)
+        if watched.hazard is not None:
+            yield from _hazard(picture, watched.hazard, need)
     if len(picture.foreseen) < 2:
         return
     flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
@@ -65,15 +65,17 @@ def watched_separation(picture: Picture) -> Separation:
     )
 
 
-def in_order_of_yielding(one: Watched, other: Watched) -> tuple[Watched, Watched]:
+def in_order_of_yielding(
+    one: WatchedVehicle, other: WatchedVehicle
+) -> tuple[WatchedVehicle, WatchedVehicle]:
     """Return who yields first and who second: always who is heard before who is not."""
 
-    def rank(watched: Watched) -> tuple[bool, bool, int, bool, bool]:
+    def rank(watched: WatchedVehicle) -> tuple[bool, bool, int, bool, bool]:
         profile = watched.state.profile
         priority = 0 if profile is None else profile.priority
-        is_operators = watched.leader is not Leader.GUIDANCE
-        is_unheard = watched.ghost is not None
-        return is_unheard, watched.is_coming_down, priority, watched.is_eye, is_operators
+        is_operators = watched.holder is not AuthorityHolder.GUIDANCE
+        is_unheard = watched.hazard is not None
+        return is_unheard, watched.is_coming_down, priority, watched.is_imager, is_operators
 
     later, earlier = sorted((one, other), key=lambda watched: watched.key, reverse=True)
     return (later, earlier) if rank(later) <= rank(earlier) else (earlier, later)
@@ -98,27 +100,27 @@ def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separat
     return _finding(picture, key, yielding, text, found, held)
 
 
-def _ghost(picture: Picture, ghost: Ghost, need: Separation) -> Iterator[Finding]:
+def _hazard(picture: Picture, hazard: HazardArea, need: Separation) -> Iterator[Finding]:
     ahead = picture.ahead
-    flies = ghost_closeness(ahead.as_it_flies, ahead.times_s, ghost, need)
+    flies = hazard_closeness(ahead.as_it_flies, ahead.times_s, hazard, need)
     rows = np.flatnonzero((flies[0][: len(picture.flying)] < 1.0).any(axis=1))
     if len(rows) == 0:
         return
-    if_held = ghost_closeness(ahead.if_held, ahead.times_s, ghost, need)
+    if_held = hazard_closeness(ahead.if_held, ahead.times_s, hazard, need)
     for row in rows:
         watched = picture.flying[row]
         found = approach(flies[0][row], flies[1][row], flies[2][row], ahead.times_s)
         instead = approach(if_held[0][row], if_held[1][row], if_held[2][row], ahead.times_s)
-        key = f"{RULE}:{watched.key}:ghost of {ghost.name}"
+        key = f"{RULE}:{watched.key}:hazard area of {hazard.name}"
         is_due = _is_due(picture, key, found, watched)
         can = is_due and _can_be_held(picture, watched) and _is_better(picture, found, instead)
         held = watched if can else None
-        where = f"where {ghost.name} may be, which has not been heard for {ghost.age_s:.0f} s"
+        where = f"where {hazard.name} may be, which has not been heard for {hazard.age_s:.0f} s"
         text = f"{_words(found, where)}{_outcome(picture, watched)}"
         yield _finding(picture, key, watched, text, found, held)
 
 
-def _is_due(picture: Picture, key: str, found: Approach, *both: Watched) -> bool:
+def _is_due(picture: Picture, key: str, found: Approach, *both: WatchedVehicle) -> bool:
     """Whether it is time to hold: the alarm has been there, and little more time is left than all
     of them need to stop, one after the other."""
     settings, prediction = picture.settings, picture.prediction
@@ -128,7 +130,9 @@ def _is_due(picture: Picture, key: str, found: Approach, *both: Watched) -> bool
     return picture.lasted_s(key) >= settings.confirm_s and found.in_s <= stop_s
 
 
-def _may_wait(picture: Picture, candidate: Watched, stays: Watched, found: Approach) -> bool:
+def _may_wait(
+    picture: Picture, candidate: WatchedVehicle, stays: WatchedVehicle, found: Approach
+) -> bool:
     """Whether a hold just given may still show before the other one has to stop too."""
     settings, prediction = picture.settings, picture.prediction
     if not candidate.was_held_within_s(picture.now_ns, settings.effect_s):
@@ -138,7 +142,7 @@ def _may_wait(picture: Picture, candidate: Watched, stays: Watched, found: Appro
     return found.in_s > needs_s + 0.5 * settings.hold_margin_s
 
 
-def _can_be_held(picture: Picture, candidate: Watched) -> bool:
+def _can_be_held(picture: Picture, candidate: WatchedVehicle) -> bool:
     if not picture.is_hold_on or not candidate.may_be_held:
         return False
     return not candidate.was_held_within_s(picture.now_ns, picture.settings.hold_again_s)
@@ -167,7 +171,7 @@ def _is_better(picture: Picture, found: Approach, instead: Approach) -> bool:
     return is_no_sooner and instead.least >= found.least + settings.helps_share
 
 
-def _speed_mps(watched: Watched) -> float:
+def _speed_mps(watched: WatchedVehicle) -> float:
     return 0.0 if watched.flyer is None else watched.flyer.speed_mps
 
 
@@ -178,13 +182,13 @@ def _words(found: Approach, what: str) -> str:
     return f"{how} to {what}: {apart}"
 
 
-def _unheard(watched: Watched) -> str:
-    if watched.ghost is None:
+def _unheard(watched: WatchedVehicle) -> str:
+    if watched.hazard is None:
         return ""
-    return f" (not heard for {watched.ghost.age_s:.0f} s, if it flies its mission on)"
+    return f" (not heard for {watched.hazard.age_s:.0f} s, if it flies its mission on)"
 
 
-def _outcome(picture: Picture, *both: Watched) -> str:
+def _outcome(picture: Picture, *both: WatchedVehicle) -> str:
     """What has been done: what the station did, never what it is about to try."""
     if not picture.is_hold_on:
         return f"; {SWITCHED_OFF}: act now"
@@ -192,7 +196,12 @@ def _outcome(picture: Picture, *both: Watched) -> str:
 
 
 def _finding(
-    picture: Picture, key: str, watched: Watched, text: str, found: Approach, held: Watched | None
+    picture: Picture,
+    key: str,
+    watched: WatchedVehicle,
+    text: str,
+    found: Approach,
+    held: WatchedVehicle | None,
 ) -> Finding:
     assert found.in_s is not None
     is_near = found.in_s <= picture.settings.near_s

@@ -7,15 +7,15 @@ from recon.model.intent import Commanded, Intent
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace
-from recon.safety.prediction import Follower, Plane, flyer, ghost_of
+from recon.safety.prediction import Follower, Plane, flyer, hazard_area_of
 from recon.safety.prediction.course import CURVE, RADIUS_0, RADIUS_1, Row
 from recon.safety.settings import SafetySettings
 from recon.safety.watchdogs.ahead import Braking, look_ahead, next_rows
-from recon.safety.watchdogs.picture import Picture, Watched
+from recon.safety.watchdogs.picture import Picture, WatchedVehicle
 
 
 def take_picture(
-    vehicles: Iterable[Watched],
+    vehicles: Iterable[WatchedVehicle],
     airspace: PreparedAirspace,
     settings: SafetySettings,
     now_ns: int,
@@ -25,7 +25,7 @@ def take_picture(
 ) -> Picture:
     """Return the picture of vehicles that fly or may; those on the ground must not be among them.
 
-    Their flyers and ghosts are worked out here.
+    Their flyers and hazard areas are worked out here.
     """
     known = tuple(vehicles)
     plane = plane_of(airspace, (one.state for one in known))
@@ -63,30 +63,30 @@ def plane_of(airspace: PreparedAirspace, states: Iterable[VehicleState]) -> Plan
 
 
 def _placed(
-    one: Watched,
+    one: WatchedVehicle,
     airspace: PreparedAirspace,
     settings: SafetySettings,
     plane: Plane,
     now_ns: int,
-) -> Watched:
+) -> WatchedVehicle:
     seen = flyer(one.state, airspace, plane, now_ns, settings.prediction)
-    ghost = None if seen is None else ghost_of(seen, one.intent, settings.prediction)
+    hazard = None if seen is None else hazard_area_of(seen, one.intent, settings.prediction)
     # Written out, for `replace` takes longer than all the rest.
-    return Watched(
+    return WatchedVehicle(
         one.state,
         one.intent,
-        one.leader,
+        one.holder,
         seen,
-        ghost,
+        hazard,
         one.held,
         one.before,
-        one.is_eye,
+        one.is_imager,
         one.stick_quiet_s,
         one.hold_refused,
     )
 
 
-def _next_rows(one: Watched, settings: SafetySettings, now_ns: int) -> list[Row]:
+def _next_rows(one: WatchedVehicle, settings: SafetySettings, now_ns: int) -> list[Row]:
     """A hold that the station gave counts from its giving on, until a newer order."""
     assert one.flyer is not None, "a vehicle that is heard flying has told where it is"
     intent, braking, held = one.intent, None, one.held
@@ -98,10 +98,10 @@ def _next_rows(one: Watched, settings: SafetySettings, now_ns: int) -> list[Row]
     return next_rows(one.flyer, intent, braking, horizon_s, now_ns, settings.prediction)
 
 
-def _rows_unseen(one: Watched, settings: SafetySettings) -> list[Row]:
+def _rows_unseen(one: WatchedVehicle, settings: SafetySettings) -> list[Row]:
     """The mission it was sent, flown on: anywhere within what time has made of its place."""
     flyer, prediction = one.flyer, settings.prediction
-    assert flyer is not None, "only a vehicle that has told where it is has a ghost"
+    assert flyer is not None, "only a vehicle that has told where it is has a hazard area"
     follower = Follower(flyer, prediction, until_s=settings.watch.horizon_s)
     follower.follow(one.intent)
     off_m = prediction.time_uncertainty * flyer.age_s * flyer.speed_mps

@@ -16,7 +16,7 @@ from recon.model.units import NS_PER_S
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.simulation import simulation_of
 from recon.sim.app.camera_feed import FeedSettings, ImageFormat, View
-from recon.sim.fleet import EYE_SERIAL, SimulationConfig
+from recon.sim.fleet import IMAGER_SERIAL, SimulationConfig
 from recon.sim.world import Sky
 from recon.station.imaging.shade_work import READ_SHADE, ReadShade, ShadeRead
 from recon.station.kernel.build import worker_tasks
@@ -43,11 +43,11 @@ class Placeholders:
 
 def config_of(scenario: Scenario, seed: int) -> SimulationConfig:
     """Return the scenario's simulation with the frames that its detection needs."""
-    feed = FeedSettings(1.0 / scenario.eye.period_s, ImageFormat.RAW)
+    feed = FeedSettings(1.0 / scenario.imager.period_s, ImageFormat.RAW)
     config = simulation_of(scenario, seed, feed)
-    if scenario.methods.detection != IDEAL or config.eye is None:
+    if scenario.methods.detection != IDEAL or config.imager is None:
         return config
-    return replace(config, eye=replace(config.eye, source=Placeholders()))
+    return replace(config, imager=replace(config.imager, source=Placeholders()))
 
 
 def settings_of(scenario: Scenario) -> StationSettings:
@@ -73,7 +73,7 @@ def tasks_of(scenario: Scenario, sky: Sky, grid: GroundGrid, footprint: MaskMap)
         pose = CameraPose(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
         frame = payload.frame
         return GroundImage(
-            grid, frame.id, frame.captured_at_ns, nothing, footprint, pose, serial=EYE_SERIAL
+            grid, frame.id, frame.captured_at_ns, nothing, footprint, pose, serial=IMAGER_SERIAL
         )
 
     def read(payload: object) -> ShadeRead:
@@ -90,4 +90,6 @@ def true_shade(sky: Sky, grid: GroundGrid, footprint: MaskMap, at_ns: int) -> Sh
     """Return the truth of a moment as a shade map of the footprint."""
     told = np.where(footprint, sky.on_grid(grid, at_ns / NS_PER_S), np.nan).astype(np.float32)
     fine = np.where(footprint, METRES_PER_PIXEL, np.nan).astype(np.float32)
-    return ShadeMap(grid, at_ns, (EYE_SERIAL,), told, footprint, footprint.astype(np.float32), fine)
+    return ShadeMap(
+        grid, at_ns, (IMAGER_SERIAL,), told, footprint, footprint.astype(np.float32), fine
+    )

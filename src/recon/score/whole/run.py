@@ -26,7 +26,7 @@ from recon.score.whole.ways import (
     photos_on_rows,
     true_way,
 )
-from recon.sim.fleet import EYE_SERIAL, build_fleet
+from recon.sim.fleet import IMAGER_SERIAL, build_fleet
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
 from recon.station.state.survey_record import SurveyRecord
@@ -113,7 +113,7 @@ class WholeRun:
     @property
     def drones(self) -> Sequence[TrueWay]:
         """The survey drones' true ways."""
-        return [way for serial, way in self._ways.items() if serial != EYE_SERIAL]
+        return [way for serial, way in self._ways.items() if serial != IMAGER_SERIAL]
 
     def _note_refusals(self) -> None:
         """The station forgets old orders."""
@@ -187,10 +187,10 @@ def _wrongly(record: SurveyRecord, found: Imaged) -> float | None:
 
 def _grid(scenario: Scenario) -> GroundGrid:
     """The grid of what the eye sees, in the scenario's cells, inside the site's ground image."""
-    eye, image = scenario.eye, scenario.site.ground_grid
+    imager, image = scenario.imager, scenario.site.ground_grid
     assert image is not None  # a site with an eye has one
-    side_m = min(2.0 * eye.radius_m, image.cols * image.cell_m, image.rows * image.cell_m)
-    count = int(side_m // eye.cell_m)
-    half_m = count * eye.cell_m / 2.0
-    west_m, north_m = eye.over_m[0] - half_m, eye.over_m[1] + half_m
-    return GroundGrid(scenario.frame, west_m, north_m, eye.cell_m, count, count)
+    side_m = min(2.0 * imager.radius_m, image.cols * image.cell_m, image.rows * image.cell_m)
+    count = int(side_m // imager.cell_m)
+    half_m = count * imager.cell_m / 2.0
+    west_m, north_m = imager.over_m[0] - half_m, imager.over_m[1] + half_m
+    return GroundGrid(scenario.frame, west_m, north_m, imager.cell_m, count, count)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from recon.fleet.state import staleness
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import ReturnHome
 from recon.model.event import (
     AuthorityTaken,
@@ -22,7 +22,7 @@ from recon.model.event import (
 from recon.model.survey import Survey
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import FlightMode, Staleness, VehicleState
-from recon.station.control.authority import lead_of
+from recon.station.control.authority import authority_of
 from recon.station.state.station import Station
 from recon.station.state.survey_record import Member, SurveyRecord
 
@@ -98,8 +98,8 @@ class People:
         if not self._is_to_fly(record, member, vehicle):
             self._since_ns.pop(serial, None)
         elif self._lasts(serial, now_ns):
-            if lead_of(station, serial).leader is Leader.PILOT:
-                yield AuthorityTaken(serial, Leader.OPERATOR, BY)
+            if authority_of(station, serial).holder is AuthorityHolder.PILOT:
+                yield AuthorityTaken(serial, AuthorityHolder.OPERATOR, BY)
             yield SurveyStarted(SURVEY_ID, (serial,), BY, takeoff=True)
 
     def _is_to_fly(

@@ -9,7 +9,7 @@ from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, MaskMap, ShadeMap, SunForecast
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.score.forecast_metrics import LeadScore, score_lead
-from recon.score.imager import EyeScore
+from recon.score.imager import ImagerScore
 from recon.score.scenario import NO_FORECAST, Scenario
 from recon.score.settings import RUN
 from recon.score.shade_metrics import boundary_error_m, overlap, told_shade
@@ -30,7 +30,7 @@ class Sight:
     footprint: MaskMap
     """On `grid`; used where nothing was told."""
     grid: GroundGrid
-    score: EyeScore = field(default_factory=EyeScore)
+    score: ImagerScore = field(default_factory=ImagerScore)
     _maps_due_s: float = RUN.score_maps_every_s
     _forecasts_due_s: float = RUN.score_forecasts_every_s
 
@@ -75,8 +75,8 @@ class Sight:
 
 def footprint_on(grid: GroundGrid, scenario: Scenario) -> MaskMap:
     """Return the cells of a grid within the eye's radius (rows, cols)."""
-    eye = scenario.eye
-    east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m - eye.over_m[0]
-    north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m - eye.over_m[1]
-    inside: MaskMap = np.hypot.outer(north_m, east_m) <= eye.radius_m
+    imager = scenario.imager
+    east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m - imager.over_m[0]
+    north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m - imager.over_m[1]
+    inside: MaskMap = np.hypot.outer(north_m, east_m) <= imager.radius_m
     return inside

@@ -26,7 +26,7 @@ from recon.sim.app.inbox import Inbox
 from recon.sim.app.outbox import Outbox
 from recon.sim.app.telemetry import HomeAltitude, Sensors, SensorSettings, position_deg
 from recon.sim.camera.frame_flaws import Black, FrameFlaw, exposed, torn
-from recon.sim.camera.rig import EyeRig
+from recon.sim.camera.rig import ImagerRig
 from recon.sim.flight.aircraft import Aircraft
 from recon.sim.flight.aircraft_faults import AircraftFaults
 
@@ -96,7 +96,7 @@ class SimulatedApp:
         settings: AppSettings,
         aircraft: Aircraft,
         feed: CameraFeed | None = None,
-        rig: EyeRig | None = None,
+        rig: ImagerRig | None = None,
     ) -> None:
         self.settings = settings
         self.aircraft = aircraft

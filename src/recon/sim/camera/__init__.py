@@ -5,10 +5,10 @@ Every effect is a pure function of the settings' seed, the time and the picture'
 
 from recon.sim.camera.settings import (
     ExposureSettings,
-    EyeSettings,
     HoverSettings,
+    ImagerSettings,
     LensSettings,
     SensorSettings,
 )
 
-__all__ = ["ExposureSettings", "EyeSettings", "HoverSettings", "LensSettings", "SensorSettings"]
+__all__ = ["ExposureSettings", "HoverSettings", "ImagerSettings", "LensSettings", "SensorSettings"]

@@ -9,7 +9,7 @@ from recon.model.imagery import RgbImage
 from recon.sim.camera.lens import Lens
 from recon.sim.camera.look import Look
 from recon.sim.camera.sensor import light_of_value, noise_of, read_out
-from recon.sim.camera.settings import EyeSettings
+from recon.sim.camera.settings import ImagerSettings
 from recon.sim.land.land_tiles import LandImage
 from recon.sim.land.noise import FloatImage
 from recon.sim.world.ground_light import GroundLight
@@ -33,16 +33,16 @@ class Scene:
     number: int
 
 
-def develop(lens: Lens, eye: EyeSettings, scene: Scene) -> RgbImage:
+def develop(lens: Lens, imager: ImagerSettings, scene: Scene) -> RgbImage:
     """Return the pixel values of the lens's window, (rows, cols, 3)."""
-    beam = lens.full(scene.beam * _hot_spot(eye, scene))
+    beam = lens.full(scene.beam * _hot_spot(imager, scene))
     beam *= light_free_of_shadow(scene.land[:, :, 3])
-    clear = np.exp(-scene.seen.distance_m / np.float32(eye.haze_m)) * scene.seen.sees_ground
+    clear = np.exp(-scene.seen.distance_m / np.float32(imager.haze_m)) * scene.seen.sees_ground
     clear_share = lens.full(clear.astype(np.float32))
     air = (1.0 - clear_share) * lens.vignette
     clear_share *= lens.vignette
     far_light = scene.light.at(np.array(_mean_beam(scene), dtype=np.float32))
-    noise = noise_of(eye.seed, scene.number, (3, *beam.shape))
+    noise = noise_of(imager.seed, scene.number, (3, *beam.shape))
     channels = []
     for number in range(3):
         light = beam * np.float32(scene.light.beam[number])
@@ -52,7 +52,7 @@ def develop(lens: Lens, eye: EyeSettings, scene: Scene) -> RgbImage:
         light += air * np.float32(HAZE[number] * far_light[number])
         light *= np.float32(scene.gains[number])
         noise[number] *= lens.is_lit
-        channels.append(read_out(light, noise[number], eye.sensor))
+        channels.append(read_out(light, noise[number], imager.sensor))
     return cv2.merge(channels).astype(np.uint8, copy=False)
 
 
@@ -62,13 +62,13 @@ def light_free_of_shadow(shadow: LandImage) -> FloatImage:
     return share
 
 
-def _hot_spot(eye: EyeSettings, scene: Scene) -> FloatImage:
+def _hot_spot(imager: ImagerSettings, scene: Scene) -> FloatImage:
     """Return the beam's factor by the angle between looking and shining (Hapke's opposition)."""
     # A ray that goes where the light goes sees what the sun sees.
     cosine = -(scene.seen.rays @ scene.light.toward_sun.astype(np.float32))
     angle_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-    factor: FloatImage = 1.0 + np.float32(eye.hot_spot) * np.exp(
-        -angle_deg / np.float32(eye.hot_spot_deg)
+    factor: FloatImage = 1.0 + np.float32(imager.hot_spot) * np.exp(
+        -angle_deg / np.float32(imager.hot_spot_deg)
     )
     return factor
 

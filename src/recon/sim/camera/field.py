@@ -17,7 +17,7 @@ from recon.sim.camera.hover import true_pose
 from recon.sim.camera.land_picture import land_picture
 from recon.sim.camera.lens import Lens
 from recon.sim.camera.look import look
-from recon.sim.camera.settings import EyeSettings
+from recon.sim.camera.settings import ImagerSettings
 from recon.sim.errors import FrameSourceError
 from recon.sim.land.land_tiles import CELLS_M, land_of
 from recon.sim.world import Sky, SkySettings
@@ -41,7 +41,7 @@ class FieldFrames:
     image_circle: ImageCircle | None = None
     seed: int = 0
     sky: Sky = field(default_factory=_clear_sky)
-    eye: EyeSettings = field(default_factory=EyeSettings)
+    imager: ImagerSettings = field(default_factory=ImagerSettings)
     relief: Relief | None = None
     _lens: Lens | None = field(default=None, init=False)
 
@@ -61,7 +61,7 @@ class FieldFrames:
             view.number,
         )
         frame = np.zeros((self.camera.rows, self.camera.cols, 3), dtype=np.uint8)
-        frame[lens.window] = develop(lens, self.eye, scene)
+        frame[lens.window] = develop(lens, self.imager, scene)
         return frame
 
     def prepare(self) -> None:
@@ -74,7 +74,7 @@ class FieldFrames:
         """Return where the camera truly was; `FrameSourceError` for a view without a pose."""
         if view.pose is None:
             raise FrameSourceError("expected a camera pose to render a field from, got none")
-        return true_pose(view.pose, self.eye.hover, self.eye.seed, view.elapsed_s)
+        return true_pose(view.pose, self.imager.hover, self.imager.seed, view.elapsed_s)
 
     def gains(self, view: View) -> FloatArray:
         """Return exposure and white balance of a view: light's factors (3,), 1 in full sun."""
@@ -84,11 +84,11 @@ class FieldFrames:
     def lens(self) -> Lens:
         """The lens, worked out at the first call."""
         if self._lens is None:
-            self._lens = Lens(self.camera, self.image_circle, self.eye.lens)
+            self._lens = Lens(self.camera, self.image_circle, self.imager.lens)
         return self._lens
 
     def _gains(self, pose: CameraPose, time_s: float) -> FloatArray:
-        exposure, seed = self.eye.exposure, self.eye.seed
+        exposure, seed = self.imager.exposure, self.imager.seed
         stops = exposure_stops(
             exposure, seed, pose, time_s, lambda e, n, t: metered_light(self.sky, e, n, t)
         )

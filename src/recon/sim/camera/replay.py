@@ -23,7 +23,7 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.imagery import CameraPose, RgbImage
 from recon.sim.app.camera_feed import View
 from recon.sim.camera.frame_files import read_frame
-from recon.sim.camera.rig import EyeRig
+from recon.sim.camera.rig import ImagerRig
 from recon.sim.errors import ReplayError
 
 FRAME_FILE = "RefFrame.jpeg"
@@ -45,7 +45,7 @@ class StillFrame:
         return self.rgb
 
 
-def load_replay(folder: Path) -> tuple[EyeRig, StillFrame]:
+def load_replay(folder: Path) -> tuple[ImagerRig, StillFrame]:
     """Return where the eye hangs over a real field, and what it sees; raises `ReplayError`."""
     for name in (FRAME_FILE, POINTS_FILE):
         if not (folder / name).is_file():
@@ -71,7 +71,7 @@ def _rig(
     camera: OmnidirectionalCamera,
     points: tuple[ControlPoint, ...],
     marked_size_px: tuple[int, int],
-) -> EyeRig:
+) -> ImagerRig:
     """Return the rig: the frame's origin is the middle of the control points, on the ground."""
     origin = GeoPoint(
         float(np.mean([p.latitude_deg for p in points])),
@@ -84,7 +84,7 @@ def _rig(
     return rig_over(camera, frame, solution.pose)
 
 
-def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose) -> EyeRig:
+def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose) -> ImagerRig:
     """Return a rig whose marked frame was taken from `pose`, the aircraft pointing north.
 
     Any heading would do: only changes of it turn the camera.
@@ -92,4 +92,4 @@ def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose)
     latitude, longitude, _ = geo_from_enu(frame, (*pose.position_enu_m[:2], 0.0))
     height_m = float(pose.position_enu_m[2])
     marked = TelemetryReference(float(latitude[0]), float(longitude[0]), height_m, 0.0)
-    return EyeRig(camera, frame, pose, marked)
+    return ImagerRig(camera, frame, pose, marked)

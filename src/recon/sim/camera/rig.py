@@ -10,7 +10,7 @@ from recon.model.vehicle import Mount
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class EyeRig:
+class ImagerRig:
     """A lens, and the pose it has when the aircraft is at `marked`, in `frame`.
 
     `frame`'s origin lies on the (flat) ground; everywhere else the pose moves with the aircraft.

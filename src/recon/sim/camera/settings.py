@@ -89,7 +89,7 @@ class SensorSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class EyeSettings:
+class ImagerSettings:
     """All that makes the eye's pictures less than perfect."""
 
     seed: int = 0

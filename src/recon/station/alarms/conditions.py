@@ -40,9 +40,9 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _unidentified(link, station.settings.serial_wait_s)
         if link.own_state.is_flying.value is not False:
             yield from _silence(link.own_state, now_ns)
-    for name, state in station.watch.lost.items():
+    for name, state in station.watchdog_state.lost.items():
         yield _lost_unidentified(name, state)
-    for record in station.orders.watched:
+    for record in station.orders.tracked:
         yield from _waiting(record)
         yield from _of_order(record)
     yield from station_faults.conditions(station, now_ns)
@@ -133,7 +133,7 @@ def _landing(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
 
 def _by_itself(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
     """What the aircraft does that nobody here ordered, by the flight table."""
-    follows = station.followings.get(vehicle.serial or "")
+    follows = station.trackings.get(vehicle.serial or "")
     if follows is not None and follows.failsafe is not None:
         yield _about(vehicle, "failsafe", Severity.ERROR, follows.failsafe)
 
@@ -159,8 +159,8 @@ def _lost_unidentified(name: str, state: VehicleState) -> Condition:
     """It ends with a person's word alone: nobody would know the vehicle if it were heard again."""
     if name == known_traffic.MANY_LOST:
         text = (
-            f"more than {known_traffic.LOST_KEPT} vehicles without a serial flew when their links ended; "
-            f"nothing is set in motion until you know where all of them are and dismiss {name}"
+            f"more than {known_traffic.LOST_KEPT} vehicles without a serial were lost in flight; "
+            f"no motion is allowed until all of them are located and {name} is dismissed"
         )
     else:
         text = (
@@ -211,7 +211,7 @@ def _of_order(record: OrderRecord) -> Iterator[Condition]:
 
 def _watch(station: Station) -> Iterator[Condition]:
     """What the watchdogs found, and whether their findings may hold vehicles."""
-    for kept in station.watch.findings.values():
+    for kept in station.watchdog_state.findings.values():
         found = kept.finding
         yield Condition(
             key=found.key,
@@ -223,9 +223,9 @@ def _watch(station: Station) -> Iterator[Condition]:
             link_id=found.link_id,
             after_s=found.after_s,
         )
-    if not station.watch.is_hold_on:
+    if not station.watchdog_state.is_hold_on:
         text = "vehicles in conflict are not held, only alarmed about: holding is switched off"
-        by = f" by {station.watch.switched_by}"
+        by = f" by {station.watchdog_state.switched_by}"
         key = rule = "separation_hold_off"
         yield Condition(key, Severity.WARNING, rule, "", f"{text}{by}")
 
@@ -237,9 +237,9 @@ def _imaging(station: Station) -> Iterator[Condition]:
             key="imaging",
             severity=Severity.WARNING,
             rule="imaging",
-            vehicle_name=imaging.eye_serial or "",
+            vehicle_name=imaging.imager_serial or "",
             text=f"the eye's frames are not laid on the ground: {imaging.latest_error}",
-            serial=imaging.eye_serial,
+            serial=imaging.imager_serial,
             after_s=station.settings.imaging_trouble_after_s,
         )
 

@@ -6,18 +6,18 @@ from recon.model.vehicle import VehicleState
 from recon.safety.datum import home
 from recon.safety.prediction.flyer import last_place
 from recon.station.state.station import Station
-from recon.station.traffic.known_traffic import dismissed_by, ghost
+from recon.station.traffic.known_traffic import dismissed_by, hazard
 
 
-def ghost_view(station: Station, vehicle: VehicleState, now_ns: int) -> schema.GhostView | None:
-    """Return a vehicle's ghost; None while it is heard, is on the ground or was dismissed."""
-    found = ghost(station, vehicle, now_ns)
+def hazard_view(station: Station, vehicle: VehicleState, now_ns: int) -> schema.HazardView | None:
+    """Return a vehicle's hazard area; None while it is heard, is on the ground or was dismissed."""
+    found = hazard(station, vehicle, now_ns)
     place, _at_ns = last_place(vehicle)
     if found is None or place is None:
         return None
     home_place = home(vehicle) if found.home_m is not None else None
     way = [] if home_place is None else [_lon_lat(place), _lon_lat(home_place)]
-    return schema.GhostView(
+    return schema.HazardView(
         dismissed_as=dismissed_by(station, vehicle),
         age_s=found.age_s,
         latitude_deg=place.latitude_deg,

@@ -5,17 +5,20 @@ from recon.model.units import ns_to_seconds
 from recon.safety import Situation
 from recon.safety.check import Check
 from recon.safety.preflight import checklist
-from recon.station.control.authority import NOBODY_YET, lead_of
+from recon.station.control.authority import NOBODY_YET, authority_of
 from recon.station.control.preflight import facts
 from recon.station.state.station import Station
 
 
-def lead_view(station: Station, serial: str | None, now_ns: int) -> schema.LeadView:
+def authority_view(station: Station, serial: str | None, now_ns: int) -> schema.AuthorityView:
     """Return who leads a vehicle, or a link without a serial."""
-    lead = NOBODY_YET if serial is None else lead_of(station, serial)
-    age_s = None if lead is NOBODY_YET else ns_to_seconds(now_ns - lead.since_ns)
-    return schema.LeadView(
-        leader=lead.leader.value, holder=lead.holder, age_s=age_s, reason=lead.reason
+    authority = NOBODY_YET if serial is None else authority_of(station, serial)
+    age_s = None if authority is NOBODY_YET else ns_to_seconds(now_ns - authority.since_ns)
+    return schema.AuthorityView(
+        holder=authority.holder.value,
+        holder_name=authority.holder_name,
+        age_s=age_s,
+        reason=authority.reason,
     )
 
 
@@ -36,7 +39,7 @@ def preflight_view(station: Station, serial: str, now_ns: int) -> schema.Preflig
     situation = Situation(
         now_ns=now_ns,
         vehicle=vehicle,
-        claimants=(),
+        claiming_links=(),
         settings=station.settings.safety,
         airspace=station.airspace,
         facts=facts(station, vehicle),

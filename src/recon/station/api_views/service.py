@@ -8,16 +8,16 @@ from itertools import count
 from recon import __version__
 from recon.api import schema
 from recon.api.port import SurveyCells
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, Hover, Phase, Refusal
 from recon.model.event import (
     AlarmAcknowledged,
     AuthorityTaken,
     FleetReturnOrdered,
-    GhostDismissed,
-    HolderCame,
-    HolderGone,
+    HazardDismissed,
     OperatorOrder,
+    OwnerConnected,
+    OwnerDisconnected,
     PreflightOverridden,
     SeparationHoldSwitched,
 )
@@ -32,7 +32,7 @@ from recon.station.api_views.audit_view import audit_page
 from recon.station.api_views.readiness_view import preflight_view
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import Surroundings, state_view
-from recon.station.api_views.survey_service import SurveyDesk
+from recon.station.api_views.survey_service import SurveyService
 from recon.station.control import authority, preflight
 from recon.station.control.dry_run import CHECKED_ID, check
 from recon.station.kernel.driver import AsyncioDriver
@@ -78,13 +78,11 @@ class Service:
         *,
         takeoff: bool,
         issued_by: str,
-        holder: str | None = None,
+        owner: str | None = None,
     ) -> schema.OrderResponse:
         """Give one order to each named vehicle, once each."""
         asked = [
-            OperatorOrder(
-                self._ids(), body, issued_by, serial=serial, takeoff=takeoff, holder=holder
-            )
+            OperatorOrder(self._ids(), body, issued_by, serial=serial, takeoff=takeoff, owner=owner)
             for serial in dict.fromkeys(serials)
         ]
         return self._give(asked)
@@ -96,13 +94,11 @@ class Service:
         *,
         takeoff: bool,
         issued_by: str,
-        holder: str | None = None,
+        owner: str | None = None,
     ) -> schema.OrderResponse:
         """Return what `order` would answer now; nothing is given and nothing changes."""
         orders = [
-            OperatorOrder(
-                CHECKED_ID, body, issued_by, serial=serial, takeoff=takeoff, holder=holder
-            )
+            OperatorOrder(CHECKED_ID, body, issued_by, serial=serial, takeoff=takeoff, owner=owner)
             for serial in dict.fromkeys(serials)
         ]
         station = self.driver.station
@@ -111,13 +107,13 @@ class Service:
             results=[_result(r, _is_simulated(station, r)) for r in records]
         )
 
-    def holder_came(self, holder: str) -> None:
+    def owner_connected(self, owner: str) -> None:
         """Let a stream hold steered orders from now on."""
-        self.driver.handle(HolderCame(holder))
+        self.driver.handle(OwnerConnected(owner))
 
-    def holder_gone(self, holder: str) -> None:
+    def owner_disconnected(self, owner: str) -> None:
         """End what a stream held."""
-        self.driver.handle(HolderGone(holder))
+        self.driver.handle(OwnerDisconnected(owner))
 
     def all_stop(self, issued_by: str) -> schema.OrderResponse:
         """Hold every link whose telemetry says flying, identified or not.
@@ -143,20 +139,20 @@ class Service:
         called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
         return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
 
-    def dismiss_ghost(self, name: str, by: str) -> bool:
+    def dismiss_hazard(self, name: str, by: str) -> bool:
         """Take a vehicle that is not heard out of the air."""
         if not is_hazard_unseen(self.driver.station, name, self.driver.now_ns()):
             return False
-        self.driver.handle(GhostDismissed(name, by))
+        self.driver.handle(HazardDismissed(name, by))
         return True
 
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
         """Switch on or off that the watchdogs hold vehicles."""
         self.driver.handle(SeparationHoldSwitched(is_on, by))
 
-    def take_authority(self, serial: str, leader: Leader, by: str) -> schema.WordResponse:
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> schema.WordResponse:
         """Let somebody else lead a vehicle."""
-        event = AuthorityTaken(serial, leader, by)
+        event = AuthorityTaken(serial, holder, by)
         return self._say(event, authority.refusal(self.driver.station, event))
 
     def preflight(self, serial: str) -> schema.PreflightView | None:
@@ -224,12 +220,12 @@ class Service:
         return self._surveys.cells(survey_id)
 
     @property
-    def _surveys(self) -> SurveyDesk:
-        return SurveyDesk(self.driver, self.site, self._ids)
+    def _surveys(self) -> SurveyService:
+        return SurveyService(self.driver, self.site, self._ids)
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file."""
-        rms_px = None if self.site.eye is None else self.site.eye.solution.rms_px
+        rms_px = None if self.site.imager is None else self.site.imager.solution.rms_px
         captured = datetime.fromtimestamp(ns_to_seconds(image.captured_at_ns), UTC)
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
 
@@ -287,7 +283,7 @@ class Service:
             frames_dropped=self.driver.station.imaging.frames_dropped,
             capture_folder=self.capture_folder,
             capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
-            separation_hold_on=self.driver.station.watch.is_hold_on,
+            separation_hold_on=self.driver.station.watchdog_state.is_hold_on,
             connections_refused=0 if links is None else links.refused_connections,
         )
 

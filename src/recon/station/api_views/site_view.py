@@ -50,7 +50,7 @@ class _Area:
 def site_view(site: Site) -> schema.SiteView:
     """Return what a console shows of a site."""
     origin = None if site.frame is None else site.frame.origin
-    eye = site.eye
+    imager = site.imager
     areas = list(_areas(site))
     drawn, within_m = _thinned(_few(areas))
     return schema.SiteView(
@@ -58,9 +58,9 @@ def site_view(site: Site) -> schema.SiteView:
         latitude_deg=None if origin is None else origin.latitude_deg,
         longitude_deg=None if origin is None else origin.longitude_deg,
         ground_altitude_m=None if origin is None else origin.ellipsoid_height_m,
-        eye_serial=None if eye is None else eye.serial,
-        pose_rms_px=None if eye is None else eye.solution.rms_px,
-        pose_height_m=None if eye is None else eye.solution.height_above_ground_m,
+        imager_serial=None if imager is None else imager.serial,
+        pose_rms_px=None if imager is None else imager.solution.rms_px,
+        pose_height_m=None if imager is None else imager.solution.height_above_ground_m,
         limits=schema.LimitsView(**asdict(site.limits)),
         terrain="flat assumed" if site.elevation is None else "model",
         layers=_layers(site),

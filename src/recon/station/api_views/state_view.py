@@ -13,8 +13,8 @@ from recon.model.stamped import Stamped
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.api_views.corners import corners_lon_lat
-from recon.station.api_views.hazard_view import ghost_view
-from recon.station.api_views.readiness_view import lead_view, override_view
+from recon.station.api_views.hazard_view import hazard_view
+from recon.station.api_views.readiness_view import authority_view, override_view
 from recon.station.api_views.steering_view import steering_view
 from recon.station.imaging import shade_told as shade
 from recon.station.operations.fleet_return import told as fleet_return
@@ -66,7 +66,7 @@ def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
         for link in station.fleet.unbound_links()
         if link.claimed_serial is None and link.own_state.core_received_at_ns is not None
     ]
-    lost = [_vehicle(station, state, 0, now_ns) for state in station.watch.lost.values()]
+    lost = [_vehicle(station, state, 0, now_ns) for state in station.watchdog_state.lost.values()]
     return known + unidentified + lost
 
 
@@ -89,8 +89,8 @@ def _vehicle(
         name=vehicle.display_name,
         model="unknown model" if profile is None else profile.model,
         is_simulated=vehicle.is_simulated,
-        is_eye=vehicle.serial is not None and vehicle.serial == station.imaging.eye_serial,
-        lead=lead_view(station, vehicle.serial, now_ns),
+        is_imager=vehicle.serial is not None and vehicle.serial == station.imaging.imager_serial,
+        authority=authority_view(station, vehicle.serial, now_ns),
         preflight_override=override_view(station, vehicle.serial, now_ns),
         steering=steering_view(station, vehicle.serial),
         staleness=staleness(vehicle, now_ns).value,
@@ -119,7 +119,7 @@ def _vehicle(
         conflict_link_ids=list(vehicle.rival_link_ids),
         track=[(p.longitude_deg, p.latitude_deg) for p in vehicle.track[-TRACK_POINTS_SHOWN:]],
         frame=_frame(station.frames.get(vehicle.serial or ""), now_ns),
-        ghost=ghost_view(station, vehicle, now_ns),
+        hazard=hazard_view(station, vehicle, now_ns),
     )
 
 
@@ -252,12 +252,12 @@ def _alarm(alarm: Alarm, now_ns: int) -> schema.AlarmView:
 def _ground_image(station: Station, now_ns: int) -> schema.GroundImageView | None:
     imaging = station.imaging
     image: GroundImage | None = imaging.ground_image
-    if image is None or imaging.eye_serial is None:
+    if image is None or imaging.imager_serial is None:
         return None
-    profile = station.fleet.profiles.get(imaging.eye_serial)
+    profile = station.fleet.profiles.get(imaging.imager_serial)
     return schema.GroundImageView(
         frame_id=image.frame_id,
-        serial=imaging.eye_serial,
+        serial=imaging.imager_serial,
         captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
         captured_sigma_s=0.25 if profile is None else profile.video_latency_sigma_s,
         registration=image.registration.value,

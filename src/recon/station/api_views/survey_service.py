@@ -20,7 +20,7 @@ from recon.station.operations.survey.planning import NO_SITE
 
 
 @dataclass(frozen=True, slots=True)
-class SurveyDesk:
+class SurveyService:
     """Speaks of surveys to a driver's station."""
 
     driver: AsyncioDriver

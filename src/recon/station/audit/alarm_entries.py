@@ -15,7 +15,7 @@ AGAIN_AFTER_S = 5.0
 
 
 @dataclass(frozen=True, slots=True)
-class AlarmTold:
+class AlarmLogged:
     """An alarm as the audit last told it."""
 
     alarm: Alarm
@@ -23,15 +23,15 @@ class AlarmTold:
 
 
 @dataclass(frozen=True, slots=True)
-class AlarmsTold:
+class AlarmsLogged:
     """All alarms that were there, by number."""
 
-    told: Mapping[int, AlarmTold] = field(default_factory=dict)
+    told: Mapping[int, AlarmLogged] = field(default_factory=dict)
 
 
 def alarm_entries(
-    memory: AlarmsTold, book: AlarmBook, now_ns: int
-) -> tuple[AlarmsTold, tuple[AuditEntry, ...]]:
+    memory: AlarmsLogged, book: AlarmBook, now_ns: int
+) -> tuple[AlarmsLogged, tuple[AuditEntry, ...]]:
     """Return what is new about the alarms since it was last told."""
     entries: list[AuditEntry] = []
     told = dict(memory.told)
@@ -40,10 +40,10 @@ def alarm_entries(
         new = _news(last, alarm, now_ns)
         if new is not None:
             entries.append(new)
-            told[number] = AlarmTold(alarm, now_ns)
+            told[number] = AlarmLogged(alarm, now_ns)
     for number in memory.told.keys() - book.alarms.keys():
         entries += _forgotten(told.pop(number).alarm)
-    return (AlarmsTold(told), tuple(entries)) if entries else (memory, ())
+    return (AlarmsLogged(told), tuple(entries)) if entries else (memory, ())
 
 
 def seen_entry(alarm: Alarm, by: str) -> AuditEntry:
@@ -51,7 +51,7 @@ def seen_entry(alarm: Alarm, by: str) -> AuditEntry:
     return _entry("alarm.acknowledged", "alarm seen", alarm, by)
 
 
-def _news(last: AlarmTold | None, alarm: Alarm, now_ns: int) -> AuditEntry | None:
+def _news(last: AlarmLogged | None, alarm: Alarm, now_ns: int) -> AuditEntry | None:
     if last is None:
         return _entry("alarm.raised", "alarm", alarm)
     was = last.alarm

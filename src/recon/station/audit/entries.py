@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from recon.model.authority import Lead
+from recon.model.authority import ControlAuthority
 from recon.model.command import Refusal
 from recon.model.event import (
     AlarmAcknowledged,
@@ -12,35 +12,35 @@ from recon.model.event import (
     AuthorityTaken,
     Event,
     FleetReturnOrdered,
-    GhostDismissed,
+    HazardDismissed,
     PreflightOverridden,
     SeparationHoldSwitched,
     Tick,
 )
 from recon.record.audit import AuditEntry
 from recon.safety import Override
-from recon.station.audit.alarm_entries import AlarmsTold, alarm_entries, seen_entry
-from recon.station.audit.link_entries import LinksTold, link_entries
-from recon.station.audit.order_entries import OrdersTold, ended_streams, order_entries
-from recon.station.audit.unidentified_snapshots import nameless_entries
+from recon.station.audit.alarm_entries import AlarmsLogged, alarm_entries, seen_entry
+from recon.station.audit.link_entries import LinksLogged, link_entries
+from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
+from recon.station.audit.unidentified_snapshots import unidentified_entries
 from recon.station.audit.vehicle_snapshots import Sightings, sightings
 from recon.station.control import authority, preflight
 from recon.station.operations.survey.audit import survey_entries
 from recon.station.state.station import Station
 from recon.station.traffic import known_traffic
 
-_NOBODY_YET = Lead()
+_DEFAULT_AUTHORITY = ControlAuthority()
 
 
 @dataclass(frozen=True, slots=True)
 class Auditing:
     """What the entries of the next step depend on, beside the states before and after it."""
 
-    orders: OrdersTold = field(default_factory=OrdersTold)
-    alarms: AlarmsTold = field(default_factory=AlarmsTold)
-    links: LinksTold = field(default_factory=LinksTold)
+    orders: OrdersLogged = field(default_factory=OrdersLogged)
+    alarms: AlarmsLogged = field(default_factory=AlarmsLogged)
+    links: LinksLogged = field(default_factory=LinksLogged)
     sightings: Sightings = field(default_factory=Sightings)
-    nameless: Mapping[str, int] = field(default_factory=dict)
+    unidentified: Mapping[str, int] = field(default_factory=dict)
 
 
 def audit(
@@ -53,10 +53,10 @@ def audit(
     entries += told
     seen, told = sightings(memory.sightings, before, event, after, now_ns)
     entries += told
-    nameless, told = nameless_entries(memory.nameless, before, event, after, now_ns)
+    unidentified, told = unidentified_entries(memory.unidentified, before, event, after, now_ns)
     entries += told
-    if after.leads is not before.leads:
-        entries += _leads(before.leads, after)
+    if after.authorities is not before.authorities:
+        entries += _authorities(before.authorities, after)
     if after.preflight_overrides is not before.preflight_overrides:
         entries += _overrides(before.preflight_overrides, after)
     orders = memory.orders
@@ -70,7 +70,7 @@ def audit(
     if after.alarms is not before.alarms:
         alarms, told = alarm_entries(alarms, after.alarms, now_ns)
         entries += told
-    return Auditing(orders, alarms, links, seen, nameless), tuple(entries)
+    return Auditing(orders, alarms, links, seen, unidentified), tuple(entries)
 
 
 def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
@@ -82,9 +82,9 @@ def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry
             yield from _refused(after, "authority", authority.refusal(before, event), by, serial)
         case PreflightOverridden(serial=serial, by=by):
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
-        case GhostDismissed(serial, by):
+        case HazardDismissed(serial, by):
             name = known_traffic.lost_as(before, serial) or serial
-            yield _about(before, "ghost.dismissed", "is no longer counted as in the air", by, name)
+            yield _about(before, "hazard.dismissed", "is no longer counted as in the air", by, name)
         case SeparationHoldSwitched(is_on, by):
             word = "on" if is_on else "off"
             text = f"the separation watchdog's holds were switched {word}"
@@ -107,19 +107,19 @@ def _refused(
         yield _about(station, f"{what}.refused", f"refused: {refusal.reason}", by, serial, details)
 
 
-def _leads(before: Mapping[str, Lead], after: Station) -> Iterator[AuditEntry]:
-    for serial, lead in after.leads.items():
-        was = before.get(serial, _NOBODY_YET)
-        if (lead.leader, lead.holder) == (was.leader, was.holder):
+def _authorities(before: Mapping[str, ControlAuthority], after: Station) -> Iterator[AuditEntry]:
+    for serial, held in after.authorities.items():
+        was = before.get(serial, _DEFAULT_AUTHORITY)
+        if (held.holder, held.holder_name) == (was.holder, was.holder_name):
             continue
         details = {
-            "leader": lead.leader.value,
-            "holder": lead.holder,
-            "from": was.leader.value,
-            "reason": lead.reason,
+            "holder": held.holder.value,
+            "holder_name": held.holder_name,
+            "from": was.holder.value,
+            "reason": held.reason,
         }
-        text = f"is led by the {lead.leader.value} now: {lead.reason}"
-        by = lead.holder or lead.leader.value
+        text = f"is led by the {held.holder.value} now: {held.reason}"
+        by = held.holder_name or held.holder.value
         yield _about(after, "authority.taken", text, by, serial, details)
 
 

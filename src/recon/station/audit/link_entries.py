@@ -19,7 +19,7 @@ MOST_IN_A_WINDOW = 120
 
 
 @dataclass(frozen=True, slots=True)
-class LinksTold:
+class LinksLogged:
     """How much of this minute's coming and going was told, and how much only counted."""
 
     window_began_ns: int = 0
@@ -28,20 +28,20 @@ class LinksTold:
 
 
 def link_entries(
-    memory: LinksTold, before: Station, event: Event, after: Station, now_ns: int
-) -> tuple[LinksTold, tuple[AuditEntry, ...]]:
+    memory: LinksLogged, before: Station, event: Event, after: Station, now_ns: int
+) -> tuple[LinksLogged, tuple[AuditEntry, ...]]:
     """Return what an event changes of the connections."""
     entries: list[AuditEntry] = []
     if now_ns - memory.window_began_ns >= seconds_to_ns(WINDOW_S):
         if memory.untold:
             entries.append(_untold(memory.untold))
-        memory = LinksTold(now_ns)
+        memory = LinksLogged(now_ns)
     for entry in _changes(before, event, after):
         if memory.told < MOST_IN_A_WINDOW:
-            memory = LinksTold(memory.window_began_ns, memory.told + 1, memory.untold)
+            memory = LinksLogged(memory.window_began_ns, memory.told + 1, memory.untold)
             entries.append(entry)
         else:
-            memory = LinksTold(memory.window_began_ns, memory.told, memory.untold + 1)
+            memory = LinksLogged(memory.window_began_ns, memory.told, memory.untold + 1)
     return memory, tuple(entries)
 
 

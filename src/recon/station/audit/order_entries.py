@@ -48,15 +48,15 @@ StickStreams = Mapping[tuple[str | None, str], StickStream]
 
 
 @dataclass(frozen=True, slots=True)
-class OrdersTold:
+class OrdersLogged:
     """What the next step's entries depend on: the streams that go on."""
 
     streams: StickStreams = field(default_factory=dict)
 
 
 def order_entries(
-    memory: OrdersTold, before: OrderBook, after: OrderBook, now_ns: int
-) -> tuple[OrdersTold, tuple[AuditEntry, ...]]:
+    memory: OrdersLogged, before: OrderBook, after: OrderBook, now_ns: int
+) -> tuple[OrdersLogged, tuple[AuditEntry, ...]]:
     """Return an entry for each change between two books."""
     entries: list[AuditEntry] = []
     for number, record in after.records.items():
@@ -72,7 +72,7 @@ def order_entries(
     return memory, tuple(entries)
 
 
-def ended_streams(memory: OrdersTold, now_ns: int) -> tuple[OrdersTold, tuple[AuditEntry, ...]]:
+def ended_streams(memory: OrdersLogged, now_ns: int) -> tuple[OrdersLogged, tuple[AuditEntry, ...]]:
     """Return an entry for each stream of sticks that has ended."""
     limit_ns = seconds_to_ns(STREAM_ENDS_AFTER_S)
     ended = [s for s in memory.streams.values() if now_ns - s.last_ns > limit_ns]
@@ -116,12 +116,12 @@ def _entry(record: OrderRecord, change: PhaseChange) -> AuditEntry:
 
 
 def _stick(
-    memory: OrdersTold,
+    memory: OrdersLogged,
     record: OrderRecord,
     changes: tuple[PhaseChange, ...],
     is_new: bool,
     now_ns: int,
-) -> tuple[OrdersTold, list[AuditEntry]]:
+) -> tuple[OrdersLogged, list[AuditEntry]]:
     command, entries = record.command, list[AuditEntry]()
     key = (command.serial, command.issued_by)
     stream = memory.streams.get(key)

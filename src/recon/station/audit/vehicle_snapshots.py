@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.event import Event, LinkClosed, PacketReceived
 from recon.model.geo import LatLon
 from recon.model.report import CoreReport
@@ -18,7 +18,7 @@ from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.record.audit import AuditEntry
 from recon.station.state.station import Station
-from recon.station.state.vehicle_snapshot import Place, Sighting
+from recon.station.state.vehicle_snapshot import Place, VehicleSnapshot
 
 SEEN_KIND = "vehicle.seen"
 TOOK_OFF_KIND = "vehicle.took_off"
@@ -39,17 +39,17 @@ class Sightings:
     written_at_ns: Mapping[str, int] = field(default_factory=dict)
 
 
-def sighting_of(station: Station, vehicle: VehicleState) -> Sighting:
+def sighting_of(station: Station, vehicle: VehicleState) -> VehicleSnapshot:
     """Return what is known of a vehicle, as the audit keeps it."""
     velocity = vehicle.velocity_ned.value
     serial = vehicle.serial or ""
-    lead, intent = station.leads.get(serial), station.intents.get(serial)
-    return Sighting(
+    authority, intent = station.authorities.get(serial), station.intents.get(serial)
+    return VehicleSnapshot(
         heard_ns=vehicle.core_received_at_ns or 0,
         is_flying=vehicle.is_flying.value,
         is_simulated=vehicle.is_simulated,
-        leader=Leader.OPERATOR if lead is None else lead.leader,
-        holder="" if lead is None else lead.holder,
+        holder=AuthorityHolder.OPERATOR if authority is None else authority.holder,
+        holder_name="" if authority is None else authority.holder_name,
         place=_place(vehicle.position.value),
         height_above_takeoff_m=vehicle.height_above_takeoff_m.value,
         velocity_north_mps=None if velocity is None else velocity.north_mps,

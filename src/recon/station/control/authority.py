@@ -1,6 +1,6 @@
 """Who leads each vehicle. Taking over is explicit; the pilot's sticks always win.
 
-Nothing here sends anything to a vehicle. A new leader's word is needed for every order to move;
+Nothing here sends anything to a vehicle. A new holder's word is needed for every order to move;
 what a vehicle was told before goes on until then, but streams of sticks end at once (`stream_ends`
 sees that their giver leads no longer).
 """
@@ -8,7 +8,7 @@ sees that their giver leads no longer).
 from dataclasses import replace
 
 from recon.link.outbox import Lane, lane_of
-from recon.model.authority import Lead, Leader
+from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Command, Phase, Refusal
 from recon.model.event import AuthorityTaken
 from recon.model.intent import Intent
@@ -20,13 +20,13 @@ from recon.station.steering import stream_ends
 from recon.station.steering.stream_ends import Driven
 
 RULE = "authority"
-NOBODY_YET = Lead()
+NOBODY_YET = ControlAuthority()
 PILOT = "pilot"
 
 
-def lead_of(station: Station, serial: str) -> Lead:
+def authority_of(station: Station, serial: str) -> ControlAuthority:
     """Return who leads a vehicle; the operator, until somebody takes it."""
-    return station.leads.get(serial, NOBODY_YET)
+    return station.authorities.get(serial, NOBODY_YET)
 
 
 def refusal(station: Station, event: AuthorityTaken) -> Refusal | None:
@@ -34,12 +34,12 @@ def refusal(station: Station, event: AuthorityTaken) -> Refusal | None:
     vehicle = station.fleet.vehicles.get(event.serial)
     if vehicle is None:
         return Refusal(RULE, f"{event.serial} is not known: no app has said this serial")
-    lead = lead_of(station, event.serial)
-    if event.leader is Leader.GUIDANCE and lead.leader is Leader.PILOT:
+    authority = authority_of(station, event.serial)
+    if event.holder is AuthorityHolder.GUIDANCE and authority.holder is AuthorityHolder.PILOT:
         return Refusal(
             RULE,
-            f"{vehicle.display_name} is led by the pilot ({lead.reason}): guidance takes nothing "
-            "from a pilot; take it over first, then give it to guidance",
+            f"{vehicle.display_name} is controlled by the pilot ({authority.reason}): take "
+            "control first, then give it to guidance",
         )
     return None
 
@@ -48,8 +48,12 @@ def take(station: Station, event: AuthorityTaken, now_ns: int) -> Station:
     """Return the station after somebody took a vehicle over, or gave it away; or as it was."""
     if refusal(station, event) is not None:
         return station
-    given = "taken over by" if event.leader is Leader.OPERATOR else "given to it by"
-    return _led(station, event.serial, Lead(event.leader, event.by, now_ns, f"{given} {event.by}"))
+    given = "taken over by" if event.holder is AuthorityHolder.OPERATOR else "given to it by"
+    return _led(
+        station,
+        event.serial,
+        ControlAuthority(event.holder, event.by, now_ns, f"{given} {event.by}"),
+    )
 
 
 def after_stop(station: Station, command: Command, now_ns: int) -> Station:
@@ -59,12 +63,16 @@ def after_stop(station: Station, command: Command, now_ns: int) -> Station:
     """
     target = station.target(command.serial, command.link_id)
     serial = None if target is None else target.serial
-    if serial is None or not command.is_emergency or command.asked_as is Leader.GUIDANCE:
+    if serial is None or not command.is_emergency or command.asked_as is AuthorityHolder.GUIDANCE:
         return station
-    if lead_of(station, serial).leader is not Leader.GUIDANCE:
+    if authority_of(station, serial).holder is not AuthorityHolder.GUIDANCE:
         return station
     reason = f"{command.name.replace('_', ' ')}, ordered by {command.issued_by}"
-    return _led(station, serial, Lead(Leader.OPERATOR, command.issued_by, now_ns, reason))
+    return _led(
+        station,
+        serial,
+        ControlAuthority(AuthorityHolder.OPERATOR, command.issued_by, now_ns, reason),
+    )
 
 
 def pilot_has_it(
@@ -77,9 +85,9 @@ def pilot_has_it(
     a vehicle that the pilot leads already nothing changes.
     """
     vehicle = station.fleet.vehicles.get(serial)
-    if vehicle is None or lead_of(station, serial).leader is Leader.PILOT:
+    if vehicle is None or authority_of(station, serial).holder is AuthorityHolder.PILOT:
         return station, ()
-    station = _led(station, serial, Lead(Leader.PILOT, PILOT, now_ns, why))
+    station = _led(station, serial, ControlAuthority(AuthorityHolder.PILOT, PILOT, now_ns, why))
     station = _without_sticks(station, serial, why, now_ns)
     station = _superseded(station, serial, why, now_ns)
     station = replace(station, intents={**station.intents, serial: Intent(since_ns=now_ns)})
@@ -99,9 +107,9 @@ def pilot_has_it(
 
 def hand_back(station: Station, serial: str, to: str, why: str, now_ns: int) -> Station:
     """Return the station with a vehicle led by the operator that guidance leads no longer."""
-    if lead_of(station, serial).leader is not Leader.GUIDANCE:
+    if authority_of(station, serial).holder is not AuthorityHolder.GUIDANCE:
         return station
-    return _led(station, serial, Lead(Leader.OPERATOR, to, now_ns, why))
+    return _led(station, serial, ControlAuthority(AuthorityHolder.OPERATOR, to, now_ns, why))
 
 
 def flies_unbidden(station: Station, serial: str, now_ns: int) -> Station:
@@ -110,14 +118,14 @@ def flies_unbidden(station: Station, serial: str, now_ns: int) -> Station:
     It is flown by hand: its pilot leads it until somebody takes it over. Whom somebody has taken
     over stays as it is; there the pilot shows by the flight table.
     """
-    if serial in station.leads:
+    if serial in station.authorities:
         return station
     why = "it moves, and nothing has been ordered here: its pilot flies it"
-    return _led(station, serial, Lead(Leader.PILOT, PILOT, now_ns, why))
+    return _led(station, serial, ControlAuthority(AuthorityHolder.PILOT, PILOT, now_ns, why))
 
 
-def _led(station: Station, serial: str, lead: Lead) -> Station:
-    return replace(station, leads={**station.leads, serial: lead})
+def _led(station: Station, serial: str, authority: ControlAuthority) -> Station:
+    return replace(station, authorities={**station.authorities, serial: authority})
 
 
 def _without_sticks(station: Station, serial: str, why: str, now_ns: int) -> Station:
@@ -133,7 +141,7 @@ def _without_sticks(station: Station, serial: str, why: str, now_ns: int) -> Sta
 def _superseded(station: Station, serial: str, why: str, now_ns: int) -> Station:
     """End the lives of the orders to move it that are not over."""
     book = station.orders
-    for record in book.watched:
+    for record in book.tracked:
         if record.command.serial == serial and lane_of(record.command) is Lane.MOTION:
             ended = orders.ended(record, Phase.SUPERSEDED, now_ns, why)
             book = orders.put(book, ended, station.settings.orders_kept)

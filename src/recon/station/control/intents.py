@@ -6,7 +6,7 @@ nothing.
 """
 
 from recon.fleet.confirmation import STANDING_SPEED_MPS, SentContext
-from recon.fleet.flight_table import AT_END_M, GOOD_GNSS_LEVEL, ModeKind, Place, Told
+from recon.fleet.flight_table import AT_END_M, GOOD_GNSS_LEVEL, Instruction, ModeKind, Place
 from recon.fleet.mission_progress import distance_to_m, waypoints_passed
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import Body, FlyMission, Hover, LandNow, ReturnHome, VirtualStick
@@ -15,7 +15,7 @@ from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.state.station import Station
-from recon.station.state.tracking import Following
+from recon.station.state.tracking import Tracking
 
 NOTHING = Intent()
 
@@ -27,21 +27,21 @@ _COMMANDED: dict[type, Commanded] = {
     VirtualStick: Commanded.STICK,
 }
 
-_SENT: dict[Commanded, Told] = {
-    Commanded.NOTHING: Told.NOTHING,
-    Commanded.HOLD: Told.HOLD_SENT,
-    Commanded.MISSION: Told.MISSION_SENT,
-    Commanded.STICK: Told.STICK_SENT,
-    Commanded.RETURN: Told.RETURN_SENT,
-    Commanded.LAND: Told.LAND_SENT,
+_SENT: dict[Commanded, Instruction] = {
+    Commanded.NOTHING: Instruction.NOTHING,
+    Commanded.HOLD: Instruction.HOLD_SENT,
+    Commanded.MISSION: Instruction.MISSION_SENT,
+    Commanded.STICK: Instruction.STICK_SENT,
+    Commanded.RETURN: Instruction.RETURN_SENT,
+    Commanded.LAND: Instruction.LAND_SENT,
 }
-_BEGUN: dict[Commanded, Told] = {
-    Commanded.NOTHING: Told.NOTHING,
-    Commanded.HOLD: Told.HOLD,
-    Commanded.MISSION: Told.MISSION,
-    Commanded.STICK: Told.STICK,
-    Commanded.RETURN: Told.RETURN,
-    Commanded.LAND: Told.LAND,
+_BEGUN: dict[Commanded, Instruction] = {
+    Commanded.NOTHING: Instruction.NOTHING,
+    Commanded.HOLD: Instruction.HOLD,
+    Commanded.MISSION: Instruction.MISSION,
+    Commanded.STICK: Instruction.STICK,
+    Commanded.RETURN: Instruction.RETURN,
+    Commanded.LAND: Instruction.LAND,
 }
 
 
@@ -122,17 +122,17 @@ def let_go(station: Station, serial: str, now_ns: int, *, failsafe: str | None =
     vehicle = station.fleet.vehicles.get(serial)
     mode = None if vehicle is None else vehicle.flight_mode.value
     kept = {key: intent for key, intent in station.intents.items() if key != serial}
-    follows = Following(told_at_ns=now_ns, mode_before=mode, failsafe=failsafe)
+    follows = Tracking(told_at_ns=now_ns, mode_before=mode, failsafe=failsafe)
     return with_following(replace(station, intents=kept), serial, follows)
 
 
-def told(intent: Intent, following: Following) -> Told:
+def told(intent: Intent, following: Tracking) -> Instruction:
     """Return the flight table's row for what a vehicle was told."""
     if not following.has_begun:
         return _SENT[intent.commanded]
     mission = intent.mission
     if mission is not None and mission.land_at_end:
-        return Told.MISSION_TO_LAND
+        return Instruction.MISSION_TO_LAND
     return _BEGUN[intent.commanded]
 
 
@@ -165,21 +165,21 @@ def count_passed(station: Station, serial: str) -> Station:
     return replace(station, intents={**station.intents, serial: replace(intent, passed=passed)})
 
 
-def following_of(station: Station, serial: str) -> Following:
+def following_of(station: Station, serial: str) -> Tracking:
     """Return how a vehicle is followed."""
-    return station.followings.get(serial, _UNFOLLOWED)
+    return station.trackings.get(serial, _UNFOLLOWED)
 
 
-_UNFOLLOWED = Following()
+_UNFOLLOWED = Tracking()
 
 
-def with_following(station: Station, serial: str, following: Following) -> Station:
+def with_following(station: Station, serial: str, following: Tracking) -> Station:
     """Return the station with a vehicle followed so."""
-    return replace(station, followings={**station.followings, serial: following})
+    return replace(station, trackings={**station.trackings, serial: following})
 
 
 def _put(station: Station, serial: str, intent: Intent, mode: FlightMode | None) -> Station:
-    follows = Following(told_at_ns=intent.since_ns, command_id=intent.command_id, mode_before=mode)
+    follows = Tracking(told_at_ns=intent.since_ns, command_id=intent.command_id, mode_before=mode)
     station = replace(station, intents={**station.intents, serial: intent})
     return with_following(station, serial, follows)
 

@@ -2,14 +2,14 @@
 
 A mission longer than an app takes is flown in parts that hover at their ends. The next part is sent
 when the one before was flown to its end, if since the order the vehicle has stayed on the same
-link, was heard without a gap, and was led by the same leader. Else it holds, the order has failed,
+link, was heard without a gap, and was led by the same holder. Else it holds, the order has failed,
 and an alarm says why. Nothing else is ever sent by itself.
 """
 
 from collections.abc import Callable
 from dataclasses import replace
 
-from recon.model.authority import Lead
+from recon.model.authority import ControlAuthority
 from recon.model.command import Command, FlyMission, Phase, Refusal
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
@@ -25,7 +25,7 @@ from recon.vehicles.packets import describe_altitudes
 Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
 Stepped = tuple[Station, tuple[Output, ...]]
 
-_NOBODY_YET = Lead()
+_DEFAULT_AUTHORITY = ControlAuthority()
 
 
 def plan(station: Station, command: Command) -> FlightPlan | None:
@@ -39,7 +39,7 @@ def plan(station: Station, command: Command) -> FlightPlan | None:
         parts=repaired.parts,
         repairs=repaired.repairs,
         link_id=None if vehicle is None else vehicle.link_id,
-        lead=station.leads.get(command.serial or "", _NOBODY_YET),
+        authority=station.authorities.get(command.serial or "", _DEFAULT_AUTHORITY),
         heard_at_ns=None if vehicle is None else vehicle.core_received_at_ns,
     )
 
@@ -132,9 +132,9 @@ def _break(station: Station, chain: FlightPlan, vehicle: VehicleState, now_ns: i
     silent_s = ns_to_seconds(max(now_ns - heard_ns, heard_ns - before_ns))
     if silent_s > gap_s:
         return f"it was not heard for more than {gap_s:g} s since the order"
-    lead = station.leads.get(vehicle.serial or "", _NOBODY_YET)
-    if lead != chain.lead:
-        return f"it was taken over since the order ({lead.reason})"
+    authority = station.authorities.get(vehicle.serial or "", _DEFAULT_AUTHORITY)
+    if authority != chain.authority:
+        return f"it was taken over since the order ({authority.reason})"
     return None
 
 

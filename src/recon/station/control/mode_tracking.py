@@ -6,7 +6,7 @@ or ended by the aircraft's own failsafe. So is a vehicle that has been told noth
 
 from collections.abc import Callable
 
-from recon.fleet.flight_table import ModeKind, Reading, Told, Verdict, kind_of, read
+from recon.fleet.flight_table import Instruction, ModeKind, Reading, Verdict, kind_of, read
 from recon.model.command import STEERED_BODIES, Command, LandNow, Phase, Refusal
 from recon.model.intent import Commanded, Intent
 from recon.model.replacing import replace
@@ -18,7 +18,7 @@ from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
-from recon.station.state.tracking import Following
+from recon.station.state.tracking import Tracking
 
 Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
 """Asks the gate."""
@@ -32,7 +32,7 @@ FLOWN_BY_HAND_MPS = 2.0
 """In position mode an aircraft that nobody steers stands: gusts and GNSS noise stay under this."""
 
 _LASTING = (Verdict.PILOT, Verdict.FAILSAFE)
-_SENT_BY_LIFE = (Told.HOLD_SENT, Told.RETURN_SENT, Told.LAND_SENT)
+_SENT_BY_LIFE = (Instruction.HOLD_SENT, Instruction.RETURN_SENT, Instruction.LAND_SENT)
 """Emergency orders not yet shown: their repeats and their alarm are the order's own matter."""
 
 
@@ -213,10 +213,10 @@ def _let_go_of_nothing(
     failsafes."""
     intent, follows = _state(station, serial)
     record = station.orders.records.get(intent.command_id or 0)
-    if serial not in station.followings:
+    if serial not in station.trackings:
         station = intents.let_go(station, serial, now_ns)
         new = replace(
-            intents.following_of(station, serial), is_unbidden=serial not in station.leads
+            intents.following_of(station, serial), is_unbidden=serial not in station.authorities
         )
         return intents.with_following(station, serial, new)
     if intent.commanded is not Commanded.NOTHING and intent.command_id != follows.command_id:
@@ -264,12 +264,12 @@ def _is_steered(station: Station, serial: str) -> bool:
 
 
 def _forget(station: Station, serial: str) -> Station:
-    kept = {key: follows for key, follows in station.followings.items() if key != serial}
+    kept = {key: follows for key, follows in station.trackings.items() if key != serial}
     told = {key: intent for key, intent in station.intents.items() if key != serial}
-    return replace(station, followings=kept, intents=told)
+    return replace(station, trackings=kept, intents=told)
 
 
-def _state(station: Station, serial: str) -> tuple[Intent, Following]:
+def _state(station: Station, serial: str) -> tuple[Intent, Tracking]:
     return station.intents.get(serial, intents.NOTHING), intents.following_of(station, serial)
 
 

@@ -73,7 +73,7 @@ def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int
     station = supersede_older(station, command, now_ns)
     queued = PhaseChange(Phase.QUEUED, now_ns, "")
     station = put(station, OrderRecord(command, name_of(station, command), (queued,)))
-    station = setpoint_streams.lease_out(station, command, order.holder, now_ns)
+    station = setpoint_streams.lease_out(station, command, order.owner, now_ns)
     return drive_streams(station, now_ns)
 
 
@@ -95,9 +95,9 @@ def _end_stream_for(station: Station, refused: Command, now_ns: int) -> Stepped:
     return end_stream(station, refused.serial or "", why, now_ns)
 
 
-def holder_gone(station: Station, holder: str, now_ns: int) -> Stepped:
+def owner_disconnected(station: Station, owner: str, now_ns: int) -> Stepped:
     """End the streams that a connection held: zero, then hold."""
-    return _after(setpoint_streams.end_held_by(station, holder, now_ns, _ask(now_ns)), now_ns)
+    return _after(setpoint_streams.end_held_by(station, owner, now_ns, _ask(now_ns)), now_ns)
 
 
 def _ask(now_ns: int) -> Ask:
@@ -161,7 +161,7 @@ def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None)
     nothing of the others' orders, and right after an all stop every vehicle has one.
     """
     outputs: tuple[Output, ...] = ()
-    for record in station.orders.watched:
+    for record in station.orders.tracked:
         if serials is not None and record.command.serial not in (None, *serials):
             continue
         if not isinstance(record.command.body, STEERED_BODIES):  # a stream tells its order's life
@@ -193,7 +193,7 @@ def _watch_order(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
     is_flown = record.phase is Phase.STARTED  # its end is the flight table's matter
     seen = Progress.UNSEEN if is_flown else progress_of(station, record, target, now_ns)
     updated = orders.shown(orders.stick_over(record, now_ns), seen, now_ns)
-    if updated.is_watched:
+    if updated.is_tracked:
         updated = timed_out_by_now(updated, target, seen, station.settings, now_ns)
     if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
         updated, outputs = repeat(station, updated, _ask(now_ns), now_ns)

@@ -75,7 +75,7 @@ def supersede_older(station: Station, command: Command, now_ns: int) -> Station:
     """
     target = target_of(station, command)
     is_camera = lane_of(command) is Lane.CAMERA
-    for record in station.orders.watched:
+    for record in station.orders.tracked:
         older = record.command
         if (lane_of(older) is Lane.CAMERA) is is_camera and target_of(station, older) is target:
             note = f"by order {command.id}"

@@ -1,18 +1,18 @@
 """What the gate judges: an order as a command, and the snapshot of the state to judge it by."""
 
-from recon.model.authority import Lead
+from recon.model.authority import ControlAuthority
 from recon.model.command import Command, FlyMission
 from recon.model.event import OperatorOrder
 from recon.model.intent import Intent
 from recon.model.units import seconds_to_ns
-from recon.safety import Claimant, Situation, Traffic
+from recon.safety import ClaimingLink, Situation, Traffic
 from recon.safety.facts import NO_FACTS
 from recon.station.control import preflight
 from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import in_the_air, setting_out
 
-_NOBODY_YET = Lead()
-_TOLD_NOTHING = Intent()
+_DEFAULT_AUTHORITY = ControlAuthority()
+_NO_INTENT = Intent()
 
 
 def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
@@ -42,11 +42,11 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
     return Situation(
         now_ns=now_ns,
         vehicle=target,
-        claimants=_claimants(station, command),
+        claiming_links=_claiming_links(station, command),
         settings=station.settings.safety,
         airspace=station.airspace,
-        lead=station.leads.get(serial, _NOBODY_YET),
-        intent=station.intents.get(serial, _TOLD_NOTHING),
+        authority=station.authorities.get(serial, _DEFAULT_AUTHORITY),
+        intent=station.intents.get(serial, _NO_INTENT),
         stick_height_above_takeoff_m=_stick_height_m(station, serial),
         traffic=_traffic(station, command, serial, now_ns) if command.moves else (),
         preflight_override=station.preflight_overrides.get(serial),
@@ -62,7 +62,7 @@ def _stick_height_m(station: Station, serial: str) -> float | None:
     pending = station.sticks.get(serial)
     if pending is not None:
         return pending.body.height_above_takeoff_m
-    return station.intents.get(serial, _TOLD_NOTHING).target_height_above_takeoff_m
+    return station.intents.get(serial, _NO_INTENT).target_height_above_takeoff_m
 
 
 def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tuple[Traffic, ...]:
@@ -73,7 +73,7 @@ def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tu
         if state.serial != serial
     )
     return about_to + tuple(
-        Traffic(state, station.intents.get(state.serial or "", _TOLD_NOTHING))
+        Traffic(state, station.intents.get(state.serial or "", _NO_INTENT))
         for state, claimed in in_the_air(station)
         if state.serial is None or state.serial != serial
         if claimed is None or claimed != command.serial
@@ -81,7 +81,7 @@ def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tu
     )
 
 
-def _claimants(station: Station, command: Command) -> tuple[Claimant, ...]:
+def _claiming_links(station: Station, command: Command) -> tuple[ClaimingLink, ...]:
     fleet = station.fleet
     if command.serial is not None:
         link_ids = fleet.link_ids_claiming(command.serial)
@@ -89,4 +89,4 @@ def _claimants(station: Station, command: Command) -> tuple[Claimant, ...]:
         target = station.target(None, command.link_id)
         link_ids = () if target is None or target.link_id is None else (target.link_id,)
     states = ((link_id, fleet.vehicle_of_link(link_id)) for link_id in link_ids)
-    return tuple(Claimant(link_id, s.is_flying) for link_id, s in states if s is not None)
+    return tuple(ClaimingLink(link_id, s.is_flying) for link_id, s in states if s is not None)

@@ -21,7 +21,7 @@ def conditions(station: Station) -> Iterator[Condition]:
     line = station.shade
     why = line.error if line.rejected is None else line.rejected.reason
     if why is not None:
-        serial = station.imaging.eye_serial
+        serial = station.imaging.imager_serial
         text = f"no shade is read from the eye's frames: {why}"
         yield Condition(
             RULE, Severity.WARNING, RULE, serial or "", text, serial, after_s=TROUBLE_AFTER_S
@@ -30,7 +30,7 @@ def conditions(station: Station) -> Iterator[Condition]:
 
 def view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
     """Return how the line from frames to forecasts stands; None without an eye."""
-    if station.imaging.eye_serial is None:
+    if station.imaging.imager_serial is None:
         return None
     line, settings = station.shade, station.settings
     return schema.ShadeLineView(

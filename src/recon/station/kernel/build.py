@@ -29,13 +29,13 @@ NEAR_AXIS_RAD = 0.3
 def first_state(site: Site, settings: StationSettings | None = None) -> Station:
     """Return the station before anything has happened."""
     chosen = _with_lens(settings or StationSettings(), site)
-    marked = None if site.eye is None else site.eye.marked_frame
+    marked = None if site.imager is None else site.imager.marked_frame
     return Station(
         settings=chosen,
         airspace=PreparedAirspace(site.airspace),
         fleet=Fleet(settings=chosen.fleet, profiles=site.profiles),
         imaging=Imaging(
-            eye_serial=None if site.eye is None else site.eye.serial,
+            imager_serial=None if site.imager is None else site.imager.serial,
             reference=marked,
             is_reference_assumed=marked is None,
         ),
@@ -52,17 +52,17 @@ def worker_tasks(site: Site) -> dict[str, Task]:
         PLAN_SURVEY: plan_survey_task,
         STEP_SURVEY: step_task,
     }
-    if site.eye is None or site.frame is None or site.ground_grid is None:
+    if site.imager is None or site.frame is None or site.ground_grid is None:
         return tasks
-    eye, frame = site.eye, site.frame
-    projector = GroundProjector(site.ground_grid, eye.camera, eye.image_circle)
-    mount = site.profiles.get(eye.serial, VehicleProfile(eye.serial)).mount
+    imager, frame = site.imager, site.frame
+    projector = GroundProjector(site.ground_grid, imager.camera, imager.image_circle)
+    mount = site.profiles.get(imager.serial, VehicleProfile(imager.serial)).mount
 
     def lay(payload: object) -> GroundImage:
         assert isinstance(payload, LayFrame)
         marked, now = payload.reference, payload.telemetry
         shift_m = shift_east_north_m(frame, marked, now)
-        pose = displaced_pose(eye.solution.pose, marked, now, shift_m, mount)
+        pose = displaced_pose(imager.solution.pose, marked, now, shift_m, mount)
         return projector.lay(payload.frame, pose)
 
     return {LAY_FRAME: lay, **tasks}
@@ -70,7 +70,9 @@ def worker_tasks(site: Site) -> dict[str, Task]:
 
 def _with_lens(settings: StationSettings, site: Site) -> StationSettings:
     """With what a pixel of this eye's lens covers; near its axis, where most of the field is."""
-    if site.eye is None:
+    if site.imager is None:
         return settings
-    pixels = float(site.eye.camera.profile.radius_px(np.array([NEAR_AXIS_RAD]))[0]) / NEAR_AXIS_RAD
+    pixels = (
+        float(site.imager.camera.profile.radius_px(np.array([NEAR_AXIS_RAD]))[0]) / NEAR_AXIS_RAD
+    )
     return replace(settings, detection=replace(settings.detection, pixels_per_radian=pixels))

@@ -67,7 +67,7 @@ def drive_apart(station: Station, now_ns: int) -> Stepped:
 def watch_apart(station: Station, now_ns: int) -> Stepped:
     """Watch the orders of each vehicle by itself."""
     outputs: tuple[Output, ...] = ()
-    serials = {record.command.serial for record in station.orders.watched}
+    serials = {record.command.serial for record in station.orders.tracked}
     for serial in sorted(serial for serial in serials if serial is not None):
         part = partial(_watch_one, serial)
         station, more = _attempt(f"watching the orders of {serial}", part, station, now_ns)

@@ -165,7 +165,7 @@ def _start_auditor(
 def _taken_up(station: Station, begun: Begun) -> str:
     """What a person must know who starts a station after one that ended in flight."""
     names = [station.fleet.vehicles[serial].display_name for serial in station.restored_flights]
-    names += [state.display_name for state in station.watch.lost.values()]
+    names += [state.display_name for state in station.watchdog_state.lost.values()]
     words = [f"flying when last seen: {', '.join(names)}"] if names else []
     if station.orders.records:
         words.append(f"{len(station.orders.records)} orders were interrupted")

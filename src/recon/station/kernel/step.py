@@ -14,12 +14,12 @@ from recon.model.event import (
     DeadlineMissed,
     Event,
     FleetReturnOrdered,
-    GhostDismissed,
-    HolderCame,
-    HolderGone,
+    HazardDismissed,
     LinkClosed,
     LinkOpened,
     OperatorOrder,
+    OwnerConnected,
+    OwnerDisconnected,
     PacketReceived,
     PreflightOverridden,
     SeparationHoldSwitched,
@@ -80,11 +80,11 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
             return authority.take(station, event, now_ns), ()
         case SticksDue():
             return order_gateway.drive_streams(station, now_ns)
-        case HolderCame(holder):
-            return replace(station, holders=station.holders | {holder}), ()
-        case HolderGone(holder):
-            return order_gateway.holder_gone(station, holder, now_ns)
-        case GhostDismissed():
+        case OwnerConnected(owner):
+            return replace(station, owners=station.owners | {owner}), ()
+        case OwnerDisconnected(owner):
+            return order_gateway.owner_disconnected(station, owner, now_ns)
+        case HazardDismissed():
             return known_traffic.dismiss(station, event, now_ns), ()
         case SeparationHoldSwitched():
             return watchdog_runner.switch_hold(station, event), ()
@@ -135,7 +135,7 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     if vehicle.serial in station.restored_flights:
         station = restart.recheck(station, vehicle.serial, now_ns)
     match event.report:
-        case CoreReport() if vehicle.serial is not None and _is_eye(station, vehicle):
+        case CoreReport() if vehicle.serial is not None and _is_imager(station, vehicle):
             kept = station.settings.pose_history_samples
             seen = imaging.with_sample(station.imaging, vehicle, now_ns, kept)
             station = replace(station, imaging=seen)
@@ -180,8 +180,8 @@ TICK_PARTS: Mapping[str, Callable[[Station, int], Stepped]] = {
 """What a tick does, in this order, and each in words."""
 
 
-def _is_eye(station: Station, vehicle: VehicleState) -> bool:
-    return vehicle.serial == station.imaging.eye_serial
+def _is_imager(station: Station, vehicle: VehicleState) -> bool:
+    return vehicle.serial == station.imaging.imager_serial
 
 
 def _frame(
@@ -202,7 +202,7 @@ def _frame(
     others = ((key, kept) for key, kept in station.frames.items() if key != serial)
     frames = dict([*others, (serial, frame)][-station.settings.frames_kept :])
     station = replace(station, frames=frames, next_frame_id=frame.id + 1)
-    if not _is_eye(station, vehicle):
+    if not _is_imager(station, vehicle):
         return station, ()
     is_flying = vehicle.is_flying.value is True
     seen, work = imaging.take_frame(station.imaging, frame, is_flying)

@@ -6,12 +6,12 @@ from typing import Annotated, Any
 
 import msgspec
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import BODY_NAMES, Body, Phase
 from recon.record.audit import STARTED_KIND, STOPPED_KIND, AuditLine
-from recon.station.audit.unidentified_snapshots import NAMELESS_GONE_KIND, NAMELESS_KIND
+from recon.station.audit.unidentified_snapshots import UNIDENTIFIED_GONE_KIND, UNIDENTIFIED_KIND
 from recon.station.audit.vehicle_snapshots import SIGHTING_KINDS
-from recon.station.state.vehicle_snapshot import Sighting
+from recon.station.state.vehicle_snapshot import VehicleSnapshot
 from recon.station.traffic.known_traffic import MANY_LOST
 
 MOST_VEHICLES = 256
@@ -37,8 +37,8 @@ class _Order(msgspec.Struct):
 
 
 class _Lead(msgspec.Struct):
-    leader: Leader
-    holder: str = ""
+    holder: AuthorityHolder
+    holder_name: str = ""
 
 
 class _Name(msgspec.Struct):
@@ -72,10 +72,10 @@ class OpenOrder:
 class LastRun:
     """Collects what the lines tell, the oldest first."""
 
-    sightings: dict[str, Sighting] = field(default_factory=dict)
-    nameless: dict[str, Sighting] = field(default_factory=dict)
-    """What flew without a serial, by what its ghost is dismissed by."""
-    leads: dict[str, tuple[Leader, str]] = field(default_factory=dict)
+    sightings: dict[str, VehicleSnapshot] = field(default_factory=dict)
+    unidentified: dict[str, VehicleSnapshot] = field(default_factory=dict)
+    """What flew without a serial, by what its hazard area is dismissed by."""
+    authorities: dict[str, tuple[AuthorityHolder, str]] = field(default_factory=dict)
     orders: dict[int, OpenOrder] = field(default_factory=dict)
     last_id: int = 0
     least_own_id: int = 0
@@ -101,42 +101,42 @@ class LastRun:
             self.orders.clear()
         elif line.kind.startswith("order."):
             self._take_order(line)
-        elif line.kind in (NAMELESS_KIND, NAMELESS_GONE_KIND):
-            self._take_nameless(line)
+        elif line.kind in (UNIDENTIFIED_KIND, UNIDENTIFIED_GONE_KIND):
+            self._take_unidentified(line)
         elif serial is None:
             return
         elif line.kind in SIGHTING_KINDS:
-            self._take_sighting(serial, msgspec.convert(line.details, Sighting))
+            self._take_sighting(serial, msgspec.convert(line.details, VehicleSnapshot))
         elif line.kind == "authority.taken":
-            lead = msgspec.convert(line.details, _Lead)
-            self._take_lead(serial, lead.leader, lead.holder)
-        elif line.kind == "ghost.dismissed":
+            authority = msgspec.convert(line.details, _Lead)
+            self._take_authority(serial, authority.holder, authority.holder_name)
+        elif line.kind == "hazard.dismissed":
             self.sightings.pop(serial, None)
-            self.nameless.pop(serial, None)
+            self.unidentified.pop(serial, None)
 
-    def _take_sighting(self, serial: str, sighting: Sighting) -> None:
+    def _take_sighting(self, serial: str, sighting: VehicleSnapshot) -> None:
         """Beyond the limit those on the ground make room; when all may fly, nothing is silent."""
         if serial not in self.sightings and len(self.sightings) >= MOST_VEHICLES:
             landed = (key for key, seen in self.sightings.items() if seen.is_flying is False)
             self.sightings.pop(next(landed, ""), None)
         if serial in self.sightings or len(self.sightings) < MOST_VEHICLES:
             self.sightings[serial] = sighting
-            self._take_lead(serial, sighting.leader, sighting.holder)
+            self._take_authority(serial, sighting.holder, sighting.holder_name)
         elif sighting.is_flying is not False:
-            self.nameless[MANY_LOST] = sighting
+            self.unidentified[MANY_LOST] = sighting
 
-    def _take_nameless(self, line: AuditLine) -> None:
+    def _take_unidentified(self, line: AuditLine) -> None:
         name = msgspec.convert(line.details, _Name).name
-        if line.kind == NAMELESS_GONE_KIND:
-            self.nameless.pop(name, None)
+        if line.kind == UNIDENTIFIED_GONE_KIND:
+            self.unidentified.pop(name, None)
             return
-        sighting = msgspec.convert(line.details, Sighting)
-        is_known = name in self.nameless or len(self.nameless) < MOST_NAMELESS
-        self.nameless[name if is_known else MANY_LOST] = sighting
+        sighting = msgspec.convert(line.details, VehicleSnapshot)
+        is_known = name in self.unidentified or len(self.unidentified) < MOST_NAMELESS
+        self.unidentified[name if is_known else MANY_LOST] = sighting
 
-    def _take_lead(self, serial: str, leader: Leader, holder: str) -> None:
-        if serial in self.leads or len(self.leads) < MOST_VEHICLES:
-            self.leads[serial] = (leader, holder)
+    def _take_authority(self, serial: str, holder: AuthorityHolder, holder_name: str) -> None:
+        if serial in self.authorities or len(self.authorities) < MOST_VEHICLES:
+            self.authorities[serial] = (holder, holder_name)
 
     def _take_order(self, line: AuditLine) -> None:
         order = msgspec.convert(line.details, _Order)

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from recon.geo.distance import horizontal_distance_m
-from recon.model.authority import Lead, Leader
+from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Command, Phase
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
@@ -25,7 +25,7 @@ from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
 from recon.station.state.recovery_settings import RestartSettings
 from recon.station.state.station import Station
-from recon.station.state.vehicle_snapshot import Place, Sighting
+from recon.station.state.vehicle_snapshot import Place, VehicleSnapshot
 from recon.station.traffic.known_traffic import MANY_LOST, with_lost
 
 INTERRUPTED = "the station was restarted; look what the vehicle does"
@@ -59,15 +59,15 @@ def restored(station: Station, last: LastRun, now_ns: int) -> Station:
     }
     fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, **seen})
     # Who flew before was led by somebody: the operator, unless the audit names another.
-    known = dict.fromkeys(flights, (Leader.OPERATOR, "")) | dict(last.leads)
-    leads = {serial: _lead(*lead, now_ns) for serial, lead in known.items()}
+    known = dict.fromkeys(flights, (AuthorityHolder.OPERATOR, "")) | dict(last.authorities)
+    authorities = {serial: _authority(*authority, now_ns) for serial, authority in known.items()}
     station = replace(
         station,
         fleet=fleet,
-        leads={**station.leads, **leads},
+        authorities={**station.authorities, **authorities},
         restored_flights=flights,
         restored_at_ns=now_ns,
-        watch=replace(station.watch, lost=_lost(last, now_ns, settings)),
+        watchdog_state=replace(station.watchdog_state, lost=_lost(last, now_ns, settings)),
     )
     return _with_interrupted(station, last, now_ns)
 
@@ -79,10 +79,14 @@ def restart_entries(station: Station) -> Iterator[AuditEntry]:
             text = "flew when the last run saw it last; lost until it is heard"
             yield sighting_entry(RESTORED_KIND, text, station, vehicle)
     yield from restored_entries(station)
-    for serial, lead in station.leads.items():
+    for serial, authority in station.authorities.items():
         name = _name(station, serial)
-        who = {"leader": lead.leader.value, "holder": lead.holder, "reason": lead.reason}
-        text = f"{name}: is led by the {lead.leader.value}: {lead.reason}"
+        who = {
+            "holder": authority.holder.value,
+            "holder_name": authority.holder_name,
+            "reason": authority.reason,
+        }
+        text = f"{name}: is led by the {authority.holder.value}: {authority.reason}"
         yield AuditEntry("authority.taken", text, "station", serial, name, who)
     for record in station.orders.records.values():
         command = record.command
@@ -119,7 +123,7 @@ def recheck(station: Station, serial: str | None, now_ns: int) -> Station:
 
 
 def another_flight(
-    sighting: Sighting, vehicle: VehicleState, now_ns: int, settings: RestartSettings
+    sighting: VehicleSnapshot, vehicle: VehicleState, now_ns: int, settings: RestartSettings
 ) -> str | None:
     """Return why a vehicle may not be on the flight it was seen on; None when all agrees."""
     gone_s = ns_to_seconds(now_ns - sighting.heard_ns)
@@ -133,7 +137,7 @@ def another_flight(
 
 
 def _place_doubt(
-    sighting: Sighting, vehicle: VehicleState, gone_s: float, settings: RestartSettings
+    sighting: VehicleSnapshot, vehicle: VehicleState, gone_s: float, settings: RestartSettings
 ) -> str | None:
     here = vehicle.position.value
     if sighting.place is None or here is None:
@@ -145,7 +149,7 @@ def _place_doubt(
 
 
 def _height_doubt(
-    sighting: Sighting, vehicle: VehicleState, gone_s: float, settings: RestartSettings
+    sighting: VehicleSnapshot, vehicle: VehicleState, gone_s: float, settings: RestartSettings
 ) -> str | None:
     """Height above takeoff moves on; altitude minus it belongs to the takeoff point, and stays."""
     height_m, offset_m = vehicle.height_above_takeoff_m.value, vehicle.altitude_offset_m.value
@@ -160,7 +164,7 @@ def _height_doubt(
 
 
 def _battery_doubt(
-    sighting: Sighting, vehicle: VehicleState, settings: RestartSettings
+    sighting: VehicleSnapshot, vehicle: VehicleState, settings: RestartSettings
 ) -> str | None:
     now, then = vehicle.battery_fraction.value, sighting.battery_fraction
     if now is None or then is None:
@@ -169,8 +173,8 @@ def _battery_doubt(
 
 
 def _may_still_fly(
-    sightings: Mapping[str, Sighting], now_ns: int, settings: RestartSettings
-) -> dict[str, Sighting]:
+    sightings: Mapping[str, VehicleSnapshot], now_ns: int, settings: RestartSettings
+) -> dict[str, VehicleSnapshot]:
     return {
         key: sighting
         for key, sighting in sightings.items()
@@ -182,7 +186,7 @@ def _may_still_fly(
 def _lost(last: LastRun, now_ns: int, settings: RestartSettings) -> Mapping[str, VehicleState]:
     """What flew without a serial, under new names: links are numbered anew."""
     lost: Mapping[str, VehicleState] = {}
-    for key, sighting in _may_still_fly(last.nameless, now_ns, settings).items():
+    for key, sighting in _may_still_fly(last.unidentified, now_ns, settings).items():
         name = key if key == MANY_LOST else f"lost-{len(lost) + 1}"
         profile = VehicleProfile(serial="", name=f"unidentified {name}")
         lost = with_lost(lost, name, _vehicle(sighting, None, profile))
@@ -190,7 +194,7 @@ def _lost(last: LastRun, now_ns: int, settings: RestartSettings) -> Mapping[str,
 
 
 def _vehicle(
-    sighting: Sighting, serial: str | None, profile: VehicleProfile | None
+    sighting: VehicleSnapshot, serial: str | None, profile: VehicleProfile | None
 ) -> VehicleState:
     at_ns = sighting.heard_ns
     return VehicleState(
@@ -209,7 +213,7 @@ def _vehicle(
     )
 
 
-def _velocity(sighting: Sighting) -> VelocityNed | None:
+def _velocity(sighting: VehicleSnapshot) -> VelocityNed | None:
     parts = (
         sighting.velocity_north_mps,
         sighting.velocity_east_mps,
@@ -219,12 +223,12 @@ def _velocity(sighting: Sighting) -> VelocityNed | None:
     return None if north is None or east is None or down is None else VelocityNed(north, east, down)
 
 
-def _lead(leader: Leader, holder: str, now_ns: int) -> Lead:
-    if leader is Leader.GUIDANCE:
+def _authority(holder: AuthorityHolder, holder_name: str, now_ns: int) -> ControlAuthority:
+    if holder is AuthorityHolder.GUIDANCE:
         reason = "the station's planning led it until the station was restarted"
-        return Lead(Leader.OPERATOR, "", now_ns, reason)
-    reason = f"the {leader.value} led it when the station was restarted"
-    return Lead(leader, holder, now_ns, reason)
+        return ControlAuthority(AuthorityHolder.OPERATOR, "", now_ns, reason)
+    reason = f"the {holder.value} led it when the station was restarted"
+    return ControlAuthority(holder, holder_name, now_ns, reason)
 
 
 def _with_interrupted(station: Station, last: LastRun, now_ns: int) -> Station:

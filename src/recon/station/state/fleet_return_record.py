@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from recon.guidance.fleet_return import Flight
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.geo import LocalFrame
 
 
@@ -55,7 +55,7 @@ class Member:
     clears: str | None = None
     by: str = ""
     """Who called it."""
-    asked_as: Leader = Leader.OPERATOR
+    asked_as: AuthorityHolder = AuthorityHolder.OPERATOR
     """As whose its orders are given: it is the return's while that one leads it."""
 
     def at(self, stage: Stage, now_ns: int, reason: str = "") -> "Member":

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from recon.model.authority import Lead
+from recon.model.authority import ControlAuthority
 from recon.model.mission import Mission
 
 
@@ -20,7 +20,7 @@ class FlightPlan:
     index: int = 0
     """Of the part sent last."""
     link_id: int | None = None
-    lead: Lead | None = None
+    authority: ControlAuthority | None = None
     heard_at_ns: int | None = None
     broken: str | None = None
 

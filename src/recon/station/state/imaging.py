@@ -19,7 +19,7 @@ _MISSING = "no telemetry of the eye within 3 s of the frame's capture"
 
 
 @dataclass(frozen=True, slots=True)
-class EyeSample:
+class ImagerSample:
     """The eye's telemetry at one moment."""
 
     at_ns: int
@@ -43,10 +43,10 @@ class Imaging:
     not give it, the first frame received in flight stands for it.
     """
 
-    eye_serial: str | None = None
+    imager_serial: str | None = None
     reference: TelemetryReference | None = None
     is_reference_assumed: bool = True
-    samples: tuple[EyeSample, ...] = ()
+    samples: tuple[ImagerSample, ...] = ()
     ground_image: GroundImage | None = None
     captured_sigma_s: float = 0.0
     next_job_id: int = 1
@@ -54,14 +54,14 @@ class Imaging:
     latest_error: str | None = None
 
 
-def with_sample(imaging: Imaging, eye: VehicleState, now_ns: int, kept: int) -> Imaging:
+def with_sample(imaging: Imaging, imager: VehicleState, now_ns: int, kept: int) -> Imaging:
     """Return the state with the eye's newest telemetry remembered, if it is complete."""
     telemetry = TelemetryReference.from_report(
-        eye.position.value, eye.height_above_takeoff_m.value, eye.attitude.value
+        imager.position.value, imager.height_above_takeoff_m.value, imager.attitude.value
     )
     if telemetry is None:
         return imaging
-    samples = (*imaging.samples, EyeSample(now_ns, telemetry))
+    samples = (*imaging.samples, ImagerSample(now_ns, telemetry))
     return replace(imaging, samples=samples[-kept:])
 
 
@@ -82,7 +82,7 @@ def take_frame(
     return replace(imaging, next_job_id=job_id + 1), (job_id, job)
 
 
-def _sample_at(samples: tuple[EyeSample, ...], at_ns: int) -> EyeSample | None:
+def _sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | None:
     """The sample nearest in time, unless even that one is far off."""
     nearest = min(samples, key=lambda sample: abs(sample.at_ns - at_ns), default=None)
     if nearest is None or abs(nearest.at_ns - at_ns) > seconds_to_ns(SAMPLE_NEAR_S):

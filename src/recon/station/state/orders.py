@@ -76,7 +76,7 @@ class OrderRecord:
         return self.history[-1].note
 
     @property
-    def is_watched(self) -> bool:
+    def is_tracked(self) -> bool:
         """Whether time and telemetry still change it: it lives, or its alarm does."""
         return not self.phase.is_final or self.alarm is not None
 
@@ -87,7 +87,7 @@ class OrderBook:
     telemetry still change them. `put` keeps it, for it is asked for with every packet."""
 
     records: Mapping[int, OrderRecord] = field(default_factory=dict)
-    watched: tuple[OrderRecord, ...] = ()
+    tracked: tuple[OrderRecord, ...] = ()
 
 
 def changed(record: OrderRecord, phase: Phase, at_ns: int, note: str = "") -> OrderRecord:
@@ -203,19 +203,19 @@ def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
     newest_id = record.command.id
     records = {**book.records, newest_id: record}
     if len(records) > kept:
-        finished = (key for key, r in records.items() if not r.is_watched and key != newest_id)
+        finished = (key for key, r in records.items() if not r.is_tracked and key != newest_id)
         for key in tuple(islice(finished, len(records) - kept)):
             del records[key]
-    return OrderBook(records, _watched(book.watched, record))
+    return OrderBook(records, _watched(book.tracked, record))
 
 
 def _watched(before: tuple[OrderRecord, ...], newest: OrderRecord) -> tuple[OrderRecord, ...]:
     """Return the watched records with the newest form of one, each in its old place."""
     newest_id = newest.command.id
     if all(record.command.id != newest_id for record in before):
-        return (*before, newest) if newest.is_watched else before
+        return (*before, newest) if newest.is_tracked else before
     changed_ones = (newest if r.command.id == newest_id else r for r in before)
-    return tuple(record for record in changed_ones if record.is_watched)
+    return tuple(record for record in changed_ones if record.is_tracked)
 
 
 def on_sent(record: OrderRecord, event: CommandSent, context: SentContext) -> OrderRecord:

@@ -14,7 +14,7 @@ class RestartSettings:
     settle_s: float = 10.0
     """After a start, where vehicles may be that the last run saw flying is no alarm and no reason
     to hold others for this long: apps connect again within seconds, and each vehicle that is heard
-    already flies near the ghosts of those that are about to be. The gate counts them from the
+    already flies near the hazard areas of those that are about to be. The gate counts them from the
     first moment on."""
 
     fastest_mps: float = 25.0

@@ -50,17 +50,17 @@ class StreamSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Lease:
+class SetpointLease:
     """One steered order being carried out. Times are station time.
 
-    `holder` names the connection whose end ends it. `link_id` is the vehicle's link at its start:
+    `owner` names the connection whose end ends it. `link_id` is the vehicle's link at its start:
     no lease outlives that. `seen_at_ns` is when the telemetry last steered by was received.
     `mode_before` is the flight mode at its start. `closing` is why it ends, once zero has been
     sent and hold is to follow.
     """
 
     command: Command
-    holder: str | None
+    owner: str | None
     goal: Goal
     steered: Steered
     link_id: int | None

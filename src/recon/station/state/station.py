@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.fleet.state import Fleet
-from recon.model.authority import Lead
+from recon.model.authority import ControlAuthority
 from recon.model.command import Command, VirtualStick
 from recon.model.imagery import Frame
 from recon.model.intent import Intent
@@ -14,17 +14,17 @@ from recon.station.state.alarm_book import AlarmBook
 from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imaging import Imaging
 from recon.station.state.orders import OrderBook
-from recon.station.state.setpoint_lease import Lease
+from recon.station.state.setpoint_lease import SetpointLease
 from recon.station.state.settings import StationSettings
 from recon.station.state.shade import ShadeLine
 from recon.station.state.survey_record import Surveys
-from recon.station.state.tracking import Following
-from recon.station.state.vehicle_snapshot import Sighting
-from recon.station.state.watchdog_state import Watch
+from recon.station.state.tracking import Tracking
+from recon.station.state.vehicle_snapshot import VehicleSnapshot
+from recon.station.state.watchdog_state import WatchdogState
 
 
 @dataclass(frozen=True, slots=True)
-class PendingZero:
+class PendingNeutral:
     """A stick that is being held, and when its time is over."""
 
     command: Command
@@ -74,17 +74,17 @@ class Station:
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
     airspace: PreparedAirspace = field(default=OPEN_AIRSPACE, repr=False)
-    leads: Mapping[str, Lead] = field(default_factory=dict)
+    authorities: Mapping[str, ControlAuthority] = field(default_factory=dict)
     """Who leads each vehicle, by serial; the default for one that nobody has taken."""
     intents: Mapping[str, Intent] = field(default_factory=dict)
     """What each vehicle does on the station's word, by serial."""
-    followings: Mapping[str, Following] = field(default_factory=dict)
+    trackings: Mapping[str, Tracking] = field(default_factory=dict)
     """How telemetry follows each vehicle's intent, by serial."""
     preflight_overrides: Mapping[str, Override] = field(default_factory=dict)
     """By serial, until the vehicle has landed."""
     clock: Clock | None = None
     """The computer's clock; None until it was first read."""
-    restored_flights: Mapping[str, Sighting] = field(default_factory=dict)
+    restored_flights: Mapping[str, VehicleSnapshot] = field(default_factory=dict)
     """Vehicles that flew when the last run saw them last, by serial, until each is heard."""
     restored_at_ns: int | None = None
     """When this run took up what the last one knew; None when there was nothing."""
@@ -92,15 +92,15 @@ class Station:
     """Why the audit cannot be written, while it cannot."""
     next_own_id: int = -1
     """The number of the next command the station gives by itself; see `own_ids`."""
-    streams: Mapping[str, Lease] = field(default_factory=dict)
+    streams: Mapping[str, SetpointLease] = field(default_factory=dict)
     """Steered orders being carried out, by serial; never brought back after a restart."""
-    holders: frozenset[str] = frozenset()
+    owners: frozenset[str] = frozenset()
     """Open connections that may hold a steered order."""
     fleet_return: FleetReturn | None = None
     """The newest fleet return, until the station is started anew or another one begins."""
-    sticks: Mapping[str, PendingZero] = field(default_factory=dict)
+    sticks: Mapping[str, PendingNeutral] = field(default_factory=dict)
     """Sticks being held, by serial: each ends with a zero from the station."""
-    watch: Watch = field(default_factory=Watch)
+    watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """What the watchdogs found, held and were told."""
     faults: Mapping[str, Fault] = field(default_factory=dict)
     """Of the station's own code, lately, by what it was doing."""

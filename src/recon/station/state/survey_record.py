@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Literal
 
-from recon.guidance.survey import Seen, SurveyState
+from recon.guidance.survey import PositionSample, SurveyState
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
 from recon.model.survey import Survey, SurveyPhase, none_such
@@ -55,7 +55,7 @@ class SurveyRecord:
     look_at_ns: int = 0
     trouble: str | None = None
     """Why the newest look came to nothing."""
-    seen: Tail[tuple[str, Seen]] = field(default_factory=Tail)
+    seen: Tail[tuple[str, PositionSample]] = field(default_factory=Tail)
     shade: Tail[ShadeMap] = field(default_factory=Tail)
     flown: Mapping[tuple[str, int], tuple[Place, ...]] = field(
         default_factory=lambda: MappingProxyType({})

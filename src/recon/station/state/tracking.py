@@ -8,7 +8,7 @@ from recon.model.vehicle import FlightMode
 
 
 @dataclass(frozen=True)
-class Following:
+class Tracking:
     """What the flight table is asked with, beside the intent itself.
 
     `told_at_ns` is the intent's time: only modes received later count. `mode_before` is the flight

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import msgspec
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 
 Latitude = Annotated[float, msgspec.Meta(ge=-90.0, le=90.0)]
 Longitude = Annotated[float, msgspec.Meta(ge=-180.0, le=180.0)]
@@ -20,7 +20,7 @@ class Place(msgspec.Struct, frozen=True):
     longitude_deg: Longitude
 
 
-class Sighting(msgspec.Struct, frozen=True, kw_only=True):
+class VehicleSnapshot(msgspec.Struct, frozen=True, kw_only=True):
     """A vehicle as it was last heard. Heights are above its takeoff point; None is unknown.
 
     `altitude_offset_m` is altitude minus height above takeoff; it stays the same through a flight,
@@ -30,8 +30,8 @@ class Sighting(msgspec.Struct, frozen=True, kw_only=True):
     heard_ns: int
     is_flying: bool | None
     is_simulated: bool
-    leader: Leader
-    holder: str
+    holder: AuthorityHolder
+    holder_name: str
     place: Place | None
     height_above_takeoff_m: Metres | None
     velocity_north_mps: Speed | None

@@ -34,12 +34,12 @@ class StickCount:
 
 
 @dataclass(frozen=True)
-class Watch:
+class WatchdogState:
     """The watch's memory; everything by serial, or by finding's key.
 
-    `dismissed` has for each ghost that somebody took out of the air the time of its last telemetry:
-    anything newer brings the vehicle back. `lost` are vehicles that flew without ever saying a
-    serial when their links ended, by the name their ghosts are dismissed by.
+    `dismissed` has for each hazard area that somebody took out of the air the time of its last
+    telemetry: anything newer brings the vehicle back. `lost` are vehicles that flew without ever
+    saying a serial when their links ended, by the name their hazard areas are dismissed by.
     """
 
     looked_at_ns: int | None = None
@@ -49,7 +49,7 @@ class Watch:
     before: Mapping[str, Before] = field(default_factory=dict)
     sticks: Mapping[str, StickCount] = field(default_factory=dict)
     dismissed: Mapping[str, int | None] = field(default_factory=dict)
-    nameless_since_ns: Mapping[int, int] = field(default_factory=dict)
+    unidentified_since_ns: Mapping[int, int] = field(default_factory=dict)
     """Since when each link has flown without a serial, by link id."""
     lost: Mapping[str, VehicleState] = field(default_factory=dict)
     is_hold_on: bool = True

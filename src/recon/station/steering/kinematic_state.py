@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import hypot
 
 from recon.geo.distance import moved_m
-from recon.guidance.steering import Goal, Seen, SteeringSettings, stopping_place
+from recon.guidance.steering import Goal, KinematicState, SteeringSettings, stopping_place
 from recon.model.command import GoTo, HoldPosition, Nudge, Refusal, SteeredBody
 from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleState
@@ -13,7 +13,7 @@ from recon.station.state.setpoint_lease import StreamSettings
 SIGHT = "sight"
 
 
-def sight(vehicle: VehicleState, now_ns: int) -> Seen | None:
+def sight(vehicle: VehicleState, now_ns: int) -> KinematicState | None:
     """Return what steering needs to see of a vehicle, None while any part of it is unknown.
 
     Its age is that of the oldest part.
@@ -23,7 +23,7 @@ def sight(vehicle: VehicleState, now_ns: int) -> Seen | None:
     if position is None or velocity is None or height_m is None or attitude is None:
         return None
     parts = vehicle.position, vehicle.velocity_ned, vehicle.height_above_takeoff_m, vehicle.attitude
-    return Seen(
+    return KinematicState(
         position,
         velocity.north_mps,
         velocity.east_mps,
@@ -46,7 +46,7 @@ def unseen(vehicle: VehicleState, now_ns: int, settings: StreamSettings) -> Refu
 
 
 def goal_of(
-    body: SteeredBody, seen: Seen, steering: SteeringSettings, settings: StreamSettings
+    body: SteeredBody, seen: KinematicState, steering: SteeringSettings, settings: StreamSettings
 ) -> Goal:
     """Return where an order leads a vehicle that is seen now."""
     match body:
@@ -65,7 +65,7 @@ def goal_of(
             return Goal(place, seen.height_above_takeoff_m, settings.hold_speed_mps, seen.yaw_deg)
 
 
-def no_faster_than(seen: Seen, speed_mps: float) -> Seen:
+def no_faster_than(seen: KinematicState, speed_mps: float) -> KinematicState:
     """Return the same sight with its horizontal speed cut: no demand begins above a limit."""
     speed = hypot(seen.velocity_north_mps, seen.velocity_east_mps)
     share = 1.0 if speed <= speed_mps else speed_mps / speed

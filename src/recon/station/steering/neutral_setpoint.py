@@ -14,7 +14,7 @@ from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.state.command_ids import take_id
-from recon.station.state.station import PendingZero, Station
+from recon.station.state.station import PendingNeutral, Station
 
 ISSUER = "station: end of a stick"
 
@@ -29,7 +29,7 @@ def begin(station: Station, command: Command, now_ns: int) -> Station:
         return station
     if _stands(station, command.serial, body):
         return station
-    pending = PendingZero(command, body, now_ns + seconds_to_ns(body.timeout_s))
+    pending = PendingNeutral(command, body, now_ns + seconds_to_ns(body.timeout_s))
     return replace(station, sticks={**station.sticks, command.serial: pending})
 
 
@@ -76,7 +76,7 @@ def give_up(station: Station, now_ns: int) -> Station:
     return station if len(sticks) == len(station.sticks) else replace(station, sticks=sticks)
 
 
-def _is_flown_by_sticks(station: Station, pending: PendingZero, now_ns: int) -> bool:
+def _is_flown_by_sticks(station: Station, pending: PendingNeutral, now_ns: int) -> bool:
     """Whether it is heard, and the newest word on its mode is that sticks fly it (2 Hz)."""
     vehicle = station.fleet.vehicles.get(pending.command.serial or "")
     if vehicle is None or vehicle.flight_mode.value is not FlightMode.JOYSTICK:

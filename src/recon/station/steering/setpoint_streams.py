@@ -8,7 +8,7 @@ Nothing resumes a lease that has ended: no reconnect, no restart.
 
 from collections.abc import Collection
 
-from recon.guidance.steering import Seen, begin, halted, has_arrived, steer
+from recon.guidance.steering import KinematicState, begin, halted, has_arrived, steer
 from recon.model.command import STEERED_BODIES, Command, Phase, Refusal
 from recon.model.event import CommandSent, OperatorOrder
 from recon.model.intent import Commanded, Intent
@@ -16,7 +16,7 @@ from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.state.outputs import SendCommand
-from recon.station.state.setpoint_lease import Lease, first_due_ns, following_due_ns
+from recon.station.state.setpoint_lease import SetpointLease, first_due_ns, following_due_ns
 from recon.station.state.station import Station
 from recon.station.steering import stream_ends
 from recon.station.steering.kinematic_state import goal_of, no_faster_than, sight, unseen
@@ -25,11 +25,11 @@ from recon.station.steering.stream_ends import Ask, Driven, change_phase, judged
 
 def unsteerable(station: Station, order: OperatorOrder, now_ns: int) -> Refusal | None:
     """Return why a steered order that the gate allows cannot be begun, else None."""
-    if order.holder is not None and order.holder not in station.holders:
+    if order.owner is not None and order.owner not in station.owners:
         return Refusal(
-            "holder",
+            "owner",
             "the connection that was to hold the order is not open (any more): open the stream of "
-            "states, and name its holder in the order",
+            "states, and name its owner in the order",
         )
     steered = [serial for serial in station.streams if serial != order.serial]
     most = station.settings.streams.most_at_once
@@ -43,7 +43,7 @@ def unsteerable(station: Station, order: OperatorOrder, now_ns: int) -> Refusal 
     return unseen(vehicle, now_ns, station.settings.streams)
 
 
-def lease_out(station: Station, command: Command, holder: str | None, now_ns: int) -> Station:
+def lease_out(station: Station, command: Command, owner: str | None, now_ns: int) -> Station:
     """Return the station with a vehicle leased to an order just judged; a stick is due at once."""
     serial, settings = command.serial or "", station.settings
     vehicle = station.fleet.vehicles[serial]
@@ -52,9 +52,9 @@ def lease_out(station: Station, command: Command, holder: str | None, now_ns: in
     assert isinstance(command.body, STEERED_BODIES)
     goal = goal_of(command.body, seen, settings.steering, settings.streams)
     fastest_mps = station.airspace.airspace.limits.max_speed_mps
-    lease = Lease(
+    lease = SetpointLease(
         command=command,
-        holder=holder,
+        owner=owner,
         goal=goal,
         steered=begin(no_faster_than(seen, fastest_mps), now_ns),
         link_id=vehicle.link_id,
@@ -96,11 +96,11 @@ def drive(
     return driven
 
 
-def end_held_by(station: Station, holder: str, now_ns: int, ask: Ask) -> Driven:
+def end_held_by(station: Station, owner: str, now_ns: int, ask: Ask) -> Driven:
     """End the leases of a connection that has gone."""
-    driven = Driven(replace(station, holders=station.holders - {holder}))
+    driven = Driven(replace(station, owners=station.owners - {owner}))
     for serial, lease in station.streams.items():
-        if lease.holder == holder and lease.closing is None:
+        if lease.owner == owner and lease.closing is None:
             reason = "the connection that held the order has gone"
             driven = stream_ends.give_up(driven, serial, lease, reason, now_ns, ask)
     return driven
@@ -127,7 +127,7 @@ def on_sent(station: Station, event: CommandSent, now_ns: int) -> Station:
     return station
 
 
-def _drive(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask) -> Driven:
+def _drive(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Ask) -> Driven:
     station = driven.station
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None:
@@ -153,7 +153,9 @@ def _drive(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask) -> 
     return _send(driven, serial, _demanded(station, serial, lease, seen, now_ns), now_ns, ask)
 
 
-def _demanded(station: Station, serial: str, lease: Lease, seen: Seen | None, now_ns: int) -> Lease:
+def _demanded(
+    station: Station, serial: str, lease: SetpointLease, seen: KinematicState | None, now_ns: int
+) -> SetpointLease:
     """Return the lease with its next demand, and the time of the one after. Unseen: zero."""
     settings = station.settings
     if seen is None:
@@ -169,7 +171,7 @@ def _demanded(station: Station, serial: str, lease: Lease, seen: Seen | None, no
     return replace(lease, steered=steered, next_due_ns=due_ns)
 
 
-def _send(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask) -> Driven:
+def _send(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Ask) -> Driven:
     station, answer, lease = judged(driven.station, lease, now_ns, ask)
     if isinstance(answer, Refusal):
         reason = f"the gate refused its stick: {answer.rule}: {answer.reason}"
@@ -180,8 +182,12 @@ def _send(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask) -> D
 
 
 def _followed(
-    station: Station, lease: Lease, vehicle: VehicleState, seen: Seen | None, now_ns: int
-) -> tuple[Station, Lease]:
+    station: Station,
+    lease: SetpointLease,
+    vehicle: VehicleState,
+    seen: KinematicState | None,
+    now_ns: int,
+) -> tuple[Station, SetpointLease]:
     """Take what telemetry shows into the order's life: sticks fly the vehicle, it is there."""
     if not lease.is_obeyed and _shows_sticks(lease, vehicle):
         lease = replace(lease, is_obeyed=True)
@@ -195,7 +201,7 @@ def _followed(
     return station, lease
 
 
-def _shows_sticks(lease: Lease, vehicle: VehicleState) -> bool:
+def _shows_sticks(lease: SetpointLease, vehicle: VehicleState) -> bool:
     """Whether telemetry newer than the first stick says so; a mode it was in before may linger."""
     mode, sent_at_ns = vehicle.flight_mode, lease.first_sent_at_ns
     if mode.value is not FlightMode.JOYSTICK or mode.received_at_ns is None or sent_at_ns is None:

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from recon.fleet.flight_table import Place, Told, Verdict, read
+from recon.fleet.flight_table import Instruction, Place, Verdict, read
 from recon.guidance.steering import halted
-from recon.model.authority import Lead, Leader
+from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Command, Hover, Phase, Refusal, StickFrame, VirtualStick
 from recon.model.event import OperatorOrder
 from recon.model.intent import Commanded, Intent
@@ -17,7 +17,7 @@ from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.command_ids import take_id
 from recon.station.state.outputs import Output, SendCommand
-from recon.station.state.setpoint_lease import Lease
+from recon.station.state.setpoint_lease import SetpointLease
 from recon.station.state.station import Station
 
 ISSUER = "station: end of a stream of sticks"
@@ -25,7 +25,7 @@ RULE = "steering_ended"
 Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
 """Asks the gate about one stick."""
 
-_NOBODY_YET = Lead()
+_DEFAULT_AUTHORITY = ControlAuthority()
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Driven:
     pilots: tuple[tuple[str, str], ...] = ()
 
 
-def put(station: Station, serial: str, lease: Lease) -> Station:
+def put(station: Station, serial: str, lease: SetpointLease) -> Station:
     """Return the station with a lease in its newest form."""
     return replace(station, streams={**station.streams, serial: lease})
 
@@ -68,7 +68,9 @@ def release(
     return replace(station, orders=book)
 
 
-def change_phase(station: Station, lease: Lease, phase: Phase, now_ns: int, note: str) -> Station:
+def change_phase(
+    station: Station, lease: SetpointLease, phase: Phase, now_ns: int, note: str
+) -> Station:
     """Return the station with the order's record gone on, as long as it is kept."""
     record = station.orders.records.get(lease.command.id)
     if record is None:
@@ -79,8 +81,8 @@ def change_phase(station: Station, lease: Lease, phase: Phase, now_ns: int, note
 
 
 def judged(
-    station: Station, lease: Lease, now_ns: int, ask: Ask
-) -> tuple[Station, ApprovedCommand | Refusal, Lease]:
+    station: Station, lease: SetpointLease, now_ns: int, ask: Ask
+) -> tuple[Station, ApprovedCommand | Refusal, SetpointLease]:
     """Ask the gate about the stick of the lease's present demand."""
     settings, steered = station.settings.streams, lease.steered
     station, number = take_id(station)
@@ -105,12 +107,14 @@ def judged(
     return station, ask(station, command), replace(lease, last_stick_id=number)
 
 
-def taken(station: Station, lease: Lease, vehicle: VehicleState) -> tuple[Phase, str] | None:
+def taken(
+    station: Station, lease: SetpointLease, vehicle: VehicleState
+) -> tuple[Phase, str] | None:
     """Return what took a vehicle out of the station's hands, and what that makes of its order."""
     mode = vehicle.flight_mode
     if mode.received_at_ns is not None and mode.received_at_ns > lease.started_at_ns:
         reading = read(
-            Told.STICK if lease.is_obeyed else Told.STICK_SENT,
+            Instruction.STICK if lease.is_obeyed else Instruction.STICK_SENT,
             mode.value,
             vehicle.gnss_signal_level.value,
             Place.GROUND_ELSEWHERE if vehicle.is_flying.value is False else Place.ELSEWHERE,
@@ -120,36 +124,38 @@ def taken(station: Station, lease: Lease, vehicle: VehicleState) -> tuple[Phase,
             return Phase.SUPERSEDED, f"the pilot has taken the sticks: {reading.why}"
         if reading.verdict is Verdict.FAILSAFE:
             return Phase.FAILED, reading.why
-    lead = _lead(station, lease)
-    if lead.leader is Leader.PILOT and mode.value is not FlightMode.JOYSTICK:
-        return Phase.SUPERSEDED, f"the pilot leads it ({lead.reason})"
+    authority = _authority(station, lease)
+    if authority.holder is AuthorityHolder.PILOT and mode.value is not FlightMode.JOYSTICK:
+        return Phase.SUPERSEDED, f"the pilot leads it ({authority.reason})"
     return None
 
 
-def failure(station: Station, lease: Lease, vehicle: VehicleState, now_ns: int) -> str | None:
+def failure(
+    station: Station, lease: SetpointLease, vehicle: VehicleState, now_ns: int
+) -> str | None:
     """Return why the station must give a lease up, else None."""
     settings = station.settings.streams
     if vehicle.link_id != lease.link_id:
         return "its connection was lost, and a steered order never goes on after that"
     if now_ns - lease.seen_at_ns > seconds_to_ns(settings.resumes_s):
         return f"its telemetry was incomplete or missing for {settings.resumes_s:g} s"
-    lead = _lead(station, lease)
-    if lead.leader is not lease.command.asked_as:
-        return f"{lead.leader.value} leads the vehicle now ({lead.reason})"
+    authority = _authority(station, lease)
+    if authority.holder is not lease.command.asked_as:
+        return f"{authority.holder.value} leads the vehicle now ({authority.reason})"
     waited_ns = now_ns - lease.started_at_ns
     if not lease.is_obeyed and waited_ns > seconds_to_ns(settings.obeyed_s):
         return f"the aircraft has not gone over to sticks within {settings.obeyed_s:g} s"
     return None
 
 
-def has_held_long_enough(station: Station, lease: Lease, now_ns: int) -> bool:
+def has_held_long_enough(station: Station, lease: SetpointLease, now_ns: int) -> bool:
     """Return whether a place was held for as long as the station holds one by sticks."""
     hold_ns = seconds_to_ns(station.settings.streams.hold_at_most_s)
     return lease.arrived_at_ns is not None and now_ns - lease.arrived_at_ns > hold_ns
 
 
 def let_go(
-    driven: Driven, serial: str, lease: Lease, taken: tuple[Phase, str], now_ns: int
+    driven: Driven, serial: str, lease: SetpointLease, taken: tuple[Phase, str], now_ns: int
 ) -> Driven:
     """End a lease without a word to the vehicle: somebody else flies it, and is not fought."""
     phase, why = taken
@@ -164,7 +170,9 @@ def let_go(
     return replace(driven, station=station)
 
 
-def give_up(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask: Ask) -> Driven:
+def give_up(
+    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Ask
+) -> Driven:
     """End a lease that the station cannot carry on: the order fails, with an alarm."""
     phase = Phase.FAILED if lease.arrived_at_ns is None else Phase.DONE
     station = change_phase(driven.station, lease, phase, now_ns, why)
@@ -172,7 +180,7 @@ def give_up(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, as
     return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
 
 
-def leave_alone(driven: Driven, serial: str, lease: Lease, now_ns: int, ask: Ask) -> Driven:
+def leave_alone(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Ask) -> Driven:
     """Leave a vehicle that was held for long to its own position hold; nothing has failed."""
     held_s = driven.station.settings.streams.hold_at_most_s
     why = f"held for {held_s:g} s; from now on by the aircraft itself"
@@ -191,7 +199,9 @@ def hold(driven: Driven, serial: str, now_ns: int) -> Driven:
     return replace(driven, station=station, holds=(*driven.holds, order))
 
 
-def _close(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask: Ask) -> Driven:
+def _close(
+    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Ask
+) -> Driven:
     """Send zero now and hold a little later; hold at once if the gate refuses even the zero."""
     vehicle = driven.station.fleet.vehicles.get(serial)
     height_m = None if vehicle is None else vehicle.height_above_takeoff_m.value
@@ -206,11 +216,11 @@ def _close(driven: Driven, serial: str, lease: Lease, why: str, now_ns: int, ask
     return replace(driven, station=station, outputs=(*driven.outputs, SendCommand(answer)))
 
 
-def _lead(station: Station, lease: Lease) -> Lead:
-    return station.leads.get(lease.command.serial or "", _NOBODY_YET)
+def _authority(station: Station, lease: SetpointLease) -> ControlAuthority:
+    return station.authorities.get(lease.command.serial or "", _DEFAULT_AUTHORITY)
 
 
-def _alarm(station: Station, lease: Lease, why: str, now_ns: int) -> Station:
+def _alarm(station: Station, lease: SetpointLease, why: str, now_ns: int) -> Station:
     """Note the end for a person to see; it stays until acknowledged."""
     record = station.orders.records.get(lease.command.id)
     serial = lease.command.serial

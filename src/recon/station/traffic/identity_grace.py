@@ -1,8 +1,8 @@
 """Who has only just come: most likely it is a vehicle that is known already.
 
 An app says its serial a second after its first telemetry. Until then its vehicle is two things
-here: a link without a serial, and the ghost of a vehicle that is not heard. After a restart every
-vehicle in the air is. Nothing would be found but that each is near itself.
+here: a link without a serial, and the hazard area of a vehicle that is not heard. After a restart
+every vehicle in the air is. Nothing would be found but that each is near itself.
 """
 
 from dataclasses import replace
@@ -19,16 +19,19 @@ SAME_HEIGHT_M = 2.0
 """Two aircraft this near would have met: it is one, told by two connections of its phone."""
 
 
-def is_heard_by_serial(station: Station, nameless: VehicleState) -> bool:
+def is_heard_by_serial(station: Station, unidentified: VehicleState) -> bool:
     """Return whether what a link without a serial told of is heard by its serial at that moment."""
-    return any(_is_same(nameless, vehicle) for vehicle in station.fleet.vehicles.values())
+    return any(_is_same(unidentified, vehicle) for vehicle in station.fleet.vehicles.values())
 
 
-def _is_same(nameless: VehicleState, vehicle: VehicleState) -> bool:
+def _is_same(unidentified: VehicleState, vehicle: VehicleState) -> bool:
     """In doubt it is another one."""
-    here, there = nameless.position.value, vehicle.position.value
-    high_m, other_m = nameless.height_above_takeoff_m.value, vehicle.height_above_takeoff_m.value
-    heard_ns, other_ns = nameless.core_received_at_ns, vehicle.core_received_at_ns
+    here, there = unidentified.position.value, vehicle.position.value
+    high_m, other_m = (
+        unidentified.height_above_takeoff_m.value,
+        vehicle.height_above_takeoff_m.value,
+    )
+    heard_ns, other_ns = unidentified.core_received_at_ns, vehicle.core_received_at_ns
     velocity = vehicle.velocity_ned.value
     if here is None or there is None or high_m is None or other_m is None or velocity is None:
         return False
@@ -68,9 +71,9 @@ def is_new(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
     return may_yet_say_its_serial(station, vehicle, now_ns)
 
 
-def with_nameless(station: Station, now_ns: int) -> Station:
+def with_unidentified(station: Station, now_ns: int) -> Station:
     """Return the station that knows since when each link has flown without a serial."""
-    before = station.watch.nameless_since_ns
+    before = station.watchdog_state.unidentified_since_ns
     since_ns = {
         link.id: before.get(link.id, now_ns)
         for link in station.fleet.unbound_links()
@@ -78,11 +81,13 @@ def with_nameless(station: Station, now_ns: int) -> Station:
     }
     if since_ns == before:
         return station
-    return replace(station, watch=replace(station.watch, nameless_since_ns=since_ns))
+    return replace(
+        station, watchdog_state=replace(station.watchdog_state, unidentified_since_ns=since_ns)
+    )
 
 
 def may_yet_say_its_serial(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
     """Return whether a vehicle has no serial and has not had the time to say it."""
-    since_ns = station.watch.nameless_since_ns.get(vehicle.link_id or -1)
+    since_ns = station.watchdog_state.unidentified_since_ns.get(vehicle.link_id or -1)
     wait_ns = seconds_to_ns(station.settings.serial_wait_s)
     return vehicle.serial is None and since_ns is not None and now_ns - since_ns < wait_ns

@@ -1,19 +1,19 @@
-"""What may be in the air: heard or not, identified or not; and ghosts taken out of it."""
+"""What may be in the air: heard or not, identified or not; and hazard areas taken out of it."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from recon.fleet.identity import has_no_room, without
 from recon.model.command import FlyMission, Phase
-from recon.model.event import GhostDismissed
+from recon.model.event import HazardDismissed
 from recon.model.intent import Commanded, Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.safety.prediction import Ghost, flyer, ghost_of
+from recon.safety.prediction import HazardArea, flyer, hazard_area_of
 from recon.safety.watchdogs import plane_of
 from recon.station.state.station import Station
 
-_TOLD_NOTHING = Intent()
+_NO_INTENT = Intent()
 LOST_KEPT = 16
 """Vehicles that flew without a serial and were lost: an app that connects again and again must not
 fill the air. The rest are one hazard that is nowhere known to be, and so everywhere."""
@@ -25,7 +25,7 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
     """Yield every vehicle, and every link without one, that flies or was last known to.
 
     Beside it the serial that is claimed for it: a link in conflict claims another vehicle's. A
-    ghost that somebody has dismissed is not among them until it is heard again.
+    hazard area that somebody has dismissed is not among them until it is heard again.
     """
     for serial, vehicle in station.fleet.vehicles.items():
         if vehicle.is_flying.value is not False and not is_dismissed(station, vehicle):
@@ -33,7 +33,7 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
     for link in station.fleet.unbound_links():
         if link.own_state.is_flying.value is True:
             yield link.own_state, link.claimed_serial
-    for state in station.watch.lost.values():
+    for state in station.watchdog_state.lost.values():
         yield state, None
 
 
@@ -43,7 +43,7 @@ def setting_out(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, I
     One whose mission still waits to be sent; and one on the ground that was sent one a moment ago,
     for it may be taking off.
     """
-    for record in station.orders.watched:
+    for record in station.orders.tracked:
         body, serial = record.command.body, record.command.serial
         vehicle = station.fleet.vehicles.get(serial or "")
         if vehicle is not None and isinstance(body, FlyMission) and record.phase is Phase.QUEUED:
@@ -59,7 +59,7 @@ def setting_out(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, I
             yield vehicle, intent
 
 
-def ghost(station: Station, vehicle: VehicleState, now_ns: int) -> Ghost | None:
+def hazard(station: Station, vehicle: VehicleState, now_ns: int) -> HazardArea | None:
     """Return where a vehicle may be that is not heard; None for one on the ground or dismissed."""
     if vehicle.is_flying.value is False or vehicle.core_received_at_ns is None:
         return None
@@ -68,18 +68,18 @@ def ghost(station: Station, vehicle: VehicleState, now_ns: int) -> Ghost | None:
     prediction = station.settings.safety.prediction
     plane = plane_of(station.airspace, (vehicle,))
     seen = flyer(vehicle, station.airspace, plane, now_ns, prediction)
-    intent = station.intents.get(vehicle.serial or "", _TOLD_NOTHING)
-    return None if seen is None else ghost_of(seen, intent, prediction)
+    intent = station.intents.get(vehicle.serial or "", _NO_INTENT)
+    return None if seen is None else hazard_area_of(seen, intent, prediction)
 
 
 def is_dismissed(station: Station, vehicle: VehicleState) -> bool:
     """Return whether somebody has taken a vehicle out of the air, and it was not heard since."""
-    dismissed, serial = station.watch.dismissed, vehicle.serial or ""
+    dismissed, serial = station.watchdog_state.dismissed, vehicle.serial or ""
     return serial in dismissed and dismissed[serial] == vehicle.core_received_at_ns
 
 
 def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
-    """Return whether there is something to dismiss: a ghost, or a vehicle that never told where."""
+    """Return whether a name has a hazard area, or is a vehicle without any position."""
     if lost_as(station, name) is not None:
         return True
     vehicle = station.fleet.vehicles.get(name)
@@ -88,20 +88,20 @@ def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
     is_placeless = vehicle.position.value is None and not vehicle.track
     may_fly = vehicle.is_flying.value is not False
     is_out = is_dismissed(station, vehicle)
-    return ghost(station, vehicle, now_ns) is not None or (is_placeless and may_fly and not is_out)
+    return hazard(station, vehicle, now_ns) is not None or (is_placeless and may_fly and not is_out)
 
 
-def dismiss(station: Station, event: GhostDismissed, now_ns: int) -> Station:
-    """Return the station after somebody has taken a ghost out of the air; only what is one."""
+def dismiss(station: Station, event: HazardDismissed, now_ns: int) -> Station:
+    """Return the station with a hazard area dismissed; unchanged when there is none."""
     if not is_hazard_unseen(station, event.serial, now_ns):
         return station
-    watch, key = station.watch, lost_as(station, event.serial)
+    watch, key = station.watchdog_state, lost_as(station, event.serial)
     if key is not None:
         lost = {name: state for name, state in watch.lost.items() if name != key}
-        return replace(station, watch=replace(watch, lost=lost))
+        return replace(station, watchdog_state=replace(watch, lost=lost))
     heard_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
     dismissed = {**watch.dismissed, event.serial: heard_at_ns}
-    station = replace(station, watch=replace(watch, dismissed=dismissed))
+    station = replace(station, watchdog_state=replace(watch, dismissed=dismissed))
     return _with_room(station) if has_no_room(station.fleet) else station
 
 
@@ -112,16 +112,16 @@ def _with_room(station: Station) -> Station:
         for serial, vehicle in station.fleet.vehicles.items()
         if vehicle.link_id is None and is_dismissed(station, vehicle)
     }
-    dismissed = {key: at for key, at in station.watch.dismissed.items() if key not in gone}
-    watch = replace(station.watch, dismissed=dismissed)
-    return replace(station, fleet=without(station.fleet, gone), watch=watch)
+    dismissed = {key: at for key, at in station.watchdog_state.dismissed.items() if key not in gone}
+    watch = replace(station.watchdog_state, dismissed=dismissed)
+    return replace(station, fleet=without(station.fleet, gone), watchdog_state=watch)
 
 
 def keep_lost(station: Station, link_id: int) -> Station:
     """Return the station that remembers what flew on a link that ends without a serial."""
     state = station.fleet.links[link_id].own_state
-    lost = with_lost(station.watch.lost, lost_name(link_id), state)
-    return replace(station, watch=replace(station.watch, lost=lost))
+    lost = with_lost(station.watchdog_state.lost, lost_name(link_id), state)
+    return replace(station, watchdog_state=replace(station.watchdog_state, lost=lost))
 
 
 def with_lost(
@@ -143,13 +143,13 @@ def with_lost(
 
 
 def lost_name(link_id: int) -> str:
-    """Return what the ghost of a vehicle without a serial is dismissed by."""
+    """Return what the hazard area of a vehicle without a serial is dismissed by."""
     return f"link-{link_id}"
 
 
 def dismissed_by(station: Station, vehicle: VehicleState) -> str:
-    """Return what a vehicle's ghost is dismissed by, with a serial or without."""
-    lost = station.watch.lost.items()
+    """Return what a vehicle's hazard area is dismissed by, with a serial or without."""
+    lost = station.watchdog_state.lost.items()
     return vehicle.serial or next(
         (name for name, state in lost if state is vehicle), lost_name(vehicle.link_id or 0)
     )
@@ -157,5 +157,5 @@ def dismissed_by(station: Station, vehicle: VehicleState) -> str:
 
 def lost_as(station: Station, name: str) -> str | None:
     """Return which of the lost is meant: by what it is dismissed by, or as its alarm names it."""
-    lost = station.watch.lost
+    lost = station.watchdog_state.lost
     return next((key for key, s in lost.items() if name in (key, s.display_name)), None)

@@ -6,7 +6,7 @@ repeated until telemetry shows them.
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from recon.model.authority import Lead
+from recon.model.authority import ControlAuthority
 from recon.model.command import Hover
 from recon.model.event import OperatorOrder, SeparationHoldSwitched
 from recon.model.intent import Intent
@@ -20,7 +20,7 @@ from recon.safety.watchdogs import (
     Held,
     Picture,
     Watchdog,
-    Watched,
+    WatchedVehicle,
     hold_words,
     take_picture,
 )
@@ -33,46 +33,48 @@ from recon.station.state.watchdog_state import HoldRefused, Kept, StickCount
 from recon.station.traffic import identity_grace
 from recon.station.traffic.known_traffic import in_the_air
 
-_NOBODY_YET = Lead()
-_TOLD_NOTHING = Intent()
+_DEFAULT_AUTHORITY = ControlAuthority()
+_NO_INTENT = Intent()
 
 
 def look(station: Station, now_ns: int, watchdogs: Iterable[Watchdog] = WATCHDOGS) -> Stepped:
     """Return the station after the watchdogs looked, if it is time, and the holds they want."""
-    looked_at_ns, settings = station.watch.looked_at_ns, station.settings.safety.watch
+    looked_at_ns, settings = station.watchdog_state.looked_at_ns, station.settings.safety.watch
     if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
         return station, ()
-    station = identity_grace.with_nameless(_with_stick_counts(station, now_ns), now_ns)
+    station = identity_grace.with_unidentified(_with_stick_counts(station, now_ns), now_ns)
     refused = _lately_refused(station, now_ns)
-    station = replace(station, watch=replace(station.watch, holds_refused=refused))
-    kept = station.watch.findings
+    station = replace(
+        station, watchdog_state=replace(station.watchdog_state, holds_refused=refused)
+    )
+    kept = station.watchdog_state.findings
     picture = take_picture(
         _watched(station, now_ns),
         station.airspace,
         station.settings.safety,
         now_ns,
         {key: one.since_ns for key, one in kept.items()},
-        is_hold_on=station.watch.is_hold_on,
+        is_hold_on=station.watchdog_state.is_hold_on,
     )
     findings = [finding for watchdog in watchdogs for finding in watchdog(picture)]
     watch = replace(
-        station.watch,
+        station.watchdog_state,
         looked_at_ns=now_ns,
         findings=_kept(kept, findings, now_ns, seconds_to_ns(settings.lingers_s)),
         before=_before(picture),
         held=_still_held(station),
     )
-    return _hold(replace(station, watch=watch), findings, picture, now_ns)
+    return _hold(replace(station, watchdog_state=watch), findings, picture, now_ns)
 
 
 def switch_hold(station: Station, event: SeparationHoldSwitched) -> Station:
     """Return the station after somebody switched the holds on or off."""
-    watch = replace(station.watch, is_hold_on=event.is_on, switched_by=event.by)
-    return replace(station, watch=watch)
+    watch = replace(station.watchdog_state, is_hold_on=event.is_on, switched_by=event.by)
+    return replace(station, watchdog_state=watch)
 
 
-def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
-    watch, eye = station.watch, station.imaging.eye_serial
+def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
+    watch, imager = station.watchdog_state, station.imaging.imager_serial
     for vehicle, claimed in in_the_air(station):
         if vehicle.serial != claimed:
             continue  # a link in conflict: most likely it tells of the same aircraft
@@ -82,13 +84,13 @@ def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
         count = watch.sticks.get(serial)
         refused = watch.holds_refused.get(serial)
         quiet_s = None if count is None else (now_ns - count.changed_at_ns) / NS_PER_S
-        yield Watched(
+        yield WatchedVehicle(
             vehicle,
-            station.intents.get(serial, _TOLD_NOTHING),
-            station.leads.get(serial, _NOBODY_YET).leader,
+            station.intents.get(serial, _NO_INTENT),
+            station.authorities.get(serial, _DEFAULT_AUTHORITY).holder,
             held=watch.held.get(serial),
             before=watch.before.get(serial),
-            is_eye=vehicle.serial is not None and vehicle.serial == eye,
+            is_imager=vehicle.serial is not None and vehicle.serial == imager,
             stick_quiet_s=quiet_s,
             hold_refused="" if refused is None else refused.why,
         )
@@ -96,17 +98,17 @@ def _watched(station: Station, now_ns: int) -> Iterator[Watched]:
 
 def _with_stick_counts(station: Station, now_ns: int) -> Station:
     """Note for each stream of sticks when its last one left."""
-    if not station.streams and not station.watch.sticks:
+    if not station.streams and not station.watchdog_state.sticks:
         return station
     counts: dict[str, StickCount] = {}
     for serial, lease in station.streams.items():
         if lease.closing is not None:
             continue
-        before = station.watch.sticks.get(serial)
+        before = station.watchdog_state.sticks.get(serial)
         known = (lease.started_at_ns, lease.packets_sent)
         is_same = before is not None and (before.started_at_ns, before.sent) == known
         counts[serial] = before if before and is_same else StickCount(*known, now_ns)
-    return replace(station, watch=replace(station.watch, sticks=counts))
+    return replace(station, watchdog_state=replace(station.watchdog_state, sticks=counts))
 
 
 def _kept(
@@ -140,8 +142,8 @@ def _still_held(station: Station) -> dict[str, Held]:
     """The holds that nothing has ended: no newer order, and not the ground."""
     return {
         serial: held
-        for serial, held in station.watch.held.items()
-        if held.holds_against(station.intents.get(serial, _TOLD_NOTHING))
+        for serial, held in station.watchdog_state.held.items()
+        if held.holds_against(station.intents.get(serial, _NO_INTENT))
         and _may_fly(station.fleet.vehicles.get(serial))
     }
 
@@ -149,7 +151,7 @@ def _still_held(station: Station) -> dict[str, Held]:
 def _lately_refused(station: Station, now_ns: int) -> dict[str, HoldRefused]:
     """The holds that could not be given, until they are to be tried again."""
     retry_ns = seconds_to_ns(station.settings.safety.watch.hold_retry_s)
-    refused = station.watch.holds_refused.items()
+    refused = station.watchdog_state.holds_refused.items()
     return {serial: one for serial, one in refused if now_ns - one.at_ns < retry_ns}
 
 
@@ -186,18 +188,18 @@ def _hold(station: Station, findings: Iterable[Finding], picture: Picture, now_n
 
 
 def _with_held(station: Station, serial: str, held: Held) -> Station:
-    known = {**station.watch.held, serial: held}
-    return replace(station, watch=replace(station.watch, held=known))
+    known = {**station.watchdog_state.held, serial: held}
+    return replace(station, watchdog_state=replace(station.watchdog_state, held=known))
 
 
 def _with_refused(station: Station, serial: str, refused: HoldRefused) -> Station:
-    known = {**station.watch.holds_refused, serial: refused}
-    return replace(station, watch=replace(station.watch, holds_refused=known))
+    known = {**station.watchdog_state.holds_refused, serial: refused}
+    return replace(station, watchdog_state=replace(station.watchdog_state, holds_refused=known))
 
 
 def _said(station: Station, finding: Finding, serial: str) -> Station:
     """The finding says what became of the hold that it wanted, also when it is not made again."""
-    watch, vehicle = station.watch, station.fleet.vehicles[serial]
+    watch, vehicle = station.watchdog_state, station.fleet.vehicles[serial]
     refused = watch.holds_refused.get(serial)
     words = hold_words(watch.held.get(serial), "" if refused is None else refused.why)
     outcome = f"; {vehicle.display_name} {words}"
@@ -205,4 +207,6 @@ def _said(station: Station, finding: Finding, serial: str) -> Station:
         return station  # it was held before, and is held again
     told = replace(finding, text=f"{finding.text}{outcome}")
     kept = replace(watch.findings[finding.key], finding=told)
-    return replace(station, watch=replace(watch, findings={**watch.findings, finding.key: kept}))
+    return replace(
+        station, watchdog_state=replace(watch, findings={**watch.findings, finding.key: kept})
+    )

@@ -6,8 +6,8 @@ import { createDesk } from "../../orders/desk";
 import type { VehicleView } from "../../protocol";
 import { agedBy, formatAge } from "../../words/age";
 import { vehicleLabel } from "../../words/names";
-import { GhostSection } from "../ghost/GhostSection";
-import { LeadSection } from "../lead/LeadSection";
+import { AuthoritySection } from "../authority/AuthoritySection";
+import { HazardSection } from "../hazard/HazardSection";
 import { Panel } from "../Panel";
 import { PreflightSection } from "../preflight/PreflightSection";
 import { CameraControl } from "./CameraControl";
@@ -44,8 +44,8 @@ export function VehicleDetail() {
           }
         >
           <Identity vehicle={vehicle()} />
-          <Show when={vehicle().ghost}>
-            {(ghost) => <GhostSection ghost={ghost()} name={vehicleLabel(vehicle())} />}
+          <Show when={vehicle().hazard}>
+            {(hazard) => <HazardSection hazard={hazard()} name={vehicleLabel(vehicle())} />}
           </Show>
           <Show when={vehicle().serial} keyed>
             {(serial) => <Words serial={serial} vehicle={vehicle()} />}
@@ -68,7 +68,7 @@ function Words(props: { serial: string; vehicle: VehicleView }) {
   const label = () => vehicleLabel(props.vehicle);
   return (
     <>
-      <LeadSection serial={props.serial} name={label()} lead={props.vehicle.lead} />
+      <AuthoritySection serial={props.serial} name={label()} authority={props.vehicle.authority} />
       <PreflightSection serial={props.serial} name={label()} />
     </>
   );

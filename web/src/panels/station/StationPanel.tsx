@@ -84,7 +84,7 @@ function SiteFacts(props: { site: SiteView }) {
         ["Terrain", props.site.terrain === "model" ? "elevation model" : "flat assumed"],
         ["Highest above ground", formatQuantity(props.site.limits.max_height_above_ground_m, "m")],
         ["Farthest from home", formatQuantity(props.site.limits.max_distance_from_home_m, "m")],
-        ["Imaging vehicle", props.site.eye_serial ?? UNKNOWN],
+        ["Imaging vehicle", props.site.imager_serial ?? UNKNOWN],
         ["Marked pose, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
         ["Marked pose, height", formatQuantity(props.site.pose_height_m, "m")],
       ]}

@@ -45,9 +45,9 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
           <Show when={vehicle().is_simulated}>
             <span class="tag tag-simulated">SIM</span>
           </Show>
-          <Show when={vehicle().is_eye}>
-            <span class="tag vehicle-eye" title="The imaging vehicle">
-              EYE
+          <Show when={vehicle().is_imager}>
+            <span class="tag vehicle-imager" title="The imaging vehicle">
+              IMAGER
             </span>
           </Show>
           <span class={`severity push tone-${condition().severity ?? "good"}`}>

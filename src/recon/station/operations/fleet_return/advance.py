@@ -14,7 +14,7 @@ from recon.guidance.fleet_return import (
     mission_of,
     whole_claim,
 )
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Hover, Phase, Refusal
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
@@ -63,8 +63,8 @@ def _handed_back(station: Station, now_ns: int) -> Station:
     """
     running = station.fleet_return
     for member in () if running is None else running.at(*ENDED):
-        led_since_ns = authority.lead_of(station, member.serial).since_ns
-        if member.asked_as is Leader.GUIDANCE and led_since_ns <= member.since_ns:
+        led_since_ns = authority.authority_of(station, member.serial).since_ns
+        if member.asked_as is AuthorityHolder.GUIDANCE and led_since_ns <= member.since_ns:
             why = f"its way home has ended: {member.reason or 'it has landed'}"
             station = authority.hand_back(station, member.serial, member.by, why, now_ns)
     return station
@@ -246,6 +246,6 @@ def _may_end(
         return False
     if running.at(*UNDER_WAY) or member.refused_since_ns is None:
         return True
-    if member.asked_as is Leader.GUIDANCE:
+    if member.asked_as is AuthorityHolder.GUIDANCE:
         return True  # others fly rows for minutes; its battery ends the waiting
     return now_ns - member.refused_since_ns < seconds_to_ns(settings.gate_waits_s)

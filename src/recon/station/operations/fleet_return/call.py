@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase, Refusal
 from recon.model.event import FleetReturnOrdered, OperatorOrder
 from recon.safety.datum import frame_for
@@ -53,12 +53,12 @@ def refusal(station: Station, serial: str) -> Refusal | None:
     name, vehicle = _name(station, serial), station.fleet.vehicles.get(serial)
     if vehicle is not None and frame_for(station.airspace, vehicle) is None:
         return Refusal(RULE, f"{name}: expected a position, it has told none: hold it, or land it")
-    lead = station.leads.get(serial)
-    if lead is not None and lead.leader is Leader.PILOT:
+    authority = station.authorities.get(serial)
+    if authority is not None and authority.holder is AuthorityHolder.PILOT:
         return Refusal(
             RULE,
-            f"{name} is led by the pilot ({lead.reason}): ask the pilot, take it over, then call "
-            "it home",
+            f"{name} is controlled by the pilot ({authority.reason}): ask the "
+            "pilot, take control, then call it home",
         )
     running = station.fleet_return
     member = None if running is None else running.members.get(serial)

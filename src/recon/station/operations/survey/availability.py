@@ -5,14 +5,14 @@ from dataclasses import replace
 
 from recon.fleet.state import staleness
 from recon.guidance.survey import Surveyor
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Phase
 from recon.model.vehicle import Staleness, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import frame_for, home_enu_m, vehicle_enu_m
 from recon.safety.energy import consumption
 from recon.safety.energy_settings import EnergySettings
-from recon.station.control.authority import lead_of
+from recon.station.control.authority import authority_of
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.state.survey_record import Member, SurveyRecord
@@ -44,9 +44,9 @@ def hindrance(station: Station, member: Member, now_ns: int) -> str | None:
         return member.stopped
     if member.homeward is not None:
         return _homeward(station, member, member.homeward)
-    lead = lead_of(station, member.serial)
-    if lead.leader is not Leader.GUIDANCE:
-        return f"it is led by the {lead.leader.value} ({lead.reason})"
+    authority = authority_of(station, member.serial)
+    if authority.holder is not AuthorityHolder.GUIDANCE:
+        return f"it is led by the {authority.holder.value} ({authority.reason})"
     vehicle = station.fleet.vehicles.get(member.serial)
     if vehicle is None or frame_for(station.airspace, vehicle) is None:
         return "its place is not known"

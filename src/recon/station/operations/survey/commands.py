@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 from recon.guidance.survey import SurveyState, abort, pause, start
 from recon.guidance.survey.plan import RULE
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, LandNow, Phase, Refusal
 from recon.model.event import (
     AuthorityTaken,
@@ -52,7 +52,7 @@ def begin(station: Station, event: SurveyStarted, now_ns: int) -> Station:
     assert isinstance(state, SurveyState)  # or it was refused
     serials = dict.fromkeys(event.serials)
     for serial in serials:
-        taken = AuthorityTaken(serial, Leader.GUIDANCE, event.by)
+        taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, event.by)
         station = authority.take(station, taken, now_ns)
     named = {
         serial: replace(
@@ -104,9 +104,11 @@ def stop(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
     word = "aborted" if event.is_aborted else "paused"
     outputs: tuple[Output, ...] = ()
     for member in record.members.values():
-        lead = authority.lead_of(station, member.serial)
         is_its = record.is_running or is_under_way(station, member)
-        if is_its and lead.leader is Leader.GUIDANCE:
+        if (
+            is_its
+            and authority.authority_of(station, member.serial).holder is AuthorityHolder.GUIDANCE
+        ):
             by = f"{event.by}: survey {record.survey.name} {word}"
             station, sent = _hold(station, member, by, now_ns)
             outputs += sent
@@ -169,11 +171,11 @@ def _stopped(
 def _vehicle_refusal(
     station: Station, record: SurveyRecord, serial: str, by: str
 ) -> Refusal | None:
-    given = authority.refusal(station, AuthorityTaken(serial, Leader.GUIDANCE, by))
+    given = authority.refusal(station, AuthorityTaken(serial, AuthorityHolder.GUIDANCE, by))
     if given is not None:
         return given
     name = station.fleet.vehicles[serial].display_name
-    if serial == station.imaging.eye_serial:
+    if serial == station.imaging.imager_serial:
         return Refusal(RULE, f"{name} is the eye: it stays where it sees the field")
     other = station.surveys.running_with(serial)
     if other is not None and other.survey.id != record.survey.id:

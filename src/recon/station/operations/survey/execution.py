@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from recon.guidance.survey import refused
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase, Refusal
 from recon.model.event import OperatorOrder, WorkerResult
 from recon.model.survey import MissionFor, SurveyPhase
@@ -106,7 +106,7 @@ def _look_at_members(station: Station, record: SurveyRecord, now_ns: int) -> Ste
             why = f"the mission of order {order.command.id} was ignored"
             by = f"station: survey {record.survey.name}: {why}"
             hold = OperatorOrder(
-                number, Hover(), by, serial=member.serial, asked_as=Leader.GUIDANCE
+                number, Hover(), by, serial=member.serial, asked_as=AuthorityHolder.GUIDANCE
             )
             station, sent = order_gateway.place(station, hold, now_ns)
             outputs += sent

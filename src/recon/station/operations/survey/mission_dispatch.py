@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from copy import copy
 from dataclasses import replace
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Refusal
 from recon.model.event import OperatorOrder
 from recon.model.survey import MissionFor
@@ -77,7 +77,7 @@ def _orders(
         f"{record.started_by}: survey {record.survey.name}",
         serial=given.serial,
         takeoff=member.may_take_off and vehicle.is_flying.value is False,
-        asked_as=Leader.GUIDANCE,
+        asked_as=AuthorityHolder.GUIDANCE,
     )
     for mission in with_approaches(given.mission, vehicle, number, count, limits):
         yield replace(order, body=FlyMission(mission))

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import hypot
 from types import MappingProxyType
 
-from recon.guidance.survey import Seen
+from recon.guidance.survey import PositionSample
 from recon.model.shade import ShadeMap
 from recon.model.survey import SurveyPhase
 from recon.model.vehicle import VehicleState
@@ -30,7 +30,7 @@ def see_vehicle(
         if at.value is None or height_m.value is None or at.received_at_ns != now_ns:
             continue
         east_m, north_m = (float(metres) for metres in places_m(frame, [at.value])[0])
-        seen = Seen(now_ns, east_m, north_m, height_m.value)
+        seen = PositionSample(now_ns, east_m, north_m, height_m.value)
         record = replace(record, seen=record.seen.with_one((serial, seen), settings.seen_kept))
         record = _drawn(station, record, serial, (east_m, north_m), settings)
         surveys = surveys.put(record)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from recon.guidance.survey import (
-    Seen,
+    PositionSample,
     Surroundings,
     Surveyor,
     SurveyPlan,
@@ -52,7 +52,7 @@ class StepSurvey:
     """A survey, what was seen since the last look, and its vehicles as they are now."""
 
     state: SurveyState
-    seen: tuple[tuple[str, Seen], ...]
+    seen: tuple[tuple[str, PositionSample], ...]
     shade: tuple[ShadeMap, ...]
     surveyors: tuple[Surveyor, ...]
     now_ns: int
@@ -144,8 +144,8 @@ def _put(station: Station, record: SurveyRecord) -> Station:
     return replace(station, surveys=station.surveys.put(record))
 
 
-def _by_vehicle(seen: Sequence[tuple[str, Seen]]) -> Mapping[str, list[Seen]]:
-    each: dict[str, list[Seen]] = {}
+def _by_vehicle(seen: Sequence[tuple[str, PositionSample]]) -> Mapping[str, list[PositionSample]]:
+    each: dict[str, list[PositionSample]] = {}
     for serial, place in seen:
         each.setdefault(serial, []).append(place)
     return each

@@ -7,7 +7,7 @@ goes through the gate; whoever leads the vehicle from then on (an operator's hol
 
 from dataclasses import replace
 
-from recon.model.authority import Leader
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase
 from recon.model.event import OperatorOrder
 from recon.model.survey import SurveyPhase, WhenDone
@@ -40,7 +40,7 @@ def is_under_way(station: Station, member: Member) -> bool:
     returning = None if running is None else running.members.get(member.serial)
     if member.homeward is None or returning is None or returning.stage in ENDED:
         return False
-    return returning.asked_as is Leader.GUIDANCE
+    return returning.asked_as is AuthorityHolder.GUIDANCE
 
 
 def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: int) -> Stepped:
@@ -50,7 +50,10 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
     """
     record = station.surveys.records[survey_id]
     member, vehicle = record.members[serial], station.fleet.vehicles.get(serial)
-    if authority.lead_of(station, serial).leader is not Leader.GUIDANCE or vehicle is None:
+    if (
+        authority.authority_of(station, serial).holder is not AuthorityHolder.GUIDANCE
+        or vehicle is None
+    ):
         return station, ()
     if vehicle.is_flying.value is False or is_under_way(station, member):
         return station, ()
@@ -59,7 +62,9 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
         return _not_called(station, record, serial, refusal.reason, now_ns), ()
     station, number = take_id(station)
     by = f"{record.started_by}: survey {record.survey.name}"
-    hold = OperatorOrder(number, Hover(), f"{by}: {why}", serial=serial, asked_as=Leader.GUIDANCE)
+    hold = OperatorOrder(
+        number, Hover(), f"{by}: {why}", serial=serial, asked_as=AuthorityHolder.GUIDANCE
+    )
     station, sent = call.join(station, hold, by, now_ns)
     placed = station.orders.records[number]
     if placed.phase is Phase.REFUSED_BY_STATION:

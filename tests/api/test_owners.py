@@ -1,0 +1,148 @@
+"""Streams that hold steered orders: they live as long as they say so."""
+
+import asyncio
+
+import pytest
+import websockets
+from tests.api.client import Client
+from tests.api.fake_station import FakeStation, application
+from tests.api.test_stream import PATIENCE_S, served
+
+from recon.api import owners
+
+NAME = "a-name-of-a-owner-01"
+
+
+def url_of(port: int, name: str = NAME) -> str:
+    return f"ws://127.0.0.1:{port}/api/stream?owner={name}"
+
+
+def held(station: FakeStation) -> frozenset[str]:
+    return station.driver.station.owners
+
+
+async def until_held(station: FakeStation, names: set[str]) -> None:
+    async with asyncio.timeout(PATIENCE_S):
+        while held(station) != names:
+            await asyncio.sleep(0.01)
+
+
+async def read_on(reader: websockets.ClientConnection) -> None:
+    while True:
+        await reader.recv()
+
+
+def test_a_stream_holds_while_it_is_open() -> None:
+    async def main() -> None:
+        station = FakeStation()
+        async with asyncio.timeout(PATIENCE_S), served(station) as port:
+            async with websockets.connect(url_of(port)) as reader:
+                await reader.recv()
+                await until_held(station, {NAME})
+            await until_held(station, set())
+            async with websockets.connect(f"ws://127.0.0.1:{port}/api/stream") as reader:
+                await reader.recv()
+                assert held(station) == frozenset()
+
+    asyncio.run(main())
+
+
+def test_one_that_says_nothing_holds_no_longer_and_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(owners, "SILENT_S", 0.2)
+
+    async def main() -> None:
+        station = FakeStation()
+        async with asyncio.timeout(PATIENCE_S), served(station) as port:
+            async with websockets.connect(url_of(port)) as reader:
+                with pytest.raises(websockets.ConnectionClosed, match="said nothing"):
+                    await read_on(reader)
+            assert held(station) == frozenset()
+
+    asyncio.run(main())
+
+
+def test_one_that_beats_holds_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten states a second: thirteen beats are three times as long as silence may be."""
+    monkeypatch.setattr(owners, "SILENT_S", 0.4)
+
+    async def main() -> None:
+        station = FakeStation()
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            served(station) as port,
+            websockets.connect(url_of(port)) as reader,
+        ):
+            await until_held(station, {NAME})
+            for _ in range(13):
+                await reader.recv()
+                await reader.send("")
+                assert held(station) == {NAME}
+
+    asyncio.run(main())
+
+
+@pytest.mark.parametrize("name", ["short", "x" * 65, "a-name-with-a-space%20in-it", "ümlaut" * 4])
+def test_names_that_are_none_are_refused(name: str) -> None:
+    async def main() -> None:
+        station = FakeStation()
+        async with asyncio.timeout(PATIENCE_S), served(station) as port:
+            with pytest.raises((websockets.InvalidStatus, websockets.ConnectionClosed)):
+                async with websockets.connect(url_of(port, name)) as reader:
+                    await reader.recv()
+            assert held(station) == frozenset()
+
+    asyncio.run(main())
+
+
+def test_a_name_is_one_streams_at_a_time() -> None:
+    async def main() -> None:
+        station = FakeStation()
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            served(station) as port,
+            websockets.connect(url_of(port)) as first,
+        ):
+            await until_held(station, {NAME})
+            with pytest.raises((websockets.InvalidStatus, websockets.ConnectionClosed)):
+                async with websockets.connect(url_of(port)) as second:
+                    await second.recv()
+            await first.recv()
+            assert held(station) == {NAME}
+
+    asyncio.run(main())
+
+
+class TestOrders:
+    @pytest.mark.parametrize(
+        "order",
+        [
+            {
+                "kind": "goto",
+                "latitude_deg": 41.9,
+                "longitude_deg": -93.6,
+                "height_above_takeoff_m": 40.0,
+            },
+            {"kind": "nudge", "north_m": 1.0},
+            {"kind": "hold_position"},
+        ],
+        ids=lambda order: str(order["kind"]),
+    )
+    def test_a_steered_order_needs_a_owner(self, order: dict[str, object]) -> None:
+        station = FakeStation()
+        client = Client(application(station))
+        asked = {"serials": ["A"], "order": order}
+        answer = client.post("/api/orders", json=asked)
+        assert answer.status_code == 422
+        assert "needs a owner" in answer.json()["error"]
+        held_by_nobody = client.post("/api/orders", json={**asked, "owner": NAME})
+        assert held_by_nobody.status_code == 200
+        (result,) = held_by_nobody.json()["results"]
+        assert not result["accepted"]
+        assert len(station.asked) == 1
+
+    def test_other_orders_need_none(self) -> None:
+        client = Client(application(FakeStation()))
+        asked = {"serials": ["A"], "order": {"kind": "hover"}}
+        assert client.post("/api/orders", json=asked).status_code == 200

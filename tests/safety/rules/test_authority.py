@@ -1,0 +1,98 @@
+"""Who leads a vehicle sets it in motion; anybody may stop it."""
+
+from dataclasses import replace
+
+import pytest
+from tests.safety.cases import STICK, command, mission, situation, vehicle
+
+from recon.model.authority import AuthorityHolder, ControlAuthority
+from recon.model.command import (
+    Body,
+    GoTo,
+    HoldPosition,
+    Hover,
+    LandNow,
+    Nudge,
+    Refusal,
+    ReturnHome,
+    StartCamera,
+    StopCamera,
+)
+from recon.model.geo import LatLon
+from recon.safety import Situation
+from recon.safety.rules.authority import authority
+
+MOVES: list[Body] = [
+    mission(),
+    STICK,
+    GoTo(LatLon(42.0, -93.6), 40.0, 5.0),
+    Nudge(1.0, 0.0, 0.0),
+    HoldPosition(),
+]
+STOPS: list[Body] = [Hover(), LandNow(), ReturnHome(), StartCamera(1.0), StopCamera()]
+
+
+def led_by(who: AuthorityHolder) -> Situation:
+    return replace(situation(), authority=ControlAuthority(who, "Ann", 5, "taken over by Ann"))
+
+
+def judged(body: Body, asked_as: AuthorityHolder, who: AuthorityHolder) -> Refusal | None:
+    return authority(replace(command(body), asked_as=asked_as), led_by(who))
+
+
+@pytest.mark.parametrize("body", MOVES)
+@pytest.mark.parametrize("who", AuthorityHolder)
+@pytest.mark.parametrize("asked_as", AuthorityHolder)
+def test_only_the_leader_sets_a_vehicle_in_motion(
+    body: Body, asked_as: AuthorityHolder, who: AuthorityHolder
+) -> None:
+    answer = judged(body, asked_as, who)
+    assert (answer is None) is (asked_as is who)
+    assert answer is None or answer.rule == "authority"
+
+
+@pytest.mark.parametrize("body", STOPS)
+@pytest.mark.parametrize("who", AuthorityHolder)
+@pytest.mark.parametrize("asked_as", AuthorityHolder)
+def test_anybody_stops_it_or_looks(
+    body: Body, asked_as: AuthorityHolder, who: AuthorityHolder
+) -> None:
+    assert judged(body, asked_as, who) is None
+
+
+def test_a_refusal_says_who_leads_and_how_that_came_about() -> None:
+    answer = judged(mission(), AuthorityHolder.GUIDANCE, AuthorityHolder.OPERATOR)
+    assert answer == Refusal(
+        "authority",
+        "A is controlled by operator (taken over by Ann), and the order comes from guidance: give "
+        "control to guidance first",
+    )
+
+
+@pytest.mark.parametrize(
+    ("who", "advice"),
+    [
+        (
+            AuthorityHolder.PILOT,
+            "the pilot has the sticks and is not fought: ask the pilot, then take",
+        ),
+        (
+            AuthorityHolder.GUIDANCE,
+            "the station's own planning flies it: hold it, or take it over, first",
+        ),
+    ],
+)
+def test_a_refusal_says_what_to_do(who: AuthorityHolder, advice: str) -> None:
+    answer = judged(STICK, AuthorityHolder.OPERATOR, who)
+    assert answer is not None
+    assert f"; {advice}" in answer.reason
+
+
+def test_nobody_at_all_is_another_rules_matter() -> None:
+    assert (
+        authority(command(mission()), replace(led_by(AuthorityHolder.PILOT), vehicle=None)) is None
+    )
+
+
+def test_until_somebody_takes_it_the_operator_leads() -> None:
+    assert authority(command(mission()), situation(vehicle())) is None

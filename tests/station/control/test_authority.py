@@ -1,0 +1,267 @@
+"""Who leads a vehicle: taken by word, lost by a stop, and always the pilot's for the taking."""
+
+import pytest
+from tests.fleet.said import core, extended
+from tests.safety.cases import STICK, mission
+from tests.station.commanded import CommandedStation
+
+from recon.model.authority import AuthorityHolder
+from recon.model.command import Body, FlyMission, Hover, LandNow, Phase, ReturnHome, VirtualStick
+from recon.model.event import AuthorityTaken, CommandSent, OperatorOrder
+from recon.model.intent import Commanded, Intent
+from recon.model.vehicle import FlightMode
+from recon.station.control import authority
+from recon.station.state.outputs import WithdrawMotion
+
+HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
+
+
+@pytest.fixture
+def scene() -> CommandedStation:
+    return CommandedStation().opens(1, *HOVERING).keeps_saying(1, *HOVERING).passes(0.5)
+
+
+def takes(
+    scene: CommandedStation, holder: AuthorityHolder, by: str = "Ann", serial: str = "A"
+) -> CommandedStation:
+    return scene.happens(AuthorityTaken(serial, holder, by))
+
+
+def led_by(scene: CommandedStation) -> AuthorityHolder:
+    return authority.authority_of(scene.station, "A").holder
+
+
+def guidance_orders(scene: CommandedStation, body: Body, number: int = 90) -> Phase:
+    scene.happens(OperatorOrder(number, body, "guidance", "A", asked_as=AuthorityHolder.GUIDANCE))
+    return scene.phase(number)
+
+
+def says(scene: CommandedStation, north_mps: float, *, flying: bool = True) -> CommandedStation:
+    where = core(flying=flying, velocity=(north_mps, 0.0, 0.0))
+    return scene.keeps_saying(1, where, HOVERING[1]).passes(0.5)
+
+
+class TestByHand:
+    def test_who_flies_about_with_nothing_ordered_is_its_pilots_until_taken(self) -> None:
+        scene = says(CommandedStation().opens(1), 6.0)
+        assert led_by(scene) is AuthorityHolder.PILOT
+        refused = scene.record(scene.order(mission()))
+        assert refused.note.startswith("holder: A is led by pilot (it moves, and nothing has been")
+        assert scene.alarms() == set()
+        takes(says(scene, 6.0), AuthorityHolder.OPERATOR)
+        assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR
+
+    def test_stops_need_no_leader(self) -> None:
+        for body in (Hover(), LandNow(), ReturnHome()):
+            scene = says(CommandedStation().opens(1), 6.0)
+            assert scene.phase(scene.order(body)) is Phase.SENT
+
+    def test_one_that_hovers_is_the_operators_until_it_moves(self, scene: CommandedStation) -> None:
+        assert led_by(says(scene, 1.9)) is AuthorityHolder.OPERATOR
+        assert led_by(says(scene, 2.0)) is AuthorityHolder.PILOT
+
+    def test_on_the_ground_it_is_the_operators_and_in_the_air_whose_hand_took_it_there(
+        self,
+    ) -> None:
+        scene = says(CommandedStation().opens(1), 3.0, flying=False)
+        assert led_by(scene) is AuthorityHolder.OPERATOR
+        assert led_by(says(scene, 3.0)) is AuthorityHolder.PILOT
+
+    def test_whom_somebody_took_before_stays_taken(self) -> None:
+        scene = says(CommandedStation().opens(1), 0.0, flying=False)
+        takes(scene, AuthorityHolder.OPERATOR)
+        assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR
+
+    def test_after_an_order_of_ours_motion_alone_tells_nothing(
+        self, scene: CommandedStation
+    ) -> None:
+        scene.order(mission())
+        scene.passes(10.0)  # it comes to nothing
+        assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR
+
+    def test_without_velocity_or_mode_nobody_can_say(self) -> None:
+        nothing = core(velocity=None), HOVERING[1]
+        assert led_by(CommandedStation().opens(1, *nothing).passes(0.5)) is AuthorityHolder.OPERATOR
+        moving = core(velocity=(6.0, 0.0, 0.0)), extended(mode=None)
+        assert led_by(CommandedStation().opens(1, *moving).passes(0.5)) is AuthorityHolder.OPERATOR
+
+
+class TestByWord:
+    def test_the_operator_leads_until_somebody_takes_it(self, scene: CommandedStation) -> None:
+        assert led_by(scene) is AuthorityHolder.OPERATOR
+        assert authority.authority_of(scene.station, "A").reason == "nobody has taken it yet"
+
+    def test_guidance_flies_what_was_given_to_it_and_nothing_else(
+        self, scene: CommandedStation
+    ) -> None:
+        assert guidance_orders(scene, mission(), 90) is Phase.REFUSED_BY_STATION
+        takes(scene, AuthorityHolder.GUIDANCE)
+        assert guidance_orders(scene, mission(), 91) is Phase.SENT
+        assert scene.phase(scene.order(mission())) is Phase.REFUSED_BY_STATION
+
+    def test_who_gave_it_and_when_is_kept(self, scene: CommandedStation) -> None:
+        held = authority.authority_of(takes(scene, AuthorityHolder.GUIDANCE).station, "A")
+        assert (held.holder_name, held.since_ns) == ("Ann", scene.now_ns)
+        assert held.reason == "given to it by Ann"
+        held = authority.authority_of(takes(scene, AuthorityHolder.OPERATOR, "Bob").station, "A")
+        assert (held.holder, held.holder_name, held.reason) == (
+            AuthorityHolder.OPERATOR,
+            "Bob",
+            "taken over by Bob",
+        )
+
+    def test_guidance_takes_nothing_from_a_pilot(self, scene: CommandedStation) -> None:
+        takes(scene, AuthorityHolder.PILOT)
+        refusal = authority.refusal(
+            scene.station, AuthorityTaken("A", AuthorityHolder.GUIDANCE, "Ann")
+        )
+        assert refusal is not None
+        assert refusal.rule == "authority"
+        assert "take it over first" in refusal.reason
+        assert led_by(takes(scene, AuthorityHolder.GUIDANCE)) is AuthorityHolder.PILOT
+
+    def test_the_operator_takes_it_from_a_pilot_by_explicit_word(
+        self, scene: CommandedStation
+    ) -> None:
+        takes(scene, AuthorityHolder.PILOT)
+        assert scene.phase(scene.order(mission())) is Phase.REFUSED_BY_STATION
+        assert scene.phase(scene.order(mission())) is Phase.REFUSED_BY_STATION
+        takes(scene, AuthorityHolder.OPERATOR)
+        assert scene.phase(scene.order(mission())) is Phase.SENT
+
+    def test_a_vehicle_nobody_knows_is_taken_by_nobody(self, scene: CommandedStation) -> None:
+        refusal = authority.refusal(
+            scene.station, AuthorityTaken("X", AuthorityHolder.OPERATOR, "Ann")
+        )
+        assert refusal is not None
+        assert "X is not known" in refusal.reason
+        assert "X" not in takes(scene, AuthorityHolder.OPERATOR, serial="X").station.authorities
+
+
+class TestAStop:
+    @pytest.mark.parametrize("body", [Hover(), LandNow(), ReturnHome()])
+    def test_takes_it_from_guidance_which_must_not_fly_on_at_once(
+        self, scene: CommandedStation, body: Body
+    ) -> None:
+        takes(scene, AuthorityHolder.GUIDANCE)
+        scene.order(body)
+        held = authority.authority_of(scene.station, "A")
+        assert (held.holder, held.holder_name) == (AuthorityHolder.OPERATOR, "test")
+        assert held.reason.endswith(", ordered by test")
+        assert guidance_orders(scene, mission()) is Phase.REFUSED_BY_STATION
+
+    def test_a_stop_that_waits_to_be_heard_takes_it_too(self, scene: CommandedStation) -> None:
+        takes(scene, AuthorityHolder.GUIDANCE)
+        scene.closes(1)
+        assert scene.phase(scene.order(Hover())) is Phase.QUEUED
+        assert led_by(scene) is AuthorityHolder.OPERATOR
+
+    def test_its_own_stop_leaves_it_to_guidance(self, scene: CommandedStation) -> None:
+        takes(scene, AuthorityHolder.GUIDANCE)
+        assert guidance_orders(scene, Hover()) is Phase.SENT
+        assert led_by(scene) is AuthorityHolder.GUIDANCE
+
+    def test_a_stop_takes_nothing_from_a_pilot(self, scene: CommandedStation) -> None:
+        takes(scene, AuthorityHolder.PILOT)
+        scene.order(Hover())
+        assert led_by(scene) is AuthorityHolder.PILOT
+
+    def test_an_order_that_moves_or_looks_takes_nothing(self, scene: CommandedStation) -> None:
+        takes(scene, AuthorityHolder.GUIDANCE)
+        scene.order(mission())
+        assert led_by(scene) is AuthorityHolder.GUIDANCE
+
+    def test_a_stop_of_a_link_that_has_since_said_its_serial_counts(
+        self, scene: CommandedStation
+    ) -> None:
+        takes(scene, AuthorityHolder.GUIDANCE)
+        scene.order(Hover(), None, link=1)
+        assert led_by(scene) is AuthorityHolder.OPERATOR
+
+    def test_a_stop_of_a_link_without_a_serial_is_nobodys(self, scene: CommandedStation) -> None:
+        scene.opens(2, core()).order(Hover(), None, link=2)
+        scene.order(Hover(), None, link=99)
+        assert dict(scene.station.authorities) == {}
+
+
+class TestThePilot:
+    def pilot(self, scene: CommandedStation, serial: str = "A") -> tuple[WithdrawMotion, ...]:
+        scene.station, outputs = authority.pilot_has_it(scene.station, serial, scene.now_ns)
+        assert all(isinstance(output, WithdrawMotion) for output in outputs)
+        return outputs  # type: ignore[return-value]
+
+    def test_leads_at_once_with_the_reason(self, scene: CommandedStation) -> None:
+        self.pilot(scene)
+        held = authority.authority_of(scene.station, "A")
+        assert (held.holder, held.holder_name, held.since_ns) == (
+            AuthorityHolder.PILOT,
+            "pilot",
+            scene.now_ns,
+        )
+        assert held.reason == "the pilot has taken the sticks"
+
+    @pytest.mark.parametrize("body", [mission(), STICK])
+    def test_orders_to_move_end_as_superseded(self, scene: CommandedStation, body: Body) -> None:
+        order = scene.order(body)
+        self.pilot(scene)
+        assert scene.phase(order) is Phase.SUPERSEDED
+        assert scene.record(order).note == "the pilot has taken the sticks"
+        assert not scene.record(order).is_tracked
+
+    def test_what_waits_unsent_is_withdrawn(self, scene: CommandedStation) -> None:
+        assert self.pilot(scene) == (WithdrawMotion((1,), "the pilot has taken the sticks"),)
+
+    def test_is_not_fought_no_zero_follows_the_stick(self, scene: CommandedStation) -> None:
+        scene.order(STICK)
+        assert "A" in scene.station.sticks
+        self.pilot(scene)
+        scene.keeps_saying(1, core(), extended(mode=FlightMode.JOYSTICK)).passes(5.0)
+        sticks = [body for body in scene.bodies() if isinstance(body, VirtualStick)]
+        assert sticks == [STICK]
+
+    def test_hold_land_and_return_are_still_sent(self, scene: CommandedStation) -> None:
+        self.pilot(scene)
+        assert [scene.phase(scene.order(body)) for body in (Hover(), ReturnHome(), LandNow())] == [
+            Phase.SENT
+        ] * 3
+
+    def test_raises_one_alarm_that_names_the_vehicle(self, scene: CommandedStation) -> None:
+        self.pilot(scene)
+        self.pilot(scene)
+        (alarm,) = scene.station.alarms.alarms.values()
+        assert alarm.condition.rule == "pilot_took_over"
+        assert alarm.condition.text.startswith("A: the pilot has taken the sticks")
+
+    def test_the_station_foresees_nothing_of_its_own_any_more(
+        self, scene: CommandedStation
+    ) -> None:
+        self.pilot(scene)
+        assert scene.station.intents["A"] == Intent(Commanded.NOTHING, scene.now_ns)
+
+    def test_only_the_first_sight_of_it_counts(self, scene: CommandedStation) -> None:
+        self.pilot(scene)
+        before = scene.station
+        scene.passes(1.0)
+        assert self.pilot(scene) == ()
+        assert scene.station.authorities == before.authorities
+
+    def test_of_an_unknown_vehicle_is_nobody(self, scene: CommandedStation) -> None:
+        before = scene.station
+        assert self.pilot(scene, "X") == ()
+        assert scene.station is before
+
+    def test_leaves_other_vehicles_to_the_station(self, scene: CommandedStation) -> None:
+        scene.opens(2, core(), extended("B")).keeps_saying(2, core(), extended("B"))
+        scene.happens(OperatorOrder(80, mission(), "test", "B"))
+        self.pilot(scene)
+        assert scene.phase(80) is not Phase.SUPERSEDED
+
+    def test_an_order_sent_before_and_dropped_later_changes_nothing(
+        self, scene: CommandedStation
+    ) -> None:
+        scene.is_stuck = True
+        order = scene.order(mission())
+        self.pilot(scene)
+        scene.dropped(order, Phase.SUPERSEDED).happens(CommandSent(1, order))
+        assert scene.phase(order) is Phase.SUPERSEDED
+        assert isinstance(scene.record(order).command.body, FlyMission)

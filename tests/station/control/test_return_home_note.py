@@ -1,0 +1,33 @@
+"""The emergency return says how high it climbs first."""
+
+from dataclasses import replace
+
+from tests.fleet.said import core, extended
+from tests.station.commanded import PROFILES, CommandedStation
+
+from recon.fleet.state import Fleet
+from recon.model.command import Hover, ReturnHome
+
+
+def told_with(go_home_height_m: float | None) -> CommandedStation:
+    scene = CommandedStation()
+    profile = replace(PROFILES["A"], go_home_height_m=go_home_height_m)
+    scene.station = replace(scene.station, fleet=Fleet(profiles={"A": profile}))
+    return scene.opens(1, core(), extended("A")).keeps_saying(1, core(), extended("A")).passes(0.5)
+
+
+def test_a_return_says_the_height_that_the_sites_file_tells() -> None:
+    scene = told_with(48.0)
+    note = scene.record(scene.order(ReturnHome())).history[0].note
+    assert "48 m above its takeoff point" in note
+
+
+def test_a_return_says_that_nobody_has_told_its_height() -> None:
+    scene = told_with(None)
+    note = scene.record(scene.order(ReturnHome())).history[0].note
+    assert "which nobody has told the station" in note
+
+
+def test_other_orders_say_nothing_of_it() -> None:
+    scene = told_with(48.0)
+    assert scene.record(scene.order(Hover())).history[0].note == ""

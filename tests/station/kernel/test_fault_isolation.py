@@ -1,0 +1,262 @@
+"""A fault in the station's own code costs as little as can be, and is seen."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+import pytest
+from tests.link.approved import core, extended
+from tests.station.api_views.test_service import Bench
+from tests.station.commanded import CommandedStation, flying
+from tests.station.steered_world import steered
+
+from recon import wire
+from recon.model.command import Hover, Phase
+from recon.model.event import AlarmAcknowledged, Event, LinkOpened, StationFaulted, Tick
+from recon.model.units import NS_PER_S
+from recon.safety.rules import RULES
+from recon.safety.watchdogs import WATCHDOGS, Finding, Picture
+from recon.station.control import order_gateway
+from recon.station.control.order_gateway import Stepped
+from recon.station.kernel import fault_isolation, step
+from recon.station.kernel.fault_isolation import after_fault, contained
+from recon.station.state.alarm_book import Alarm, Severity
+from recon.station.state.orders import OrderRecord
+from recon.station.state.outputs import CloseLink, Output, SendCommand
+from recon.station.state.station import Station
+from recon.vehicles.reports import to_report
+
+FAULT = ZeroDivisionError("division by zero")
+
+
+def failing(*_: object, **__: object) -> None:
+    raise FAULT
+
+
+def fault_alarms(station: Station) -> list[Alarm]:
+    """As the next tick tells them."""
+    station, _ = step.raise_alarms(station, NS_PER_S)
+    return [a for a in station.alarms.alarms.values() if a.condition.rule == "station_fault"]
+
+
+def contained_step(station: Station, event: Event, now_ns: int) -> Stepped:
+    """As the driver of a real run steps."""
+    try:
+        return step.step(station, event, now_ns)
+    except Exception as fault:
+        return after_fault(station, event, fault, now_ns)
+
+
+@pytest.fixture
+def bench(monkeypatch: pytest.MonkeyPatch) -> Bench:
+    """A driver with one vehicle in the air, whose faults are contained as in a real run."""
+    monkeypatch.setattr("recon.station.kernel.driver.after_fault", after_fault)
+    made = Bench()
+    made.open(1, extended(b"A"), core())
+    return made
+
+
+class TestATick:
+    @pytest.mark.parametrize("broken", step.TICK_PARTS)
+    def test_one_part_that_fails_leaves_the_others_their_work(
+        self, broken: str, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        called: list[str] = []
+
+        def part(name: str) -> Callable[[Station, int], tuple[Station, tuple[Output, ...]]]:
+            def run(station: Station, _now_ns: int) -> tuple[Station, tuple[Output, ...]]:
+                if name == broken:
+                    raise FAULT
+                called.append(name)
+                return station, (CloseLink(len(called), name),)
+
+            return run
+
+        parts = {name: part(name) for name in step.TICK_PARTS}
+        monkeypatch.setattr(fault_isolation, "TICK_PARTS", parts)
+        station, outputs = after_fault(Station(), Tick(), FAULT, 0)
+        assert called == [name for name in parts if name != broken]
+        assert len(outputs) == len(parts) - 1
+        (alarm,) = fault_alarms(station)
+        assert broken in alarm.condition.text
+        assert alarm.condition.severity is Severity.CRITICAL
+        assert "ZeroDivisionError: division by zero (test_containment.py:" in alarm.condition.text
+
+    def test_a_blind_watchdog_is_an_alarm_and_the_others_look_on(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The vehicle falls silent: the watch on links still tells it."""
+        scene = flying()
+        watchdogs = (contained(failing), *(contained(dog) for dog in WATCHDOGS))  # type: ignore[arg-type]
+        monkeypatch.setattr(fault_isolation, "CONTAINED", watchdogs)
+        for _ in range(45):
+            scene.now_ns += NS_PER_S // 10
+            scene.station, _ = after_fault(scene.station, Tick(), FAULT, scene.now_ns)
+        rules = scene.alarms()
+        assert {"station_fault", "link_lost"} <= rules
+        (blind,) = fault_alarms(scene.station)
+        assert "the watchdog failing sees nothing" in blind.condition.text
+
+    def test_a_watchdog_that_sees_is_left_as_it_is(self) -> None:
+        finding = Finding("k", "r", Severity.INFO, "A", "text")
+
+        def sees(_picture: Picture) -> Iterable[Finding]:
+            yield finding
+
+        picture: Picture = None  # type: ignore[assignment]
+        assert tuple(contained(sees)(picture)) == (finding,)
+
+    def test_alarms_that_cannot_be_worked_out_stay_and_the_fault_is_one(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        scene = flying()
+        scene.talk.clear()
+        scene.passes(4.0)
+        before = scene.alarms()
+        assert "link_lost" in before
+        monkeypatch.setattr("recon.station.kernel.step.conditions", failing)
+        scene.station, _ = after_fault(scene.station, Tick(), FAULT, scene.now_ns)
+        assert scene.alarms() == {*before, "station_fault"}
+
+    def test_orders_of_one_vehicle_that_fail_leave_the_others_watched(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The hold of B is repeated, though what has become of A's cannot be worked out."""
+        scene = flying("A")
+        reports = (core(), extended(b"B"))
+        scene.opens(2, *(to_report(wire.decode(packet)) for packet in reports))
+        scene.order(Hover(), "A")
+        scene.order(Hover(), "B")
+        sent = len(scene.handed)
+        real = order_gateway._watch_order
+
+        def watch(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
+            if record.command.serial == "A":
+                raise FAULT
+            return real(station, record, now_ns)
+
+        monkeypatch.setattr(order_gateway, "_watch_order", watch)
+        scene.now_ns += NS_PER_S
+        scene.station, outputs = after_fault(scene.station, Tick(), FAULT, scene.now_ns)
+        assert len(scene.handed) == sent
+        serials = [o.approved.command.serial for o in outputs if isinstance(o, SendCommand)]
+        assert serials == ["B"]
+        (alarm,) = fault_alarms(scene.station)
+        assert "watching the orders of A" in alarm.condition.text
+
+
+class TestAStream:
+    """One vehicle's steering fails at every beat."""
+
+    def test_its_vehicle_is_stopped_and_the_beat_goes_on(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        s = steered()
+        order = s.goto(200.0)
+        s.run_for(4.0)
+        monkeypatch.setattr("recon.station.steering.setpoint_streams.steer", failing)
+        monkeypatch.setattr("recon.station.kernel.virtual.step", contained_step)
+        failed_s = s.now_s
+        s.run_for(5.0)
+        assert s.phase(order) is Phase.FAILED
+        assert s.moving_sticks(failed_s + 0.15) == []
+        assert s.zeros(failed_s) != []
+        assert s.hovers(failed_s) != []
+        assert s.aircraft.motion.ground_speed_mps < 0.5
+        assert "steering SIM-1" in fault_alarms(s.w.driver.station)[0].condition.text
+
+    def test_without_even_a_zero_it_is_held(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        s = steered()
+        s.goto(200.0)
+        s.run_for(4.0)
+        monkeypatch.setattr("recon.station.steering.setpoint_streams.steer", failing)
+        monkeypatch.setattr("recon.station.steering.stream_ends.halted", failing)
+        monkeypatch.setattr("recon.station.kernel.virtual.step", contained_step)
+        failed_s = s.now_s
+        s.run_for(5.0)
+        assert s.sticks(failed_s + 0.15) == []
+        assert s.hovers(failed_s) != []
+        assert s.aircraft.motion.ground_speed_mps < 0.5
+        assert s.w.driver.station.streams == {}
+
+
+class TestAnEvent:
+    def test_a_step_that_fails_costs_its_event_alone(
+        self, bench: Bench, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        before = bench.driver.station
+        with monkeypatch.context() as patched:
+            patched.setattr("recon.station.kernel.step.fleet_step.step", failing)
+            bench.driver.handle(LinkOpened(2, "10.0.0.2:5"))
+        station = bench.driver.station
+        assert replace(station, faults={}) == before
+        (alarm,) = fault_alarms(station)
+        assert "taking in LinkOpened" in alarm.condition.text
+        bench.driver.handle(LinkOpened(3, "10.0.0.3:5"))
+        assert set(bench.driver.station.fleet.links) == {1, 3}
+
+    def test_it_is_an_alarm_while_it_comes_again_and_until_somebody_has_seen_it(self) -> None:
+        scene = CommandedStation()
+        for _ in range(30):
+            scene.happens(StationFaulted("thinking", "a fault")).passes(0.5)
+        assert scene.alarms() == {"station_fault"}
+        (alarm,) = scene.station.alarms.alarms.values()
+        scene.happens(AlarmAcknowledged(alarm.id, "Ann")).passes(5.0)
+        assert scene.alarms() == {"station_fault"}
+        scene.passes(6.0)
+        assert scene.alarms() == set()
+        assert scene.station.alarms.alarms == {}
+
+    def test_no_more_different_ones_are_kept_than_a_person_reads(self) -> None:
+        scene = CommandedStation()
+        for number in range(100):
+            scene.happens(StationFaulted(f"thinking {number}", "a fault"))
+        assert list(scene.station.faults) == [f"thinking {n}" for n in range(68, 100)]
+
+    def test_an_order_that_was_never_judged_is_answered_as_refused(
+        self, bench: Bench, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr("recon.station.kernel.step.commanding.place", failing)
+        (result,) = bench.service.all_stop("test").results
+        assert (result.accepted, result.rule, result.serial) == (False, "station_fault", "A")
+        assert fault_alarms(bench.driver.station)
+
+
+class TestTheDriver:
+    def test_an_output_that_fails_does_not_keep_the_next_from_going_out(
+        self, bench: Bench, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        closed: list[int] = []
+
+        class Links:
+            def close_link(self, link_id: int, _reason: str) -> None:
+                if link_id == 1:
+                    raise FAULT
+                closed.append(link_id)
+
+        def both(station: Station, *_: object) -> tuple[Station, tuple[Output, ...]]:
+            return station, (CloseLink(1, "x"), CloseLink(2, "x"))
+
+        bench.driver.links = Links()  # type: ignore[assignment]
+        with monkeypatch.context() as patched:
+            patched.setattr("recon.station.kernel.step._tick", both)
+            bench.driver.handle(Tick())
+        assert closed == [2]
+        (alarm,) = fault_alarms(bench.driver.station)
+        assert "carrying out CloseLink" in alarm.condition.text
+
+    def test_an_audit_that_fails_at_everything_ends_in_one_alarm(
+        self, bench: Bench, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Telling of its fault fails too: that must not go round for ever."""
+        monkeypatch.setattr(bench.driver, "_observe", failing)
+        bench.driver.handle(Tick())
+        bench.driver.handle(Tick())
+        (alarm,) = fault_alarms(bench.driver.station)
+        assert "writing the audit" in alarm.condition.text
+
+
+def test_a_stop_goes_out_though_every_rule_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = flying()
+    monkeypatch.setattr("recon.safety.gate.RULES", tuple(failing for _ in RULES))
+    scene.order(Hover())
+    assert scene.bodies() == [Hover()]

@@ -1,0 +1,369 @@
+"""Fleets called home with the real station and simulated apps, in virtual time.
+
+Distances and places are the simulator's own truth, not what the station believes.
+"""
+
+from itertools import pairwise
+from math import hypot
+from random import Random
+
+import pytest
+from tests.station.returning_world import LEAST_LEVEL_M, ReturningWorld, returning_world
+from tests.station.station_world import square_mission
+
+from recon.model.authority import AuthorityHolder
+from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
+from recon.model.event import AuthorityTaken, SeparationHoldSwitched
+from recon.station.operations.fleet_return.told import view
+from recon.station.state.fleet_return_record import Stage
+
+FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
+"""Six that hover over a field, east, north, up."""
+
+CROSSED = [(45, -20), (-15, -20), (-45, -20), (75, -20), (15, -20), (-75, -20)]
+"""Their pads in a row, each on the other side of it: their ways cross."""
+
+SIX = [f"SIM-{number}" for number in range(1, 7)]
+LOW_CEILING_M = 40.0
+"""Room for three layers: 20, 28 and 36 m."""
+
+
+def six_in_the_air(pads: list[tuple[int, int]] = CROSSED, **options: object) -> ReturningWorld:
+    return returning_world(FIELD, pads, max_height_m=LOW_CEILING_M, **options)  # type: ignore[arg-type]
+
+
+FOUR = SIX[:4]
+
+
+def four_in_the_air(**options: object) -> ReturningWorld:
+    """The first four with room for two layers, 20 and 28 m; a fifth hovers and is not called."""
+    return returning_world(FIELD[:5], CROSSED[:5], max_height_m=31.0, **options)  # type: ignore[arg-type]
+
+
+def landed_on_its_pad(world: ReturningWorld, serial: str) -> bool:
+    east_m, north_m, _ = world.place_m(serial)
+    pad = world.pads_m[serial]
+    return not world.flies(serial) and hypot(east_m - pad[0], north_m - pad[1]) < 3.0
+
+
+@pytest.fixture(scope="module")
+def flown() -> ReturningWorld:
+    world = six_in_the_air()
+    world.call(*SIX)
+    assert world.runs_until_over(900.0)
+    return world
+
+
+class TestSixInTwoWaves:
+    def test_all_land_on_their_pads(self, flown: ReturningWorld) -> None:
+        assert set(flown.stages().values()) == {Stage.LANDED}
+        assert all(landed_on_its_pad(flown, serial) for serial in SIX)
+
+    def test_they_kept_apart(self, flown: ReturningWorld) -> None:
+        assert flown.nearest.level_m >= LEAST_LEVEL_M, flown.nearest.who
+
+    def test_a_low_ceiling_makes_two_waves_of_three_layers(self, flown: ReturningWorld) -> None:
+        flights = [flown.member(serial).flight for serial in SIX]
+        waves = {flight.wave for flight in flights if flight is not None}
+        assert waves == {1, 2}
+        for wave in waves:
+            heights = sorted(f.layer_up_m for f in flights if f is not None and f.wave == wave)
+            assert heights == pytest.approx([20.0, 28.0, 36.0])
+
+    def test_each_flew_level_in_its_layer(self, flown: ReturningWorld) -> None:
+        """Away from the place where it hovered and from its pad it is nowhere but there."""
+        for serial, start in zip(SIX, FIELD, strict=True):
+            flight, pad = flown.member(serial).flight, flown.pads_m[serial]
+            assert flight is not None
+            start_far_m = hypot(start[0] - pad[0], start[1] - pad[1])
+            between = [
+                up_m
+                for _, up_m, far_m in flown.heights_m[serial]
+                if 6.0 < far_m < start_far_m - 6.0
+            ]
+            assert len(between) > 50
+            assert max(abs(up_m - flight.layer_up_m) for up_m in between) < 1.5
+
+    def test_the_second_wave_waited_for_its_layers(self, flown: ReturningWorld) -> None:
+        book = flown.world.driver.station.orders.records
+        for serial in SIX:
+            flight = flown.member(serial).flight
+            assert flight is not None
+            if flight.wave == 1:
+                continue
+            given_ns = book[flown.member(serial).mission_id or 0].command.issued_at_ns
+            before = [
+                member
+                for member in map(flown.member, SIX)
+                if member.flight is not None
+                and member.flight.wave == 1
+                and member.flight.layer_up_m == flight.layer_up_m
+            ]
+            assert [member.since_ns <= given_ns for member in before] == [True]
+
+    def test_every_mission_passed_the_gate_in_the_callers_name(self, flown: ReturningWorld) -> None:
+        for serial in SIX:
+            member = flown.member(serial)
+            record = flown.world.record(member.mission_id or 0)
+            assert record.command.issued_by == "test: fleet return"
+            assert Phase.REFUSED_BY_STATION not in [c.phase for c in record.history]
+            assert (member.mission_id or 0) < 0
+
+    def test_nobody_is_left_to_see_to(self, flown: ReturningWorld) -> None:
+        assert flown.alarms() == set()
+
+
+def test_the_control_all_going_home_at_one_height_come_too_near() -> None:
+    """Why there are layers: the same fleet and pads, the return of the ICD, equal heights.
+
+    With its holds on, the separation watchdog would stop them on the way: kept apart, but not home.
+    """
+    world = six_in_the_air(go_home_height_m=35.0)
+    world.world.driver.handle(SeparationHoldSwitched(is_on=False, by="test"))
+    for serial in SIX:
+        world.world.order(serial, ReturnHome())
+    world.runs(120.0)
+    assert world.nearest.level_m < LEAST_LEVEL_M
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_drawn_fleets_land_by_the_real_gate_on_shared_pads(seed: int) -> None:
+    rng = Random(seed)
+    places: list[tuple[float, float, float]] = []
+    while len(places) < 6:
+        place = rng.uniform(-200, 200), rng.uniform(20, 250), rng.uniform(15, 100)
+        if all(
+            abs(place[2] - p[2]) >= 7.0 or hypot(place[0] - p[0], place[1] - p[1]) >= 18.0
+            for p in places
+        ):
+            places.append(place)
+    world = returning_world(places, [(-40 + 40 * (i % 3), -40) for i in range(6)], seed=seed)
+    world.call(*world.pads_m)
+    assert world.runs_until_over(900.0)
+    assert set(world.stages().values()) == {Stage.LANDED}
+    assert all(landed_on_its_pad(world, serial) for serial in world.pads_m)
+    assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+
+class TestWhatComesBetween:
+    def test_a_pilot_who_takes_one_has_it_and_the_others_go_on(self) -> None:
+        world = four_in_the_air()
+        world.call(*FOUR)
+        world.runs(20.0)
+        (taken, *_) = [m.serial for m in map(world.member, FOUR) if m.stage is Stage.FLYING]
+        world.world.driver.handle(AuthorityTaken(taken, AuthorityHolder.PILOT, "the pilot"))
+        world.world.app(taken).aircraft.hover()
+        assert world.runs_until_over(900.0)
+        stages = world.stages()
+        assert stages.pop(taken) is Stage.RELEASED
+        assert world.flies(taken)
+        landed = {serial for serial, stage in stages.items() if stage is Stage.LANDED}
+        left = {serial for serial, stage in stages.items() if stage is Stage.LEFT_OUT}
+        assert len(landed) >= 2
+        assert landed | left == set(stages)
+        assert {("fleet_return", serial) for serial in left} <= world.alarms()
+        assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+    def test_a_vehicle_told_something_newer_is_let_go(self) -> None:
+        world = four_in_the_air()
+        world.call(*FOUR)
+        world.runs(15.0)
+        waiting = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
+        world.world.order(waiting[-1].serial, LandNow())
+        assert world.runs_until_over(900.0)
+        stages = world.stages()
+        member = world.member(waiting[-1].serial)
+        assert stages.pop(member.serial) is Stage.RELEASED
+        assert "land, ordered by test" in member.reason
+        assert set(stages.values()) == {Stage.LANDED}
+
+    def test_all_stop_ends_it_for_all_that_are_held(self) -> None:
+        world = four_in_the_air()
+        world.call(*FOUR)
+        world.runs(20.0)
+        for serial in FOUR:
+            world.world.order(serial, Hover())
+        world.runs(60.0)
+        assert set(world.stages().values()) == {Stage.RELEASED}
+        assert all(world.flies(serial) for serial in FOUR)
+
+    def test_one_whose_link_breaks_while_it_waits_is_not_resumed(self) -> None:
+        world = four_in_the_air(faults=("restart:SIM-4:20:5",))
+        world.call(*FOUR)
+        assert world.runs_until_over(900.0)
+        stages = world.stages()
+        assert stages.pop("SIM-4") is Stage.LEFT_OUT
+        assert world.member("SIM-4").mission_id is None
+        assert world.flies("SIM-4")
+        assert ("fleet_return", "SIM-4") in world.alarms()
+        assert set(stages.values()) == {Stage.LANDED}
+        assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+    def test_one_that_is_silent_for_a_moment_in_flight_lands_all_the_same(self) -> None:
+        world = four_in_the_air(faults=("telemetry-dropout:SIM-2:20:4",))
+        world.call(*FOUR)
+        world.runs(19.0)
+        assert world.member("SIM-2").stage is Stage.FLYING
+        assert world.runs_until_over(900.0)
+        assert set(world.stages().values()) == {Stage.LANDED}
+        assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+    def test_one_whose_app_ignores_its_mission_is_an_alarm_and_the_others_go_on(self) -> None:
+        world = four_in_the_air(faults=("ack-then-nothing:SIM-4:8:900",))
+        world.call(*FOUR)
+        assert world.runs_until_over(900.0)
+        stages = world.stages()
+        assert stages.pop("SIM-4") is Stage.LEFT_OUT
+        assert ("fleet_return", "SIM-4") in world.alarms()
+        assert set(stages.values()) == {Stage.LANDED}
+        newest = list(world.world.driver.station.orders.records.values())
+        holds = [r for r in newest if "was ignored" in r.command.issued_by]
+        assert [(r.command.serial, r.command.body) for r in holds] == [("SIM-4", Hover())]
+
+    def test_one_whose_link_breaks_while_it_flies_lands_and_is_told_nothing(self) -> None:
+        world = four_in_the_air(faults=("restart:SIM-1:20:5",))
+        world.call(*FOUR)
+        world.runs(15.0)
+        assert world.member("SIM-1").stage is Stage.FLYING
+        given = world.member("SIM-1").mission_id
+        assert world.runs_until_over(900.0)
+        assert set(world.stages().values()) == {Stage.LANDED}
+        assert landed_on_its_pad(world, "SIM-1")
+        book = world.world.driver.station.orders.records.values()
+        assert [r.command.id for r in book if r.command.serial == "SIM-1"][-1] == given
+
+    def test_one_left_out_stays_an_alarm_when_others_are_called(self) -> None:
+        pads = [(0, -20), (0, -20), (60, -20)]
+        world = returning_world(FIELD[:3], pads, faults=("restart:SIM-1:10:2",))
+        world.call("SIM-1", "SIM-2")
+        assert world.runs_until_over(300.0)
+        assert world.member("SIM-1").stage is Stage.LEFT_OUT
+        world.call("SIM-3")
+        world.runs(1.0)
+        assert ("fleet_return", "SIM-1") in world.alarms()
+        world.call("SIM-1")
+        world.runs(1.0)
+        assert ("fleet_return", "SIM-1") not in world.alarms()
+        assert world.runs_until_over(300.0)
+        assert landed_on_its_pad(world, "SIM-1")
+
+    def test_one_that_guidance_leads_is_taken_from_it_by_its_hold(self) -> None:
+        world = returning_world([(0, 100, 30)], [(0, 0)])
+        world.world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.GUIDANCE, "guidance"))
+        world.call("SIM-1")
+        assert world.runs_until_over(300.0)
+        assert landed_on_its_pad(world, "SIM-1")
+
+    def test_one_whose_app_refuses_is_reported_with_that(self) -> None:
+        world = four_in_the_air(faults=("negative-ack:SIM-4:8:900",))
+        world.call(*FOUR)
+        assert world.runs_until_over(900.0)
+        assert "refused by app" in world.member("SIM-4").reason
+
+    def test_the_alarm_of_one_left_out_ends_when_somebody_sees_to_it(self) -> None:
+        world = four_in_the_air(faults=("negative-ack:SIM-4:8:60",))
+        world.call(*FOUR)
+        assert world.runs_until_over(900.0)
+        assert ("fleet_return", "SIM-4") in world.alarms()
+        world.world.order("SIM-4", LandNow())
+        world.runs(2.0)
+        assert ("fleet_return", "SIM-4") not in world.alarms()
+
+    def test_somebody_who_comes_to_hover_in_the_way_is_flown_around(self) -> None:
+        world = four_in_the_air()
+        world.call(*FOUR)
+        world.runs(10.0)
+        (waiting, *_) = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
+        assert waiting.flight is not None
+        start, end = waiting.flight.way_m[0], waiting.flight.way_m[-1]
+        ahead = (0.8 * start[0] + 0.2 * end[0], 0.8 * start[1] + 0.2 * end[1])
+        world.put("SIM-5", (*ahead, waiting.flight.layer_up_m))
+        assert world.runs_until_over(900.0)
+        assert set(world.stages().values()) == {Stage.LANDED}
+        assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+    def test_somebody_who_hovers_over_its_pad_leaves_it_out(self) -> None:
+        world = four_in_the_air()
+        world.call(*FOUR)
+        world.runs(10.0)
+        (waiting, *_) = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
+        world.put("SIM-5", (*world.pads_m[waiting.serial], 10.0))
+        assert world.runs_until_over(900.0)
+        stages = world.stages()
+        assert stages.pop(waiting.serial) is Stage.LEFT_OUT
+        assert "SIM-5 hovers where it would" in world.member(waiting.serial).reason
+        assert set(stages.values()) == {Stage.LANDED}
+
+
+class TestOnePad:
+    def test_one_at_a_time_with_time_to_carry_each_away(self) -> None:
+        world = returning_world(FIELD[:3], [(0, -20)] * 3)
+        world.call(*SIX[:3])
+        cleared: set[tuple[str, str | None]] = set()
+        landed_s: list[float] = []
+        last_down = ""
+        for _ in range(900):
+            world.runs(1.0)
+            cleared |= {alarm for alarm in world.alarms() if alarm[0] == "pad_to_clear"}
+            last_down = next((s for s in SIX[:3] if world.flies(s)), last_down)
+            down = sum(not world.flies(serial) for serial in SIX[:3])
+            landed_s += [world.world.driver.now_ns / 1e9] * (down - len(landed_s))
+            if len(landed_s) == 3:
+                break
+        assert len(landed_s) == 3
+        assert min(b - a for a, b in pairwise(landed_s)) > 30.0
+        assert cleared == {("pad_to_clear", s) for s in SIX[:3] if s != last_down}
+        assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+
+class TestCalling:
+    def test_those_on_the_ground_led_by_others_unknown_or_called_already_are_refused(self) -> None:
+        world = returning_world(
+            [(0, 100, 30), (60, 100, 40), (0, 0, 0)], [(0, 0), (60, 0), (90, 0)]
+        )
+        station = world.world.driver
+        station.handle(AuthorityTaken("SIM-2", AuthorityHolder.PILOT, "the pilot"))
+        answers = world.called("SIM-1", "SIM-2", "SIM-3", "SIM-9")
+        assert [phase is Phase.REFUSED_BY_STATION for phase, _ in answers] == [
+            False,
+            True,
+            True,
+            True,
+        ]
+        assert "led by the pilot" in answers[1][1]
+        assert answers[2][1].startswith("flying")
+        assert answers[3][1].startswith("reachable")
+        again = world.called("SIM-1")
+        assert "already on its way home" in again[0][1]
+        assert list(world.stages()) == ["SIM-1"]
+
+    def test_one_called_later_joins(self) -> None:
+        world = four_in_the_air()
+        world.call(*FOUR[:2])
+        world.runs(20.0)
+        world.call(*FOUR[2:])
+        assert world.runs_until_over(900.0)
+        assert set(world.stages().values()) == {Stage.LANDED}
+        assert len(world.stages()) == 4
+        assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
+    def test_a_mission_is_stopped_before_its_vehicle_is_planned_for(self) -> None:
+        world = returning_world([(0, 100, 30)], [(0, 0)])
+        world.world.order("SIM-1", FlyMission(square_mission(30.0, 200.0)))
+        world.runs(12.0)
+        world.call("SIM-1")
+        assert world.runs_until_over(300.0)
+        assert landed_on_its_pad(world, "SIM-1")
+
+    def test_the_view_tells_waves_layers_and_reasons(self) -> None:
+        world = six_in_the_air()
+        world.call(*SIX)
+        world.runs(20.0)
+        driver = world.world.driver
+        shown = view(driver.station, driver.now_ns)
+        assert shown is not None
+        assert not shown.is_over
+        assert [v.wave for v in shown.vehicles] == [1, 1, 1, 2, 2, 2]
+        assert [v.layer_height_m for v in shown.vehicles] == pytest.approx([20, 28, 36] * 2)
+        assert "flying" in {v.stage for v in shown.vehicles[:3]}
+        assert all(v.reason for v in shown.vehicles[3:])

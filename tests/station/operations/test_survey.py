@@ -1,0 +1,283 @@
+"""Surveys flown live in virtual time: simulated apps, the real station, the real gate."""
+
+import numpy as np
+import pytest
+from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field, surveyed_world
+
+from recon.model.authority import AuthorityHolder
+from recon.model.command import FlyMission, LandNow, Phase
+from recon.model.event import AuthorityTaken, SurveyStarted
+from recon.model.survey import SurveyPhase, WhenDone
+from recon.model.zone import HeightDatum, Zone, ZoneKind
+
+
+def two_ends() -> SurveyedWorld:
+    """Two vehicles, each at its end of a long field."""
+    return surveyed_world(2, pads=((0.0, -40.0), (360.0, -40.0)))
+
+
+@pytest.fixture(scope="module")
+def flown() -> SurveyedWorld:
+    world = two_ends()
+    world.asks(asked(field(360.0), when_done=WhenDone.HOVER))
+    world.starts("SIM-1", "SIM-2")
+    assert world.runs_until(SurveyPhase.DONE, 400.0), world.record()
+    return world
+
+
+class TestFlownByTwo:
+    def test_all_that_rows_reach_is_imaged(self, flown: SurveyedWorld) -> None:
+        seen = flown.figures()
+        assert seen.reached_m2 == pytest.approx(seen.region_m2)
+        assert seen.not_yet_m2 < 0.02 * seen.region_m2
+
+    def test_without_an_imager_nobody_knows_the_light(self, flown: SurveyedWorld) -> None:
+        assert flown.figures().in_sun_m2 == 0.0
+        assert flown.figures().sun_unknown_m2 == flown.figures().in_shade_m2
+
+    def test_every_mission_went_through_the_gate_as_guidances(self, flown: SurveyedWorld) -> None:
+        given = flown.missions()
+        assert {each.command.serial for each in given} == {"SIM-1", "SIM-2"}
+        assert {each.command.asked_as for each in given} == {AuthorityHolder.GUIDANCE}
+        assert {each.command.issued_by for each in given} == {"ann: survey field"}
+        assert all(each.command.id < 0 for each in given)
+        assert all(each.phase is Phase.DONE for each in given)
+
+    def test_it_leads_nobody_when_it_is_done(self, flown: SurveyedWorld) -> None:
+        assert {flown.holder("SIM-1"), flown.holder("SIM-2")} == {AuthorityHolder.OPERATOR}
+
+    def test_who_hovers_is_told_until_somebody_orders_something(self, flown: SurveyedWorld) -> None:
+        assert ("survey_over", "SIM-1") in flown.fleet.alarms()
+
+    def test_the_ways_are_kept_for_showing(self, flown: SurveyedWorld) -> None:
+        ways = flown.record().flown
+        assert {serial for serial, _ in ways} == {"SIM-1", "SIM-2"}
+        assert min(len(way) for way in ways.values()) > 10
+
+
+class TestBeforeTheStart:
+    def test_nothing_flies_and_nobody_is_led_by_guidance(self) -> None:
+        world = surveyed_world()
+        world.asks()
+        world.runs(20.0)
+        assert world.phase() is SurveyPhase.CREATED
+        assert world.missions() == []
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+
+    def test_one_that_cannot_be_flown_says_why(self) -> None:
+        world = surveyed_world()
+        world.asks(asked(speed_mps=14.0))
+        refusal = world.record().refusal
+        assert refusal is not None
+        assert "fly at" in refusal.reason
+        world.starts("SIM-1")
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+
+    def test_two_asked_at_once_are_both_planned_or_told(self) -> None:
+        world = surveyed_world()
+        world.asks(asked(id=1))
+        world.asks(asked(id=2, name="other"))
+        assert [r.state is not None for r in world.driver.station.surveys.records.values()] == [
+            True,
+            True,
+        ]
+
+
+class TestTheStartIsAWord:
+    def test_all_vehicles_or_none(self) -> None:
+        world = surveyed_world(2)
+        world.asks()
+        world.driver.handle(AuthorityTaken("SIM-2", AuthorityHolder.PILOT, "the pilot"))
+        world.starts("SIM-1", "SIM-2")
+        world.runs(5.0)
+        assert world.phase() is SurveyPhase.CREATED
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+        assert world.missions() == []
+
+    @pytest.mark.parametrize("serials", [(), ("SIM-9",)])
+    def test_nobody_and_strangers_fly_nothing(self, serials: tuple[str, ...]) -> None:
+        world = surveyed_world()
+        world.asks()
+        world.starts(*serials)
+        assert world.phase() is SurveyPhase.CREATED
+
+    def test_who_stands_takes_off_only_when_that_was_said(self) -> None:
+        world = surveyed_world(height_m=0.0)
+        world.asks()
+        world.starts("SIM-1")
+        world.runs(20.0)
+        assert world.missions() == []
+        assert not world.fleet.flies("SIM-1")
+        assert "waits" in world.state().reason
+        world.starts("SIM-1", takeoff=True)
+        world.runs(20.0)
+        assert [each.command.takeoff for each in world.missions()] == [True]
+        assert world.fleet.flies("SIM-1")
+
+    def test_the_word_is_good_for_one_takeoff(self) -> None:
+        world = surveyed_world(height_m=0.0)
+        world.asks()
+        world.starts("SIM-1", takeoff=True)
+        world.runs(20.0)
+        member = world.record().members["SIM-1"]
+        assert not member.may_take_off
+
+    def test_a_vehicle_of_another_running_survey_is_refused(self) -> None:
+        world = surveyed_world()
+        world.asks()
+        world.asks(asked(id=2, name="other"))
+        world.starts("SIM-1")
+        world.driver.handle(SurveyStarted(2, ("SIM-1",), "ann"))
+        assert world.phase(2) is SurveyPhase.CREATED
+
+
+class TestStopped:
+    @pytest.fixture
+    def flying(self) -> SurveyedWorld:
+        world = two_ends()
+        world.asks(asked(field(360.0)))
+        world.starts("SIM-1", "SIM-2")
+        world.runs(30.0)
+        assert len(world.missions()) == 2
+        return world
+
+    def test_a_pause_holds_its_vehicles_and_gives_nothing_more(self, flying: SurveyedWorld) -> None:
+        given = len(flying.missions())
+        flying.pauses()
+        flying.runs(30.0)
+        assert flying.phase() is SurveyPhase.PAUSED
+        assert len(flying.missions()) == given
+        assert {flying.holder("SIM-1"), flying.holder("SIM-2")} == {AuthorityHolder.OPERATOR}
+        before = [flying.fleet.place_m(serial) for serial in ("SIM-1", "SIM-2")]
+        flying.runs(5.0)
+        after = [flying.fleet.place_m(serial) for serial in ("SIM-1", "SIM-2")]
+        assert np.abs(np.array(after) - before).max() < 0.5
+        assert all(flying.fleet.flies(serial) for serial in ("SIM-1", "SIM-2"))
+
+    def test_after_a_pause_it_is_flown_to_its_end(self, flying: SurveyedWorld) -> None:
+        flying.pauses()
+        flying.runs(10.0)
+        flying.starts("SIM-1", "SIM-2")
+        assert flying.runs_until(SurveyPhase.DONE, 500.0)
+        assert flying.figures().not_yet_m2 < 0.02 * flying.figures().region_m2
+
+    def test_an_abort_is_for_good(self, flying: SurveyedWorld) -> None:
+        imaged = flying.figures().not_yet_m2
+        flying.aborts()
+        flying.runs(5.0)
+        flying.starts("SIM-1")
+        flying.runs(20.0)
+        assert flying.phase() is SurveyPhase.ABORTED
+        assert flying.figures().not_yet_m2 <= imaged
+        assert flying.holder("SIM-1") is AuthorityHolder.OPERATOR
+
+    def test_one_that_somebody_lands_is_left_to_them_and_the_other_flies_all(
+        self, flying: SurveyedWorld
+    ) -> None:
+        flying.fleet.world.order("SIM-1", LandNow())
+        given = len(flying.missions("SIM-1"))
+        assert flying.runs_until(SurveyPhase.DONE, 600.0)
+        assert len(flying.missions("SIM-1")) == given
+        assert flying.holder("SIM-1") is AuthorityHolder.OPERATOR
+        assert flying.figures().not_yet_m2 < 0.02 * flying.figures().region_m2
+
+    def test_a_pause_leaves_the_pilots_vehicle_alone(self, flying: SurveyedWorld) -> None:
+        flying.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.PILOT, "the pilot"))
+        before = len(flying.driver.station.orders.records)
+        flying.pauses()
+        flying.runs(2.0)
+        held = list(flying.driver.station.orders.records.values())[before:]
+        assert {each.command.serial for each in held} == {"SIM-2"}
+
+
+class TestWhatGoesWrong:
+    def test_a_mission_that_is_ignored_is_not_given_again_by_itself(self) -> None:
+        world = surveyed_world(faults=("ack-then-nothing:SIM-1:1:900",))
+        world.asks()
+        world.starts("SIM-1")
+        world.runs(60.0)
+        assert [each.phase for each in world.missions()] == [Phase.TIMED_OUT]
+        assert ("survey", "SIM-1") in world.fleet.alarms()
+
+    def test_what_the_gate_refuses_pauses_the_survey_and_says_why(self) -> None:
+        world = surveyed_world(max_height_m=30.0, height_m=20.0, go_home_height_m=25.0)
+        world.asks()
+        world.starts("SIM-1")
+        world.runs(20.0)
+        assert world.phase() is SurveyPhase.PAUSED
+        assert "max_height" in world.state().reason
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+        assert ("survey", None) in world.fleet.alarms()
+
+    def test_a_field_far_from_home_is_refused_by_the_fences_not_flown(self) -> None:
+        world = surveyed_world()
+        world.asks(asked(field(west_m=1_100.0)))
+        world.starts("SIM-1")
+        world.runs(10.0)
+        assert all(
+            each.phase is Phase.REFUSED_BY_STATION and isinstance(each.command.body, FlyMission)
+            for each in world.missions()
+        )
+        assert world.phase() is SurveyPhase.PAUSED
+
+    def test_the_same_run_again_is_the_same(self) -> None:
+        def told() -> list[object]:
+            world = two_ends()
+            world.asks(asked(field(360.0)))
+            world.starts("SIM-1", "SIM-2")
+            world.runs(60.0)
+            return [
+                world.figures(),
+                [(e.command.id, e.command.serial, e.history) for e in world.missions()],
+            ]
+
+        assert told() == told()
+
+
+def test_the_survey_of_the_number_is_meant() -> None:
+    world = surveyed_world()
+    world.asks()
+    world.starts("SIM-1", number=SURVEY_ID + 1)
+    assert world.phase() is SurveyPhase.CREATED
+
+
+class TestTheWayToTheRows:
+    """Pads lie south of the field; over the strip between them heights are bound."""
+
+    @staticmethod
+    def flown(*zones: Zone, count: int = 1) -> SurveyedWorld:
+        world = surveyed_world(count, zones=zones)
+        world.asks()
+        world.starts(*(f"SIM-{number + 1}" for number in range(count)))
+        world.runs(12.0)
+        return world
+
+    @staticmethod
+    def ways_m(world: SurveyedWorld) -> list[float]:
+        bodies = [
+            each.command.body
+            for each in world.missions()
+            if each.phase is not Phase.REFUSED_BY_STATION
+        ]
+        return [body.mission.waypoints[0].height_above_takeoff_m for body in bodies]  # type: ignore[union-attr]
+
+    def test_it_is_flown_at_the_nearest_height_that_the_zones_allow(self) -> None:
+        strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
+        wires = Zone("wires", ZoneKind.HEIGHT, strip, 50.0, None, HeightDatum.GROUND)
+        assert self.ways_m(self.flown()) == [48.0]
+        assert self.ways_m(self.flown(wires)) == [56.0]
+
+    def test_no_two_share_a_height_that_a_zone_moves_them_to(self) -> None:
+        strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
+        wires = Zone("wires", ZoneKind.HEIGHT, strip, 60.0, None, HeightDatum.GROUND)
+        heights_m = self.ways_m(self.flown(wires, count=2))
+        assert min(heights_m) > 60.0
+        assert len(set(heights_m)) == len(heights_m)
+
+    def test_where_no_height_is_allowed_the_zone_is_named(self) -> None:
+        strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
+        world = self.flown(Zone("school", ZoneKind.KEEP_OUT, strip))
+        assert world.missions()[-1].phase is Phase.REFUSED_BY_STATION
+        assert world.phase() is SurveyPhase.PAUSED
+        assert "school" in world.state().reason
+        assert "nor is another height of its way" in world.state().reason

@@ -1,0 +1,82 @@
+"""The whole line at once: frames on the ground, shade read from them, cells imaged in sun."""
+
+from dataclasses import replace
+
+import numpy as np
+from tests.station.station_world import HOME
+from tests.station.surveyed_world import SurveyedWorld, asked, surveyed_world
+
+from recon.guidance.survey.state import SurveyState
+from recon.model.event import WorkerResult
+from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.imagery import CameraPose, GroundImage
+from recon.model.survey import CellState, SurveyBudget, SurveyPhase
+from recon.station.state.imaging import LAY_FRAME
+
+GRID = GroundGrid(LocalFrame(HOME), -40.0, 100.0, 1.0, 140, 200)
+POSE = CameraPose(np.eye(3), np.array([60.0, 30.0, 120.0]))
+TEXTURE = np.random.default_rng(3).integers(120, 150, (140, 200, 1))
+SHADE_ENDS_M = 60.0
+"""West of it the field lies in shade: half of it."""
+
+
+def ground_image(number: int, at_ns: int, is_shaded: bool) -> GroundImage:
+    east_m = GRID.west_m + 0.5 + np.arange(200)
+    light = np.where((east_m < SHADE_ENDS_M) & is_shaded, 0.25, 1.0)[np.newaxis, :, np.newaxis]
+    rgb = np.broadcast_to((TEXTURE * light**0.45).astype(np.uint8), (140, 200, 3)).copy()
+    rgb[0, 0] = number % 200 + 20
+    return GroundImage(
+        GRID, number, at_ns, rgb, np.ones((140, 200), np.bool_), POSE, serial="IMAGER"
+    )
+
+
+def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
+    """A frame a second: half of the field in shade until a moment, then all in sun."""
+    world = surveyed_world()
+    settings = world.driver.station.settings
+    # Over two minutes, shade that lasts the whole flight would come to look like sun.
+    detection = replace(settings.detection, window_s=600.0, samples=120)
+    world.driver.station = replace(
+        world.driver.station, settings=replace(settings, detection=detection)
+    )
+    for number in range(1, 41):
+        # The eye has seen the field in sun before: else nobody could tell its shade from dark soil.
+        world.driver.handle(seen(world, number, number > 30))
+        world.runs(1.0)
+    world.asks(asked(planner=planner, budget=SurveyBudget(rounds=3)))
+    world.starts("SIM-1")
+    for number in range(41, 500):
+        if world.phase() is not SurveyPhase.RUNNING:
+            break
+        world.driver.handle(seen(world, number, number < sunny_from_s))
+        world.runs(1.0)
+    return world
+
+
+def seen(world: SurveyedWorld, number: int, is_shaded: bool) -> WorkerResult:
+    image = ground_image(number, world.driver.now_ns, is_shaded)
+    return WorkerResult(number, LAY_FRAME, image)
+
+
+def states(state: SurveyState, is_west: bool) -> np.ndarray:
+    """The cells of one half, away from the shade's edge."""
+    cells = state.plan.cells
+    east_m = cells.grid.west_m + (np.arange(cells.grid.cols) + 0.5) * cells.grid.cell_m
+    chosen = east_m < SHADE_ENDS_M - 8.0 if is_west else east_m > SHADE_ENDS_M + 8.0
+    return state.progress.state[cells.is_reached & chosen[np.newaxis, :]]
+
+
+def test_what_was_flown_in_shade_is_told_from_what_was_flown_in_sun() -> None:
+    world = flown_under_an_imager("lawnmower_once", sunny_from_s=10_000.0)
+    assert world.phase() is SurveyPhase.DONE
+    assert (states(world.state(), is_west=True) == CellState.IN_SHADE).mean() > 0.9
+    assert (states(world.state(), is_west=False) == CellState.IN_SUN).mean() > 0.9
+    assert world.figures().sun_unknown_m2 == 0.0
+
+
+def test_what_lay_in_shade_is_flown_again_until_it_is_imaged_in_sun() -> None:
+    world = flown_under_an_imager("lawnmower_again", sunny_from_s=150.0)
+    assert world.phase() is SurveyPhase.DONE
+    assert "in sun" in world.state().reason
+    assert world.state().round > 1
+    assert world.figures().in_sun_m2 > 0.97 * world.figures().reached_m2

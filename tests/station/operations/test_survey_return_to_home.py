@@ -1,0 +1,244 @@
+"""A survey's vehicles come home when there is nothing more to fly for them, in virtual time."""
+
+from random import Random
+
+import pytest
+from tests.station.surveyed_world import SurveyedWorld, asked, field, surveyed_world
+
+from recon.model.authority import AuthorityHolder
+from recon.model.command import FlyMission, Hover, LandNow
+from recon.model.event import AuthorityTaken
+from recon.model.survey import SurveyBudget, SurveyPhase, WhenDone
+from recon.station.state.fleet_return_record import Stage
+
+LONG_FIELD = field(360.0)
+
+
+def battery_of(world: SurveyedWorld, serial: str, fraction: float) -> None:
+    """As after a flight, or after somebody has changed it."""
+    battery = world.fleet.world.app(serial).aircraft.battery
+    battery.fraction = fraction
+    world.runs(2.0)
+
+
+def is_home(world: SurveyedWorld, serial: str) -> bool:
+    east_m, north_m, up_m = world.fleet.place_m(serial)
+    pad = world.fleet.pads_m[serial]
+    near = abs(east_m - pad[0]) < 3.0 and abs(north_m - pad[1]) < 3.0
+    return near and up_m < 0.5 and not world.fleet.flies(serial)
+
+
+def runs_until_home(world: SurveyedWorld, serials: tuple[str, ...], at_most_s: float) -> bool:
+    for _ in range(round(at_most_s)):
+        if all(is_home(world, serial) for serial in serials):
+            world.runs(1.0)
+            return True
+        world.runs(1.0)
+    return False
+
+
+@pytest.fixture(scope="module")
+def done() -> SurveyedWorld:
+    """Three flew a field together."""
+    world = surveyed_world(3)
+    world.asks(asked(field(200.0)))
+    world.starts("SIM-1", "SIM-2", "SIM-3")
+    assert world.runs_until(SurveyPhase.DONE, 600.0), world.record()
+    assert runs_until_home(world, ("SIM-1", "SIM-2", "SIM-3"), 400.0), world.fleet.stages()
+    return world
+
+
+class TestDone:
+    def test_all_stand_on_their_pads_and_are_the_operators(self, done: SurveyedWorld) -> None:
+        assert set(done.fleet.stages().values()) == {Stage.LANDED}
+        assert {done.holder(f"SIM-{n}") for n in (1, 2, 3)} == {AuthorityHolder.OPERATOR}
+
+    def test_they_kept_apart(self, done: SurveyedWorld) -> None:
+        assert done.fleet.nearest.level_m >= 15.0, done.fleet.nearest.who
+
+    def test_every_order_of_it_is_guidances_and_says_by_whose_word(
+        self, done: SurveyedWorld
+    ) -> None:
+        orders = done.driver.station.orders.records.values()
+        homeward = [each.command for each in orders if "fleet return" in each.command.issued_by]
+        assert {c.serial for c in homeward} == {"SIM-1", "SIM-2", "SIM-3"}
+        assert all(isinstance(c.body, FlyMission) for c in homeward)
+        holds = [each.command for each in orders if isinstance(each.command.body, Hover)]
+        assert {c.asked_as for c in (*homeward, *holds)} == {AuthorityHolder.GUIDANCE}
+        assert {c.issued_by.split(":")[0] for c in (*homeward, *holds)} == {"ann"}
+
+    def test_no_alarm_is_left(self, done: SurveyedWorld) -> None:
+        assert not {rule for rule, _ in done.fleet.alarms()} & {
+            "survey",
+            "survey_over",
+            "survey_home",
+            "fleet_return",
+        }
+
+
+def going_home(when_done: WhenDone = WhenDone.RETURN_HOME) -> SurveyedWorld:
+    """Two whose survey has just ended."""
+    world = surveyed_world(2)
+    world.asks(asked(when_done=when_done))
+    world.starts("SIM-1", "SIM-2")
+    assert world.runs_until(SurveyPhase.DONE, 400.0)
+    return world
+
+
+class TestOnTheWayHome:
+    def test_who_asked_them_to_hover_lets_them_hover(self) -> None:
+        world = going_home(WhenDone.HOVER)
+        world.runs(60.0)
+        assert world.fleet.stages() == {}
+        assert all(world.fleet.flies(serial) for serial in ("SIM-1", "SIM-2"))
+        assert {world.holder("SIM-1"), world.holder("SIM-2")} == {AuthorityHolder.OPERATOR}
+
+    def test_an_abort_holds_them_though_the_survey_is_done(self) -> None:
+        world = going_home()
+        world.runs(8.0)
+        world.aborts()
+        world.runs(10.0)
+        assert world.phase() is SurveyPhase.DONE
+        assert set(world.fleet.stages().values()) == {Stage.RELEASED}
+        assert {world.holder("SIM-1"), world.holder("SIM-2")} == {AuthorityHolder.OPERATOR}
+        world.runs(60.0)
+        assert all(world.fleet.flies(serial) for serial in ("SIM-1", "SIM-2"))
+
+    def test_a_hold_takes_one_out_and_the_other_flies_home(self) -> None:
+        world = going_home()
+        world.runs(3.0)
+        world.fleet.world.order("SIM-1", Hover())
+        assert runs_until_home(world, ("SIM-2",), 300.0)
+        assert world.fleet.flies("SIM-1")
+        assert world.fleet.member("SIM-1").stage is Stage.RELEASED
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+
+    def test_a_pilots_vehicle_is_left_to_the_pilot(self) -> None:
+        world = going_home()
+        world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.PILOT, "the pilot"))
+        told = len(world.missions("SIM-1"))
+        assert runs_until_home(world, ("SIM-2",), 300.0)
+        assert world.fleet.member("SIM-1").stage is Stage.RELEASED
+        assert len(world.missions("SIM-1")) == told
+        assert world.holder("SIM-1") is AuthorityHolder.PILOT
+
+    def test_another_survey_cannot_have_them_before_they_are_home(self) -> None:
+        world = going_home()
+        world.asks(asked(id=2, name="other"))
+        world.starts("SIM-1", number=2)
+        assert world.phase(2) is SurveyPhase.CREATED
+        assert runs_until_home(world, ("SIM-1", "SIM-2"), 300.0)
+        world.starts("SIM-1", number=2, takeoff=True)
+        world.runs(20.0)
+        assert world.fleet.flies("SIM-1")
+        assert world.holder("SIM-1") is AuthorityHolder.GUIDANCE
+
+
+class TestWithoutBattery:
+    def test_low_battery_home_full_battery_joined_done_home(self) -> None:
+        """The whole line of a long survey with one battery too few."""
+        world = surveyed_world(endurance_s=1_500.0)
+        world.asks(asked(LONG_FIELD))
+        battery_of(world, "SIM-1", 0.55)
+        world.starts("SIM-1")
+        assert runs_until_home(world, ("SIM-1",), 900.0)
+        assert world.phase() is SurveyPhase.RUNNING
+        first = world.figures().not_yet_m2
+        assert 0.0 < first < world.figures().region_m2
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+        assert ("survey", "SIM-1") in world.fleet.alarms()
+
+        world.runs(30.0)
+        assert not world.fleet.flies("SIM-1")
+        battery_of(world, "SIM-1", 1.0)
+        world.starts("SIM-1", takeoff=True)
+        world.runs(30.0)
+        assert world.fleet.flies("SIM-1")
+        assert ("survey", "SIM-1") not in world.fleet.alarms()
+
+        assert world.runs_until(SurveyPhase.DONE, 900.0), world.record()
+        assert world.figures().not_yet_m2 < 0.02 * world.figures().region_m2
+        assert runs_until_home(world, ("SIM-1",), 300.0)
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+
+    def test_one_comes_home_while_the_other_flies_on(self) -> None:
+        world = surveyed_world(2, endurance_s=1_500.0)
+        world.asks(asked(field(360.0, 120.0)))
+        battery_of(world, "SIM-1", 0.55)
+        world.starts("SIM-1", "SIM-2")
+        assert runs_until_home(world, ("SIM-1",), 600.0), world.record().members
+        assert world.phase() is SurveyPhase.RUNNING
+        assert world.fleet.flies("SIM-2")
+        assert world.runs_until(SurveyPhase.DONE, 900.0)
+        assert runs_until_home(world, ("SIM-2",), 300.0)
+        assert world.fleet.nearest.level_m >= 15.0, world.fleet.nearest.who
+
+    def test_on_the_ground_nobody_is_called_anywhere(self) -> None:
+        world = surveyed_world(height_m=0.0, endurance_s=1_500.0)
+        world.asks()
+        battery_of(world, "SIM-1", 0.24)
+        world.starts("SIM-1", takeoff=True)
+        world.runs(30.0)
+        assert not world.fleet.flies("SIM-1")
+        assert world.missions() == [] or not world.fleet.stages()
+
+    def test_who_hovers_with_that_setting_waits(self) -> None:
+        world = surveyed_world(endurance_s=1_500.0)
+        world.asks(asked(LONG_FIELD, when_done=WhenDone.HOVER))
+        battery_of(world, "SIM-1", 0.40)
+        world.starts("SIM-1")
+        world.runs(150.0)
+        assert world.fleet.flies("SIM-1")
+        assert world.fleet.stages() == {}
+
+    def test_a_survey_paused_by_hand_holds_the_one_on_its_way_too(self) -> None:
+        world = surveyed_world(endurance_s=1_500.0)
+        world.asks(asked(LONG_FIELD))
+        battery_of(world, "SIM-1", 0.55)
+        world.starts("SIM-1")
+        for _ in range(600):
+            world.runs(1.0)
+            if world.record().members["SIM-1"].homeward:
+                break
+        world.runs(5.0)
+        world.pauses()
+        world.runs(30.0)
+        assert world.phase() is SurveyPhase.PAUSED
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+        assert world.fleet.flies("SIM-1")
+
+
+def test_a_budget_that_ends_brings_them_home_too() -> None:
+    world = surveyed_world()
+    world.asks(asked(budget=SurveyBudget(time_s=20.0)))
+    world.starts("SIM-1")
+    assert world.runs_until(SurveyPhase.DONE, 400.0)
+    assert runs_until_home(world, ("SIM-1",), 300.0)
+
+
+def test_one_whose_mission_went_wrong_is_left_for_somebody_to_look_at() -> None:
+    world = surveyed_world(2, faults=("ack-then-nothing:SIM-1:1:900",))
+    world.asks()
+    world.starts("SIM-1", "SIM-2")
+    assert world.runs_until(SurveyPhase.DONE, 600.0)
+    assert runs_until_home(world, ("SIM-2",), 300.0)
+    assert "SIM-1" not in world.fleet.stages()
+    assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+    world.fleet.world.order("SIM-1", LandNow())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_whatever_the_field_and_the_batteries_they_keep_apart_and_land(seed: int) -> None:
+    """Random fields, pads and batteries: who comes home early does so past those who fly rows."""
+    random = Random(seed)
+    pads = [(40.0 * n + random.uniform(-8.0, 8.0), random.uniform(-70.0, -40.0)) for n in range(3)]
+    world = surveyed_world(3, pads=pads)
+    world.asks(asked(field(random.uniform(160.0, 320.0), random.uniform(60.0, 140.0))))
+    serials = ("SIM-1", "SIM-2", "SIM-3")
+    for serial in serials:
+        battery_of(world, serial, random.uniform(0.35, 0.9))
+    world.starts(*serials)
+    assert runs_until_home(world, serials, 1_500.0), (world.record().members, world.fleet.stages())
+    assert {world.holder(serial) for serial in serials} == {AuthorityHolder.OPERATOR}
+    assert set(world.fleet.stages().values()) == {Stage.LANDED}
+    assert world.fleet.nearest.level_m >= 15.0, world.fleet.nearest.who

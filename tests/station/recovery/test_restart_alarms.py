@@ -1,0 +1,64 @@
+"""A start with many vehicles in the air: nobody is flooded with alarms, nothing is held."""
+
+import pytest
+from tests.station.audited import Audited
+from tests.station.recovery.test_restart import restart
+from tests.station.station_world import World, world
+
+from recon.station.state.alarm_book import Alarm
+
+GONE_S = 4.0
+LATEST_S = 8.0
+"""The last app comes back this long after the start."""
+
+
+def restarted(count: int, missing: frozenset[str] = frozenset()) -> World:
+    """Vehicles in the air whose station ends without a word; one app after the other returns."""
+    here = world(count, keeps_log=False)
+    audited = Audited(here)
+    here.run_for(6.0)
+    assert not any(alarm.is_active for alarm in alarms(here))
+    apps = [connected.app for connected in here.connected.values()]
+    for connected in tuple(here.connected.values()):
+        here.driver.disconnect(connected.link_id)
+        connected.app.disconnected()
+    here.connected.clear()
+    here.run_for(GONE_S)
+    here.driver.station = restart(here, audited)
+    here.driver.observe = None
+    assert len(here.driver.station.restored_flights) == count
+    for app in apps:
+        here.run_for(LATEST_S / count)
+        if app.settings.serial not in missing:
+            here.connect(app)
+    return here
+
+
+def alarms(here: World) -> list[Alarm]:
+    return list(here.driver.station.alarms.alarms.values())
+
+
+@pytest.mark.parametrize("count", [8, 64])
+def test_all_come_back_to_one_alarm_that_ends_by_itself_and_no_order(count: int) -> None:
+    here = restarted(count)
+    here.run_for(4.0)
+    (waits,) = alarms(here)
+    assert (waits.condition.rule, waits.is_active) == ("restart_waits", False)
+    assert here.driver.station.orders.records == {}
+
+
+def test_the_one_alarm_names_whom_it_waits_for() -> None:
+    here = restarted(10, frozenset({"SIM-1", "SIM-4"}))
+    (waits,) = alarms(here)
+    assert waits.is_active
+    named = waits.condition.text.partition("waits to hear ")[2].partition(", which flew")[0]
+    assert sorted(named.split(", ")) == ["SIM-1", "SIM-10", "SIM-4"]
+
+
+def test_one_that_does_not_come_back_is_an_alarm_of_its_own_then_and_a_hazard_at_once() -> None:
+    here = restarted(8, frozenset({"SIM-3"}))
+    assert {alarm.condition.rule for alarm in alarms(here)} == {"restart_waits"}
+    here.run_for(4.0)
+    active = [alarm.condition for alarm in alarms(here) if alarm.is_active]
+    assert {(c.rule, c.serial) for c in active if c.rule == "link_lost"} == {("link_lost", "SIM-3")}
+    assert any("where SIM-3 may be" in c.text for c in active if c.rule == "separation")

@@ -1,0 +1,57 @@
+"""Two sent off in one breath are kept apart before telemetry shows either of them flying."""
+
+from tests.fleet.said import PLACE, core, extended
+from tests.station.commanded import CommandedStation
+
+from recon.geo.distance import moved_m
+from recon.model.command import FlyMission, Phase
+from recon.model.mission import Mission, Waypoint
+
+
+def over_the_field(north_m: float, start_east_m: float) -> FlyMission:
+    """Straight up from a pad and then 80 m along a line east at this distance north."""
+    places = ((0.0, start_east_m), (north_m, 0.0), (north_m, 80.0))
+    points = (moved_m(PLACE, north, east) for north, east in places)
+    return FlyMission(
+        Mission(tuple(Waypoint(p.latitude_deg, p.longitude_deg, 30.0, 5.0) for p in points))
+    )
+
+
+def two_on_the_ground() -> CommandedStation:
+    """A stands at the place and B 40 m east of it."""
+    scene = CommandedStation()
+    for link_id, serial, east_m in ((1, "A", 0.0), (2, "B", 40.0)):
+        on_ground = core(flying=False, height_m=0.0, position=moved_m(PLACE, 0.0, east_m))
+        reports = (on_ground, extended(serial, gnss_level=5))
+        scene.opens(link_id, *reports).keeps_saying(link_id, *reports)
+    return scene.passes(1.0)
+
+
+def refused(scene: CommandedStation, order: int) -> bool:
+    record = scene.record(order)
+    is_refused = record.phase is Phase.REFUSED_BY_STATION
+    assert not is_refused or record.note.startswith("separation: ")
+    return is_refused
+
+
+def test_a_mission_that_still_waits_to_be_sent_counts() -> None:
+    scene = two_on_the_ground()
+    scene.is_stuck = True
+    assert not refused(scene, scene.order(over_the_field(20.0, 0.0), "A", takeoff=True))
+    assert refused(scene, scene.order(over_the_field(20.0, 40.0), "B", takeoff=True))
+    assert not refused(scene, scene.order(over_the_field(-60.0, 40.0), "B", takeoff=True))
+
+
+def test_one_that_was_sent_off_counts_while_it_may_be_taking_off() -> None:
+    scene = two_on_the_ground()
+    assert not refused(scene, scene.order(over_the_field(20.0, 0.0), "A", takeoff=True))
+    scene.passes(3.0)
+    assert refused(scene, scene.order(over_the_field(20.0, 40.0), "B", takeoff=True))
+    scene.passes(10.0)
+    assert not refused(scene, scene.order(over_the_field(20.0, 40.0), "B", takeoff=True))
+
+
+def test_what_a_vehicle_was_sent_before_is_no_traffic_to_itself() -> None:
+    scene = two_on_the_ground()
+    for _ in range(2):
+        assert not refused(scene, scene.order(over_the_field(20.0, 0.0), "A", takeoff=True))
