@@ -1,6 +1,7 @@
 """Commands, what becomes of them, and refusals."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 
 from recon.model.authority import AuthorityHolder
@@ -188,11 +189,14 @@ LIVING_PHASES = (Phase.QUEUED, Phase.SENT, Phase.ACKNOWLEDGED, Phase.CONFIRMED, 
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """A command that is not sent: which rule says no, and why.
+    """A command that is not sent: which rule refuses it, and why.
 
-    `is_unheard`: only because the vehicle cannot be heard now; a stop waits for that.
+    `is_stale`: only because telemetry is stale or the connection is lost; a stop waits for that.
+    `parameters` hold the measured value, the limit and the like, named with their units, for
+    programs; two refusals with the same rule and sentence are equal.
     """
 
     rule: str
     reason: str
-    is_unheard: bool = False
+    is_stale: bool = False
+    parameters: Mapping[str, float | int | str] = field(default_factory=dict, compare=False)

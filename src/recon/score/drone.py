@@ -232,12 +232,12 @@ class Drone:
 
     def surveyor(self, now_s: float) -> Surveyor:
         """Return what the planner is told of it; unheard, its mission counts as flown on."""
-        is_unheard = self._is_unheard(now_s)
-        if not is_unheard:
+        is_stale = self._is_unheard(now_s)
+        if not is_stale:
             self._told_ended = self.ended_mission
         able = self.doing in (Doing.MISSION, Doing.HOVERING)
         able |= self.doing is Doing.STANDING and self.free_at_s <= now_s
-        if is_unheard:
+        if is_stale:
             able = self._told_ended < self._given and self.doing is not Doing.LOST
         return Surveyor(
             self.serial,

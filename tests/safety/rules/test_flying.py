@@ -135,7 +135,7 @@ class TestWhatItSays:
     """Word for word, and whether an order is told apart that only waits to be heard of again."""
 
     @pytest.mark.parametrize(
-        ("flying_said", "age_s", "reason", "is_unheard"),
+        ("flying_said", "age_s", "reason", "is_stale"),
         [
             (False, 0.1, "it is on the ground, and the order does not say takeoff", False),
             (False, 3.0, "it is on the ground, and the order does not say takeoff", False),
@@ -162,11 +162,11 @@ class TestWhatItSays:
         ],
     )
     def test_without_takeoff(
-        self, flying_said: bool | None, age_s: float, reason: str, is_unheard: bool
+        self, flying_said: bool | None, age_s: float, reason: str, is_stale: bool
     ) -> None:
         answer = flying(command(Hover()), situation(vehicle(flying=flying_said, age_s=age_s)))
-        assert answer == Refusal("flying", f"A: {reason}", is_unheard=is_unheard)
-        assert answer.is_unheard is is_unheard
+        assert answer == Refusal("flying", f"A: {reason}", is_stale=is_stale)
+        assert answer.is_stale is is_stale
 
     def test_before_any_telemetry(self) -> None:
         unheard = vehicle(is_flying=Stamped(None, None))
@@ -177,7 +177,7 @@ class TestWhatItSays:
     def test_telemetry_of_just_the_age_is_not_too_old_to_be_heard(self) -> None:
         answer = flying(command(Hover()), replace(situation(vehicle(age_s=3.0)), claiming_links=()))
         assert answer is not None
-        assert answer.is_unheard is False
+        assert answer.is_stale is False
 
     def test_a_takeoff_of_an_app_that_does_not_say_whether_it_flies(self) -> None:
         asked = command(Hover(), takeoff=True)

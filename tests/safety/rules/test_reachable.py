@@ -25,8 +25,8 @@ def test_nobody_on_that_link() -> None:
     )
 
 
-@pytest.mark.parametrize(("flying", "is_unheard"), [(True, True), (False, False), (None, False)])
-def test_a_vehicle_without_a_connection(flying: bool | None, is_unheard: bool) -> None:
+@pytest.mark.parametrize(("flying", "is_stale"), [(True, True), (False, False), (None, False)])
+def test_a_vehicle_without_a_connection(flying: bool | None, is_stale: bool) -> None:
     """One that was last known to fly is waited for; it is not called unknown."""
     answer = approve(LAND, Situation(NOW, vehicle(flying=flying), ()))
     assert isinstance(answer, Refusal)
@@ -34,7 +34,7 @@ def test_a_vehicle_without_a_connection(flying: bool | None, is_unheard: bool) -
         "reachable",
         "A has no connection: its app must connect first",
     )
-    assert answer.is_unheard is is_unheard
+    assert answer.is_stale is is_stale
 
 
 def test_one_that_is_connected() -> None:

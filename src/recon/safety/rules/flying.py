@@ -35,7 +35,7 @@ def flying(command: Command, situation: Situation) -> Refusal | None:
     if any(_says_flying(claiming_link, situation) for claiming_link in situation.claiming_links):
         return None
     reason = f"{vehicle.display_name}: {_why(vehicle, situation)}"
-    return Refusal(RULE, reason, is_unheard=_is_unheard(vehicle, situation))
+    return Refusal(RULE, reason, is_stale=_is_unheard(vehicle, situation))
 
 
 def _no_takeoff(command: Command, vehicle: VehicleState | None) -> Refusal | None:

@@ -14,6 +14,6 @@ def reachable(command: Command, situation: Situation) -> Refusal | None:
         return Refusal(
             "reachable",
             f"{name} has no connection: its app must connect first",
-            is_unheard=situation.vehicle.is_flying.value is True,
+            is_stale=situation.vehicle.is_flying.value is True,
         )
     return None

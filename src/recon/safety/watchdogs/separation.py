@@ -74,8 +74,8 @@ def in_order_of_yielding(
         profile = watched.state.profile
         priority = 0 if profile is None else profile.priority
         is_operators = watched.holder is not AuthorityHolder.GUIDANCE
-        is_unheard = watched.hazard is not None
-        return is_unheard, watched.is_coming_down, priority, watched.is_imager, is_operators
+        is_stale = watched.hazard is not None
+        return is_stale, watched.is_coming_down, priority, watched.is_imager, is_operators
 
     later, earlier = sorted((one, other), key=lambda watched: watched.key, reverse=True)
     return (later, earlier) if rank(later) <= rank(earlier) else (earlier, later)

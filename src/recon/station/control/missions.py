@@ -6,24 +6,21 @@ link, was heard without a gap, and was led by the same holder. Else it holds, th
 and an alarm says why. Nothing else is ever sent by itself.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from recon.model.authority import ControlAuthority
 from recon.model.command import Command, FlyMission, Phase, Refusal
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.safety import ApprovedCommand, Situation, judge_parts
+from recon.safety import Situation, judge_parts
 from recon.station.state import orders
 from recon.station.state.flight_plan import FlightPlan
 from recon.station.state.orders import OrderRecord
-from recon.station.state.outputs import Output, SendCommand
+from recon.station.state.outputs import SendCommand
 from recon.station.state.station import Station
+from recon.station.state.stepped import Judge, Stepped
 from recon.vehicles.mission_repair import repair
 from recon.vehicles.packets import describe_altitudes
-
-Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
-Stepped = tuple[Station, tuple[Output, ...]]
 
 _DEFAULT_AUTHORITY = ControlAuthority()
 
@@ -78,7 +75,7 @@ def watch_chain(
     return _put(station, record)
 
 
-def part_flown(station: Station, record: OrderRecord, now_ns: int, ask: Ask) -> Stepped:
+def part_flown(station: Station, record: OrderRecord, now_ns: int, ask: Judge) -> Stepped:
     """Return the station after a vehicle flew a mission's present part to its end."""
     flown = record.plan
     if flown is None or flown.is_last:
@@ -90,7 +87,7 @@ def part_flown(station: Station, record: OrderRecord, now_ns: int, ask: Ask) -> 
 
 
 def _send_next(
-    station: Station, record: OrderRecord, flown: FlightPlan, now_ns: int, ask: Ask
+    station: Station, record: OrderRecord, flown: FlightPlan, now_ns: int, ask: Judge
 ) -> Stepped:
     following = replace(flown, index=flown.index + 1)
     expires_at_ns = now_ns + seconds_to_ns(station.settings.order_expiry_s)

@@ -4,26 +4,19 @@ An order that telemetry has shown is followed to its end here: finished, taken o
 or ended by the aircraft's own failsafe. So is a vehicle that has been told nothing, or to hold.
 """
 
-from collections.abc import Callable
-
 from recon.fleet.flight_table import Instruction, ModeKind, Reading, Verdict, kind_of, read
-from recon.model.command import STEERED_BODIES, Command, LandNow, Phase, Refusal
+from recon.model.command import STEERED_BODIES, LandNow, Phase
 from recon.model.intent import Commanded, Intent
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.safety import ApprovedCommand
 from recon.station.control import authority, intents, missions
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
+from recon.station.state.stepped import Judge, Stepped
 from recon.station.state.tracking import Tracking
-
-Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
-"""Asks the gate."""
-
-Stepped = tuple[Station, tuple[Output, ...]]
 
 _SPEAKS_WITHIN_S = 0.5
 """Who speaks more often is followed whenever it speaks: nothing is gained by looking between."""
@@ -36,7 +29,7 @@ _SENT_BY_LIFE = (Instruction.HOLD_SENT, Instruction.RETURN_SENT, Instruction.LAN
 """Emergency orders not yet shown: their repeats and their alarm are the order's own matter."""
 
 
-def follow(station: Station, serials: tuple[str, ...], now_ns: int, ask: Ask) -> Stepped:
+def follow(station: Station, serials: tuple[str, ...], now_ns: int, ask: Judge) -> Stepped:
     """Return the station after telemetry was read for these vehicles, and what is sent for it."""
     outputs: tuple[Output, ...] = ()
     for serial in serials:
@@ -55,7 +48,7 @@ def silent(station: Station, now_ns: int) -> tuple[str, ...]:
     )
 
 
-def _follow(station: Station, serial: str, now_ns: int, ask: Ask) -> Stepped:
+def _follow(station: Station, serial: str, now_ns: int, ask: Judge) -> Stepped:
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None:
         return _forget(station, serial), ()
@@ -97,7 +90,7 @@ def _apply(
     vehicle: VehicleState,
     reading: Reading,
     now_ns: int,
-    ask: Ask,
+    ask: Judge,
 ) -> Stepped:
     verdict = reading.verdict
     if verdict in _LASTING:
@@ -157,7 +150,7 @@ def _failsafe(station: Station, serial: str, why: str, now_ns: int) -> Station:
 
 
 def _finished(
-    station: Station, serial: str, vehicle: VehicleState, now_ns: int, ask: Ask
+    station: Station, serial: str, vehicle: VehicleState, now_ns: int, ask: Judge
 ) -> Stepped:
     record = _record(station, serial)
     if vehicle.is_flying.value is False:

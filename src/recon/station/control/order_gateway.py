@@ -30,10 +30,9 @@ from recon.station.state import orders
 from recon.station.state.orders import OrderRecord, PhaseChange
 from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station
+from recon.station.state.stepped import Judge, Stepped
 from recon.station.steering import neutral_setpoint, setpoint_streams
-from recon.station.steering.stream_ends import Ask, Driven
-
-Stepped = tuple[Station, tuple[Output, ...]]
+from recon.station.steering.stream_ends import Driven
 
 
 def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
@@ -100,7 +99,7 @@ def owner_disconnected(station: Station, owner: str, now_ns: int) -> Stepped:
     return _after(setpoint_streams.end_held_by(station, owner, now_ns, _ask(now_ns)), now_ns)
 
 
-def _ask(now_ns: int) -> Ask:
+def _ask(now_ns: int) -> Judge:
     return lambda station, command: approve(command, situation(station, command, now_ns))
 
 

@@ -30,7 +30,7 @@ def refused_record(
 
 def may_wait(command: Command, refusal: Refusal) -> bool:
     """Return whether a stop is refused only for a vehicle, last known to fly, that is not heard."""
-    return isinstance(command.body, Hover) and not command.takeoff and refusal.is_unheard
+    return isinstance(command.body, Hover) and not command.takeoff and refusal.is_stale
 
 
 def waiting_record(

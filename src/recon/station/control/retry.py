@@ -6,11 +6,11 @@ from recon.model.units import seconds_to_ns
 from recon.station.state.orders import OrderRecord
 from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station
-from recon.station.steering.stream_ends import Ask
+from recon.station.state.stepped import Judge
 
 
 def repeat(
-    station: Station, record: OrderRecord, ask: Ask, now_ns: int
+    station: Station, record: OrderRecord, ask: Judge, now_ns: int
 ) -> tuple[OrderRecord, tuple[Output, ...]]:
     """Send an unconfirmed emergency order again if the gate still approves it now.
 

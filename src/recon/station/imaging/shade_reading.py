@@ -6,11 +6,10 @@ from recon.detection import RejectedFrame
 from recon.model.event import WorkerResult
 from recon.model.imagery import GroundImage
 from recon.station.imaging.shade_work import READ_SHADE, ReadShade, ShadeRead
-from recon.station.state.outputs import Output, StartWork
+from recon.station.state.outputs import StartWork
 from recon.station.state.shade import WAITING_KEPT, ShadeLine
 from recon.station.state.station import Station
-
-Stepped = tuple[Station, tuple[Output, ...]]
+from recon.station.state.stepped import Stepped
 
 
 def take_image(station: Station, image: GroundImage) -> Stepped:

@@ -14,13 +14,13 @@ from recon.model.event import Event, OperatorOrder, StationFaulted, SticksDue, T
 from recon.safety.watchdogs import WATCHDOGS, Finding, Picture, Watchdog
 from recon.station.alarms.station_faults import TO_DO, WHOSE, conditions, note
 from recon.station.control import order_gateway
-from recon.station.control.order_gateway import Stepped
 from recon.station.kernel.step import TICK_PARTS, raise_alarms
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Severity
 from recon.station.state.command_ids import take_id
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 from recon.station.steering import setpoint_streams
 from recon.station.traffic import watchdog_runner
 

@@ -39,7 +39,6 @@ from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.station.alarms import station_faults
 from recon.station.alarms.conditions import conditions
 from recon.station.control import authority, order_gateway, preflight
-from recon.station.control.order_gateway import Stepped
 from recon.station.imaging import shade_reading as shade_reading
 from recon.station.imaging import shade_work as shade_work
 from recon.station.operations.fleet_return import planning
@@ -52,6 +51,7 @@ from recon.station.state import alarm_book, imaging
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.outputs import Output, StartWork
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 from recon.station.traffic import identity_grace, known_traffic, watchdog_runner
 
 _NO_PROFILE = VehicleProfile(serial="")

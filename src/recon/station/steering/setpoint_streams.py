@@ -18,9 +18,10 @@ from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.state.outputs import SendCommand
 from recon.station.state.setpoint_lease import SetpointLease, first_due_ns, following_due_ns
 from recon.station.state.station import Station
+from recon.station.state.stepped import Judge
 from recon.station.steering import stream_ends
 from recon.station.steering.kinematic_state import goal_of, no_faster_than, sight, unseen
-from recon.station.steering.stream_ends import Ask, Driven, change_phase, judged, put
+from recon.station.steering.stream_ends import Driven, change_phase, judged, put
 
 
 def unsteerable(station: Station, order: OperatorOrder, now_ns: int) -> Refusal | None:
@@ -86,7 +87,7 @@ def next_due_ns(station: Station) -> int | None:
 
 
 def drive(
-    station: Station, now_ns: int, ask: Ask, serials: Collection[str] | None = None
+    station: Station, now_ns: int, ask: Judge, serials: Collection[str] | None = None
 ) -> Driven:
     """Carry on every lease that is due, or of these vehicles: its next stick, or its end."""
     driven = Driven(station)
@@ -96,7 +97,7 @@ def drive(
     return driven
 
 
-def end_held_by(station: Station, owner: str, now_ns: int, ask: Ask) -> Driven:
+def end_held_by(station: Station, owner: str, now_ns: int, ask: Judge) -> Driven:
     """End the leases of a connection that has gone."""
     driven = Driven(replace(station, owners=station.owners - {owner}))
     for serial, lease in station.streams.items():
@@ -106,7 +107,7 @@ def end_held_by(station: Station, owner: str, now_ns: int, ask: Ask) -> Driven:
     return driven
 
 
-def end(station: Station, serial: str | None, why: str, now_ns: int, ask: Ask) -> Driven:
+def end(station: Station, serial: str | None, why: str, now_ns: int, ask: Judge) -> Driven:
     """End a vehicle's lease, if it has one, as a failure."""
     lease = station.streams.get(serial or "")
     if lease is None or lease.closing is not None:
@@ -127,7 +128,7 @@ def on_sent(station: Station, event: CommandSent, now_ns: int) -> Station:
     return station
 
 
-def _drive(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Ask) -> Driven:
+def _drive(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Judge) -> Driven:
     station = driven.station
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None:
@@ -171,7 +172,7 @@ def _demanded(
     return replace(lease, steered=steered, next_due_ns=due_ns)
 
 
-def _send(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Ask) -> Driven:
+def _send(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Judge) -> Driven:
     station, answer, lease = judged(driven.station, lease, now_ns, ask)
     if isinstance(answer, Refusal):
         reason = f"the gate refused its stick: {answer.rule}: {answer.reason}"

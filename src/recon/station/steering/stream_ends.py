@@ -1,6 +1,5 @@
 """How a stream of sticks ends: let go in silence, or zero and then hold."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from recon.fleet.flight_table import Instruction, Place, Verdict, read
@@ -19,11 +18,10 @@ from recon.station.state.command_ids import take_id
 from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.setpoint_lease import SetpointLease
 from recon.station.state.station import Station
+from recon.station.state.stepped import Judge
 
 ISSUER = "station: end of a stream of sticks"
 RULE = "steering_ended"
-Ask = Callable[[Station, Command], ApprovedCommand | Refusal]
-"""Asks the gate about one stick."""
 
 _DEFAULT_AUTHORITY = ControlAuthority()
 
@@ -81,7 +79,7 @@ def change_phase(
 
 
 def judged(
-    station: Station, lease: SetpointLease, now_ns: int, ask: Ask
+    station: Station, lease: SetpointLease, now_ns: int, ask: Judge
 ) -> tuple[Station, ApprovedCommand | Refusal, SetpointLease]:
     """Ask the gate about the stick of the lease's present demand."""
     settings, steered = station.settings.streams, lease.steered
@@ -171,7 +169,7 @@ def let_go(
 
 
 def give_up(
-    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Ask
+    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Judge
 ) -> Driven:
     """End a lease that the station cannot carry on: the order fails, with an alarm."""
     phase = Phase.FAILED if lease.arrived_at_ns is None else Phase.DONE
@@ -180,7 +178,9 @@ def give_up(
     return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
 
 
-def leave_alone(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Ask) -> Driven:
+def leave_alone(
+    driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Judge
+) -> Driven:
     """Leave a vehicle that was held for long to its own position hold; nothing has failed."""
     held_s = driven.station.settings.streams.hold_at_most_s
     why = f"held for {held_s:g} s; from now on by the aircraft itself"
@@ -200,7 +200,7 @@ def hold(driven: Driven, serial: str, now_ns: int) -> Driven:
 
 
 def _close(
-    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Ask
+    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Judge
 ) -> Driven:
     """Send zero now and hold a little later; hold at once if the gate refuses even the zero."""
     vehicle = driven.station.fleet.vehicles.get(serial)

@@ -25,10 +25,10 @@ from recon.safety.watchdogs import (
     take_picture,
 )
 from recon.station.control import order_gateway
-from recon.station.control.order_gateway import Stepped
 from recon.station.state.command_ids import take_id
 from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 from recon.station.state.watchdog_state import HoldRefused, Kept, StickCount
 from recon.station.traffic import identity_grace
 from recon.station.traffic.known_traffic import in_the_air

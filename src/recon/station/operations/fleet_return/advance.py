@@ -20,7 +20,6 @@ from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.safety import judge
 from recon.station.control import authority, order_gateway
-from recon.station.control.order_gateway import Stepped
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.operations.fleet_return import places, planning
 from recon.station.operations.fleet_return.places import is_same_pad
@@ -30,6 +29,7 @@ from recon.station.state.command_ids import take_id
 from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, FleetReturn, Member, Stage
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 
 WAITING_RULES = ("separation", "link_age")
 """Refusals of the gate that time may end; any other stands."""

@@ -7,11 +7,11 @@ from recon.model.command import Hover, Phase, Refusal
 from recon.model.event import FleetReturnOrdered, OperatorOrder
 from recon.safety.datum import frame_for
 from recon.station.control import order_gateway
-from recon.station.control.order_gateway import Stepped
 from recon.station.operations.fleet_return.progress import is_still_left
 from recon.station.state.fleet_return_record import ENDED, FleetReturn, Member, Stage
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 
 RULE = "fleet_return"
 

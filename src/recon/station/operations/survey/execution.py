@@ -10,7 +10,6 @@ from recon.model.survey import MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
 from recon.safety.rules.battery import RULE as BATTERY
 from recon.station.control import authority, order_gateway
-from recon.station.control.order_gateway import Stepped
 from recon.station.operations.survey.availability import looked_at, surveyors
 from recon.station.operations.survey.mission_dispatch import order_of
 from recon.station.operations.survey.planning import STEP_SURVEY, StepSurvey, SurveyStepped
@@ -26,6 +25,7 @@ from recon.station.operations.survey.settings import SETTINGS, SurveyCarrying
 from recon.station.state.command_ids import take_id
 from recon.station.state.outputs import Output, StartWork
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 from recon.station.state.survey_record import Look, SurveyRecord
 
 

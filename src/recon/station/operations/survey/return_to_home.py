@@ -12,11 +12,11 @@ from recon.model.command import Hover, Phase
 from recon.model.event import OperatorOrder
 from recon.model.survey import SurveyPhase, WhenDone
 from recon.station.control import authority
-from recon.station.control.order_gateway import Stepped
 from recon.station.operations.fleet_return import call
 from recon.station.state.command_ids import take_id
 from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 from recon.station.state.survey_record import Member, SurveyRecord
 
 NO_BATTERY = "its battery lasts for no row that is left"
