@@ -1,5 +1,5 @@
 import { expect, test } from "@playwright/test";
-import { at, station, vehicle } from "../src/testing/world";
+import { at, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";

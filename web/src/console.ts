@@ -1,15 +1,15 @@
 import { type Accessor, createContext, createMemo, createSignal, useContext } from "solid-js";
 import { createFleetView, type FleetView } from "./fleet/fleetView";
 import { createSelection, type Selection, selectedVehicles } from "./fleet/selection";
-import type { ThemeSwitch } from "./look/theme";
 import type { LonLat } from "./map/localGrid";
-import { createOverlay, type Overlay } from "./map/overlay";
-import { createDesk, type Desk } from "./orders/desk";
+import { createOverlay, type Overlay } from "./map/overlays";
 import { createFlyHere, type FlyHere } from "./orders/flyHere";
+import { createDesk, type Desk } from "./orders/orderApi";
 import { type Targets, targetsOf } from "./orders/targets";
 import type { SurveyView } from "./protocol";
 import type { Clock, Instant } from "./source/clock";
 import type { StationSource } from "./source/stationSource";
+import type { ThemeSwitch } from "./theme/theme";
 
 /** What every part of the page shares. */
 export interface Console {

@@ -1,12 +1,12 @@
 import { createSignal } from "solid-js";
 import { render } from "solid-js/web";
-import "./look/theme.css";
-import "./look/page.css";
+import "./theme/theme.css";
+import "./theme/page.css";
 import { App } from "./App";
 import { ConsoleProvider, createConsole } from "./console";
-import { createThemeSwitch } from "./look/theme";
 import { browserClock } from "./source/clock";
 import { LiveSource, tokenOf } from "./source/liveSource";
+import { createThemeSwitch } from "./theme/theme";
 
 /** How often ages are shown anew. */
 const AGE_TICK_MS = 100;

@@ -1,5 +1,5 @@
 import type { StationState } from "../../src/protocol";
-import { alarm, at, command, link, station, vehicle } from "../../src/testing/world";
+import { alarm, at, command, link, station, vehicle } from "../../src/testing/fakeState";
 
 /** A field on a bad day: everything a page must be able to show at once. */
 export function busyState(elapsed_s: number): StationState {

@@ -1,5 +1,5 @@
 import type { PreflightView, StationState } from "../../src/protocol";
-import { alarm, area, at, command, hazard, station, vehicle } from "../../src/testing/world";
+import { alarm, area, at, command, hazard, station, vehicle } from "../../src/testing/fakeState";
 
 /** A field with fences, a vehicle that is not heard, one that is steered, and a fleet on its way home. */
 export function fencedState(elapsed_s: number): StationState {

@@ -1,5 +1,5 @@
 import type { StationState, SurveyWays } from "../../src/protocol";
-import { area, at, shadeLine, station, survey, vehicle } from "../../src/testing/world";
+import { area, at, shadeLine, station, survey, vehicle } from "../../src/testing/fakeState";
 
 const ID = 4;
 const ROWS = [-60, -30, 0, 30, 60].map((east_m): [number, number][] => [

@@ -1,12 +1,16 @@
 import { createRoot } from "solid-js";
 import { describe, expect, it } from "vitest";
-import { alarm, vehicle } from "../testing/world";
-import { vehicleKey } from "./key";
+import { alarm, vehicle } from "../testing/fakeState";
 import { createSelection, selectedVehicles } from "./selection";
 import { sortAlarms, worstSeverity } from "./severity";
-import { simulation } from "./simulation";
-import { reachM, stalenessNow, stalenessOfAge } from "./staleness";
-import { vehicleCondition } from "./vehicleWord";
+import {
+  reachM,
+  simulation,
+  stalenessNow,
+  stalenessOfAge,
+  vehicleCondition,
+  vehicleKey,
+} from "./vehicleStatus";
 
 describe("staleness", () => {
   it.each([

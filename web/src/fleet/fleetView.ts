@@ -13,7 +13,7 @@ import type {
   VehicleView,
 } from "../protocol";
 import type { StationSource } from "../source/stationSource";
-import { vehicleKey } from "./key";
+import { vehicleKey } from "./vehicleStatus";
 
 /** The newest state for the panels. Tracks are left out: only the map reads them, from the source. */
 export type FleetView = Readonly<Contents>;

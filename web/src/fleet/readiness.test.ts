@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Connection } from "../source/stationSource";
-import { alarm, station, vehicle } from "../testing/world";
+import { alarm, station, vehicle } from "../testing/fakeState";
 import { readiness } from "./readiness";
 
 const LIVE: Connection = { kind: "live" };

@@ -1,11 +1,9 @@
 import type { AlarmView, Severity, StationState, VehicleView } from "../protocol";
 import type { Connection } from "../source/stationSource";
-import { formatAge } from "../words/age";
-import { alarmText, plainWords } from "../words/names";
-import { formatFraction } from "../words/quantity";
+import { alarmText, plainWords } from "../text/names";
+import { formatAge, formatFraction } from "../text/quantities";
 import { severityRank, worstSeverity } from "./severity";
-import { simulation } from "./simulation";
-import { vehicleCondition } from "./vehicleWord";
+import { simulation, vehicleCondition } from "./vehicleStatus";
 
 export type StateWord =
   | "Communication lost"

@@ -1,6 +1,6 @@
 import { type Accessor, createSignal } from "solid-js";
 import type { VehicleView } from "../protocol";
-import { vehicleKey } from "./key";
+import { vehicleKey } from "./vehicleStatus";
 
 /** Which vehicles are selected, by `vehicleKey`, in the order they were. Nothing is ever selected by itself. */
 export interface Selection {

@@ -1,7 +1,7 @@
 import { Match, Show, Switch } from "solid-js";
 import { useConsole } from "../console";
-import { frameCaption, lacksNewer } from "../words/frame";
-import type { ShownGround } from "./createGroundOnMap";
+import { frameCaption, lacksNewer } from "../fleet/displayedFrame";
+import type { ShownGround } from "./groundImageLayer";
 
 /** A frame is taken about once a second; five missed in a row and the ground may look otherwise by now. */
 const OLD_AFTER_S = 5;

@@ -1,12 +1,15 @@
-import type { FillLayerSpecification, LineLayerSpecification, Map as MapLibre } from "maplibre-gl";
+import {
+  type FillLayerSpecification,
+  type LineLayerSpecification,
+  type Map as MapLibre,
+  Marker,
+} from "maplibre-gl";
 import type { AreaView } from "../protocol";
-import { AreaLabels } from "./areaLabels";
-import { areaFeatures, areasOf } from "./areas";
+import { areaFeatures, areasOf, areaText, extent, labelPoint } from "./areas";
 import type { Colours } from "./colours";
+import { addFeatures, setFeatures } from "./features";
 import { type Hatch, hatchImage } from "./hatch";
-import type { Layer } from "./layer";
-import { addFeatures, setFeatures } from "./lines";
-import type { Scene } from "./scene";
+import type { Layer, Scene } from "./scene";
 
 /** How the areas of one kind look. Each differs from the others in line and filling, not in colour alone. */
 export interface AreaLook {
@@ -83,5 +86,108 @@ export class AreaLayer implements Layer {
     const paint = { "line-color": look.colour(colours), "line-width": look.width_px };
     const dashed = look.dash === null ? paint : { ...paint, "line-dasharray": [...look.dash] };
     return { id: `${this.id}-line`, type: "line", source: this.id, paint: dashed };
+  }
+}
+
+/** The line nobody flies over: thick and whole. */
+export class BoundaryLayer extends AreaLayer {
+  constructor() {
+    super({
+      kind: "boundary",
+      colour: (colours) => colours.boundary,
+      width_px: 4,
+      dash: null,
+      hatch: null,
+    });
+  }
+}
+
+/** Where one flies between a floor and a ceiling only: wide stripes in a dashed line. */
+export class HeightZoneLayer extends AreaLayer {
+  constructor() {
+    super({
+      kind: "height",
+      colour: (colours) => colours.heightZone,
+      width_px: 2.5,
+      dash: [4, 2],
+      hatch: { isCrossed: false, tile_px: 20, stripe_px: 2, opacity: 0.45 },
+    });
+  }
+}
+
+/** Where nobody flies: crossed stripes in a heavy line. */
+export class KeepOutLayer extends AreaLayer {
+  constructor() {
+    super({
+      kind: "keep_out",
+      colour: (colours) => colours.keepOut,
+      width_px: 3,
+      dash: null,
+      hatch: { isCrossed: true, tile_px: 12, stripe_px: 2, opacity: 0.55 },
+    });
+  }
+}
+
+/** What is to be looked at: a dotted line that forbids nothing. */
+export class SurveyLayer extends AreaLayer {
+  constructor() {
+    super({
+      kind: "survey",
+      colour: (colours) => colours.survey,
+      width_px: 2,
+      dash: [1, 2],
+      hatch: null,
+    });
+  }
+}
+
+/** An area narrower than this on the screen has no room for its label; nearer to it, it has. */
+const LEAST_WIDTH_PX = 40;
+
+interface Placed {
+  readonly area: AreaView;
+  readonly marker: Marker;
+}
+
+/** The names of areas, with their heights: the map has no letters of its own. */
+export class AreaLabels {
+  private map: MapLibre | null = null;
+  private placed: readonly Placed[] = [];
+
+  constructor(private readonly className: string) {}
+
+  add(map: MapLibre): void {
+    this.map = map;
+    map.on("zoom", () => this.hideThoseWithoutRoom());
+  }
+
+  show(areas: readonly AreaView[]): void {
+    const { map } = this;
+    if (map === null) return;
+    for (const { marker } of this.placed) marker.remove();
+    this.placed = areas.map((area) => {
+      const { lon, lat } = labelPoint(area);
+      const marker = new Marker({ element: this.element(area), anchor: "center" });
+      marker.setLngLat([lon, lat]).addTo(map);
+      return { area, marker };
+    });
+    this.hideThoseWithoutRoom();
+  }
+
+  private element(area: AreaView): HTMLElement {
+    const element = document.createElement("span");
+    element.className = `area-label ${this.className}`;
+    element.textContent = areaText(area);
+    return element;
+  }
+
+  private hideThoseWithoutRoom(): void {
+    const { map } = this;
+    if (map === null) return;
+    for (const { area, marker } of this.placed) {
+      const { west, east, north } = extent(area);
+      const width_px = map.project([east, north]).x - map.project([west, north]).x;
+      marker.getElement().hidden = width_px < LEAST_WIDTH_PX;
+    }
   }
 }

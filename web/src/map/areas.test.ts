@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { area, at, FIELD, station, vehicle } from "../testing/world";
+import { area, at, FIELD, station, vehicle } from "../testing/fakeState";
 import { areaFeatures, areasOf, areaText, labelPoint } from "./areas";
 import { hatchImage } from "./hatch";
 import { padText } from "./padLayer";

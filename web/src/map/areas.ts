@@ -1,6 +1,6 @@
 import type { Feature } from "geojson";
 import type { AreaView, SiteView } from "../protocol";
-import { formatQuantity } from "../words/quantity";
+import { formatQuantity } from "../text/quantities";
 import type { LonLat } from "./localGrid";
 
 /** The areas of one kind, as features to draw. */

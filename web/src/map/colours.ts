@@ -1,4 +1,4 @@
-import { colourVariable, VEHICLE_COLOURS } from "../look/identity";
+import { colourVariable, VEHICLE_COLOURS } from "../theme/theme";
 
 /** The theme's colours as the map's drawing needs them. */
 export interface Colours {

@@ -1,8 +1,7 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import type { Colours } from "./colours";
-import type { Layer } from "./layer";
-import { addFeatures, lineFeature, setFeatures } from "./lines";
-import type { Scene } from "./scene";
+import { addFeatures, lineFeature, setFeatures } from "./features";
+import type { Layer, Scene } from "./scene";
 import { TargetMarkers } from "./targetMarkers";
 
 const SOURCE = "fly-here";

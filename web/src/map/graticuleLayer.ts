@@ -1,10 +1,9 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
 import type { Colours } from "./colours";
-import type { Layer } from "./layer";
-import { addFeatures, lineFeature, setFeatures } from "./lines";
+import { addFeatures, lineFeature, setFeatures } from "./features";
 import { type Grid, gridLines, type LonLat, metresPerDegree, roundStepM } from "./localGrid";
-import { gridOrigin, type Scene } from "./scene";
+import { gridOrigin, type Layer, type Scene } from "./scene";
 
 const SOURCE = "graticule";
 const LINES = "graticule-lines";

@@ -2,7 +2,7 @@ import type { Map as MapLibre } from "maplibre-gl";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { GroundImageView } from "../protocol";
 import type { Outcome, Picture } from "../source/stationSource";
-import { at, station } from "../testing/world";
+import { at, station } from "../testing/fakeState";
 import { GroundImageLayer } from "./groundImageLayer";
 
 type Shown = { readonly url: string; readonly coordinates: [number, number][] };

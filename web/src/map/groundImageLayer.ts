@@ -1,8 +1,9 @@
 import type { ImageSource, Map as MapLibre } from "maplibre-gl";
-import type { GroundImageView } from "../protocol";
-import type { Outcome, Picture } from "../source/stationSource";
-import type { Layer } from "./layer";
-import type { Scene } from "./scene";
+import { type Accessor, createSignal } from "solid-js";
+import { createFrameOnScreen, type ShownFrame } from "../fleet/displayedFrame";
+import type { GroundImageView, StationState } from "../protocol";
+import type { Outcome, Picture, StationSource } from "../source/stationSource";
+import type { Layer, Scene } from "./scene";
 
 const SOURCE = "ground-image";
 const LAYER = "ground-image";
@@ -139,4 +140,36 @@ function cornersOf(image: GroundImageView): Corners | null {
     [se[0], se[1]],
     [sw[0], sw[1]],
   ];
+}
+
+/** The ground image on the map. */
+export interface ShownGround extends ShownFrame {
+  /** How well it is placed, as the station said of this very frame. */
+  readonly registration: string;
+}
+
+/** Between the layer, which knows what lies on the ground, and the note, which tells it. */
+export interface GroundOnMap extends GroundWitness {
+  readonly shown: Accessor<ShownGround | null>;
+}
+
+/** Keeps the facts of the ground image that is shown, as the source's states go on. */
+export function createGroundOnMap(source: Pick<StationSource, "state">): GroundOnMap {
+  const frame = createFrameOnScreen(source, announcedIn);
+  const [registration, setRegistration] = createSignal("");
+  return {
+    run: frame.run,
+    show: (image) => {
+      setRegistration(image.registration);
+      frame.show(image.frame_id);
+    },
+    shown: () => {
+      const facts = frame.facts();
+      return facts === null ? null : { ...facts, registration: registration() };
+    },
+  };
+}
+
+function announcedIn({ ground_image: image }: StationState) {
+  return image === null ? null : { ...image, id: image.frame_id };
 }

@@ -1,10 +1,10 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { useConsole } from "../console";
 import type { GroundImageView, StationState } from "../protocol";
+import { at, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
-import { at, station, vehicle } from "../testing/world";
-import { createGroundOnMap, type GroundOnMap } from "./createGroundOnMap";
 import { GroundImageNote } from "./GroundImageNote";
+import { createGroundOnMap, type GroundOnMap } from "./groundImageLayer";
 
 function image(frame_id: number, captured_age_s: number): GroundImageView {
   return {

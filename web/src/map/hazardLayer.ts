@@ -1,11 +1,10 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
 import type { Colours } from "./colours";
+import { addFeatures, areaFeature, lineFeature, setFeatures } from "./features";
 import { band, type HazardShape, hazardOf } from "./hazards";
-import type { Layer } from "./layer";
-import { addFeatures, areaFeature, lineFeature, setFeatures } from "./lines";
 import { circle } from "./localGrid";
-import type { Scene } from "./scene";
+import type { Layer, Scene } from "./scene";
 
 const SOURCE = "hazards";
 const AREA = "hazards-area";

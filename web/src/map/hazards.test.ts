@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { at, FIELD, hazard, vehicle } from "../testing/world";
+import { at, FIELD, hazard, vehicle } from "../testing/fakeState";
 import { band, hazardOf } from "./hazards";
 import { metresPerDegree } from "./localGrid";
 

@@ -1,8 +1,7 @@
-import { reachM, stalenessNow } from "../fleet/staleness";
+import { reachM, stalenessNow } from "../fleet/vehicleStatus";
 import type { HazardView, VehicleView } from "../protocol";
-import { agedBy } from "../words/age";
-import { groundSpeedMps } from "../words/quantity";
-import type { Point } from "./lines";
+import { agedBy, groundSpeedMps } from "../text/quantities";
+import type { Point } from "./features";
 import { type LonLat, metresPerDegree } from "./localGrid";
 import { positionOf } from "./scene";
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { at, FIELD, station, vehicle } from "../testing/world";
+import { at, FIELD, station, vehicle } from "../testing/fakeState";
 import { boxAround, circle, gridLines, metresPerDegree, roundStepM } from "./localGrid";
 import { gridOrigin, wholeView } from "./scene";
 

@@ -1,11 +1,8 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { Outcome, Picture } from "../source/stationSource";
-import { shadeLine, station, survey } from "../testing/world";
-import { ForecastLayer } from "./forecastLayer";
-import { createOverlay } from "./overlay";
-import { ShadeLayer } from "./shadeLayer";
-import { SurveyCellsLayer } from "./surveyCellsLayer";
+import { shadeLine, station, survey } from "../testing/fakeState";
+import { createOverlay, ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { wayFeatures } from "./surveyRowsLayer";
 
 /** As much of MapLibre as an overlay uses; what it shows is kept. */

@@ -1,7 +1,6 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
 import type { PadView, StationState } from "../protocol";
-import type { Layer } from "./layer";
-import type { Scene } from "./scene";
+import type { Layer, Scene } from "./scene";
 
 /** The landing pads: an H in a square, and whose it is when it is one vehicle's own. */
 export class PadLayer implements Layer {

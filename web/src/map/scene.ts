@@ -1,5 +1,15 @@
+import type { Map as MapLibre } from "maplibre-gl";
 import type { StationState, VehicleView } from "../protocol";
+import type { Colours } from "./colours";
 import { type Box, boxAround, type LonLat } from "./localGrid";
+
+/** One thing drawn on the map. `add` is called once, in the order things lie on each other. */
+export interface Layer {
+  add(map: MapLibre, colours: Colours): void;
+  update(scene: Scene): void;
+  /** The theme changed. */
+  recolour(colours: Colours): void;
+}
 
 /** What the map shows at one moment. Layers take it whole. */
 export interface Scene {

@@ -1,14 +1,13 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
-import { vehicleKey } from "../fleet/key";
-import { colourOf } from "../look/identity";
+import { vehicleKey } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
-import { vehicleLabel } from "../words/names";
-import { formatQuantity } from "../words/quantity";
+import { vehicleLabel } from "../text/names";
+import { formatQuantity } from "../text/quantities";
+import { colourOf } from "../theme/theme";
 import type { Colours } from "./colours";
-import type { Layer } from "./layer";
-import { addFeatures, lineFeature, setFeatures } from "./lines";
-import { positionOf, type Scene } from "./scene";
+import { addFeatures, lineFeature, setFeatures } from "./features";
+import { type Layer, positionOf, type Scene } from "./scene";
 import { TargetMarkers } from "./targetMarkers";
 
 const SOURCE = "steering";

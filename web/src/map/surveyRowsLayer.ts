@@ -2,11 +2,10 @@ import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
 import type { SurveyWays } from "../protocol";
 import type { StationSource } from "../source/stationSource";
-import { shownSurvey } from "../words/survey";
+import { shownSurvey } from "../text/survey";
 import type { Colours } from "./colours";
-import type { Layer } from "./layer";
-import { addFeatures, lineFeature, type Point, setFeatures } from "./lines";
-import type { Scene } from "./scene";
+import { addFeatures, lineFeature, type Point, setFeatures } from "./features";
+import type { Layer, Scene } from "./scene";
 
 const SOURCE = "survey-rows";
 /** So that the rows stand out on a picture of the ground too. */

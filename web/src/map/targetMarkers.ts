@@ -1,6 +1,6 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
 import type { LonLat } from "./localGrid";
-import { moveTo } from "./markerLabel";
+import { moveTo } from "./vehicleMarker";
 
 /** A place that a vehicle is to go to, with its words. */
 export interface Target {

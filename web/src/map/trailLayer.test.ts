@@ -1,7 +1,7 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { beforeEach, describe, expect, it } from "vitest";
 import type { VehicleView } from "../protocol";
-import { at, FIELD, station, vehicle } from "../testing/world";
+import { at, FIELD, station, vehicle } from "../testing/fakeState";
 import type { Colours } from "./colours";
 import { TrailLayer } from "./trailLayer";
 

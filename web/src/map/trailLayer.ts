@@ -1,13 +1,11 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
-import { vehicleKey } from "../fleet/key";
-import { stalenessNow } from "../fleet/staleness";
+import { stalenessNow, vehicleKey } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
 import type { Colours } from "./colours";
-import type { Layer } from "./layer";
-import { addFeatures, lineFeature, type Point, setFeatures } from "./lines";
+import { addFeatures, lineFeature, type Point, setFeatures } from "./features";
 import type { LonLat } from "./localGrid";
-import { positionOf, type Scene } from "./scene";
+import { type Layer, positionOf, type Scene } from "./scene";
 
 const SOURCE = "trails";
 const CASING = "trails-casing";

@@ -1,8 +1,7 @@
 import type { Map as MapLibre } from "maplibre-gl";
-import { vehicleKey } from "../fleet/key";
-import { type LabelPlace, type LabelView, placeLabels } from "./labelPlaces";
-import type { Layer } from "./layer";
-import { positionOf, type Scene } from "./scene";
+import { vehicleKey } from "../fleet/vehicleStatus";
+import { type LabelPlace, type LabelView, placeLabels } from "./labelPlacement";
+import { type Layer, positionOf, type Scene } from "./scene";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 
 /** All vehicles whose position was ever known; the style sheet colours them. */

@@ -1,4 +1,5 @@
 import { type LonLat, metresPerDegree } from "../map/localGrid";
+import { formatAge, formatHeading, formatQuantity } from "../text/quantities";
 
 /** The straight way from one place to another. */
 export interface Course {
@@ -17,4 +18,10 @@ export function courseOf(from: LonLat, to: LonLat, climb_m: number, speed_mps: n
   const distance_m = Math.hypot(east_m, north_m);
   const bearing_deg = ((Math.atan2(east_m, north_m) * 180) / Math.PI + 360) % 360;
   return { distance_m, bearing_deg, time_s: Math.hypot(distance_m, climb_m) / speed_mps };
+}
+
+/** `120 m towards 045°, about 24 s`. */
+export function courseText({ distance_m, bearing_deg, time_s }: Course): string {
+  const far = formatQuantity(distance_m, "m", distance_m < 10 ? 1 : 0);
+  return `${far} towards ${formatHeading(bearing_deg)}, about ${formatAge(Math.ceil(time_s))}`;
 }

@@ -1,14 +1,14 @@
 import { type Accessor, createEffect, createMemo, createSignal, on, onCleanup } from "solid-js";
-import { vehicleKey } from "../fleet/key";
+import { vehicleKey } from "../fleet/vehicleStatus";
 import type { LonLat } from "../map/localGrid";
 import { positionOf } from "../map/scene";
 import type { Order, VehicleView } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { StationSource } from "../source/stationSource";
-import { vehicleLabel } from "../words/names";
+import { vehicleLabel } from "../text/names";
 import { type Course, courseOf } from "./course";
-import type { Desk } from "./desk";
-import { createJudgement, type Judgement } from "./judgement";
+import type { Desk } from "./orderApi";
+import { createJudgement, type Judgement } from "./orderCheck";
 
 /** The way one flies when nothing else is said: brisk, and stopped within a few metres. */
 const SPEED_MPS = 5;

@@ -1,6 +1,6 @@
 import { Match, Switch } from "solid-js";
 import type { Severity } from "../protocol";
-import { SEVERITY_NAMES } from "../words/names";
+import { SEVERITY_NAMES } from "../text/names";
 
 /** A severity as a shape of its own: octagon, diamond, triangle, disc; a tick for none. */
 export function SeverityMark(props: { severity: Severity | null; size?: number }) {

@@ -1,10 +1,10 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { StationState } from "../protocol";
+import { alarm, command, link, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
-import { alarm, command, link, station, vehicle } from "../testing/world";
 import { AlarmList } from "./alarms/AlarmList";
-import { LostBanner } from "./bar/LostBanner";
-import { StateWord } from "./bar/StateWord";
+import { LostBanner } from "./bar/ConnectionBanner";
+import { StateWord } from "./bar/StatusButton";
 import { TopBar } from "./bar/TopBar";
 import { CommandList } from "./commands/CommandList";
 import { factsOf } from "./detail/facts";

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
-import { station, vehicle } from "../testing/world";
+import { station, vehicle } from "../testing/fakeState";
 import { LiveSource, tokenOf } from "./liveSource";
 
 type Answer = (request: Request) => Response | Promise<Response>;

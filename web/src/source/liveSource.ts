@@ -1,11 +1,10 @@
 import { createSignal } from "solid-js";
 import type { AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
-import { StreamLag } from "./lag";
-import { newOwner } from "./owner";
 import { Requests } from "./requests";
 import type { Connection, NamedOrder, NewSurvey, StationSource } from "./stationSource";
-import { type Socket, Stream } from "./stream";
+import { newOwner, type Socket, Stream } from "./stream";
+import { StreamLag } from "./streamLag";
 
 /** What a live source needs from its surroundings; tests bring false ones. */
 export interface Surroundings {

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { StationState } from "../protocol";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
-import { station } from "../testing/world";
+import { station } from "../testing/fakeState";
 import type { Connection } from "./stationSource";
 import { OPENING_MS, RECONNECT_DELAYS_MS, readState, SILENCE_MS, Stream } from "./stream";
 

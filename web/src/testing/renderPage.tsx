@@ -1,7 +1,6 @@
 import { createRoot, createSignal, type JSX } from "solid-js";
 import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
-import type { ThemeSwitch } from "../look/theme";
 import type {
   AuthorityHolder,
   OrderResult,
@@ -16,6 +15,7 @@ import type {
   Outcome,
   StationSource,
 } from "../source/stationSource";
+import type { ThemeSwitch } from "../theme/theme";
 import { FakeClock } from "./fakeClock";
 
 /** A part of the page with a source, a clock and a hand on both. */

@@ -2,10 +2,9 @@ import { createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { sortAlarms } from "../../fleet/severity";
 import type { AlarmView } from "../../protocol";
-import { formatAge } from "../../words/age";
-import { alarmText } from "../../words/names";
-import { Empty } from "../Empty";
-import { Panel } from "../Panel";
+import { alarmText } from "../../text/names";
+import { formatAge } from "../../text/quantities";
+import { Empty, Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./alarms.css";
 

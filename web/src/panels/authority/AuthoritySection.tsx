@@ -1,10 +1,10 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { AuthorityHolder, AuthorityView } from "../../protocol";
-import { formatAge } from "../../words/age";
-import { wordProblem } from "../../words/answers";
+import { wordProblem } from "../../text/names";
+import { formatAge } from "../../text/quantities";
 import { BRIEF_MS, GuardButton } from "../guard/GuardButton";
-import { Problem } from "../Problem";
+import { Problem } from "../Panel";
 import "./authority.css";
 
 const HOLDERS: Readonly<Record<AuthorityHolder, string>> = {

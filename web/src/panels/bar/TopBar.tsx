@@ -1,8 +1,7 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { simulation } from "../../fleet/simulation";
-import { AllStop } from "../orders/AllStop";
-import { StateWord } from "./StateWord";
+import { simulation } from "../../fleet/vehicleStatus";
+import { StateWord } from "./StatusButton";
 import "./bar.css";
 
 /** The top of the page: the state word, what flies, and all stop, which keeps the right corner to itself. */
@@ -47,5 +46,23 @@ function SimulationTag() {
         {kind() === "all" ? "SIMULATION" : "REAL AND SIMULATED TOGETHER"}
       </span>
     </Show>
+  );
+}
+
+/** Makes everything that flies hold its position: one press, no question, in reach at any time. */
+export function AllStop() {
+  const { desk } = useConsole();
+  return (
+    <button
+      type="button"
+      class="all-stop"
+      aria-label="All stop: every flying vehicle holds its position"
+      aria-keyshortcuts="Shift+S"
+      title="Every flying vehicle holds its position. Motors stay on. (Shift+S)"
+      onClick={() => void desk.allStop()}
+    >
+      <strong>ALL STOP</strong>
+      <span>hold position</span>
+    </button>
   );
 }

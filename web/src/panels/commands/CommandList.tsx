@@ -1,10 +1,9 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { CommandView } from "../../protocol";
-import { formatAge } from "../../words/age";
-import { commandName, noteText, PHASE_NAMES, phaseTone } from "../../words/names";
-import { Empty } from "../Empty";
-import { Panel } from "../Panel";
+import { commandName, noteText, PHASE_NAMES, phaseTone } from "../../text/names";
+import { formatAge } from "../../text/quantities";
+import { Empty, Panel } from "../Panel";
 import "./commands.css";
 
 /**

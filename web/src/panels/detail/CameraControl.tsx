@@ -1,8 +1,8 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { Desk } from "../../orders/desk";
-import { PHASE_NAMES } from "../../words/names";
-import { AnswerBody } from "../orders/LastAnswer";
+import type { Desk } from "../../orders/orderApi";
+import { PHASE_NAMES } from "../../text/names";
+import { AnswerBody } from "../orders/OrderAnswer";
 
 /** Pictures per second that can be asked for. */
 const RATES_HZ = [1, 2, 5] as const;

@@ -1,8 +1,7 @@
 import { createEffect, createSignal, on, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { createFrameOnScreen } from "../../fleet/createFrameOnScreen";
+import { createFrameOnScreen, frameCaption, lacksNewer } from "../../fleet/displayedFrame";
 import type { VehicleView } from "../../protocol";
-import { frameCaption, lacksNewer } from "../../words/frame";
 import { LatestPicture, type ShownPicture } from "./latestPicture";
 
 /** After a picture that did not come, wait so long before asking again. */

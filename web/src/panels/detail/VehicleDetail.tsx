@@ -1,11 +1,11 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { badgeText, vehicleKey } from "../../fleet/key";
-import { colourOf } from "../../look/identity";
-import { createDesk } from "../../orders/desk";
+import { badgeText, vehicleKey } from "../../fleet/vehicleStatus";
+import { createDesk } from "../../orders/orderApi";
 import type { VehicleView } from "../../protocol";
-import { agedBy, formatAge } from "../../words/age";
-import { vehicleLabel } from "../../words/names";
+import { vehicleLabel } from "../../text/names";
+import { agedBy, formatAge } from "../../text/quantities";
+import { colourOf } from "../../theme/theme";
 import { AuthoritySection } from "../authority/AuthoritySection";
 import { HazardSection } from "../hazard/HazardSection";
 import { Panel } from "../Panel";

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
+import { command, orderResult, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { command, orderResult, station, vehicle } from "../../testing/world";
 import { VehicleDetail } from "./VehicleDetail";
 
 const VEHICLES = [vehicle(1), vehicle(2), vehicle(3, { number: 0, serial: null })];

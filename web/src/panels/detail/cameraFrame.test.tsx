@@ -1,8 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { StationState } from "../../protocol";
 import type { Outcome, Picture } from "../../source/stationSource";
+import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { station, vehicle } from "../../testing/world";
 import { VehicleDetail } from "./VehicleDetail";
 
 /** The state of a moment; frame n is taken at second n, and the newest of that moment is announced. */

@@ -1,13 +1,13 @@
 import type { VehicleView } from "../../protocol";
-import { UNKNOWN } from "../../words/age";
-import { plainWords } from "../../words/names";
+import { plainWords } from "../../text/names";
 import {
   formatFraction,
   formatHeading,
   formatQuantity,
   groundSpeedMps,
+  UNKNOWN,
   whyUnknown,
-} from "../../words/quantity";
+} from "../../text/quantities";
 
 /** One line of what is known of a vehicle. */
 export interface Fact {

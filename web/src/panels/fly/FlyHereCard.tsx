@@ -1,9 +1,9 @@
 import { Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
-import { vehicleLabel } from "../../words/names";
+import { courseText } from "../../orders/course";
+import { vehicleLabel } from "../../text/names";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { SeverityMark } from "../SeverityMark";
-import { courseText } from "./courseText";
 import { NudgePad } from "./NudgePad";
 import "./fly.css";
 

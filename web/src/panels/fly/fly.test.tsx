@@ -1,9 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
-import { courseOf } from "../../orders/course";
+import { courseOf, courseText } from "../../orders/course";
 import { numberIn } from "../../orders/flyHere";
+import { at, orderResult, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { at, orderResult, station, vehicle } from "../../testing/world";
-import { courseText } from "./courseText";
 import { FlyHereCard } from "./FlyHereCard";
 
 const lonLat = (east_m: number, north_m: number) => {

@@ -1,11 +1,10 @@
 import { createSignal } from "solid-js";
 import { useConsole } from "../../console";
 import type { HazardView } from "../../protocol";
-import { formatAge } from "../../words/age";
-import { wordProblem } from "../../words/answers";
-import { formatQuantity } from "../../words/quantity";
+import { wordProblem } from "../../text/names";
+import { formatAge, formatQuantity } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
-import { Problem } from "../Problem";
+import { Problem } from "../Panel";
 
 /** That a vehicle may be anywhere in its circle, and the word of somebody who knows better. */
 export function HazardSection(props: { hazard: HazardView; name: string }) {

@@ -1,10 +1,8 @@
 import { createMemo, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { LinkView, Severity } from "../../protocol";
-import { agedBy, formatAge } from "../../words/age";
-import { formatBytes } from "../../words/quantity";
-import { Empty } from "../Empty";
-import { Panel } from "../Panel";
+import { agedBy, formatAge, formatBytes } from "../../text/quantities";
+import { Empty, Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./links.css";
 

@@ -1,11 +1,10 @@
 import { For, Match, onCleanup, onMount, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
-import { createHoldTimer, type HoldTimer } from "../../orders/holdTimer";
-import { ORDER_KINDS, type OrderKind } from "../../orders/kinds";
-import { targetsKey } from "../../orders/targets";
-import { listNames } from "../../words/names";
-import { HoldButton } from "./HoldButton";
-import { LastAnswer } from "./LastAnswer";
+import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
+import { ORDER_KINDS, type OrderKind, targetsKey } from "../../orders/targets";
+import { listNames } from "../../text/names";
+import { LastAnswer } from "./OrderAnswer";
+import { HoldButton } from "./OrderButton";
 import { holdByKey } from "./shortcuts";
 import "./orders.css";
 

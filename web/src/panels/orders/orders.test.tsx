@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
+import { orderResult, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { orderResult, station, vehicle } from "../../testing/world";
-import { AllStop } from "./AllStop";
+import { AllStop } from "../bar/TopBar";
 import { OrderBar } from "./OrderBar";
 
 const FLEET = station([vehicle(1), vehicle(2), vehicle(3, { number: 0, serial: null })]);

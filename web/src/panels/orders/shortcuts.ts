@@ -1,4 +1,4 @@
-import type { HoldTimer } from "../../orders/holdTimer";
+import type { HoldTimer } from "../../orders/holdToConfirm";
 
 /** A letter that, held together with Shift, holds an order's button. */
 export interface HeldKey {

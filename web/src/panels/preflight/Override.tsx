@@ -1,8 +1,8 @@
 import { createSignal, createUniqueId, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { wordProblem } from "../../words/answers";
+import { wordProblem } from "../../text/names";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
-import { Problem } from "../Problem";
+import { Problem } from "../Panel";
 
 /** A reason shorter than this tells nobody anything afterwards. */
 const LEAST_REASON = 8;

@@ -2,13 +2,11 @@ import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { FleetReturnView, ReturningView } from "../../protocol";
-import { formatAge } from "../../words/age";
-import { listNames } from "../../words/names";
-import { formatQuantity } from "../../words/quantity";
+import { listNames } from "../../text/names";
+import { formatAge, formatQuantity } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
-import { doneCount, isStuck, STAGES, stagesInTurn } from "./stages";
 import "./return.css";
 
 /** The whole fleet home as landing missions, each at a height of its own; and how far it has come. */
@@ -111,4 +109,46 @@ function Where(props: { vehicle: ReturningView }) {
       <Show when={props.vehicle.pad}>{(pad) => <>, to {pad()}</>}</Show>
     </>
   );
+}
+
+/** A stage as it is read after the vehicle's name. */
+export const STAGES: Readonly<Record<ReturningView["stage"], string>> = {
+  stopping: "stops",
+  waiting: "waits",
+  ordered: "is told to fly home",
+  flying: "flies home",
+  landed: "has landed",
+  released: "is led by somebody else",
+  left_out: "is left out",
+};
+
+/** Whether somebody must see to it: nobody flies it home. */
+export function isStuck({ stage }: ReturningView): boolean {
+  return stage === "left_out";
+}
+
+export function doneCount(view: FleetReturnView): number {
+  return view.vehicles.filter(({ stage }) => stage === "landed").length;
+}
+
+/** Vehicles under one heading. */
+export interface ReturnGroup {
+  readonly title: string;
+  readonly vehicles: readonly ReturningView[];
+}
+
+/** Those left out first, for they need somebody; then wave after wave, then those without a wave. */
+export function stagesInTurn({ vehicles }: FleetReturnView): readonly ReturnGroup[] {
+  const stuck = vehicles.filter(isStuck);
+  const others = vehicles.filter((vehicle) => !isStuck(vehicle));
+  const waves = [...new Set(others.flatMap(({ wave }) => wave ?? []))].sort((a, b) => a - b);
+  const groups = [
+    { title: "Left out: see to these", vehicles: stuck },
+    ...waves.map((wave) => ({
+      title: `Wave ${wave}`,
+      vehicles: others.filter((vehicle) => vehicle.wave === wave),
+    })),
+    { title: "No wave yet", vehicles: others.filter(({ wave }) => wave === null) },
+  ];
+  return groups.filter((group) => group.vehicles.length > 0);
 }

@@ -1,9 +1,8 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { FleetReturnView, ReturningView } from "../../protocol";
+import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { station, vehicle } from "../../testing/world";
-import { FleetReturn } from "./FleetReturn";
-import { stagesInTurn } from "./stages";
+import { FleetReturn, stagesInTurn } from "./FleetReturn";
 
 function returning(serial: string, changes: Partial<ReturningView> = {}): ReturningView {
   return {

@@ -1,10 +1,9 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteView, StationView } from "../../protocol";
-import { formatAge, UNKNOWN } from "../../words/age";
-import { formatBytes, formatQuantity } from "../../words/quantity";
+import { formatAge, formatBytes, formatQuantity, UNKNOWN } from "../../text/quantities";
 import { Panel } from "../Panel";
-import { SeparationSwitch } from "../separation/SeparationSwitch";
+import { SeparationSwitch } from "../separation/SeparationHold";
 
 /** The station itself and the site it stands at. */
 export function StationPanel() {

@@ -1,9 +1,8 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { OverlayKind } from "../../map/overlay";
+import type { OverlayKind } from "../../map/overlays";
 import type { ForecastView, ShadeLineView } from "../../protocol";
-import { formatAge } from "../../words/age";
-import { formatFraction } from "../../words/quantity";
+import { formatAge, formatFraction } from "../../text/quantities";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./sun.css";

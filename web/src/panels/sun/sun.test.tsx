@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it } from "vitest";
+import { shadeLine, station, survey, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { shadeLine, station, survey, vehicle } from "../../testing/world";
 import { SunPanel } from "./SunPanel";
 
 let page: RenderedPage;

@@ -3,11 +3,10 @@ import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
-import { listNames } from "../../words/names";
-import { formatArea, PHASES, sharePercent } from "../../words/survey";
+import { listNames } from "../../text/names";
+import { formatArea, PHASES, sharePercent } from "../../text/survey";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
-import { Panel } from "../Panel";
-import { Problem } from "../Problem";
+import { Panel, Problem } from "../Panel";
 import { NewSurvey } from "./NewSurvey";
 import "./survey.css";
 

@@ -1,8 +1,8 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { SurveyView } from "../../protocol";
+import { area, station, survey, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { area, station, survey, vehicle } from "../../testing/world";
-import { sharePercent, shownSurvey } from "../../words/survey";
+import { sharePercent, shownSurvey } from "../../text/survey";
 import { SurveyPanel } from "./SurveyPanel";
 
 let page: RenderedPage;

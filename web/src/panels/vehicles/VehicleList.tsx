@@ -1,8 +1,7 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { vehicleKey } from "../../fleet/key";
-import { Empty } from "../Empty";
-import { Panel } from "../Panel";
+import { vehicleKey } from "../../fleet/vehicleStatus";
+import { Empty, Panel } from "../Panel";
 import { VehicleRow } from "./VehicleRow";
 import "./vehicles.css";
 

@@ -1,14 +1,17 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { badgeText, vehicleKey } from "../../fleet/key";
 import { hasBatteryWarning } from "../../fleet/readiness";
-import { stalenessNow } from "../../fleet/staleness";
-import { vehicleCondition } from "../../fleet/vehicleWord";
-import { colourOf } from "../../look/identity";
+import { badgeText, stalenessNow, vehicleCondition, vehicleKey } from "../../fleet/vehicleStatus";
 import type { VehicleView } from "../../protocol";
-import { agedBy, formatAge } from "../../words/age";
-import { vehicleLabel } from "../../words/names";
-import { formatFraction, formatQuantity, groundSpeedMps } from "../../words/quantity";
+import { vehicleLabel } from "../../text/names";
+import {
+  agedBy,
+  formatAge,
+  formatFraction,
+  formatQuantity,
+  groundSpeedMps,
+} from "../../text/quantities";
+import { colourOf } from "../../theme/theme";
 import { SeverityMark } from "../SeverityMark";
 
 /** One vehicle: a box to add it to the selection, and a body that selects it alone. */

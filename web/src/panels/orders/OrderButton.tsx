@@ -1,0 +1,63 @@
+import { createEffect, Match, Show, Switch } from "solid-js";
+import type { HoldTimer } from "../../orders/holdToConfirm";
+import type { OrderKind } from "../../orders/targets";
+import { listNames } from "../../text/names";
+import { holdHandlers } from "../guard/GuardButton";
+
+/** A button that acts only when it is held, by pointer or keyboard, until its bar is full. */
+export function HoldButton(props: {
+  order: OrderKind;
+  timer: HoldTimer;
+  labels: readonly string[];
+}) {
+  const isDisabled = () => props.labels.length === 0;
+  createEffect(() => {
+    if (isDisabled()) props.timer.cancel();
+  });
+  return (
+    <button
+      type="button"
+      class={`order order-${props.order.kind}`}
+      classList={{ "is-holding": props.timer.kind() === "holding" }}
+      aria-disabled={isDisabled()}
+      aria-label={accessibleName(props.order, props.labels)}
+      title={props.order.note}
+      aria-description={props.order.note}
+      aria-keyshortcuts={`Shift+${props.order.key}`}
+      style={{ "--held": props.timer.progress() }}
+      {...holdHandlers(props.timer, isDisabled)}
+    >
+      <OrderIcon kind={props.order.kind} />
+      <span class="order-text">
+        <strong>{props.order.label}</strong>
+        <Show when={props.order.hold_ms >= 1000} fallback={<small>hold briefly</small>}>
+          <small>hold {props.order.hold_ms / 1000} s</small>
+        </Show>
+      </span>
+    </button>
+  );
+}
+
+function accessibleName(order: OrderKind, labels: readonly string[]): string {
+  if (labels.length === 0) return `${order.label}: select vehicles first`;
+  return `${order.label} ${listNames(labels)}: hold for ${order.hold_ms / 1000} seconds`;
+}
+
+/** A sign for each order, so that none is told by its colour or place alone. */
+export function OrderIcon(props: { kind: OrderKind["kind"] }) {
+  return (
+    <svg class="order-icon" viewBox="0 0 24 24" width="28" height="28" aria-hidden="true">
+      <Switch>
+        <Match when={props.kind === "hover"}>
+          <path d="M8 4v16M16 4v16" />
+        </Match>
+        <Match when={props.kind === "return_home"}>
+          <path d="M3 12 12 4l9 8M6 10v10h12V10" />
+        </Match>
+        <Match when={props.kind === "land"}>
+          <path d="M12 3v12M6.5 10 12 15.5 17.5 10M4 21h16" />
+        </Match>
+      </Switch>
+    </svg>
+  );
+}

@@ -1,0 +1,55 @@
+import { createSignal, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { SeverityMark } from "../SeverityMark";
+import "./separation.css";
+import { GUARD_MS, GuardButton } from "../guard/GuardButton";
+import { Problem } from "../Panel";
+
+/** Stands for as long as the station would let vehicles fly into each other with no more than an alarm. */
+export function SeparationBanner() {
+  const { fleet } = useConsole();
+  return (
+    <Show when={fleet.station?.separation_hold_on === false}>
+      <div class="separation-off" role="alert">
+        <SeverityMark severity="warning" size={26} />
+        <p>
+          <strong>Separation holds are OFF.</strong> Vehicles that come too close raise an alarm,
+          and nobody stops them.
+        </p>
+        <SeparationSwitch />
+      </div>
+    </Show>
+  );
+}
+
+/** On with one press, off only when it is held: the safe way is the easy one. */
+export function SeparationSwitch() {
+  const { source, fleet } = useConsole();
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const isOn = () => fleet.station?.separation_hold_on ?? true;
+  const turn = async (on: boolean) => {
+    const outcome = await source.switchSeparationHold(on);
+    setProblem(outcome.kind === "failed" ? outcome.problem : null);
+  };
+  return (
+    <>
+      <Show
+        when={isOn()}
+        fallback={
+          <button type="button" class="button" onClick={() => void turn(true)}>
+            Switch separation holds on
+          </button>
+        }
+      >
+        <GuardButton
+          label="Switch separation holds off"
+          class="guard-grave"
+          hold_ms={GUARD_MS}
+          subject="off"
+          onConfirm={() => void turn(false)}
+        />
+      </Show>
+      <Problem text={problem()} />
+    </>
+  );
+}

@@ -1,0 +1,96 @@
+import { describe, expect, it } from "vitest";
+import { listNames, phaseTone, plainWords } from "./names";
+import {
+  agedBy,
+  formatAge,
+  formatBytes,
+  formatFraction,
+  formatHeading,
+  formatQuantity,
+  groundSpeedMps,
+  UNKNOWN,
+  whyUnknown,
+} from "./quantities";
+
+describe("ages", () => {
+  it.each([
+    [0, "0.0 s"],
+    [0.24, "0.2 s"],
+    [9.94, "9.9 s"],
+    [9.96, "10 s"],
+    [59.4, "59 s"],
+    [59.6, "1 min 0 s"],
+    [200, "3 min 20 s"],
+    [3599.6, "1 h 0 min"],
+    [7500, "2 h 5 min"],
+    [-0.1, "0.0 s"],
+    [null, UNKNOWN],
+    [Number.NaN, UNKNOWN],
+  ])("%s s is %s", (seconds, text) => expect(formatAge(seconds)).toBe(text));
+
+  it("stay unknown when they are brought to the present", () => {
+    expect(agedBy(null, 5)).toBeNull();
+    expect(agedBy(0.5, 5)).toBe(5.5);
+  });
+});
+
+describe("quantities", () => {
+  it.each([
+    [12.345, "m", 1, "12.3\u00a0m"],
+    [-4.25, "m", 1, "\u22124.3\u00a0m"],
+    [-0.01, "m/s", 1, "0.0\u00a0m/s"],
+    [0, "m", 0, "0\u00a0m"],
+    [null, "m", 1, UNKNOWN],
+    [Number.POSITIVE_INFINITY, "m", 1, UNKNOWN],
+  ])("%s %s with %i digits is %s", (value, unit, digits, text) => {
+    expect(formatQuantity(value, unit, digits)).toBe(text);
+  });
+
+  it("never show a battery fuller than it is", () => {
+    expect(formatFraction(0.299)).toBe("29\u00a0%");
+    expect(formatFraction(0.29)).toBe("29\u00a0%");
+    expect(formatFraction(1)).toBe("100\u00a0%");
+    expect(formatFraction(null)).toBe(UNKNOWN);
+  });
+
+  it.each([
+    [0, "000°"],
+    [-90, "270°"],
+    [359.7, "000°"],
+    [180, "180°"],
+    [null, UNKNOWN],
+  ])("a heading of %s is %s", (degrees, text) => expect(formatHeading(degrees)).toBe(text));
+
+  it("have no speed when a part of it is unknown", () => {
+    expect(groundSpeedMps(3, 4)).toBe(5);
+    expect(groundSpeedMps(null, 4)).toBeNull();
+  });
+
+  it("tell why they are unknown", () => {
+    expect(whyUnknown(null)).not.toBe(whyUnknown(0.2));
+  });
+
+  it.each([
+    [999, "999 B"],
+    [1500, "1.5 kB"],
+    [2_500_000, "2.5 MB"],
+    [3e9, "3.00 GB"],
+  ])("%i bytes are %s", (count, text) => expect(formatBytes(count)).toBe(text));
+});
+
+describe("names", () => {
+  it("join as in a sentence", () => {
+    expect(listNames([])).toBe("");
+    expect(listNames(["a"])).toBe("a");
+    expect(listNames(["a", "b"])).toBe("a and b");
+    expect(listNames(["a", "b", "c"])).toBe("a, b and c");
+  });
+
+  it("are plain words", () => expect(plainWords("AUTO_LANDING")).toBe("auto landing"));
+
+  it("call only a confirmed command good", () => {
+    expect(phaseTone({ phase: "confirmed" })).toBe("good");
+    expect(phaseTone({ phase: "acknowledged" })).toBe("underway");
+    expect(phaseTone({ phase: "timed_out" })).toBe("bad");
+  });
+});
