@@ -3,10 +3,10 @@ use crate::arrivals::Arrivals;
 use crate::body::Body;
 use crate::checksum::Hash;
 use crate::field::Reader;
-use crate::frame::{Claim, HEADER_BYTES, TRAILER_BYTES, claim, find_sync};
+use crate::frame::{Claim, HEADER_BYTES, TRAILER_BYTES, claim, decode_payload, find_sync};
 use crate::held::Held;
 use crate::limits::Limits;
-use crate::packet::{CompressedImage, Image, Packet, Payload, decode_payload, is_known};
+use crate::packet::{CompressedImage, Image, Packet, Payload, is_known};
 
 /// A damaged frame above this size is searched in [`Held`], where hashing parts of it is cheap.
 const SEARCHED_IN_PLACE: usize = 1024;

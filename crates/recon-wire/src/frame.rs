@@ -1,11 +1,14 @@
-//! The frame around every payload, and which sizes each PID may have (ICD 3).
+//! The frame around every payload (ICD 3): encoding, decoding, and the sizes each PID may have.
 //!
 //! `sync u16, size u32, PID u8, payload, hashA u8, hashB u8`; `size` counts all of it.
+use crate::checksum::Hash;
 use crate::error::{Error, SizeRule};
+use crate::field::Reader;
 use crate::limits::Limits;
 use crate::packet::{
     Acknowledgment, CameraControl, CompressedImage, CoreTelemetry, EmergencyCommand,
-    ExecuteWaypointMission, ExtendedTelemetry, Image, MessageString, Payload, VirtualStickCommand,
+    ExecuteWaypointMission, ExtendedTelemetry, Image, MessageString, Packet, Payload,
+    VirtualStickCommand, too_many,
 };
 
 /// The sync field, 55975.
@@ -170,4 +173,93 @@ pub(crate) fn find_sync(bytes: &[u8]) -> usize {
         }
     }
     bytes.len()
+}
+
+/// The frame of a packet. Fails when `limits` (or the wire) cannot carry a value.
+pub fn encode(packet: &Packet, limits: &Limits) -> Result<Vec<u8>, Error> {
+    let mut out = Vec::new();
+    encode_into(packet, limits, &mut out)?;
+    Ok(out)
+}
+
+/// Appends the frame of a packet to `out`, which stays as it was when this fails.
+pub fn encode_into(packet: &Packet, limits: &Limits, out: &mut Vec<u8>) -> Result<(), Error> {
+    packet.check(limits)?;
+    let size = OVERHEAD_BYTES + packet.payload_bytes();
+    let wire_size =
+        u32::try_from(size).map_err(|_| too_many("the packet", "bytes", u32::MAX.into(), size))?;
+    let start = out.len();
+    out.reserve(size);
+    out.extend_from_slice(&SYNC);
+    out.extend_from_slice(&wire_size.to_be_bytes());
+    out.push(packet.pid());
+    if let Err(error) = packet.write(out) {
+        out.truncate(start);
+        return Err(error);
+    }
+    let hash = Hash::of(&out[start..]);
+    out.extend_from_slice(&hash.to_bytes());
+    Ok(())
+}
+
+/// The packet of one whole frame.
+pub fn decode(frame: &[u8], limits: &Limits) -> Result<Packet, Error> {
+    if let Some(&start) = frame.first_chunk::<2>()
+        && start != SYNC
+    {
+        return Err(Error::Sync {
+            came: u16::from_be_bytes(start),
+        });
+    }
+    let (pid, size) = match claim(frame, limits)? {
+        Claim::Wants(expected) => {
+            return Err(Error::Short {
+                field: "a packet",
+                expected,
+                came: frame.len(),
+            });
+        }
+        Claim::Frame { pid, size } => (pid, size),
+    };
+    if frame.len() < size {
+        return Err(Error::Short {
+            field: "a packet",
+            expected: size,
+            came: frame.len(),
+        });
+    }
+    if frame.len() > size {
+        let (expected, came) = (SizeRule::Exactly(size as u64), frame.len() as u64);
+        return Err(Error::Size {
+            pid,
+            expected,
+            came,
+        });
+    }
+    let (hashed, came) = frame.split_at(size - TRAILER_BYTES);
+    let expected = Hash::of(hashed).to_bytes();
+    if came != expected {
+        return Err(Error::Hash {
+            expected,
+            came: [came[0], came[1]],
+        });
+    }
+    decode_payload(pid, &hashed[HEADER_BYTES..])
+}
+
+/// Decodes the payload of a frame whose size and hash were found good.
+#[inline]
+pub(crate) fn decode_payload(pid: u8, payload: &[u8]) -> Result<Packet, Error> {
+    let mut reader = Reader::new(payload);
+    let packet = Packet::read(pid, &mut reader)?;
+    if reader.is_empty() {
+        return Ok(packet);
+    }
+    let size = (OVERHEAD_BYTES + payload.len()) as u64;
+    let expected = SizeRule::Exactly(size - reader.remaining().len() as u64);
+    Err(Error::Size {
+        pid,
+        expected,
+        came: size,
+    })
 }

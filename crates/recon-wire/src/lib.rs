@@ -18,5 +18,6 @@ pub mod packet;
 pub use body::Body;
 pub use deframer::{Counters, Deframer};
 pub use error::{Error, SizeRule};
+pub use frame::{decode, encode, encode_into};
 pub use limits::Limits;
-pub use packet::{Packet, decode, encode, encode_into};
+pub use packet::Packet;

@@ -1,4 +1,4 @@
-//! The packets, one file each, and the way between a packet and its frame.
+//! The packets of the ICD, one file each; [`crate::frame`] puts them into frames and takes them out.
 mod acknowledgment;
 mod camera_control;
 mod compressed_image;
@@ -24,10 +24,8 @@ pub use message_string::MessageString;
 pub use unknown_packet::UnknownPacket;
 pub use virtual_stick_command::VirtualStickCommand;
 
-use crate::checksum::Hash;
-use crate::error::{Error, SizeRule};
+use crate::error::Error;
 use crate::field::Reader;
-use crate::frame::{Claim, HEADER_BYTES, OVERHEAD_BYTES, SYNC, TRAILER_BYTES, claim};
 use crate::limits::Limits;
 
 /// What every packet of the document can do.
@@ -58,6 +56,15 @@ macro_rules! packets {
         pub const PIDS: &[(&str, u8)] = &[$((stringify!($name), $name::PID)),+];
 
         impl Packet {
+            /// Takes the packet with this PID off the front of a payload.
+            #[inline]
+            pub(crate) fn read(pid: u8, reader: &mut Reader<'_>) -> Result<Self, Error> {
+                Ok(match pid {
+                    $($name::PID => Self::$name($name::read(reader)?),)+
+                    _ => Self::UnknownPacket(UnknownPacket { pid, payload: reader.remaining().to_vec() }),
+                })
+            }
+
             /// Its packet ID.
             pub fn pid(&self) -> u8 {
                 match self {
@@ -66,21 +73,21 @@ macro_rules! packets {
                 }
             }
 
-            fn payload_bytes(&self) -> usize {
+            pub(crate) fn payload_bytes(&self) -> usize {
                 match self {
                     $(Self::$name(packet) => packet.payload_bytes(),)+
                     Self::UnknownPacket(packet) => packet.payload.len(),
                 }
             }
 
-            fn check(&self, limits: &Limits) -> Result<(), Error> {
+            pub(crate) fn check(&self, limits: &Limits) -> Result<(), Error> {
                 match self {
                     $(Self::$name(packet) => packet.check(limits),)+
                     Self::UnknownPacket(packet) => packet.check(limits),
                 }
             }
 
-            fn write(&self, out: &mut Vec<u8>) -> Result<(), Error> {
+            pub(crate) fn write(&self, out: &mut Vec<u8>) -> Result<(), Error> {
                 match self {
                     $(Self::$name(packet) => packet.write(out),)+
                     Self::UnknownPacket(packet) => {
@@ -89,22 +96,6 @@ macro_rules! packets {
                     }
                 }
             }
-        }
-
-        /// Decodes the payload of a frame whose size and hash were found good.
-        #[inline]
-        pub(crate) fn decode_payload(pid: u8, payload: &[u8]) -> Result<Packet, Error> {
-            let mut reader = Reader::new(payload);
-            let packet = match pid {
-                $($name::PID => Packet::$name($name::read(&mut reader)?),)+
-                _ => Packet::UnknownPacket(UnknownPacket { pid, payload: reader.remaining().to_vec() }),
-            };
-            if reader.is_empty() {
-                return Ok(packet);
-            }
-            let size = (OVERHEAD_BYTES + payload.len()) as u64;
-            let expected = SizeRule::Exactly(size - reader.remaining().len() as u64);
-            Err(Error::Size { pid, expected, came: size })
         }
 
         $(impl From<$name> for Packet {
@@ -134,84 +125,12 @@ impl From<UnknownPacket> for Packet {
     }
 }
 
-/// The frame of a packet. Fails when `limits` (or the wire) cannot carry a value.
-pub fn encode(packet: &Packet, limits: &Limits) -> Result<Vec<u8>, Error> {
-    let mut out = Vec::new();
-    encode_into(packet, limits, &mut out)?;
-    Ok(out)
-}
-
-/// Appends the frame of a packet to `out`, which stays as it was when this fails.
-pub fn encode_into(packet: &Packet, limits: &Limits, out: &mut Vec<u8>) -> Result<(), Error> {
-    packet.check(limits)?;
-    let size = OVERHEAD_BYTES + packet.payload_bytes();
-    let wire_size =
-        u32::try_from(size).map_err(|_| too_many("the packet", "bytes", u32::MAX.into(), size))?;
-    let start = out.len();
-    out.reserve(size);
-    out.extend_from_slice(&SYNC);
-    out.extend_from_slice(&wire_size.to_be_bytes());
-    out.push(packet.pid());
-    if let Err(error) = packet.write(out) {
-        out.truncate(start);
-        return Err(error);
-    }
-    let hash = Hash::of(&out[start..]);
-    out.extend_from_slice(&hash.to_bytes());
-    Ok(())
-}
-
-/// The packet of one whole frame.
-pub fn decode(frame: &[u8], limits: &Limits) -> Result<Packet, Error> {
-    if let Some(&start) = frame.first_chunk::<2>()
-        && start != SYNC
-    {
-        return Err(Error::Sync {
-            came: u16::from_be_bytes(start),
-        });
-    }
-    let (pid, size) = match claim(frame, limits)? {
-        Claim::Wants(expected) => {
-            return Err(Error::Short {
-                field: "a packet",
-                expected,
-                came: frame.len(),
-            });
-        }
-        Claim::Frame { pid, size } => (pid, size),
-    };
-    if frame.len() < size {
-        return Err(Error::Short {
-            field: "a packet",
-            expected: size,
-            came: frame.len(),
-        });
-    }
-    if frame.len() > size {
-        let (expected, came) = (SizeRule::Exactly(size as u64), frame.len() as u64);
-        return Err(Error::Size {
-            pid,
-            expected,
-            came,
-        });
-    }
-    let (hashed, came) = frame.split_at(size - TRAILER_BYTES);
-    let expected = Hash::of(hashed).to_bytes();
-    if came != expected {
-        return Err(Error::Hash {
-            expected,
-            came: [came[0], came[1]],
-        });
-    }
-    decode_payload(pid, &hashed[HEADER_BYTES..])
-}
-
 /// Whether the document has a packet with this PID.
 pub fn is_known(pid: u8) -> bool {
     PIDS.iter().any(|&(_, known)| known == pid)
 }
 
-fn too_many(field: &'static str, of_what: &str, most: u64, came: usize) -> Error {
+pub(crate) fn too_many(field: &'static str, of_what: &str, most: u64, came: usize) -> Error {
     Error::Value {
         field,
         expected: format!("at most {most} {of_what}"),
