@@ -56,7 +56,7 @@ def test_one_that_says_nothing_holds_no_longer_and_is_closed(
         station = FakeStation()
         async with asyncio.timeout(PATIENCE_S), served(station) as port:
             async with websockets.connect(url_of(port)) as reader:
-                with pytest.raises(websockets.ConnectionClosed, match="said nothing"):
+                with pytest.raises(websockets.ConnectionClosed, match="no keepalive in time"):
                     await read_on(reader)
             assert held(station) == frozenset()
 

@@ -17,6 +17,8 @@ from recon.api.security import PROTOCOL
 
 INTERVAL_S = 0.1
 MOST_READERS = 32
+OWNER_SILENT = 4008
+"""Close code (private use, RFC 6455) for an owner that sent no keepalive in time."""
 
 
 class StateStream:
@@ -46,7 +48,7 @@ class StateStream:
             await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
             await self._send_until_gone(socket, owner)
             if owner is not None:
-                await socket.close(1008, "owner: it has said nothing for too long")
+                await socket.close(OWNER_SILENT, "owner: no keepalive in time")
         except (WebSocketDisconnect, RuntimeError):
             return
         finally:
