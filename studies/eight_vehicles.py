@@ -18,9 +18,9 @@ from recon.sim.app.app import SimulatedApp
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import parse_fault
 from recon.sim.app.telemetry import FIELD_SENSORS
-from recon.sim.camera.field import FieldFrames
-from recon.sim.camera.rig import ImagerRig
-from recon.sim.camera.settings import ImagerSettings
+from recon.sim.camera.field import FieldRenderer
+from recon.sim.camera.rig import CameraRig
+from recon.sim.camera.settings import CameraSettings
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
@@ -168,16 +168,16 @@ def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> Simulat
     assert site.imager is not None
     assert site.imager.marked_frame is not None
     marked = site.imager.marked_frame
-    rig = ImagerRig(site.imager.camera, site.frame, site.imager.solution.pose, marked)
+    rig = CameraRig(site.imager.camera, site.frame, site.imager.solution.pose, marked)
     origin = site.frame.origin
     sun = SunSettings(LatLon(origin.latitude_deg, origin.longitude_deg))
     clouds = LayerSettings(cover=0.35, outer_scale_m=2_500.0, softness=0.15)
-    source = FieldFrames(
+    source = FieldRenderer(
         rig.camera,
         site.imager.image_circle,
         seed,
         Sky(SkySettings(seed, sun, (clouds,))),
-        ImagerSettings(seed),
+        CameraSettings(seed),
     )
     pads = {s: profile.pad for s, profile in site.profiles.items() if profile.pad is not None}
     return SimulationConfig(

@@ -12,8 +12,8 @@ import cv2
 import numpy as np
 
 from recon.camera import TelemetryReference, level_pose
-from recon.sim.app.camera_feed import View
-from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.field import FieldRenderer
+from recon.sim.camera.frames import CameraView
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.site import demo_site_folder, load_site
 
@@ -33,12 +33,12 @@ def shot(height_m: float, east_m: float, north_m: float, cover: float, time_s: f
     imager = load_site(demo_site_folder()).imager
     assert imager is not None
     clouds = LayerSettings(cover=cover, outer_scale_m=2_500.0, softness=0.15)
-    frames = FieldFrames(
+    frames = FieldRenderer(
         imager.camera, imager.image_circle, SEED, Sky(SkySettings(SEED, layers=(clouds,)))
     )
     said = TelemetryReference(0.0, 0.0, height_m, 15.0)
     pose = level_pose(said, np.array([east_m, north_m, height_m]))
-    picture = frames.render(View(time_s, 0, pose))[frames.lens.window]
+    picture = frames.render(CameraView(time_s, 0, pose))[frames.lens.window]
     return cv2.resize(picture, (SIDE_PX, SIDE_PX), interpolation=cv2.INTER_AREA)
 
 

@@ -40,7 +40,7 @@ from recon.sim.app.app import SimulatedApp
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.flight.aircraft import Aircraft
 from recon.sim.flight.flight_modes import TakeOff
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 from recon.sim.flight.mission import MissionFlight
 from recon.sim.world import Wind, WindSettings
 from recon.site import Site
@@ -275,15 +275,15 @@ def _app(flight: Flight) -> SimulatedApp:
     )
     (app,) = build_fleet(config, 0)
     east_m, north_m, up_m = flight.start_m
-    app.aircraft.motion = Motion(north_m, east_m, up_m)
+    app.aircraft.motion = AircraftMotion(north_m, east_m, up_m)
     return app
 
 
 def _mission_of(aircraft: Aircraft) -> MissionFlight | None:
-    manoeuvre = aircraft.manoeuvre
-    if isinstance(manoeuvre, TakeOff):
-        manoeuvre = manoeuvre.then
-    return manoeuvre if isinstance(manoeuvre, MissionFlight) else None
+    active_mode = aircraft.active_mode
+    if isinstance(active_mode, TakeOff):
+        active_mode = active_mode.then
+    return active_mode if isinstance(active_mode, MissionFlight) else None
 
 
 def worked_out_s(flight: Flight) -> dict[str, float]:

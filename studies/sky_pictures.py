@@ -13,8 +13,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from recon.sim.land.noise import FloatImage
 from recon.sim.world import LayerSettings, Sky, SkySettings
+from recon.sim.world.keyframes import FloatImage
 
 SEED = 12
 WIDTH_M = 8_000.0

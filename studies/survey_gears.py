@@ -129,9 +129,9 @@ class _Watched:
 
     def look(self, now_s: float) -> None:
         """Note what was reached since the last look; a mission object is one mission."""
-        manoeuvre, motion = self.aircraft.manoeuvre, self.aircraft.motion
-        takes_off = isinstance(manoeuvre, TakeOff)
-        flying = manoeuvre.then if isinstance(manoeuvre, TakeOff) else manoeuvre
+        active_mode, motion = self.aircraft.active_mode, self.aircraft.motion
+        takes_off = isinstance(active_mode, TakeOff)
+        flying = active_mode.then if isinstance(active_mode, TakeOff) else active_mode
         newest = self.missions[-1] if self.missions else None
         if isinstance(flying, MissionFlight) and (not newest or flying is not newest.mission):
             spot_m = (motion.east_m, motion.north_m, motion.height_m)
@@ -140,9 +140,9 @@ class _Watched:
         if newest is not None:
             for number in range(newest.mission.next_index):
                 newest.reached_s.setdefault(_name(number), now_s)
-            if isinstance(manoeuvre, Grounded) and not self.was_down:
+            if isinstance(active_mode, Grounded) and not self.was_down:
                 newest.reached_s[LANDED] = now_s
-        self.was_down = isinstance(manoeuvre, Grounded)
+        self.was_down = isinstance(active_mode, Grounded)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from recon.camera import TelemetryReference, level_pose
-from recon.sim.app.camera_feed import View
-from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.field import FieldRenderer
+from recon.sim.camera.frames import CameraView
 from recon.sim.land.farmland import lay_out
 from recon.sim.land.land_tiles import CELLS_M, LandTiles
 from recon.sim.world import LayerSettings, Sky, SkySettings
@@ -39,12 +39,12 @@ def test_a_hovering_imager(height_m: float) -> None:
     imager = load_site(demo_site_folder()).imager
     assert imager is not None
     sky = Sky(SkySettings(3, layers=(LOW, HIGH)))
-    frames = FieldFrames(imager.camera, imager.image_circle, 0, sky)
+    frames = FieldRenderer(imager.camera, imager.image_circle, 0, sky)
     pose = level_pose(TelemetryReference(0.0, 0.0, height_m, 20.0), np.array([0.0, 0.0, height_m]))
     frames.prepare()
-    frames.render(View(0.0, 0, pose))
+    frames.render(CameraView(0.0, 0, pose))
     found_s = [
-        _seconds(lambda number=number: frames.render(View(0.2 * number, number, pose)))
+        _seconds(lambda number=number: frames.render(CameraView(0.2 * number, number, pose)))
         for number in range(1, LOOKS)
     ]
     rows, cols = frames.lens.window

@@ -8,7 +8,7 @@ from tests.detection.shaded_field import FRAME, HEIGHT_M, LOOKS_DOWN
 
 from recon.detection import DetectionSettings
 from recon.detection.cells import cell_light, field_grid
-from recon.detection.resolution import metres_per_pixel
+from recon.detection.frame_step import metres_per_pixel
 from recon.model.geo import GroundGrid
 from recon.model.imagery import CameraPose, GroundImage
 

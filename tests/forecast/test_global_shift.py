@@ -18,7 +18,7 @@ from tests.forecast.moving_shade import (
 
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.forecast.global_shift import seen_upwind_s
-from recon.forecast.motion import Motion, motion_of
+from recon.forecast.motion import ShadowMotion, motion_of
 from recon.forecast.state import PairVelocity
 from recon.model.geo import GroundGrid
 from recon.model.shade import SunForecast
@@ -121,7 +121,7 @@ class TestHorizon:
         rng = np.random.default_rng(seed)
         grid = GroundGrid(FIELD.frame, 0.0, 0.0, 4.0, 12, 15)
         seen = rng.random((12, 15)) < share
-        found = seen_upwind_s(seen, grid, Motion(east_mps, north_mps, 0.3), SETTINGS)
+        found = seen_upwind_s(seen, grid, ShadowMotion(east_mps, north_mps, 0.3), SETTINGS)
         for row in range(12):
             for col in range(15):
                 slow_s = self.slow_s(seen, row, col, (east_mps / 4.0, -north_mps / 4.0))

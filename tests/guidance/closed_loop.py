@@ -23,7 +23,13 @@ from recon.guidance.steering import (
     steer,
 )
 from recon.model.geo import LatLon
-from recon.sim.flight.kinematics import Demand, Limits, Motion, hold_height_mps, step
+from recon.sim.flight.kinematics import (
+    AircraftMotion,
+    Limits,
+    VelocityDemand,
+    hold_height_mps,
+    step,
+)
 
 START = LatLon(41.9, -93.6)
 STEP_NS = 10_000_000
@@ -50,18 +56,18 @@ class Loop:
     """The closed loop; `trace` is the true motion every 0.1 s, `demands` what was asked for."""
 
     way: Way
-    motion: Motion = field(default_factory=lambda: Motion(height_m=30.0))
+    motion: AircraftMotion = field(default_factory=lambda: AircraftMotion(height_m=30.0))
     now_ns: int = 0
-    trace: list[Motion] = field(default_factory=list)
+    trace: list[AircraftMotion] = field(default_factory=list)
     demands: list[Steered] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.rng = Random(self.way.seed)
         self.limits = Limits()
-        self.reports: deque[tuple[int, Motion]] = deque()
+        self.reports: deque[tuple[int, AircraftMotion]] = deque()
         self.sticks: deque[tuple[int, Steered]] = deque()
         self.flown: Steered | None = None
-        self.last: tuple[int, Motion] | None = None
+        self.last: tuple[int, AircraftMotion] | None = None
         self.gust = [0.0, 0.0]
         self.steered: Steered | None = None
 
@@ -158,7 +164,7 @@ class Loop:
         self.gust = [0.995 * gust + 0.1 * self.rng.gauss(0.0, way.gust_mps) for gust in self.gust]
         if self.flown is None:
             return
-        demand = Demand(
+        demand = VelocityDemand(
             self.flown.velocity_north_mps + way.wind_north_mps + self.gust[0],
             self.flown.velocity_east_mps + way.wind_east_mps + self.gust[1],
             hold_height_mps(self.motion.height_m, self.flown.height_above_takeoff_m, self.limits),

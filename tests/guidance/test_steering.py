@@ -22,7 +22,7 @@ from recon.guidance.steering import (
 )
 from recon.model.geo import LatLon
 from recon.model.units import wrap_degrees
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 
 S = 1_000_000_000
 STILL_AIR_OVERSHOOT_M = 0.5
@@ -89,7 +89,7 @@ class TestClosedLoop:
     def test_what_is_asked_for_stays_within_its_bounds(
         self, way: Way, to_m: tuple[float, float], speed_mps: float, moving_mps: float
     ) -> None:
-        loop = Loop(way, Motion(height_m=30.0, velocity_east_mps=moving_mps))
+        loop = Loop(way, AircraftMotion(height_m=30.0, velocity_east_mps=moving_mps))
         loop.fly(goal(*to_m, 20.0, speed_mps, 170.0), 40.0)
         assert loop.hardest_demand_mps2() <= 2.0 + 1e-6
         fastest_mps = max(hypot(d.velocity_north_mps, d.velocity_east_mps) for d in loop.demands)
@@ -100,7 +100,7 @@ class TestClosedLoop:
             assert abs(wrap_degrees(b.yaw_deg - a.yaw_deg)) <= 4.5 + 1e-9
 
     def test_a_hold_out_of_full_motion_stays_near_where_it_comes_to_rest(self) -> None:
-        loop = Loop(Way(jitter_s=0.2), Motion(height_m=30.0, velocity_north_mps=10.0))
+        loop = Loop(Way(jitter_s=0.2), AircraftMotion(height_m=30.0, velocity_north_mps=10.0))
         loop.fly(goal(100.0, 0.0, speed_mps=10.0), 1.0)
         last = loop.seen()
         assert last is not None

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from recon.score.legs import Pace, leg
 from recon.sim.flight.kinematics import (
     BRAKING_MPS2,
-    Demand,
+    AircraftMotion,
     Limits,
-    Motion,
+    VelocityDemand,
     braking_speed_mps,
     step,
 )
@@ -23,14 +23,14 @@ speeds = st.floats(0.5, 15.0)
 
 def flown_s(length_m: float, speed_mps: float) -> float:
     """How long the airframe takes northwards, steered as missions are."""
-    motion, time_s, limits = Motion(height_m=30.0), 0.0, Limits()
+    motion, time_s, limits = AircraftMotion(height_m=30.0), 0.0, Limits()
 
     def left_m() -> float:
         return length_m - motion.north_m
 
     while left_m() > ARRIVED_WITHIN_M or motion.ground_speed_mps > ARRIVED_BELOW_MPS:
         wanted_mps = min(speed_mps, braking_speed_mps(left_m(), BRAKING_MPS2))
-        motion = step(motion, Demand(velocity_north_mps=wanted_mps), STEP_S, limits)
+        motion = step(motion, VelocityDemand(velocity_north_mps=wanted_mps), STEP_S, limits)
         time_s += STEP_S
         assert time_s < 1_000.0
     return time_s

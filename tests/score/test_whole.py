@@ -16,7 +16,7 @@ from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.flight.aircraft import Aircraft
 from recon.sim.flight.flight_modes import Hold
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 
 CLEAR = SMALL.replace('faults = ["pilot-takes:1:40:30"]', "").partition("[[clouds]]")[0]
 SHORT = CLEAR.replace("limit_min = 10.0", "limit_min = 1.5")
@@ -83,7 +83,7 @@ def flying(east_m: list[float], height_m: float) -> TrueWay:
     """A way eastwards, a place a second, that is in the air all the time."""
     app = SimulatedApp(
         AppSettings(serial="SIM-1", home=GeoPoint(41.9, -93.6, 280.0)),
-        Aircraft(0, motion=Motion(height_m=height_m), manoeuvre=Hold()),
+        Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=Hold()),
     )
     places = [(east, 0.0, height_m) for east in east_m]
     return TrueWay(

@@ -9,12 +9,12 @@ from recon.model.geo import GeoPoint
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import AltitudeReference
 from recon.sim.app.app import AppSettings, SimulatedApp
-from recon.sim.app.commands import AppHabits, HoverOnGround
-from recon.sim.app.faults import Fault
+from recon.sim.app.commands import AppBehaviour, HoverOnGround
+from recon.sim.app.faults import InjectedFault
 from recon.sim.app.telemetry import position_deg
 from recon.sim.flight.aircraft import TICK_NS, Aircraft
 from recon.sim.flight.flight_modes import Grounded, Hold
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 
@@ -27,11 +27,11 @@ class Flights:
     @staticmethod
     def hovering(height_m: float = 30.0, yaw_deg: float = 0.0, now_ns: int = 0) -> Aircraft:
         """Return an aircraft in hover above its home."""
-        motion = Motion(height_m=height_m, yaw_deg=yaw_deg)
-        return Aircraft(now_ns, motion=motion, manoeuvre=Hold())
+        motion = AircraftMotion(height_m=height_m, yaw_deg=yaw_deg)
+        return Aircraft(now_ns, motion=motion, active_mode=Hold())
 
     @staticmethod
-    def fly(aircraft: Aircraft, seconds: float) -> Iterator[Motion]:
+    def fly(aircraft: Aircraft, seconds: float) -> Iterator[AircraftMotion]:
         """Advance tick by tick for a time and yield every motion."""
         end_ns = aircraft.now_ns + seconds_to_ns(seconds)
         while aircraft.now_ns + TICK_NS <= end_ns:
@@ -39,7 +39,7 @@ class Flights:
             yield aircraft.motion
 
     @classmethod
-    def fly_on(cls, aircraft: Aircraft, seconds: float) -> Motion:
+    def fly_on(cls, aircraft: Aircraft, seconds: float) -> AircraftMotion:
         """Advance for a time and return the last motion."""
         return list(cls.fly(aircraft, seconds))[-1]
 
@@ -110,12 +110,12 @@ def app_bench() -> Callable[..., AppBench]:
         height_m: float = 30.0,
         reference: AltitudeReference = AltitudeReference.TAKEOFF,
         hover_on_ground: HoverOnGround = HoverOnGround.NOTHING,
-        faults: tuple[Fault, ...] = (),
+        faults: tuple[InjectedFault, ...] = (),
         bias_m: float = -23.0,
     ) -> AppBench:
-        manoeuvre = Grounded() if height_m == 0.0 else Hold()
-        aircraft = Aircraft(0, motion=Motion(height_m=height_m), manoeuvre=manoeuvre)
-        habits = AppHabits(reference, hover_on_ground, bias_m)
+        active_mode = Grounded() if height_m == 0.0 else Hold()
+        aircraft = Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=active_mode)
+        habits = AppBehaviour(reference, hover_on_ground, bias_m)
         settings = AppSettings("SIM-7", HOME, seed=4, habits=habits, faults=faults)
         return AppBench(SimulatedApp(settings, aircraft))
 

@@ -9,7 +9,7 @@ from recon.geo import Polygon, enu_from_points
 from recon.model.units import NS_PER_S
 from recon.model.zone import ZoneKind
 from recon.sim.app.camera_feed import FeedSettings
-from recon.sim.camera.rig import ImagerRig
+from recon.sim.camera.rig import CameraRig
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.site import Site, demo_site_folder, load_site
 
@@ -30,7 +30,7 @@ def config(site: Site, seed: int, vehicle_count: int) -> SimulationConfig:
     assert imager is not None
     assert imager.marked_frame is not None
     assert site.frame is not None
-    rig = ImagerRig(imager.camera, site.frame, imager.solution.pose, imager.marked_frame)
+    rig = CameraRig(imager.camera, site.frame, imager.solution.pose, imager.marked_frame)
     return SimulationConfig(
         home=site.frame.origin,
         vehicle_count=vehicle_count,

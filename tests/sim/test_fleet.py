@@ -9,7 +9,7 @@ from recon.geo import enu_from_point
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.faults import parse_fault
-from recon.sim.camera.replay import StillFrame
+from recon.sim.camera.frames import StillFrame
 from recon.sim.errors import FaultError
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet, fleet_serials
 

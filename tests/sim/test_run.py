@@ -11,8 +11,8 @@ import pytest
 from recon import wire
 from recon.model.geo import GeoPoint
 from recon.sim.app.camera_feed import FeedSettings
-from recon.sim.app.faults import Fault, FaultKind
-from recon.sim.camera.replay import StillFrame
+from recon.sim.app.faults import FaultKind, InjectedFault
+from recon.sim.camera.frames import StillFrame
 from recon.sim.errors import FrameSourceError
 from recon.sim.fleet import ImagerSetup, SimulationConfig
 from recon.sim.run import run_fleet
@@ -96,7 +96,7 @@ async def flying(config: SimulationConfig) -> AsyncIterator[Station]:
 
 
 def with_fault(kind: FaultKind, start_s: float, duration_s: float) -> SimulationConfig:
-    return replace(CONFIG, faults=(Fault(kind, "*", start_s, duration_s),))
+    return replace(CONFIG, faults=(InjectedFault(kind, "*", start_s, duration_s),))
 
 
 def test_four_vehicles_connect_speak_and_end() -> None:

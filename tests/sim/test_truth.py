@@ -10,10 +10,10 @@ import recon
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.sim.app.camera_feed import View
+from recon.sim.camera.frames import CameraView
 from recon.sim.camera.survey_shutter import LATEST_S, IntervalTimer, footprint_m, photos
 from recon.sim.errors import SimulationError
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 from recon.sim.truth import WorldTruth
 from recon.sim.world import LayerSettings, Sky, SkySettings
 
@@ -43,9 +43,9 @@ def test_only_the_simulator_and_the_score_import_the_truth() -> None:
     assert knowing <= MAY_KNOW
 
 
-def eastwards(time_ns: int) -> Motion:
+def eastwards(time_ns: int) -> AircraftMotion:
     """Fly east at 5 m/s, 40 m up."""
-    return Motion(east_m=5.0 * time_ns / NS_PER_S, north_m=7.0, height_m=40.0, yaw_deg=90.0)
+    return AircraftMotion(east_m=5.0 * time_ns / NS_PER_S, north_m=7.0, height_m=40.0, yaw_deg=90.0)
 
 
 def test_a_timer_fires_once_an_interval_at_its_own_phase() -> None:
@@ -96,7 +96,7 @@ def test_photos_are_taken_in_flight_only_and_from_home() -> None:
     taken = photos(
         timer,
         CAMERA,
-        lambda t: eastwards(t) if t > 20 * NS_PER_S else Motion(),
+        lambda t: eastwards(t) if t > 20 * NS_PER_S else AircraftMotion(),
         (0, 60 * NS_PER_S),
         (100.0, -30.0, 2.0),
     )
@@ -133,4 +133,4 @@ def test_transmittance_is_the_skys() -> None:
 
 def test_a_world_without_an_imager_has_no_true_pose() -> None:
     with pytest.raises(SimulationError, match="expected an eye"):
-        WorldTruth(Sky(SkySettings())).imager_pose(View(0.0, 0, None))
+        WorldTruth(Sky(SkySettings())).imager_pose(CameraView(0.0, 0, None))

@@ -173,7 +173,7 @@ def returning_world(
             east_m=place[0] - pad[0], north_m=place[1] - pad[1], height_m=place[2]
         )
         if place[2] == 0.0:
-            app.aircraft.manoeuvre = Grounded()
+            app.aircraft.active_mode = Grounded()
         if go_home_height_m is not None:
             settings = app.aircraft.settings
             app.aircraft.settings = replace(settings, go_home_height_m=go_home_height_m)

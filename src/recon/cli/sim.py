@@ -40,16 +40,16 @@ from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.score.simulation import go_home_heights_of, pads_of, rig_of
-from recon.sim.app.camera_feed import FeedSettings, FrameSource, ImageFormat
+from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import parse_fault
 from recon.sim.app.telemetry import FIELD_SENSORS
-from recon.sim.camera import ImagerSettings
-from recon.sim.camera.field import FieldFrames
-from recon.sim.camera.frame_files import folder_frames
+from recon.sim.camera import CameraSettings
+from recon.sim.camera.field import FieldRenderer
+from recon.sim.camera.frames import FrameSource, folder_frames
 from recon.sim.camera.replay import load_replay
-from recon.sim.camera.rig import ImagerRig
+from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import SimulationError
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig
 from recon.sim.run import run_fleet
@@ -62,7 +62,7 @@ LONGEST_LATENCY_S = 60.0
 class ImagerWorld(NamedTuple):
     """Where the eye hangs (None: above home) and what it sees."""
 
-    rig: ImagerRig | None
+    rig: CameraRig | None
     source: FrameSource
 
 
@@ -120,7 +120,7 @@ def sim_command(
             seed=seed,
             sensors=FIELD_SENSORS,
             wind=_wind(wind_mps, wind_to_deg, seed),
-            tells_mission_id=mission_ids,
+            reports_mission_id=mission_ids,
             faults=(*(parse_fault(text) for text in fault or ()), *script.faults),
             chances=script.chances,
             pads=pads_of(place) if home is None and replay_site is None else {},
@@ -213,8 +213,8 @@ def _imager_world(
         raise SimulationError(
             "expected a site with an [imager], or --frames, or --no-eye, got none"
         )
-    sky, imager = _sky(rig.frame.origin, seed), ImagerSettings(seed)
-    land = FieldFrames(rig.camera, place.imager.image_circle, seed, sky, imager)
+    sky, imager = _sky(rig.frame.origin, seed), CameraSettings(seed)
+    land = FieldRenderer(rig.camera, place.imager.image_circle, seed, sky, imager)
     return ImagerWorld(rig, land)
 
 
@@ -225,6 +225,6 @@ def _sky(origin: GeoPoint, seed: int) -> Sky:
     return Sky(SkySettings(seed, sun, (clouds,)))
 
 
-def _rig(place: Site, imager: Imager) -> ImagerRig:
+def _rig(place: Site, imager: Imager) -> CameraRig:
     assert place.frame is not None
     return rig_of(place.frame, imager)

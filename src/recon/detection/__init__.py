@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from recon.detection.brightness_ratio import brightness_ratio
+from recon.detection.frame_step import FrameFault, RejectedFrame
 from recon.detection.otsu import otsu
-from recon.detection.rejected import FrameFault, RejectedFrame
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.model.imagery import GroundImage

@@ -11,11 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from recon.detection.exposure import gain_now
-from recon.detection.frame_step import shade_map, take_frame
-from recon.detection.history import LightHistory
-from recon.detection.rejected import RejectedFrame
+from recon.detection.frame_step import RejectedFrame, shade_map, take_frame
 from recon.detection.settings import DetectionSettings
-from recon.detection.state import DetectionState
+from recon.detection.state import DetectionState, LightHistory
 from recon.model.imagery import GroundImage
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, ShadeMap
 

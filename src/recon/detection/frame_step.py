@@ -1,18 +1,111 @@
-"""What every method does with a frame: check it, bring it onto the field's grid, tell the shade."""
+"""Steps all methods share: check the frame, sample it on the field grid, build the shade map."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from enum import Enum
 
+import cv2
 import numpy as np
 
-from recon.detection.cells import CellLight, cell_light, field_grid
-from recon.detection.check import cells_fault, picture_fault
-from recon.detection.rejected import RejectedFrame
-from recon.detection.resolution import metres_per_pixel
+from recon.detection.cells import GREEN, CellLight, cell_light, field_grid
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.model.geo import GroundGrid
-from recon.model.imagery import GroundImage
+from recon.model.imagery import CameraPose, GroundImage
 from recon.model.shade import FloatMap, MaskMap, ShadeMap
+from recon.model.units import ns_to_seconds
+
+
+class FrameFault(Enum):
+    """What is wrong with a frame."""
+
+    OTHER_PLACE = "other_place"
+    """Laid in another local frame than the field's, or beside its grid."""
+    NOT_NEWER = "not_newer"
+    REPEATED = "repeated"
+    BLACK = "black"
+    TORN = "torn"
+
+
+@dataclass(frozen=True, slots=True)
+class RejectedFrame:
+    """A frame that was not used; the detection's state is as before."""
+
+    frame_id: int
+    fault: FrameFault
+    reason: str
+    """For people: what was expected, what came."""
+
+
+def picture_fault(
+    image: GroundImage, latest_ns: int | None, grid: GroundGrid, settings: DetectionSettings
+) -> RejectedFrame | None:
+    """Return what is wrong with a frame by its place, its time or its levels.
+
+    `latest_ns` is when the last frame that was used was taken.
+    """
+    if image.grid.frame != grid.frame:
+        text = "expected a frame laid in the field's local frame, got one of another origin"
+        return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
+    if latest_ns is not None and image.captured_at_ns <= latest_ns:
+        late_s = ns_to_seconds(latest_ns - image.captured_at_ns)
+        text = f"expected a frame newer than the last one, got one taken {late_s:.1f} s before it"
+        return RejectedFrame(image.frame_id, FrameFault.NOT_NEWER, text)
+    return _level_fault(image, settings)
+
+
+def cells_fault(
+    image: GroundImage, cells: CellLight, latest: CellLight | None, settings: DetectionSettings
+) -> RejectedFrame | None:
+    """Return what is wrong with the cells' light: too little seen, or the very same as before."""
+    seen_share = float(cells.seen.mean())
+    if seen_share < settings.least_image:
+        text = (
+            f"expected a frame that shows {settings.least_image:.0%} of the field or more, got "
+            f"{seen_share:.1%}"
+        )
+        return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
+    if latest is not None and np.array_equal(cells.light, latest.light, equal_nan=True):
+        text = "expected a new picture, got the last one again to the bit: is the camera frozen?"
+        return RejectedFrame(image.frame_id, FrameFault.REPEATED, text)
+    return None
+
+
+def _level_fault(image: GroundImage, settings: DetectionSettings) -> RejectedFrame | None:
+    """Black, or one single level over much of the picture."""
+    levels = np.ascontiguousarray(image.rgb[..., GREEN])
+    counted = cv2.calcHist([levels], [0], image.valid.astype(np.uint8), [256], [0, 256]).ravel()
+    if counted.sum() == 0.0:
+        text = "expected a frame that shows some of the field, got one that shows nothing of it"
+        return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
+    shares = counted / counted.sum()
+    bright = int(np.searchsorted(np.cumsum(shares), 0.9))
+    if bright < settings.black_level:
+        text = (
+            f"expected a picture, got black: nine tenths of it are at level {bright} of 255 or less"
+        )
+        return RejectedFrame(image.frame_id, FrameFault.BLACK, text)
+    level = int(np.argmax(shares))
+    if shares[level] > settings.flat_share:
+        text = (
+            f"expected a whole picture, got {shares[level]:.0%} of it at the one level {level} of "
+            "255: torn, or overexposed"
+        )
+        return RejectedFrame(image.frame_id, FrameFault.TORN, text)
+    return None
+
+
+def metres_per_pixel(grid: GroundGrid, pose: CameraPose, pixels_per_radian: float) -> FloatMap:
+    """Return (R, C): the ground along a pixel's coarser side, outwards from below the camera.
+
+    A fisheye gives every direction about as many pixels a radian, so only distance and slant count:
+    d / f across the view and d^2 / (h f) along it, for a camera h above flat ground, d away.
+    """
+    east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m - pose.position_enu_m[0]
+    north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m - pose.position_enu_m[1]
+    height_m = float(pose.position_enu_m[2])
+    distance2_m2 = np.add.outer(north_m**2, east_m**2) + height_m**2
+    coarser: FloatMap = (distance2_m2 / (height_m * pixels_per_radian)).astype(np.float32)
+    return coarser
 
 
 def take_frame(

@@ -8,8 +8,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from recon.detection.frame_step import shade_map, take_frame
-from recon.detection.rejected import RejectedFrame
+from recon.detection.frame_step import RejectedFrame, shade_map, take_frame
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.model.imagery import GroundImage

@@ -1,11 +1,67 @@
 """What a detector remembers from frame to frame; bounded, and never changed in place."""
 
 from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
 
 from recon.detection.cells import CellLight
 from recon.detection.exposure import Exposure
-from recon.detection.history import LightHistory
+from recon.detection.settings import DetectionSettings
 from recon.model.geo import GroundGrid
+from recon.model.shade import FloatMap
+from recon.model.units import seconds_to_ns
+
+DARK_QUANTILE = 0.1
+"""Of a cell's samples, taken for the darkest it was: below it is noise."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LightHistory:
+    """Samples of the field's cells, oldest first; light at the first frame's exposure."""
+
+    samples: tuple[tuple[int, FloatMap], ...]
+    """When, and (R, C) light with NaN where unseen."""
+    sunlit: FloatMap
+    """(R, C): the sunlit quantile of each cell's samples, NaN without any."""
+    dark: FloatMap
+    """(R, C): the dark quantile."""
+    count: npt.NDArray[np.int64]
+    """(R, C): samples that show the cell."""
+
+    @classmethod
+    def with_sample(
+        cls, history: Self | None, at_ns: int, light: FloatMap, settings: DetectionSettings
+    ) -> Self:
+        """Return the history with a frame in it: the first one in each slot of time is kept."""
+        kept = () if history is None else history.samples
+        spacing_ns = seconds_to_ns(settings.window_s) // settings.samples
+        if history is not None and at_ns // spacing_ns == kept[-1][0] // spacing_ns:
+            return history
+        oldest_ns = at_ns - seconds_to_ns(settings.window_s)
+        recent = tuple(sample for sample in kept if sample[0] > oldest_ns)
+        return cls._of((*recent, (at_ns, light))[-settings.samples :], settings)
+
+    @classmethod
+    def _of(cls, samples: tuple[tuple[int, FloatMap], ...], settings: DetectionSettings) -> Self:
+        # NaN sorts last, so each cell's samples come first in their order.
+        ordered = np.sort(np.stack([light for _, light in samples]), axis=0)
+        count = np.count_nonzero(np.isfinite(ordered), axis=0)
+        sunlit, dark = (
+            _quantile(ordered, count, share) for share in (settings.sunlit_quantile, DARK_QUANTILE)
+        )
+        return cls(samples, sunlit, dark, count)
+
+
+def _quantile(ordered: FloatMap, count: npt.NDArray[np.int64], share: float) -> FloatMap:
+    """Return (R, C): the quantile of the first `count` of (N, R, C), linear between neighbours."""
+    place = np.maximum(count - 1, 0) * share
+    below = np.floor(place).astype(np.int64)
+    above = np.minimum(below + 1, np.maximum(count - 1, 0))
+    low, high = (np.take_along_axis(ordered, i[np.newaxis], axis=0)[0] for i in (below, above))
+    found: FloatMap = (low + (high - low) * (place - below)).astype(np.float32)
+    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,11 +9,10 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from recon.forecast.cover import prior_sunlit, sunlit_now, with_map
-from recon.forecast.motion import Motion, motion_of, with_pairs
+from recon.forecast.motion import ShadowMotion, motion_of, with_pairs
 from recon.forecast.persistence import persisting
 from recon.forecast.settings import ForecastSettings
-from recon.forecast.state import ForecastState
+from recon.forecast.state import ForecastState, prior_sunlit, sunlit_now, with_map
 from recon.model.geo import GroundGrid
 from recon.model.shade import SURE, FloatMap, MaskMap, ShadeMap, SunForecast
 
@@ -34,7 +33,7 @@ def global_shift(
 
 
 def _moving_on(
-    shade: ShadeMap, motion: Motion, prior: float, settings: ForecastSettings
+    shade: ShadeMap, motion: ShadowMotion, prior: float, settings: ForecastSettings
 ) -> SunForecast:
     lead_s = np.array(settings.lead_s, dtype=np.float64)
     horizon_s = seen_upwind_s(shade.valid, shade.grid, motion, settings)
@@ -60,7 +59,7 @@ def _moving_on(
 
 
 def seen_upwind_s(
-    seen: MaskMap, grid: GroundGrid, motion: Motion, settings: ForecastSettings
+    seen: MaskMap, grid: GroundGrid, motion: ShadowMotion, settings: ForecastSettings
 ) -> FloatMap:
     """Return (R, C): how long what reaches each cell comes from a seen one, without a break.
 
@@ -76,7 +75,7 @@ def seen_upwind_s(
     return horizon_s
 
 
-def _after(now: FloatMap, grid: GroundGrid, motion: Motion, lead_s: float) -> FloatMap:
+def _after(now: FloatMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> FloatMap:
     """Return (R, C): the map of now at a lead, as blurred as its place is unsure by then."""
     box = round(BOX_OVER_SIGMA * motion.spread_mps * lead_s / grid.cell_m) // 2 * 2 + 1
     blurred = cv2.blur(now, (box, box), borderType=cv2.BORDER_REPLICATE) if box > 1 else now
@@ -87,7 +86,9 @@ def _after(now: FloatMap, grid: GroundGrid, motion: Motion, lead_s: float) -> Fl
     return later.astype(np.float32, copy=False)
 
 
-def _is_seen_upwind(seen: MaskMap, grid: GroundGrid, motion: Motion, lead_s: float) -> MaskMap:
+def _is_seen_upwind(
+    seen: MaskMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float
+) -> MaskMap:
     """Return (R, C): whether the place whose shade is here at a lead is seen now."""
     to_now = _upwind(grid, motion, lead_s)
     size = (grid.cols, grid.rows)
@@ -95,7 +96,7 @@ def _is_seen_upwind(seen: MaskMap, grid: GroundGrid, motion: Motion, lead_s: flo
     return cv2.warpAffine(seen.astype(np.uint8), to_now, size, flags=how) > 0
 
 
-def _upwind(grid: GroundGrid, motion: Motion, lead_s: float) -> npt.NDArray[np.float64]:
+def _upwind(grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> npt.NDArray[np.float64]:
     """The affine map (2, 3) from a cell's column and row to those of where its shade is now."""
     right = motion.east_mps * lead_s / grid.cell_m
     down = -motion.north_mps * lead_s / grid.cell_m

@@ -16,7 +16,7 @@ NORMAL_MAD = 1.4826
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class ShadowMotion:
     """The shadows' common velocity, and how far pairs spread around it (standard deviation)."""
 
     east_mps: float
@@ -42,7 +42,7 @@ def with_pairs(state: ForecastState, shade: ShadeMap, settings: ForecastSettings
     )
 
 
-def motion_of(state: ForecastState, settings: ForecastSettings) -> Motion | None:
+def motion_of(state: ForecastState, settings: ForecastSettings) -> ShadowMotion | None:
     """Return the median of the late pairs' velocities; None when they are few or do not agree."""
     if len(state.velocities) < settings.least_pairs:
         return None
@@ -52,7 +52,7 @@ def motion_of(state: ForecastState, settings: ForecastSettings) -> Motion | None
     if spread_mps > settings.most_spread_mps:
         return None
     east_mps, north_mps = (float(mps) for mps in middle_mps)
-    return Motion(east_mps, north_mps, max(spread_mps, settings.least_spread_mps))
+    return ShadowMotion(east_mps, north_mps, max(spread_mps, settings.least_spread_mps))
 
 
 def _partners(state: ForecastState, at_ns: int, settings: ForecastSettings) -> list[ShadeSpectrum]:

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from recon.forecast.cover import prior_sunlit, sunlit_now, with_map
 from recon.forecast.settings import ForecastSettings
-from recon.forecast.state import ForecastState
+from recon.forecast.state import ForecastState, prior_sunlit, sunlit_now, with_map
 from recon.model.shade import SURE, ShadeMap, SunForecast
 
 

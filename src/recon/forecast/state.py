@@ -1,8 +1,13 @@
-"""What a forecaster remembers from map to map; bounded, and never changed in place."""
+"""What a forecaster remembers, and what that alone gives: the prior share in sun, each cell now."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from recon.forecast.phase_correlation import ShadeSpectrum
+from recon.forecast.settings import ForecastSettings
+from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, ShadeMap
+from recon.model.units import ns_to_seconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,3 +32,59 @@ class ForecastState:
     """Maps to compare with, oldest first."""
     velocities: tuple[PairVelocity, ...] = ()
     """Oldest first."""
+
+
+EVEN = 0.5
+"""The share in sun before anything was seen."""
+
+
+def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
+    """Return the state with a map's share in sun in it; maps on another grid begin anew.
+
+    Raises `ValueError` for a map that is not newer than the last one.
+    """
+    if state.latest_ns is not None and shade.captured_at_ns <= state.latest_ns:
+        late_s = ns_to_seconds(state.latest_ns - shade.captured_at_ns)
+        raise ValueError(
+            f"expected a newer shade map than the last one, got one {late_s:.1f} s older"
+        )
+    if state.kept and state.kept[-1].grid != shade.grid:
+        state = replace(state, kept=(), velocities=())
+    passed_s = 0.0
+    if state.latest_ns is not None:
+        passed_s = ns_to_seconds(shade.captured_at_ns - state.latest_ns)
+    state = replace(state, latest_ns=shade.captured_at_ns)
+    return _with_share(state, shade, passed_s, settings.cover_memory_s)
+
+
+def prior_sunlit(state: ForecastState, settings: ForecastSettings) -> float:
+    """Return the probability of sun where nothing is known."""
+    if state.sunlit_share is None:
+        return EVEN
+    views = state.seen_s / settings.cover_view_s
+    return (views * state.sunlit_share + EVEN) / (views + 1.0)
+
+
+def sunlit_now(shade: ShadeMap, prior: float, settings: ForecastSettings) -> FloatMap:
+    """Return (R, C): each cell's probability of sun as the map was taken; `prior` where unseen.
+
+    The less the detection had to go by, the nearer to the prior.
+    """
+    told = (shade.transmittance - SUNLIT_TRANSMITTANCE) / (2.0 * settings.soft_edge) + 0.5
+    told = np.clip(told, 1.0 - settings.surest, settings.surest)
+    mixed = np.where(shade.valid, prior + shade.confidence * (told - prior), prior)
+    return mixed.astype(np.float32)
+
+
+def _with_share(
+    state: ForecastState, shade: ShadeMap, passed_s: float, memory_s: float
+) -> ForecastState:
+    """Return the state with a map in the running mean, if the map shows anything."""
+    if not shade.valid.any():
+        return state
+    share = float(shade.is_sunlit[shade.valid].mean())
+    before = share if state.sunlit_share is None else state.sunlit_share
+    # A plain mean until the memory is full, from then on one that forgets.
+    seen_s = min(state.seen_s + passed_s, memory_s)
+    weight = min(passed_s / seen_s, 1.0) if seen_s > 0.0 else 1.0
+    return replace(state, sunlit_share=before + weight * (share - before), seen_s=seen_s)

@@ -11,10 +11,9 @@ from recon.geo.local_frame import (
     shift_east_north_m,
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
-from recon.geo.polygon import Polygon, region_fault
+from recon.geo.polygon import Polygon, region_fault, thinned_ring
 from recon.geo.surface import Surface
 from recon.geo.tangent_plane import TangentPlane, tangent_plane
-from recon.geo.thinning import thinned_ring
 
 __all__ = [
     "DEFAULT_CHORD_ERROR_M",

@@ -12,6 +12,7 @@ from recon.score.curve import curved
 from recon.score.flight import Hop, Motion, Spot, Steady
 from recon.score.legs import Pace, leg
 from recon.sim.flight.air import COMES_BACK_WITHIN_S, LEARNS_WITHIN_S
+from recon.sim.flight.battery import flying_load
 from recon.sim.flight.flight_modes import (
     CONFIRM_HEIGHT_M,
     LANDING_FAST_MPS,
@@ -22,10 +23,9 @@ from recon.sim.flight.flight_modes import (
     TAKEOFF_HEIGHT_M,
 )
 from recon.sim.flight.kinematics import DRAG_PER_S, Limits
-from recon.sim.flight.kinematics import Motion as AirMotion
+from recon.sim.flight.kinematics import AircraftMotion as AirMotion
 from recon.sim.flight.mission import ARRIVED_BELOW_MPS, ARRIVED_WITHIN_M
 from recon.sim.flight.path import Corner
-from recon.sim.flight.power import flying_load
 from recon.sim.world import Wind
 
 LIFTED_M = TAKEOFF_HEIGHT_M - 0.1

@@ -16,8 +16,8 @@ from recon.score.autopilot import Autopilot, Point
 from recon.score.flight import Hop, Spot
 from recon.score.scenario import Fleet, Place
 from recon.score.settings import FlightSettings
-from recon.sim.flight.kinematics import Motion
-from recon.sim.flight.power import flying_load
+from recon.sim.flight.battery import flying_load
+from recon.sim.flight.kinematics import AircraftMotion
 from recon.sim.world import Wind
 
 _START_S = attrgetter("start_s")
@@ -91,7 +91,7 @@ class Drone:
     def level_load(self) -> float:
         """What level flight takes of the battery, in hovering, wind from the side counted."""
         air_mps = hypot(*self.wind.mean_mps(self.go_home_height_m))
-        moving = Motion(velocity_north_mps=hypot(self.speed_mps, air_mps))
+        moving = AircraftMotion(velocity_north_mps=hypot(self.speed_mps, air_mps))
         return flying_load(moving, (0.0, 0.0))
 
     def take(self, number: int, points: Sequence[Point], rows_from: int, now_s: float) -> None:

@@ -6,8 +6,7 @@ from math import inf
 
 from recon.score.drone import Drone
 from recon.score.scenario import Scenario
-from recon.sim.app.fault_chance import drawn_faults
-from recon.sim.app.faults import FAILED_CELL_FRACTION, Fault, FaultKind
+from recon.sim.app.faults import FAILED_CELL_FRACTION, FaultKind, InjectedFault, draw_faults
 from recon.sim.fleet import IMAGER_SERIAL
 
 HOLDING = (FaultKind.PILOT_TAKES, FaultKind.GNSS_LOSS)
@@ -44,7 +43,7 @@ class Mishap:
 
     at_s: float
     serial: str
-    fault: Fault
+    fault: InjectedFault
 
     def strike(self, drones: Sequence[Drone]) -> None:
         """Let it happen."""
@@ -74,7 +73,7 @@ def with_chances(scenario: Scenario, seed: int) -> Scenario:
     drawn = [
         replace(fault, vehicle=serial)
         for serial, number in (*numbered, (IMAGER_SERIAL, len(numbered) + 1))
-        for fault in drawn_faults(scenario.chances, seed, serial, number)
+        for fault in draw_faults(scenario.chances, seed, serial, number)
     ]
     return replace(scenario, faults=(*scenario.faults, *drawn), chances=())
 
@@ -112,7 +111,7 @@ def blind_spans(scenario: Scenario) -> tuple[Span, ...]:
 def without_effect(scenario: Scenario) -> list[str]:
     """Return the names of the scenario's faults, by script or chance, that flights by events do
     not feel."""
-    by_chance = (Fault(c.kind, c.vehicle, c.from_s, c.longest_s) for c in scenario.chances)
+    by_chance = (InjectedFault(c.kind, c.vehicle, c.from_s, c.longest_s) for c in scenario.chances)
     scenario = replace(scenario, faults=(*scenario.faults, *by_chance), chances=())
     struck = {mishap.fault for mishap in mishaps_of(scenario)}
     return sorted(
@@ -125,10 +124,10 @@ def without_effect(scenario: Scenario) -> list[str]:
     )
 
 
-def _is_for_the_imager(scenario: Scenario, fault: Fault) -> bool:
+def _is_for_the_imager(scenario: Scenario, fault: InjectedFault) -> bool:
     return fault.is_for(IMAGER_SERIAL, len(scenario.fleet.serials) + 1)
 
 
-def _span(fault: Fault) -> Span:
+def _span(fault: InjectedFault) -> Span:
     ends = fault.kind is not FaultKind.FALLS_SILENT
     return fault.start_s, fault.start_s + fault.duration_s if ends else inf

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
-from recon.sim.app.fault_chance import Chance
-from recon.sim.app.faults import Fault
+from recon.sim.app.faults import InjectedFault, RandomFault
 from recon.sim.world import LightSettings, SkySettings, WindSettings
 from recon.site import Site
 
@@ -79,8 +78,8 @@ class Scenario:
     relief_m: float
     """Standard deviation of the heights of the land that the eye sees; the station takes a site
     without an elevation model for flat, and drones fly above their takeoff point all the same."""
-    faults: tuple[Fault, ...]
-    chances: tuple[Chance, ...]
+    faults: tuple[InjectedFault, ...]
+    chances: tuple[RandomFault, ...]
     """Faults that each run draws from its seed."""
     survey: Survey
     methods: Methods

@@ -19,9 +19,8 @@ from recon.score.scenario_schema import CloudsTable, ScenarioFile, TaskTable
 from recon.score.staging import staged
 from recon.score.toml_lines import key_lines
 from recon.score.validation_errors import Complaints
-from recon.sim.app.fault_chance import Chance
 from recon.sim.app.fault_file import FaultScript, load_faults
-from recon.sim.app.faults import Fault, parse_fault
+from recon.sim.app.faults import InjectedFault, RandomFault, parse_fault
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import (
     LayerSettings,
@@ -115,7 +114,7 @@ def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
     return scenario
 
 
-def _faults(file: ScenarioFile, complain: Complaints) -> tuple[Fault, ...]:
+def _faults(file: ScenarioFile, complain: Complaints) -> tuple[InjectedFault, ...]:
     return tuple(
         complain.made(f"faults[{i}]", lambda text=text: parse_fault(text))  # type: ignore[misc]
         for i, text in enumerate(file.faults)
@@ -182,13 +181,13 @@ def _layer(number: int, clouds: CloudsTable, complain: Complaints) -> LayerSetti
 
 def _check_faulty(scenario: Scenario, complain: Complaints) -> None:
     serials = scenario.fleet.serials
-    asked: list[Fault | Chance] = [*scenario.faults, *scenario.chances]
+    asked: list[InjectedFault | RandomFault] = [*scenario.faults, *scenario.chances]
     for index, fault in enumerate(asked):
         if fault.is_for(IMAGER_SERIAL, 0):
             continue
         if not any(fault.is_for(serial, i + 1) for i, serial in enumerate(serials)):
             known = ", ".join((*serials, IMAGER_SERIAL))
             said = f"expected a vehicle of {known}, its number or *, got {fault.vehicle!a}"
-            if fault.told_at:
-                raise complain.about(f"{fault.told_at}{said}", "fault_file")
+            if fault.source:
+                raise complain.about(f"{fault.source}{said}", "fault_file")
             raise complain.about(said, f"faults[{index}]")

@@ -6,19 +6,18 @@ from typing import TypeVar
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.score.scenario import Scenario
 from recon.sim.app.camera_feed import FeedSettings
-from recon.sim.app.fault_chance import Chance
-from recon.sim.app.faults import Fault
+from recon.sim.app.faults import InjectedFault, RandomFault
 from recon.sim.app.telemetry import FIELD_SENSORS
-from recon.sim.camera import ImagerSettings
-from recon.sim.camera.field import FieldFrames
+from recon.sim.camera import CameraSettings
+from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.replay import rig_over
-from recon.sim.camera.rig import ImagerRig
+from recon.sim.camera.rig import CameraRig
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
 from recon.sim.world import Sky, Wind
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Imager, Site
 
-Asked = TypeVar("Asked", Fault, Chance)
+Asked = TypeVar("Asked", InjectedFault, RandomFault)
 
 IMAGER_ENDURANCE_S = 36_000.0
 """The eye stays up for as long as a scenario lasts: its change of batteries is not looked at."""
@@ -34,12 +33,12 @@ def simulation_of(
     frame, imager = scenario.frame, site.imager
     assert imager is not None  # or it would not have been read
     rig = rig_of(frame, imager)
-    source = FieldFrames(
+    source = FieldRenderer(
         rig.camera,
         imager.image_circle,
         seed,
         sky_of(scenario, seed),
-        ImagerSettings(seed),
+        CameraSettings(seed),
         _relief(scenario, seed),
     )
     silent = FeedSettings(starts_on=False)
@@ -82,12 +81,12 @@ def wind_of(scenario: Scenario, seed: int) -> Wind:
     return Wind(replace(scenario.wind, seed=seed))
 
 
-def rig_of(frame: LocalFrame, imager: Imager) -> ImagerRig:
+def rig_of(frame: LocalFrame, imager: Imager) -> CameraRig:
     """Return the eye's camera on its aircraft, over a site's frame."""
     pose = imager.solution.pose
     if imager.marked_frame is None:
         return rig_over(imager.camera, frame, pose)
-    return ImagerRig(imager.camera, frame, pose, imager.marked_frame)
+    return CameraRig(imager.camera, frame, pose, imager.marked_frame)
 
 
 def _relief(scenario: Scenario, seed: int) -> Relief | None:

@@ -1,5 +1,8 @@
-"""Simulated companion apps that speak the real wire: vehicles, camera, faults and their shell.
+"""Simulated companion apps that speak the real protocol, and the world they fly in.
 
-Everything but `run` is pure: time is an argument and randomness is seeded. The aircraft's ground is
-flat, at the height of its home point.
+Everything but `run` and `proxy` is pure: time is an argument and random numbers are seeded, so the
+same seed and commands give the same bytes. The ground under an aircraft is flat, at the height of
+its home point.
+
+Imports go downwards only: run, proxy -> fleet, truth -> app -> camera -> flight -> land -> world.
 """

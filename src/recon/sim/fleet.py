@@ -9,18 +9,18 @@ from recon.geo import enu_from_point, point_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import AltitudeReference
 from recon.sim.app.app import AppSettings, SimulatedApp
-from recon.sim.app.camera_feed import CameraFeed, FeedSettings, FrameSource
-from recon.sim.app.commands import AppHabits, HoverOnGround
-from recon.sim.app.fault_chance import Chance, drawn_faults
-from recon.sim.app.faults import Fault
-from recon.sim.app.telemetry import SensorSettings
-from recon.sim.camera.rig import ImagerRig
+from recon.sim.app.camera_feed import CameraFeed, FeedSettings
+from recon.sim.app.commands import AppBehaviour, HoverOnGround
+from recon.sim.app.faults import InjectedFault, RandomFault, draw_faults
+from recon.sim.app.telemetry import TelemetrySensorSettings
+from recon.sim.camera.frames import FrameSource
+from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import FaultError
 from recon.sim.flight.air import Air
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery
-from recon.sim.flight.flight_modes import Grounded, Hold, Manoeuvre, TakeOff, Wander
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.flight_modes import ActiveMode, BackAndForth, Grounded, Hold, TakeOff
+from recon.sim.flight.kinematics import AircraftMotion
 from recon.sim.world import Wind, WindSettings
 
 IMAGER_SERIAL = "SIM-IMAGER"
@@ -44,7 +44,7 @@ class ImagerSetup:
 
     source: FrameSource
     feed: FeedSettings = field(default_factory=FeedSettings)
-    rig: ImagerRig | None = None
+    rig: CameraRig | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,14 +68,14 @@ class SimulationConfig:
     """By serial, of those that last otherwise."""
     battery_swap_s: float | None = None
     """How long after a landing somebody has changed the battery; None: nobody does."""
-    sensors: SensorSettings = field(default_factory=SensorSettings)
+    sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
     wind: WindSettings | None = None
     """None: calm."""
-    tells_mission_id: bool = True
+    reports_mission_id: bool = True
     """False: the apps tell MissionID 0 always."""
     seed: int = 0
-    faults: tuple[Fault, ...] = ()
-    chances: tuple[Chance, ...] = ()
+    faults: tuple[InjectedFault, ...] = ()
+    chances: tuple[RandomFault, ...] = ()
     """Faults drawn from the seed for each vehicle."""
     pads: Mapping[str, GeoPoint] = field(default_factory=dict)
     """Start positions by serial; the others start in rows beside home."""
@@ -95,11 +95,11 @@ def build_fleet(
 ) -> list[SimulatedApp]:
     """Return the apps, ready to be connected; raises `FaultError` for a fault of no vehicle."""
     serials = fleet_serials(config)
-    asked: list[Fault | Chance] = [*config.faults, *config.chances]
+    asked: list[InjectedFault | RandomFault] = [*config.faults, *config.chances]
     for fault in asked:
         if not any(fault.is_for(serial, n) for n, serial in enumerate(serials, 1)):
             raise FaultError(
-                f"{fault.told_at}fault {fault.kind.value}: expected a vehicle of "
+                f"{fault.source}fault {fault.kind.value}: expected a vehicle of "
                 f"{', '.join(serials)} or its number, got {fault.vehicle!r}"
             )
     return [
@@ -120,16 +120,16 @@ def _build_app(
         serial=serial,
         home=home,
         seed=config.seed,
-        habits=AppHabits(
+        habits=AppBehaviour(
             config.altitude_reference,
             config.hover_on_ground,
             drawn_bias_m if config.altitude_bias_m is None else config.altitude_bias_m,
-            config.tells_mission_id,
+            config.reports_mission_id,
         ),
         sensors=config.sensors,
         faults=(
             *(f for f in config.faults if f.is_for(serial, number)),
-            *drawn_faults(config.chances, config.seed, serial, number),
+            *draw_faults(config.chances, config.seed, serial, number),
         ),
         renders_inline=renders_inline,
     )
@@ -140,13 +140,13 @@ def _build_app(
         battery_swap_s=config.battery_swap_s,
     )
     motion = _imager_start(config) if is_imager else _survey_start(config, number)
-    manoeuvre: Manoeuvre = Grounded() if motion.height_m == 0.0 else Hold()
+    active_mode: ActiveMode = Grounded() if motion.height_m == 0.0 else Hold()
     east_m, north_m = (float(v) for v in enu_from_point(LocalFrame(config.home), home)[:2])
     if config.wanders and not is_imager:
-        manoeuvre = _wandering(settings, motion, number, random, (north_m, east_m))
+        active_mode = _wandering(settings, motion, number, random, (north_m, east_m))
     wind = None if config.wind is None else Wind(config.wind)
     air = Air(wind, north_m, east_m, start_ns)
-    aircraft = Aircraft(start_ns, settings, motion, manoeuvre, battery=battery, air=air)
+    aircraft = Aircraft(start_ns, settings, motion, active_mode, battery=battery, air=air)
     if not is_imager or config.imager is None:
         return SimulatedApp(app, aircraft)
     feed_random = Random(f"{config.seed}/{serial}/feed")
@@ -174,19 +174,19 @@ def _go_home_height_m(number: int) -> float:
     return 40.0 + 8.0 * ((number - 1) % 10)
 
 
-def _imager_start(config: SimulationConfig) -> Motion:
+def _imager_start(config: SimulationConfig) -> AircraftMotion:
     rig = config.imager.rig if config.imager is not None else None
     yaw_deg = 0.0 if rig is None else rig.marked.yaw_deg
     if config.airborne is Airborne.NONE:
-        return Motion(yaw_deg=yaw_deg)
+        return AircraftMotion(yaw_deg=yaw_deg)
     height_m = IMAGER_HEIGHT_M if rig is None else rig.marked.height_above_takeoff_m
-    return Motion(height_m=height_m, yaw_deg=yaw_deg)
+    return AircraftMotion(height_m=height_m, yaw_deg=yaw_deg)
 
 
-def _survey_start(config: SimulationConfig, number: int) -> Motion:
+def _survey_start(config: SimulationConfig, number: int) -> AircraftMotion:
     if config.airborne is not Airborne.ALL:
-        return Motion()
-    return Motion(height_m=_survey_height_m(number))
+        return AircraftMotion()
+    return AircraftMotion(height_m=_survey_height_m(number))
 
 
 def _survey_height_m(number: int) -> float:
@@ -197,11 +197,11 @@ def _survey_height_m(number: int) -> float:
 
 def _wandering(
     settings: AircraftSettings,
-    motion: Motion,
+    motion: AircraftMotion,
     number: int,
     random: Random,
     home_m: tuple[float, float],
-) -> Manoeuvre:
+) -> ActiveMode:
     """Return rows flown to and fro over a field of this vehicle's own.
 
     The field lies inside the demonstration's boundary and beside its farmyard; `home_m` is how far
@@ -214,5 +214,5 @@ def _wandering(
     for row in range(rows):
         ends = [(north_m + row * spacing_m, east_m), (north_m + row * spacing_m, east_m + length_m)]
         corners += ends if row % 2 == 0 else ends[::-1]
-    wander = Wander(tuple(corners), _survey_height_m(number), 6.0, settings.limits)
+    wander = BackAndForth(tuple(corners), _survey_height_m(number), 6.0, settings.limits)
     return wander if motion.height_m > 0.0 else TakeOff(settings.limits, wander)

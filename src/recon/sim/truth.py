@@ -13,12 +13,12 @@ from recon.model.imagery import CameraPose
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S
-from recon.sim.app.camera_feed import View
-from recon.sim.camera.field import FieldFrames
+from recon.sim.camera.field import FieldRenderer
+from recon.sim.camera.frames import CameraView
 from recon.sim.camera.survey_shutter import IntervalTimer, SurveyPhoto, TruePath, photos
 from recon.sim.errors import SimulationError
-from recon.sim.land.noise import FloatImage
 from recon.sim.world import Sky, SunPosition
+from recon.sim.world.keyframes import FloatImage
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class WorldTruth:
     """
 
     sky: Sky
-    imager: FieldFrames | None = None
+    imager: FieldRenderer | None = None
     seed: int = 0
     """The fleet's: survey cameras' timers are drawn from it."""
 
@@ -47,7 +47,7 @@ class WorldTruth:
         """Return the direct beam's share at a grid's cells (rows, cols)."""
         return self.sky.on_grid(grid, time_ns / NS_PER_S)
 
-    def imager_pose(self, view: View) -> CameraPose:
+    def imager_pose(self, view: CameraView) -> CameraPose:
         """Return where the eye's camera truly was for a picture; `SimulationError` without one."""
         if self.imager is None:
             raise SimulationError("true poses: expected an eye in this world, got none")

@@ -25,14 +25,7 @@ from recon.wire._native import (
     decode,
     encode,
 )
-from recon.wire.errors import (
-    FieldError,
-    HashError,
-    ShortError,
-    SizeError,
-    SyncError,
-    WireError,
-)
+from recon.wire.errors import FieldError, HashError, ShortError, SizeError, SyncError, WireError
 
 Packet: TypeAlias = (
     CoreTelemetry

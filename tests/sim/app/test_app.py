@@ -13,12 +13,12 @@ from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, FlightMode
-from recon.sim.app.commands import AppHabits, HoverOnGround
-from recon.sim.app.telemetry import FIELD_SENSORS, HomeAltitude, Sensors
+from recon.sim.app.commands import AppBehaviour, HoverOnGround
+from recon.sim.app.telemetry import FIELD_SENSORS, HomeAltitude, TelemetrySensors
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.flight_modes import Hold
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))
@@ -74,12 +74,12 @@ def test_telemetry_tells_the_truth_within_its_sensors_errors(app_bench) -> None:
 @pytest.mark.parametrize("command", [HOVER, LAND, RETURN, stick()])
 def test_the_answer_comes_before_the_act(app_bench, command) -> None:
     bench = app_bench()
-    before = bench.app.aircraft.manoeuvre
+    before = bench.app.aircraft.active_mode
     (answer,) = of(wire.Acknowledgment, bench.send(command))
     assert (answer.positive, answer.source_pid) == (1, command.PID)
-    assert bench.app.aircraft.manoeuvre is before
+    assert bench.app.aircraft.active_mode is before
     bench.run(0.3)
-    assert bench.app.aircraft.manoeuvre is not before
+    assert bench.app.aircraft.active_mode is not before
 
 
 @pytest.mark.parametrize(
@@ -290,7 +290,7 @@ def test_garbage_does_no_harm(app_bench) -> None:
 @pytest.mark.parametrize("tells", [True, False])
 def test_mission_numbers_are_told_or_always_0(app_bench, mission_packet, tells) -> None:
     bench = app_bench()
-    bench.app.settings = replace(bench.app.settings, habits=AppHabits(tells_mission_id=tells))
+    bench.app.settings = replace(bench.app.settings, habits=AppBehaviour(reports_mission_id=tells))
     bench.send(mission_packet(SQUARE))
     bench.run(1.0)
     assert bench.mode == FlightMode.GPS_WAYPOINT
@@ -332,10 +332,12 @@ def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> N
 
 def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:
     altitude = HomeAltitude(275.0)
-    aircraft = Aircraft(0, motion=Motion(height_m=50.0), manoeuvre=Hold())
+    aircraft = Aircraft(0, motion=AircraftMotion(height_m=50.0), active_mode=Hold())
     ends = []
     for seed in range(200):
-        sensors = Sensors(HOME, altitude, FIELD_SENSORS, random.Random(seed), random.Random(-seed))
+        sensors = TelemetrySensors(
+            HOME, altitude, FIELD_SENSORS, random.Random(seed), random.Random(-seed)
+        )
         sensors.core(aircraft, 0.1)
         start, end = (sensors.core(aircraft, s).height_above_takeoff_m for s in (0.1, 900.0))
         assert start == pytest.approx(50.0, abs=0.6)

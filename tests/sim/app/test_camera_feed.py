@@ -11,9 +11,8 @@ from recon import wire
 from recon.camera import decode_jpeg
 from recon.model.units import NS_PER_S
 from recon.sim.app.app import AppSettings, SimulatedApp
-from recon.sim.app.camera_feed import CameraFeed, FeedSettings, ImageFormat, View
-from recon.sim.camera.frame_files import folder_frames, read_frame
-from recon.sim.camera.replay import StillFrame
+from recon.sim.app.camera_feed import CameraFeed, FeedSettings, ImageFormat
+from recon.sim.camera.frames import CameraView, StillFrame, folder_frames, read_frame
 from recon.sim.errors import FrameSourceError
 from recon.sim.flight.aircraft import Aircraft
 
@@ -26,7 +25,7 @@ class Numbered:
     def prepare(self) -> None:
         return None
 
-    def render(self, view: View) -> np.ndarray:
+    def render(self, view: CameraView) -> np.ndarray:
         picture = PICTURE.copy()
         picture[0, 0] = (view.number, round(view.elapsed_s * 10), 0)
         return picture
@@ -146,7 +145,7 @@ def test_a_folder_is_shown_by_name_and_again_from_the_start(tmp_path: Path) -> N
         write(tmp_path, name, np.full((18, 32, 3), level, dtype=np.uint8))
     (tmp_path / "notes.txt").write_text("no image")
     frames = folder_frames(tmp_path, 18, 32)
-    levels = [int(frames.render(View(0.0, n, None))[0, 0, 0]) for n in range(4)]
+    levels = [int(frames.render(CameraView(0.0, n, None))[0, 0, 0]) for n in range(4)]
     assert levels == [10, 20, 30, 10]
 
 

@@ -11,11 +11,12 @@ from recon import wire
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import AltitudeReference, FlightMode
 from recon.sim.app.app import AppSettings, SimulatedApp
-from recon.sim.app.camera_feed import CameraFeed, FeedSettings, View
-from recon.sim.app.faults import Fault, FaultKind
+from recon.sim.app.camera_feed import CameraFeed, FeedSettings
+from recon.sim.app.faults import FaultKind, InjectedFault
+from recon.sim.camera.frames import CameraView
 from recon.sim.flight.aircraft import Aircraft
 from recon.sim.flight.flight_modes import Hold
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 
 LAND = wire.EmergencyCommand(action=1)
 HOVER = wire.EmergencyCommand(action=0)
@@ -29,7 +30,7 @@ def of(kind: type, packets: list) -> list:
 @pytest.fixture
 def faulty(app_bench):
     def make(kind: FaultKind, start_s: float = 0.0, duration_s: float = inf, **settings):
-        fault = Fault(kind, start_s=start_s, duration_s=duration_s)
+        fault = InjectedFault(kind, start_s=start_s, duration_s=duration_s)
         return app_bench(faults=(fault,), **settings)
 
     return make
@@ -172,7 +173,7 @@ def test_gusts_push_warn_and_pass(faulty) -> None:
 
 
 def test_two_overlapping_losses_of_gnss_end_with_the_later(app_bench) -> None:
-    faults = tuple(Fault(FaultKind.GNSS_LOSS, "*", start_s, 5.0) for start_s in (1.0, 4.0))
+    faults = tuple(InjectedFault(FaultKind.GNSS_LOSS, "*", start_s, 5.0) for start_s in (1.0, 4.0))
     bench = app_bench(faults=faults)
     levels = [
         (bench.now_ns, p.gnss_signal_level) for p in of(wire.ExtendedTelemetry, bench.run(3.0))
@@ -190,7 +191,7 @@ class Numbered:
     def prepare(self) -> None:
         return None
 
-    def render(self, view: View) -> np.ndarray:
+    def render(self, view: CameraView) -> np.ndarray:
         picture = np.full((36, 64, 3), 60, dtype=np.uint8)
         picture[:, 32:] = 120
         picture[0, 0] = view.number
@@ -203,9 +204,9 @@ def pictures(app_bench, flights):
     kind_of_bench = type(app_bench())
 
     def make(kind: FaultKind, duration_s: float = 3.0) -> list[np.ndarray]:
-        aircraft = Aircraft(0, motion=Motion(height_m=100.0), manoeuvre=Hold())
+        aircraft = Aircraft(0, motion=AircraftMotion(height_m=100.0), active_mode=Hold())
         feed = CameraFeed(Numbered(), FeedSettings(2.0, latency_s=0.3), Random(5), 0)
-        fault = Fault(kind, "*", 3.0, duration_s)
+        fault = InjectedFault(kind, "*", 3.0, duration_s)
         settings = AppSettings("SIM-IMAGER", flights.home, seed=4, faults=(fault,))
         bench = kind_of_bench(SimulatedApp(settings, aircraft, feed))
         return [p.pixels for p in of(wire.Image, bench.run(10.0))]
@@ -234,7 +235,7 @@ def test_pictures_are_black_for_a_while(pictures) -> None:
 
 def test_torn_pictures_are_whole_above_and_shifted_below(pictures) -> None:
     came = pictures(FaultKind.FRAMES_TORN)
-    whole = Numbered().render(View(0.0, 0, None))[1:]
+    whole = Numbered().render(CameraView(0.0, 0, None))[1:]
     torn = came[6:12]
     assert all(not np.array_equal(picture[1:], whole) for picture in torn)
     assert all(np.array_equal(picture[1], whole[0]) for picture in torn)
@@ -255,7 +256,7 @@ def test_exposure_jumps_scale_the_whole_picture(pictures) -> None:
 def test_a_storm_of_all_faults_is_the_same_for_the_same_seed(app_bench, mission_packet) -> None:
     def stormy() -> bytes:
         kinds = [k for k in FaultKind if k is not FaultKind.FALLS_SILENT]
-        faults = tuple(Fault(kind, "*", 2.0 + n, 6.0) for n, kind in enumerate(kinds))
+        faults = tuple(InjectedFault(kind, "*", 2.0 + n, 6.0) for n, kind in enumerate(kinds))
         bench, heard = app_bench(faults=faults), []
         for second in range(60):
             if second % 7 == 0:

@@ -9,9 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.model.geo import GeoPoint
-from recon.sim.app.fault_chance import Chance, drawn_faults
 from recon.sim.app.fault_file import load_faults, read_faults
-from recon.sim.app.faults import Fault, FaultKind
+from recon.sim.app.faults import FaultKind, InjectedFault, RandomFault, draw_faults
 from recon.sim.errors import FaultError
 from recon.sim.fleet import SimulationConfig, build_fleet
 
@@ -34,7 +33,7 @@ duration_s = [1, 5]
 from_s = 100
 until_s = 3700
 """
-DROPOUTS = Chance(
+DROPOUTS = RandomFault(
     kind=FaultKind.TELEMETRY_DROPOUT,
     vehicle="*",
     per_hour=60.0,
@@ -42,7 +41,7 @@ DROPOUTS = Chance(
     longest_s=5.0,
     from_s=100.0,
     until_s=3_700.0,
-    told_at="storm.toml: line 13: ",
+    source="storm.toml: line 13: ",
 )
 CONFIG = SimulationConfig(home=GeoPoint(41.9, -93.6, 275.0), vehicle_count=3)
 
@@ -50,11 +49,11 @@ CONFIG = SimulationConfig(home=GeoPoint(41.9, -93.6, 275.0), vehicle_count=3)
 def test_a_file_is_read_as_it_says() -> None:
     script = read_faults(GOOD, "storm.toml")
     assert script.faults == (
-        Fault(FaultKind.GNSS_LOSS, "SIM-2", 30.0, 10.5),
-        Fault(FaultKind.NO_ACK, "3", 0.0, inf),
+        InjectedFault(FaultKind.GNSS_LOSS, "SIM-2", 30.0, 10.5),
+        InjectedFault(FaultKind.NO_ACK, "3", 0.0, inf),
     )
     assert script.chances == (DROPOUTS,)
-    assert [fault.told_at for fault in script.faults] == [
+    assert [fault.source for fault in script.faults] == [
         "storm.toml: line 3: ",
         "storm.toml: line 9: ",
     ]
@@ -141,7 +140,7 @@ def test_brackets_without_end_are_told() -> None:
 
 
 def test_chance_comes_as_often_and_as_long_as_asked() -> None:
-    drawn = [drawn_faults((DROPOUTS,), seed, "SIM-1", 1) for seed in range(100)]
+    drawn = [draw_faults((DROPOUTS,), seed, "SIM-1", 1) for seed in range(100)]
     faults = [fault for one in drawn for fault in one]
     assert len(faults) / 100 == pytest.approx(60.0, abs=3.0)
     assert all(100.0 < fault.start_s < 3_700.0 for fault in faults)
@@ -150,7 +149,7 @@ def test_chance_comes_as_often_and_as_long_as_asked() -> None:
 
 
 def test_chance_is_drawn_from_the_seed_for_each_vehicle() -> None:
-    def drawn(seed: int) -> list[tuple[Fault, ...]]:
+    def drawn(seed: int) -> list[tuple[InjectedFault, ...]]:
         config = replace(CONFIG, seed=seed, chances=(DROPOUTS,))
         return [app.settings.faults for app in build_fleet(config, 0)]
 
@@ -161,8 +160,8 @@ def test_chance_is_drawn_from_the_seed_for_each_vehicle() -> None:
 
 def test_one_entry_of_chance_does_not_move_another() -> None:
     other = replace(DROPOUTS, kind=FaultKind.BURSTS)
-    alone = drawn_faults((DROPOUTS,), 1, "SIM-1", 1)
-    beside = drawn_faults((DROPOUTS, other), 1, "SIM-1", 1)
+    alone = draw_faults((DROPOUTS,), 1, "SIM-1", 1)
+    beside = draw_faults((DROPOUTS, other), 1, "SIM-1", 1)
     assert beside[: len(alone)] == alone
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from recon import wire
 from recon.model.vehicle import FlightMode
 from recon.sim.app.app import LinkOrder, LinkOrderKind
-from recon.sim.app.faults import Fault, FaultKind, parse_fault
+from recon.sim.app.faults import FaultKind, InjectedFault, parse_fault
 from recon.sim.errors import FaultError
 
 LAND = wire.EmergencyCommand(action=1)
@@ -20,7 +20,7 @@ def acks(packets: list) -> list[tuple[int, int]]:
 
 
 def faulty(app_bench, kind: FaultKind, start_s: float = 0.0, duration_s: float = inf):
-    return app_bench(faults=(Fault(kind, start_s=start_s, duration_s=duration_s),))
+    return app_bench(faults=(InjectedFault(kind, start_s=start_s, duration_s=duration_s),))
 
 
 def test_ack_then_nothing(app_bench) -> None:
@@ -126,14 +126,14 @@ def test_both_links_speak_and_both_are_heard(app_bench) -> None:
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("no-ack", Fault(FaultKind.NO_ACK, "*", 0.0, inf)),
-        ("no-ack:SIM-2", Fault(FaultKind.NO_ACK, "SIM-2", 0.0, inf)),
-        ("half-open:2:12", Fault(FaultKind.HALF_OPEN, "2", 12.0, 30.0)),
-        ("restart::3:1.5", Fault(FaultKind.RESTART, "*", 3.0, 1.5)),
-        ("telemetry-dropout", Fault(FaultKind.TELEMETRY_DROPOUT, "*", 5.0, 3.0)),
+        ("no-ack", InjectedFault(FaultKind.NO_ACK, "*", 0.0, inf)),
+        ("no-ack:SIM-2", InjectedFault(FaultKind.NO_ACK, "SIM-2", 0.0, inf)),
+        ("half-open:2:12", InjectedFault(FaultKind.HALF_OPEN, "2", 12.0, 30.0)),
+        ("restart::3:1.5", InjectedFault(FaultKind.RESTART, "*", 3.0, 1.5)),
+        ("telemetry-dropout", InjectedFault(FaultKind.TELEMETRY_DROPOUT, "*", 5.0, 3.0)),
     ],
 )
-def test_descriptions(text: str, fault: Fault) -> None:
+def test_descriptions(text: str, fault: InjectedFault) -> None:
     assert parse_fault(text) == fault
 
 
@@ -151,14 +151,14 @@ def test_any_text_is_a_fault_or_an_error(text: str) -> None:
         read = parse_fault(text)
     except FaultError as problem:
         read = problem
-    assert isinstance(read, Fault) or "expected" in str(read)
+    assert isinstance(read, InjectedFault) or "expected" in str(read)
 
 
 def test_a_fault_belongs_to_a_serial_a_number_or_all() -> None:
-    assert Fault(FaultKind.NO_ACK, "SIM-2").is_for("SIM-2", 3)
-    assert Fault(FaultKind.NO_ACK, "3").is_for("SIM-2", 3)
-    assert Fault(FaultKind.NO_ACK).is_for("SIM-2", 3)
-    assert not Fault(FaultKind.NO_ACK, "2").is_for("SIM-2", 3)
+    assert InjectedFault(FaultKind.NO_ACK, "SIM-2").is_for("SIM-2", 3)
+    assert InjectedFault(FaultKind.NO_ACK, "3").is_for("SIM-2", 3)
+    assert InjectedFault(FaultKind.NO_ACK).is_for("SIM-2", 3)
+    assert not InjectedFault(FaultKind.NO_ACK, "2").is_for("SIM-2", 3)
 
 
 def extended(packets: list) -> list[wire.ExtendedTelemetry]:

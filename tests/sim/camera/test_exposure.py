@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from recon.sim.camera import ExposureSettings
-from recon.sim.camera.exposure import LARGEST_DEVIATION, exposure_stops, white_balance
+from recon.sim.camera.development import LARGEST_DEVIATION, exposure_stops, white_balance
 from recon.sim.world import LayerSettings, Sky, SkySettings
-from recon.sim.world.sky_light import metered_light
+from recon.sim.world.light import metered_light
 
 FOLLOWING = ExposureSettings(follows=0.5, lag_s=2.0, drift_stops=0.0)
 DRIFTING = ExposureSettings(follows=0.0, drift_stops=0.1, drift_s=10.0)

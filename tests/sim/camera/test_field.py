@@ -9,16 +9,14 @@ import pytest
 from recon.camera import TelemetryReference, level_pose, load_camera
 from recon.camera.image_circle import ImageCircle
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
-from recon.sim.app.camera_feed import View
-from recon.sim.camera import ImagerSettings, field
+from recon.sim.camera import CameraSettings, field
+from recon.sim.camera.frames import CameraView
 from recon.sim.errors import FrameSourceError
 from recon.sim.land.farmland import lay_out
-from recon.sim.land.farmland_raster import draw
-from recon.sim.land.farmland_shadows import draw_shadows
-from recon.sim.land.land_part import Part
-from recon.sim.land.noise import tileable_noise
+from recon.sim.land.farmland_raster import draw, draw_shadows, tileable_noise
+from recon.sim.land.land_part import LandPart
 from recon.sim.world import LayerSettings, Sky, SkySettings
-from recon.sim.world.sky_light import light_under
+from recon.sim.world.light import light_under
 from recon.site import demo_site_folder
 
 SEED = 5
@@ -33,7 +31,7 @@ def camera():
 @pytest.fixture(scope="module")
 def frames(camera):
     circle = ImageCircle(camera.centre_col_px, camera.centre_row_px, 340.0)
-    return field.FieldFrames(camera, circle, SEED, imager=ImagerSettings.perfect())
+    return field.FieldRenderer(camera, circle, SEED, imager=CameraSettings.perfect())
 
 
 def pose(east_m: float = 0.0, north_m: float = 0.0, yaw_deg: float = 0.0):
@@ -53,7 +51,7 @@ def test_a_picture_laid_on_the_ground_shows_the_land_where_it_is(
 ) -> None:
     """Render, take the picture back to the ground by the camera room, compare with the raster."""
     there = pose(east_m, north_m, yaw_deg)
-    picture = frames.render(View(0.0, 0, there))
+    picture = frames.render(CameraView(0.0, 0, there))
     grid = GroundGrid(
         LocalFrame(GeoPoint(0.0, 0.0, 0.0)), east_m - 100, north_m + 100, 1.0, 200, 200
     )
@@ -79,7 +77,7 @@ def maps(grid: GroundGrid, camera, there):
 
 def raster_part(east_m: float, north_m: float) -> np.ndarray:
     """Return the land 200 m around a place, at one metre, with the shadows of trees and roofs."""
-    part = Part(round((-north_m - 100) / 0.5), round((east_m - 100) / 0.5), 400, 0.5)
+    part = LandPart(round((-north_m - 100) / 0.5), round((east_m - 100) / 0.5), 400, 0.5)
     land, sky = lay_out(SEED), Sky(SkySettings(layers=()))
     light = light_under(sky, 0.0)
     shadow = draw_shadows(land, part, sky.sun_at(0.0))[:, :, np.newaxis] / 255.0
@@ -88,12 +86,12 @@ def raster_part(east_m: float, north_m: float) -> np.ndarray:
 
 
 def test_the_same_view_is_the_same_picture(frames) -> None:
-    view = View(3.0, 1, pose())
+    view = CameraView(3.0, 1, pose())
     assert np.array_equal(frames.render(view), frames.render(view))
 
 
 def test_outside_the_image_circle_there_is_nothing(frames, camera) -> None:
-    picture = frames.render(View(0.0, 0, pose()))
+    picture = frames.render(CameraView(0.0, 0, pose()))
     row, col = np.mgrid[: camera.rows, : camera.cols]
     radius = np.hypot(col - camera.centre_col_px, row - camera.centre_row_px)
     assert picture.shape == (camera.rows, camera.cols, 3)
@@ -103,13 +101,14 @@ def test_outside_the_image_circle_there_is_nothing(frames, camera) -> None:
 
 def test_a_view_without_a_pose_is_refused(frames) -> None:
     with pytest.raises(FrameSourceError, match="expected a camera pose"):
-        frames.render(View(0.0, 0, None))
+        frames.render(CameraView(0.0, 0, None))
 
 
 def test_a_coarse_raster_agrees_with_the_fine_one() -> None:
     land = lay_out(SEED)
     fine, coarse = (
-        draw(land, Part(-size // 2, -size // 2, size, 512.0 / size), SEED) for size in (1024, 256)
+        draw(land, LandPart(-size // 2, -size // 2, size, 512.0 / size), SEED)
+        for size in (1024, 256)
     )
     shrunk = cv2.resize(fine, (256, 256), interpolation=cv2.INTER_AREA)
     assert correlation(shrunk, coarse) > 0.93
@@ -125,8 +124,8 @@ def test_noise_is_seamless_and_of_unit_strength() -> None:
 def test_clouds_shade_the_land_and_leave_skylight(frames, camera) -> None:
     """Where nothing of the beam comes through, a picture is half as bright and a little bluer."""
     overcast = Sky(SkySettings(layers=(LayerSettings(cover=1.0),)))
-    shaded = replace(frames, sky=overcast).render(View(0.0, 0, pose())).astype(float)
-    lit = frames.render(View(0.0, 0, pose())).astype(float)
+    shaded = replace(frames, sky=overcast).render(CameraView(0.0, 0, pose())).astype(float)
+    lit = frames.render(CameraView(0.0, 0, pose())).astype(float)
     near = slice(camera.rows // 2 - 60, camera.rows // 2 + 60)
     red, _green, blue = (shaded[near, near] / np.maximum(lit[near, near], 1.0)).mean(axis=(0, 1))
     assert 0.4 < red < blue < 0.65
@@ -135,15 +134,15 @@ def test_clouds_shade_the_land_and_leave_skylight(frames, camera) -> None:
 def test_pictures_show_the_shadows_where_the_sky_has_them(frames, camera) -> None:
     sky = Sky(SkySettings(3, layers=(LayerSettings(cover=0.5, outer_scale_m=500.0),)))
     there = pose()
-    shaded = replace(frames, sky=sky).render(View(40.0, 0, there)).astype(float).sum(axis=2)
-    lit = frames.render(View(40.0, 0, there)).astype(float).sum(axis=2)
+    shaded = replace(frames, sky=sky).render(CameraView(40.0, 0, there)).astype(float).sum(axis=2)
+    lit = frames.render(CameraView(40.0, 0, there)).astype(float).sum(axis=2)
     grid = GroundGrid(LocalFrame(GeoPoint(0.0, 0.0, 0.0)), -150, 150, 2.0, 150, 150)
     cols, rows = maps(grid, camera, there)
     light = (shaded / np.maximum(lit, 1.0)) ** 2.2
     seen = cv2.remap(light.astype(np.float32), cols, rows, cv2.INTER_LINEAR)
     truth = sky.on_grid(grid, 40.0)
     assert 0.1 < (truth < 0.5).mean() < 0.9
-    shadows = draw_shadows(lay_out(SEED), Part(-75, -75, 150, 2.0), sky.sun_at(40.0))
+    shadows = draw_shadows(lay_out(SEED), LandPart(-75, -75, 150, 2.0), sky.sun_at(40.0))
     in_the_open = cv2.dilate(shadows, np.ones((5, 5))) == 0
     assert in_the_open.mean() > 0.8
     assert correlation(seen[in_the_open], truth[in_the_open]) > 0.99

@@ -5,7 +5,7 @@ import pytest
 
 from recon.model.imagery import CameraPose
 from recon.sim.camera import HoverSettings
-from recon.sim.camera.hover import true_pose
+from recon.sim.camera.rig import true_pose
 
 STILL = HoverSettings(wobble_deg=0.0, mount_error_deg=0.0, drift_m=0.0, drift_up_m=0.0)
 

@@ -5,9 +5,8 @@ import pytest
 
 from recon.model.imagery import CameraPose
 from recon.sim.camera import HoverSettings, LensSettings
-from recon.sim.camera.hover import true_pose
-from recon.sim.camera.lens import Lens
-from recon.sim.camera.look import RELIEF_TANGENT, look
+from recon.sim.camera.lens import RELIEF_TANGENT, Lens, look
+from recon.sim.camera.rig import true_pose
 from recon.sim.world.relief import Relief, ReliefSettings
 
 PIXELS = np.stack(np.meshgrid(np.arange(330, 950, 37), np.arange(60, 660, 41)), axis=-1)

@@ -7,22 +7,21 @@ import numpy as np
 import pytest
 
 from recon.model.imagery import RgbImage
-from recon.sim.app.camera_feed import View
-from recon.sim.camera import HoverSettings, ImagerSettings, LensSettings, SensorSettings
-from recon.sim.camera.field import FieldFrames
-from recon.sim.camera.sensor import light_of_value
+from recon.sim.camera import CameraSettings, HoverSettings, ImageSensorSettings, LensSettings
+from recon.sim.camera.development import light_of_value
+from recon.sim.camera.field import FieldRenderer
+from recon.sim.camera.frames import CameraView
 from recon.sim.errors import SimulationError
 from recon.sim.land import land_tiles as tiles_module
 from recon.sim.land.farmland import lay_out
-from recon.sim.land.farmland_raster import draw
-from recon.sim.land.farmland_shadows import draw_shadows
-from recon.sim.land.land_part import Part
+from recon.sim.land.farmland_raster import draw, draw_shadows
+from recon.sim.land.land_part import LandPart
 from recon.sim.land.land_tiles import TILES_KEPT, LandTiles, land_of
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunPosition
+from recon.sim.world.light import light_under
 from recon.sim.world.relief import Relief, ReliefSettings
-from recon.sim.world.sky_light import light_under
 
-PERFECT = ImagerSettings.perfect()
+PERFECT = CameraSettings.perfect()
 CLEAR = Sky(SkySettings(layers=()))
 OVERCAST = Sky(SkySettings(layers=(LayerSettings(cover=1.0),)))
 BROKEN = Sky(SkySettings(5, layers=(LayerSettings(cover=0.4, outer_scale_m=800.0),)))
@@ -30,8 +29,8 @@ MIDDLE = np.s_[261:461, 538:738]
 
 
 @pytest.fixture(scope="module")
-def frames(camera, circle) -> FieldFrames:
-    return FieldFrames(camera, circle, 5, CLEAR, PERFECT)
+def frames(camera, circle) -> FieldRenderer:
+    return FieldRenderer(camera, circle, 5, CLEAR, PERFECT)
 
 
 def light_in(picture: RgbImage) -> np.ndarray:
@@ -40,13 +39,13 @@ def light_in(picture: RgbImage) -> np.ndarray:
 
 def in_the_open(east_m: float, north_m: float) -> bool:
     """Return whether no tree or roof shades the middle of a picture from 60 m."""
-    part = Part(round(-north_m) - 40, round(east_m) - 40, 80, 1.0)
+    part = LandPart(round(-north_m) - 40, round(east_m) - 40, 80, 1.0)
     return not draw_shadows(lay_out(5), part, CLEAR.sun_at(0.0)).any()
 
 
 def test_shade_over_sun_is_the_light_models_in_each_colour(frames, pose) -> None:
     where = next((e, -30.0) for e in range(-200, 200, 20) if in_the_open(e, -30.0))
-    view = View(0.0, 0, pose(60.0, *where))
+    view = CameraView(0.0, 0, pose(60.0, *where))
     pictures = (replace(frames, sky=sky).render(view) for sky in (OVERCAST, CLEAR))
     shade, sun = (light_in(picture[MIDDLE]).mean(axis=(0, 1)) for picture in pictures)
     covered, clear = light_under(OVERCAST, 0.0), light_under(CLEAR, 0.0)
@@ -56,10 +55,10 @@ def test_shade_over_sun_is_the_light_models_in_each_colour(frames, pose) -> None
 
 
 def test_pictures_do_not_depend_on_what_was_rendered_before(camera, circle, pose) -> None:
-    def fresh() -> FieldFrames:
-        return FieldFrames(camera, circle, 5, BROKEN, relief=Relief(ReliefSettings(1)))
+    def fresh() -> FieldRenderer:
+        return FieldRenderer(camera, circle, 5, BROKEN, relief=Relief(ReliefSettings(1)))
 
-    views = [View(4.0 * n, n, pose(120.0, 90.0 * n, -60.0 * n)) for n in range(3)]
+    views = [CameraView(4.0 * n, n, pose(120.0, 90.0 * n, -60.0 * n)) for n in range(3)]
     tiles_module.land_of.cache_clear()
     forwards = [fresh().render(view) for view in views]
     tiles_module.land_of.cache_clear()
@@ -73,8 +72,8 @@ def test_pictures_do_not_depend_on_what_was_rendered_before(camera, circle, pose
 
 
 def test_noise_differs_from_picture_to_picture_of_the_same_moment(frames, pose) -> None:
-    noisy = replace(frames, imager=replace(PERFECT, sensor=SensorSettings(full_well=500.0)))
-    one, two = (noisy.render(View(3.0, n, pose())).astype(int) for n in (1, 2))
+    noisy = replace(frames, imager=replace(PERFECT, sensor=ImageSensorSettings(full_well=500.0)))
+    one, two = (noisy.render(CameraView(3.0, n, pose())).astype(int) for n in (1, 2))
     assert (one != two)[MIDDLE].mean() > 0.5
     outside = np.s_[:, :280]
     assert not one[outside].any()
@@ -82,7 +81,7 @@ def test_noise_differs_from_picture_to_picture_of_the_same_moment(frames, pose) 
 
 def test_the_rim_is_darker_by_the_falloff(frames, pose) -> None:
     falling = replace(frames, imager=replace(PERFECT, lens=LensSettings(rim_falloff=0.5)))
-    view = View(0.0, 0, pose())
+    view = CameraView(0.0, 0, pose())
     with_it, without = (light_in(f.render(view)) for f in (falling, frames))
     row, col = np.mgrid[:720, :1280]
     share = np.hypot(col - 637.8, row - 361.2) / 340.0
@@ -95,7 +94,7 @@ def test_the_rim_is_darker_by_the_falloff(frames, pose) -> None:
 def test_the_hot_spot_lies_against_the_sun(frames, camera, pose) -> None:
     bright = replace(frames, imager=replace(PERFECT, hot_spot=0.8, hot_spot_deg=5.0))
     there = pose(200.0, yaw_deg=30.0)
-    view = View(0.0, 0, there)
+    view = CameraView(0.0, 0, there)
     ratio = light_in(bright.render(view)) / np.maximum(light_in(frames.render(view)), 1e-3)
     against = -light_under(CLEAR, 0.0).toward_sun @ there.rotation_enu_camera
     col, row = np.rint(camera.project(against)[0]).astype(int)
@@ -106,7 +105,7 @@ def test_the_hot_spot_lies_against_the_sun(frames, camera, pose) -> None:
 
 def test_haze_takes_contrast_from_what_is_far(frames, pose) -> None:
     hazy = replace(frames, imager=replace(PERFECT, haze_m=2_000.0))
-    view = View(0.0, 0, pose(300.0))
+    view = CameraView(0.0, 0, pose(300.0))
     with_it, without = (light_in(f.render(view)) for f in (hazy, frames))
     row, col = np.mgrid[:720, :1280]
     share = np.hypot(col - 637.8, row - 361.2) / 340.0
@@ -118,9 +117,9 @@ def test_haze_takes_contrast_from_what_is_far(frames, pose) -> None:
 
 def test_tiles_lie_side_by_side_as_one_drawing() -> None:
     land = lay_out(5)
-    one = draw(land, Part(-256, -256, 512, 0.5), 5).astype(int)
+    one = draw(land, LandPart(-256, -256, 512, 0.5), 5).astype(int)
     parts = [
-        np.hstack([draw(land, Part(row, col, 256, 0.5), 5) for col in (-256, 0)])
+        np.hstack([draw(land, LandPart(row, col, 256, 0.5), 5) for col in (-256, 0)])
         for row in (-256, 0)
     ]
     four = np.vstack(parts).astype(int)
@@ -155,7 +154,7 @@ def test_shadows_fall_away_from_the_sun(azimuth_deg: float, elevation_deg: float
     )
     for share, is_shaded in ((0.4, True), (1.6, False), (-1.0, False)):
         east, north = corner + share * reach_m * away
-        part = Part(round(-north / 0.25) - 2, round(east / 0.25) - 2, 4, 0.25)
+        part = LandPart(round(-north / 0.25) - 2, round(east / 0.25) - 2, 4, 0.25)
         shadow = draw_shadows(land, part, sun)
         assert (shadow.mean() > 200) == is_shaded
 
@@ -184,7 +183,7 @@ def test_wet_soil_is_darker_than_dry() -> None:
     for plot in bare[:40]:
         west, south, east, north = (round(edge / 4.0) for edge in plot.box_m)
         size = min(east - west, north - south) - 6
-        pixels = draw(land, Part(-north + 3, west + 3, size, 4.0), 5)
+        pixels = draw(land, LandPart(-north + 3, west + 3, size, 4.0), 5)
         spans.append(np.percentile(pixels.mean(axis=2), (2, 98)))
     dark, light = np.array(spans).T
     assert dark.min() < 0.75 * np.median(light)
@@ -193,11 +192,11 @@ def test_wet_soil_is_darker_than_dry() -> None:
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: ImagerSettings(haze_m=0.0),
-        lambda: ImagerSettings(seed=-1),
+        lambda: CameraSettings(haze_m=0.0),
+        lambda: CameraSettings(seed=-1),
         lambda: HoverSettings(drift_m=float("nan")),
         lambda: LensSettings(rim_falloff=1.0),
-        lambda: SensorSettings(full_well=0.0),
+        lambda: ImageSensorSettings(full_well=0.0),
     ],
 )
 def test_senseless_settings_are_refused(make) -> None:

@@ -16,7 +16,7 @@ from recon.camera import (
 )
 from recon.geo import enu_from_point, geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.sim.app.camera_feed import View
+from recon.sim.camera.frames import CameraView
 from recon.sim.camera.replay import load_replay
 from recon.sim.errors import ReplayError
 from recon.sim.fleet import ImagerSetup, SimulationConfig, build_fleet
@@ -63,7 +63,7 @@ def test_the_imager_hangs_where_the_frame_was_taken(tmp_path: Path) -> None:
 def test_the_frame_is_scaled_to_the_camera(tmp_path: Path) -> None:
     make_field(tmp_path / "field")
     _, still = load_replay(tmp_path / "field")
-    picture = still.render(View(0.0, 0, None))
+    picture = still.render(CameraView(0.0, 0, None))
     assert picture.shape == (720, 1280, 3)
     assert picture[100, 630, 0] > 190
     assert picture[100, 650, 0] < 10
@@ -92,6 +92,6 @@ def test_what_is_no_field_is_refused_in_a_sentence(tmp_path: Path) -> None:
 def test_real_fields(fisheye_data: Path, name: str, height_m: float) -> None:
     rig, still = load_replay(fisheye_data / name)
     assert rig.marked.height_above_takeoff_m == pytest.approx(height_m, abs=2.0)
-    picture = still.render(View(0.0, 0, None))
+    picture = still.render(CameraView(0.0, 0, None))
     assert picture.shape == (720, 1280, 3)
     assert 30.0 < picture[200:500, 400:800].mean() < 220.0

@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from recon.sim.camera import SensorSettings
-from recon.sim.camera.sensor import light_of_value, noise_of, read_out, value_of_light
+from recon.sim.camera import ImageSensorSettings
+from recon.sim.camera.development import light_of_value, noise_of, read_out, value_of_light
 
 SHAPE = (400, 400)
 
 
-def read(light: float, settings: SensorSettings, number: int = 0) -> np.ndarray:
+def read(light: float, settings: ImageSensorSettings, number: int = 0) -> np.ndarray:
     return read_out(np.full(SHAPE, light, np.float32), noise_of(1, number, SHAPE), settings)
 
 
 @pytest.mark.parametrize("light", [0.05, 0.2, 0.6])
 def test_noise_is_shot_and_read_noise(light: float) -> None:
-    settings = SensorSettings(full_well=400.0, read_noise=0.01)
+    settings = ImageSensorSettings(full_well=400.0, read_noise=0.01)
     found = light_of_value()[read(light, settings)].astype(float)
     assert found.mean() == pytest.approx(light, rel=0.02)
     expected = np.sqrt(0.01**2 + light / 400.0)
@@ -31,7 +31,7 @@ def test_noise_is_a_function_of_the_pictures_number() -> None:
 
 
 def test_without_noise_values_come_back() -> None:
-    quiet = SensorSettings(full_well=1e12, read_noise=0.0)
+    quiet = ImageSensorSettings(full_well=1e12, read_noise=0.0)
     values = np.arange(256, dtype=np.uint8)
     light = light_of_value()[values].reshape(1, -1)
     found = read_out(light, np.ones_like(light), quiet)
@@ -39,9 +39,9 @@ def test_without_noise_values_come_back() -> None:
 
 
 def test_light_beyond_white_is_white_and_below_black_black() -> None:
-    settings = SensorSettings()
+    settings = ImageSensorSettings()
     assert (read(7.0, settings) == 255).all()
-    assert (read(-7.0, SensorSettings(full_well=1e12)) == 0).all()
+    assert (read(-7.0, ImageSensorSettings(full_well=1e12)) == 0).all()
 
 
 def test_dark_values_are_told_apart() -> None:

@@ -14,11 +14,10 @@ from recon.safety.energy import Consumption
 from recon.safety.energy_settings import EnergySettings
 from recon.sim.flight.air import Air, Squall
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
-from recon.sim.flight.battery import Battery
+from recon.sim.flight.battery import Battery, flying_load
 from recon.sim.flight.flight_modes import Hold, Stick
-from recon.sim.flight.kinematics import Demand, Limits, Motion, step
+from recon.sim.flight.kinematics import AircraftMotion, Limits, VelocityDemand, step
 from recon.sim.flight.mission import MissionPoint
-from recon.sim.flight.power import flying_load
 from recon.sim.world import Wind, WindSettings
 
 STEADY = WindSettings(
@@ -36,8 +35,8 @@ ENDURANCE_S = 1_000.0
 def in_wind(settings: WindSettings, north_m: float = 0.0, height_m: float = 40.0) -> Aircraft:
     return Aircraft(
         0,
-        motion=Motion(north_m=north_m, height_m=height_m),
-        manoeuvre=Hold(),
+        motion=AircraftMotion(north_m=north_m, height_m=height_m),
+        active_mode=Hold(),
         battery=Battery(1.0, ENDURANCE_S),
         air=Air(Wind(settings)),
     )
@@ -75,7 +74,7 @@ def test_against_the_wind_it_is_slower_and_with_it_as_fast_as_asked(flights) -> 
 
 
 def test_a_wind_that_is_faster_than_the_aircraft_carries_it_along() -> None:
-    motion, demand = Motion(), Demand(velocity_north_mps=10.0)
+    motion, demand = AircraftMotion(), VelocityDemand(velocity_north_mps=10.0)
     for _ in range(400):
         motion = step(motion, demand, 0.05, Limits(), (-20.0, 0.0))
     assert motion.velocity_north_mps == pytest.approx(-3.0)
@@ -87,9 +86,9 @@ velocities = st.tuples(st.floats(-14.0, 14.0), st.floats(-14.0, 14.0))
 @given(velocities, velocities)
 def test_a_course_is_kept_within_the_airspeed(asked, wind) -> None:
     limits = Limits()
-    motion = Motion()
+    motion = AircraftMotion()
     for _ in range(400):
-        motion = step(motion, Demand(*asked), 0.05, limits, wind)
+        motion = step(motion, VelocityDemand(*asked), 0.05, limits, wind)
     north, east = motion.velocity_north_mps, motion.velocity_east_mps
     assert hypot(north - wind[0], east - wind[1]) <= limits.airspeed_mps + 1e-6
     if hypot(*wind) < limits.airspeed_mps:
@@ -105,7 +104,7 @@ def test_gusts_push_within_metres_and_what_is_held_comes_back(flights) -> None:
 
 
 def test_gusts_are_the_same_for_the_same_seed(flights) -> None:
-    def track(seed: int) -> list[Motion]:
+    def track(seed: int) -> list[AircraftMotion]:
         return list(flights.fly(in_wind(replace(GUSTY, seed=seed)), 60.0))
 
     assert track(3) == track(3)
@@ -138,7 +137,7 @@ def test_a_landing_in_gusts_stops_for_its_confirmation(flights) -> None:
 
 def test_an_aircraft_on_the_ground_stays_where_it_stands(flights) -> None:
     aircraft = Aircraft(0, air=Air(Wind(GUSTY)))
-    assert flights.fly_on(aircraft, 60.0) == Motion()
+    assert flights.fly_on(aircraft, 60.0) == AircraftMotion()
     aircraft.take_off()
     flights.fly_on(aircraft, 1.4)
     assert aircraft.motion.north_m == 0.0
@@ -174,12 +173,12 @@ def test_a_squall_comes_in_gusts_and_ends(flights) -> None:
 
 def test_climbing_costs_most_and_loads_are_those_of_the_curve() -> None:
     still = (0.0, 0.0)
-    assert flying_load(Motion(), still) == 1.0
-    assert flying_load(Motion(velocity_north_mps=9.0), still) == pytest.approx(1.0)
-    assert flying_load(Motion(velocity_east_mps=15.0), still) == pytest.approx(1.25)
-    assert flying_load(Motion(), (0.0, -15.0)) == pytest.approx(1.25)
-    assert flying_load(Motion(velocity_up_mps=2.6), still) == pytest.approx(1.416)
-    assert flying_load(Motion(velocity_up_mps=-3.2), still) == pytest.approx(0.872)
+    assert flying_load(AircraftMotion(), still) == 1.0
+    assert flying_load(AircraftMotion(velocity_north_mps=9.0), still) == pytest.approx(1.0)
+    assert flying_load(AircraftMotion(velocity_east_mps=15.0), still) == pytest.approx(1.25)
+    assert flying_load(AircraftMotion(), (0.0, -15.0)) == pytest.approx(1.25)
+    assert flying_load(AircraftMotion(velocity_up_mps=2.6), still) == pytest.approx(1.416)
+    assert flying_load(AircraftMotion(velocity_up_mps=-3.2), still) == pytest.approx(0.872)
 
 
 def gates_view(aircraft: Aircraft) -> Consumption:

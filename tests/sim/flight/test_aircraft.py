@@ -6,7 +6,7 @@ from recon.model.vehicle import BatteryWarning, FlightMode
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery
 from recon.sim.flight.flight_modes import CONFIRM_HEIGHT_M, Hold, Stick
-from recon.sim.flight.kinematics import Limits, Motion
+from recon.sim.flight.kinematics import AircraftMotion, Limits
 
 
 def stick(**changes) -> Stick:
@@ -47,7 +47,7 @@ def test_hover_and_return_leave_an_aircraft_on_the_ground_alone(flights) -> None
     aircraft.go_home()
     aircraft.land()
     aircraft.stick(stick())
-    assert flights.fly_on(aircraft, 5.0) == Motion()
+    assert flights.fly_on(aircraft, 5.0) == AircraftMotion()
     assert not aircraft.is_flying
 
 
@@ -90,7 +90,7 @@ def test_return_climbs_flies_home_and_lands(flights) -> None:
     aircraft = Aircraft(
         0,
         AircraftSettings(go_home_height_m=40.0),
-        Motion(north_m=150.0, east_m=-80.0, height_m=15.0),
+        AircraftMotion(north_m=150.0, east_m=-80.0, height_m=15.0),
         Hold(),
     )
     aircraft.go_home()
@@ -102,7 +102,7 @@ def test_return_climbs_flies_home_and_lands(flights) -> None:
 
 
 def test_return_from_above_the_go_home_height_does_not_descend_first(flights) -> None:
-    aircraft = Aircraft(0, motion=Motion(north_m=100.0, height_m=90.0), manoeuvre=Hold())
+    aircraft = Aircraft(0, motion=AircraftMotion(north_m=100.0, height_m=90.0), active_mode=Hold())
     aircraft.go_home()
     flights.fly_until(aircraft, lambda a: a.motion.north_m < 5.0, 60.0)
     assert aircraft.motion.height_m == pytest.approx(90.0, abs=0.5)

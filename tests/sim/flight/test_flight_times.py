@@ -5,7 +5,7 @@ import pytest
 from recon.model.vehicle import FlightMode
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.flight_modes import Hold, Stick
-from recon.sim.flight.kinematics import Limits, Motion
+from recon.sim.flight.kinematics import AircraftMotion, Limits
 from recon.sim.flight.mission import MissionPoint
 
 TICK_S = 0.05
@@ -69,7 +69,7 @@ def test_a_way_home_is_its_climb_its_way_and_its_landing(flights) -> None:
     aircraft = Aircraft(
         0,
         AircraftSettings(go_home_height_m=62.0),
-        Motion(north_m=-300.0, height_m=30.0),
+        AircraftMotion(north_m=-300.0, height_m=30.0),
         Hold(),
     )
     aircraft.go_home()

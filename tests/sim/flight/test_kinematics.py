@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from recon.model.units import wrap_degrees
 from recon.sim.flight.kinematics import (
-    Demand,
+    AircraftMotion,
     Limits,
-    Motion,
+    VelocityDemand,
     braking_speed_mps,
     hold_height_mps,
     step,
@@ -20,12 +20,14 @@ LIMITS = Limits()
 SECONDS = 0.05
 
 speeds = st.floats(-100.0, 100.0)
-demands = st.builds(Demand, speeds, speeds, speeds, st.none() | st.floats(-720.0, 720.0))
+demands = st.builds(VelocityDemand, speeds, speeds, speeds, st.none() | st.floats(-720.0, 720.0))
 
 
 @given(st.lists(demands, min_size=1, max_size=60), st.integers(1, 20))
-def test_no_limit_is_exceeded_whatever_is_demanded(orders: list[Demand], repeats: int) -> None:
-    motion = Motion()
+def test_no_limit_is_exceeded_whatever_is_demanded(
+    orders: list[VelocityDemand], repeats: int
+) -> None:
+    motion = AircraftMotion()
     for demand in orders:
         for _ in range(repeats):
             after = step(motion, demand, SECONDS, LIMITS)
@@ -33,7 +35,7 @@ def test_no_limit_is_exceeded_whatever_is_demanded(orders: list[Demand], repeats
             motion = after
 
 
-def assert_within_limits(before: Motion, after: Motion) -> None:
+def assert_within_limits(before: AircraftMotion, after: AircraftMotion) -> None:
     assert after.ground_speed_mps <= LIMITS.speed_mps + 1e-9
     assert -LIMITS.descent_mps - 1e-9 <= after.velocity_up_mps <= LIMITS.climb_mps + 1e-9
     acceleration = hypot(
@@ -51,10 +53,10 @@ def assert_within_limits(before: Motion, after: Motion) -> None:
 
 @pytest.mark.parametrize(("start_m", "target_m"), [(0.0, 120.0), (120.0, 5.0), (30.0, 30.5)])
 def test_height_is_reached_without_overshoot(start_m: float, target_m: float) -> None:
-    motion, heights = Motion(height_m=start_m), []
+    motion, heights = AircraftMotion(height_m=start_m), []
     for _ in range(2000):
         up = hold_height_mps(motion.height_m, target_m, LIMITS)
-        motion = step(motion, Demand(velocity_up_mps=up), SECONDS, LIMITS)
+        motion = step(motion, VelocityDemand(velocity_up_mps=up), SECONDS, LIMITS)
         heights.append(motion.height_m)
     assert heights[-1] == pytest.approx(target_m, abs=0.02)
     assert max(heights) < max(start_m, target_m) + 0.3
@@ -68,8 +70,8 @@ def test_a_stop_is_possible_from_the_braking_speed() -> None:
 
 
 def test_accelerating_forward_noses_down_and_rightward_rolls_right() -> None:
-    north = step(Motion(), Demand(velocity_north_mps=10.0), SECONDS, LIMITS)
-    east = step(Motion(), Demand(velocity_east_mps=10.0), SECONDS, LIMITS)
+    north = step(AircraftMotion(), VelocityDemand(velocity_north_mps=10.0), SECONDS, LIMITS)
+    east = step(AircraftMotion(), VelocityDemand(velocity_east_mps=10.0), SECONDS, LIMITS)
     assert north.pitch_deg < 0.0
     assert north.roll_deg == pytest.approx(0.0)
     assert east.roll_deg > 0.0
@@ -77,5 +79,5 @@ def test_accelerating_forward_noses_down_and_rightward_rolls_right() -> None:
 
 
 def test_the_shorter_way_round_is_turned() -> None:
-    motion = step(Motion(yaw_deg=170.0), Demand(yaw_deg=-170.0), SECONDS, LIMITS)
+    motion = step(AircraftMotion(yaw_deg=170.0), VelocityDemand(yaw_deg=-170.0), SECONDS, LIMITS)
     assert motion.yaw_deg == pytest.approx(173.0)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from recon.geo.path import rounded_path as geo_rounded_path
 from recon.model.vehicle import FlightMode
-from recon.sim.flight.kinematics import Limits, Motion
+from recon.sim.flight.kinematics import AircraftMotion, Limits
 from recon.sim.flight.mission import MissionPoint
 from recon.sim.flight.path import Corner, rounded_path
 
@@ -30,7 +30,7 @@ points = st.builds(
 )
 
 
-def assert_limits_kept(track: list[Motion]) -> None:
+def assert_limits_kept(track: list[AircraftMotion]) -> None:
     for before, after in pairwise(track):
         assert after.ground_speed_mps <= LIMITS.speed_mps + 1e-6
         assert -LIMITS.descent_mps - 1e-6 <= after.velocity_up_mps <= LIMITS.climb_mps + 1e-6
@@ -41,7 +41,7 @@ def assert_limits_kept(track: list[Motion]) -> None:
         assert change <= LIMITS.acceleration_mps2 * SECONDS + 1e-6
 
 
-def closest_m(track: list[Motion], point: MissionPoint) -> float:
+def closest_m(track: list[AircraftMotion], point: MissionPoint) -> float:
     return min(
         hypot(m.north_m - point.north_m, m.east_m - point.east_m, m.height_m - point.height_m)
         for m in track
@@ -53,7 +53,7 @@ def segment_distance_m(point: np.ndarray, start: np.ndarray, end: np.ndarray) ->
     return float(np.linalg.norm(point - start - along * (end - start)))
 
 
-def flown(flights, mission: tuple[MissionPoint, ...], curved: bool) -> list[Motion]:
+def flown(flights, mission: tuple[MissionPoint, ...], curved: bool) -> list[AircraftMotion]:
     aircraft = flights.hovering(height_m=20.0)
     aircraft.fly_mission(mission, curved, lands_at_end=False)
     assert aircraft.flight_mode is FlightMode.GPS_WAYPOINT

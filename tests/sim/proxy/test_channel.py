@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from recon.model.units import NS_PER_S
 from recon.sim.errors import SimulationError
-from recon.sim.proxy.channel import MOST_HELD_BYTES, Channel
-from recon.sim.proxy.damage import Damage
+from recon.sim.proxy.damage import MOST_HELD_BYTES, Channel, Damage
 
 
 def came(channel: Channel, step_ns: int = 1_000_000) -> list[tuple[int, bytes]]:

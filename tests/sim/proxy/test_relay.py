@@ -8,7 +8,7 @@ import pytest
 
 from recon.sim.errors import SimulationError
 from recon.sim.proxy import Damage, ProxyConfig, Towards, run_proxy
-from recon.sim.proxy.channel import MOST_HELD_BYTES
+from recon.sim.proxy.damage import MOST_HELD_BYTES
 
 LIMIT_S = 20.0
 HERE = "127.0.0.1"

@@ -6,10 +6,15 @@ import numpy as np
 import pytest
 
 from recon.sim.world import LayerSettings, LightSettings, Sky, SkySettings, SunPosition
-from recon.sim.world.ground_light import REFERENCE_W_M2, ground_light
-from recon.sim.world.light import clear_sky_light
+from recon.sim.world.light import (
+    REFERENCE_W_M2,
+    beam_share,
+    clear_sky_light,
+    ground_light,
+    light_under,
+    metered_light,
+)
 from recon.sim.world.relief import Relief, ReliefSettings
-from recon.sim.world.sky_light import beam_share, light_under, metered_light
 
 SETTINGS = LightSettings()
 

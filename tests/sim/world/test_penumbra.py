@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from recon.sim.world import LayerSettings, Sky, SkySettings
-from recon.sim.world.fractal_field import Sample, disk_weight
+from recon.sim.world.fractal_field import FieldSample, disk_weight
 from recon.sim.world.penumbra import (
     EXCESS_STEP,
     MOST_EXCESS,
@@ -38,7 +38,7 @@ def test_a_sharp_straight_edge_becomes_as_wide_as_the_ellipse(along) -> None:
     place_m = np.arange(-40.0, 40.0, 0.25)
     zero = np.zeros(place_m.size, dtype=np.float32)
     rise = np.full(place_m.size, rise_per_m, dtype=np.float32)
-    field = Sample(zero, zero if along else rise, rise if along else zero)
+    field = FieldSample(zero, zero if along else rise, rise if along else zero)
     spreads = spread(edge, 0.0, field) / np.float32(softness)
     excess = (place_m * rise_per_m / softness).astype(np.float32)
     share = look_up(extinction_table(20.0), excess[np.newaxis], spreads[np.newaxis])[0]
@@ -58,7 +58,7 @@ def test_the_axes_may_be_turned() -> None:
         x = east * np.cos(axes_rad) - north * np.sin(axes_rad)
         y = east * np.sin(axes_rad) + north * np.cos(axes_rad)
         slopes = (np.array([v], dtype=np.float32) for v in (0.0, x, y))
-        found.append(float(spread(edge, axes_rad, Sample(*slopes))[0]))
+        found.append(float(spread(edge, axes_rad, FieldSample(*slopes))[0]))
     assert found == pytest.approx([found[0]] * 3, rel=1e-5)
 
 

@@ -12,9 +12,16 @@ from scipy.special import j0
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.sim.errors import SimulationError
-from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindShift, field_tiles
-from recon.sim.world.drift import drift_m
+from recon.sim.world import (
+    LayerSettings,
+    Sky,
+    SkySettings,
+    SunSettings,
+    WindShift,
+    fractal_field,
+)
 from recon.sim.world.keyframes import gaussian
+from recon.sim.world.layer import drift_m
 from recon.sim.world.penumbra import extinction, penumbra
 
 LOW = LayerSettings()
@@ -45,7 +52,7 @@ def test_a_point_has_one_value_to_the_bit(points) -> None:
 
 def test_a_sky_made_anew_with_nothing_remembered_is_the_same(ground) -> None:
     first = sky(LOW, HIGH).transmittance(*ground, 1234.5)
-    field_tiles.tile.cache_clear()
+    fractal_field.tile.cache_clear()
     assert np.array_equal(first, sky(LOW, HIGH).transmittance(*ground, 1234.5))
     assert not np.array_equal(first, sky(LOW, HIGH, seed=5).transmittance(*ground, 1234.5))
 

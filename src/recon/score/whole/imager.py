@@ -15,7 +15,8 @@ from recon.model.shade import MaskMap, ShadeMap
 from recon.model.units import NS_PER_S
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.simulation import simulation_of
-from recon.sim.app.camera_feed import FeedSettings, ImageFormat, View
+from recon.sim.app.camera_feed import FeedSettings, ImageFormat
+from recon.sim.camera.frames import CameraView
 from recon.sim.fleet import IMAGER_SERIAL, SimulationConfig
 from recon.sim.world import Sky
 from recon.station.imaging.shade_work import READ_SHADE, ReadShade, ShadeRead
@@ -35,7 +36,7 @@ class Placeholders:
     def prepare(self) -> None:
         """There is nothing to draw."""
 
-    def render(self, view: View) -> RgbImage:
+    def render(self, view: CameraView) -> RgbImage:
         """Return a grey frame; its number is in it, so that no two are the same."""
         level = 1 + view.number % 250
         return np.full((PLACEHOLDER_PX, PLACEHOLDER_PX, 3), level, dtype=np.uint8)

@@ -19,16 +19,25 @@ from recon.model.geo import GeoPoint
 from recon.model.imagery import CameraPose
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.app.camera_feed import CameraFeed, Shot
-from recon.sim.app.commands import AppHabits, CommandReader, Reaction
-from recon.sim.app.fault_plan import FaultPlan
-from recon.sim.app.faults import AIRCRAFT_FAULTS, LINK_FAULTS, PLACEHOLDER_SERIAL, Fault, FaultKind
-from recon.sim.app.inbox import Inbox
-from recon.sim.app.outbox import Outbox
-from recon.sim.app.telemetry import HomeAltitude, Sensors, SensorSettings, position_deg
-from recon.sim.camera.frame_flaws import Black, FrameFlaw, exposed, torn
-from recon.sim.camera.rig import ImagerRig
+from recon.sim.app.commands import AppBehaviour, CommandHandler, CommandResponse
+from recon.sim.app.fault_effects import AircraftFaults, FaultSchedule
+from recon.sim.app.faults import (
+    AIRCRAFT_FAULTS,
+    LINK_FAULTS,
+    PLACEHOLDER_SERIAL,
+    FaultKind,
+    InjectedFault,
+)
+from recon.sim.app.link_buffers import AppInbox, AppOutbox
+from recon.sim.app.telemetry import (
+    HomeAltitude,
+    TelemetrySensors,
+    TelemetrySensorSettings,
+    position_deg,
+)
+from recon.sim.camera.frames import Black, FrameFlaw, exposed, torn
+from recon.sim.camera.rig import CameraRig
 from recon.sim.flight.aircraft import Aircraft
-from recon.sim.flight.aircraft_faults import AircraftFaults
 
 CORE_PERIOD_NS = 100_000_000
 EXTENDED_PERIOD_NS = 500_000_000
@@ -74,9 +83,9 @@ class AppSettings:
     serial: str
     home: GeoPoint
     seed: int = 0
-    habits: AppHabits = field(default_factory=AppHabits)
-    faults: tuple[Fault, ...] = ()
-    sensors: SensorSettings = field(default_factory=SensorSettings)
+    habits: AppBehaviour = field(default_factory=AppBehaviour)
+    faults: tuple[InjectedFault, ...] = ()
+    sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
     renders_inline: bool = True
     """False: the driver takes the shots and renders them in a thread."""
 
@@ -84,8 +93,8 @@ class AppSettings:
 @dataclass(slots=True)
 class _Link:
     deframer: wire.Deframer = field(default_factory=wire.Deframer)
-    inbox: Inbox = field(default_factory=Inbox)
-    outbox: Outbox = field(default_factory=Outbox)
+    inbox: AppInbox = field(default_factory=AppInbox)
+    outbox: AppOutbox = field(default_factory=AppOutbox)
 
 
 class SimulatedApp:
@@ -96,7 +105,7 @@ class SimulatedApp:
         settings: AppSettings,
         aircraft: Aircraft,
         feed: CameraFeed | None = None,
-        rig: ImagerRig | None = None,
+        rig: CameraRig | None = None,
     ) -> None:
         self.settings = settings
         self.aircraft = aircraft
@@ -107,13 +116,15 @@ class SimulatedApp:
         self._altitude = HomeAltitude(home.ellipsoid_height_m, habits.altitude_bias_m)
         random = Random(f"{settings.seed}/{settings.serial}/sensors")
         slow_random = Random(f"{settings.seed}/{settings.serial}/drift")
-        self._sensors = Sensors(home, self._altitude, settings.sensors, random, slow_random)
-        self._commands = CommandReader(home, aircraft, feed, habits, self._altitude)
+        self._sensors = TelemetrySensors(
+            home, self._altitude, settings.sensors, random, slow_random
+        )
+        self._commands = CommandHandler(home, aircraft, feed, habits, self._altitude)
         self._links: dict[int, _Link] = {}
-        self._acts: deque[tuple[int, Reaction]] = deque()
+        self._acts: deque[tuple[int, CommandResponse]] = deque()
         self._link_orders: deque[LinkOrder] = deque()
         name = f"{settings.seed}/{settings.serial}/faults"
-        self._plan = FaultPlan(settings.faults, name, self._start_ns)
+        self._plan = FaultSchedule(settings.faults, name, self._start_ns)
         self._flaws = Random(f"{name}/frames")
         self._aircraft_faults = AircraftFaults(aircraft, self._altitude, name)
         self._is_silent = False
@@ -282,7 +293,7 @@ class SimulatedApp:
         self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
         is_placeholder = self._has(FaultKind.PLACEHOLDER_SERIAL, now_ns)
         serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
-        tells_id = self.settings.habits.tells_mission_id
+        tells_id = self.settings.habits.reports_mission_id
         packet = self._sensors.extended(self.aircraft, self.feed, serial, tells_id)
         self._broadcast(packet, now_ns)
 
@@ -329,12 +340,12 @@ class SimulatedApp:
         _due_ns, happen = self._fault_moments.pop(0)
         happen()
 
-    def _begin_aircraft_fault(self, fault: Fault) -> None:
+    def _begin_aircraft_fault(self, fault: InjectedFault) -> None:
         self._lines.append(f"fault {fault.kind.value}")
         self._aircraft_faults.begin(fault.kind)
         self._is_silent = self._is_silent or fault.kind is FaultKind.FALLS_SILENT
 
-    def _begin_link_fault(self, fault: Fault) -> None:
+    def _begin_link_fault(self, fault: InjectedFault) -> None:
         self._lines.append(f"fault {fault.kind.value}")
         self._link_orders.append(LinkOrder(_LINK_ORDERS[fault.kind], fault.duration_s))
         if fault.kind is FaultKind.SECOND_LINK:

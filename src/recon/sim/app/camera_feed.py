@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from enum import Enum
 from math import isfinite
 from random import Random
-from typing import Protocol
 
 import cv2
 
 from recon import wire
 from recon.model.imagery import CameraPose, RgbImage
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.sim.camera.frame_flaws import FrameFlaw
+from recon.sim.camera.frames import CameraView, FrameFlaw, FrameSource
 from recon.sim.errors import FrameSourceError
 
 MOST_SHOTS_IN_HAND = 4
@@ -37,27 +36,6 @@ class ImageFormat(Enum):
     JPEG = "jpeg"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class View:
-    """What a picture is taken of: time since the simulation's start, number, camera pose."""
-
-    elapsed_s: float
-    number: int
-    pose: CameraPose | None
-
-
-class FrameSource(Protocol):
-    """Where pictures come from."""
-
-    def prepare(self) -> None:
-        """Do what the first picture would wait for; may take seconds, once."""
-        ...
-
-    def render(self, view: View) -> RgbImage:
-        """Return (rows, cols, 3) uint8 RGB; may take long, may be called from any thread."""
-        ...
-
-
 @dataclass(frozen=True, slots=True)
 class FeedSettings:
     """How the feed behaves. `latency_s` None draws one per vehicle between 0.2 and 1 s."""
@@ -73,7 +51,7 @@ class FeedSettings:
 class Shot:
     """A picture taken and not yet rendered."""
 
-    view: View
+    view: CameraView
     target_fps_hz: float
     send_at_ns: int
     source: FrameSource
@@ -92,10 +70,10 @@ class Shot:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Capture:
+class CaptureTimes:
     """When a picture was truly taken and when it goes out: for the score and for tests."""
 
-    view: View
+    view: CameraView
     taken_at_ns: int
     send_at_ns: int
 
@@ -111,11 +89,11 @@ class CameraFeed:
     is_on: bool = False
     target_fps_hz: float = 0.0
     next_shot_ns: int = 0
-    captures: deque[Capture] = field(default_factory=lambda: deque(maxlen=CAPTURES_KEPT))
+    captures: deque[CaptureTimes] = field(default_factory=lambda: deque(maxlen=CAPTURES_KEPT))
     _latency_s: float = 0.0
     _jitter_seed: int = 0
     _shot_count: int = 0
-    _shown: View | None = None
+    _shown: CameraView | None = None
     _taken: deque[Shot] = field(default_factory=deque)
     _in_hand: int = 0
     _ready: list[tuple[int, int, bytes]] = field(default_factory=list)
@@ -155,11 +133,11 @@ class CameraFeed:
         self.next_shot_ns = self._after(now_ns)
         if self._in_hand >= MOST_SHOTS_IN_HAND:
             return
-        view = View((now_ns - self.start_ns) / NS_PER_S, self._shot_count, pose)
+        view = CameraView((now_ns - self.start_ns) / NS_PER_S, self._shot_count, pose)
         self._shot_count += 1
         self._in_hand += 1
         send_at_ns = now_ns + seconds_to_ns(self._latency_at(now_ns))
-        self.captures.append(Capture(view, now_ns, send_at_ns))
+        self.captures.append(CaptureTimes(view, now_ns, send_at_ns))
         self._shown = self._shown if is_repeated and self._shown is not None else view
         self._taken.append(
             Shot(self._shown, self.target_fps_hz, send_at_ns, self.source, self.settings, flaw)

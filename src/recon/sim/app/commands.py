@@ -29,20 +29,20 @@ class HoverOnGround(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class AppHabits:
+class AppBehaviour:
     """How this app reads commands."""
 
     altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
     altitude_bias_m: float = 0.0
     """Added to every absolute altitude the app knows, its home's included."""
-    tells_mission_id: bool = True
+    reports_mission_id: bool = True
     """False: telemetry's MissionID is always 0, as some apps in the field send it."""
     sdk: SdkLimits = field(default_factory=SdkLimits)
 
 
 @dataclass(frozen=True, slots=True)
-class Reaction:
+class CommandResponse:
     """An app's answer to one command packet, and what it then does (returning a line of text)."""
 
     source_pid: int
@@ -51,7 +51,7 @@ class Reaction:
     """Takes the time in nanoseconds."""
 
 
-class CommandReader:
+class CommandHandler:
     """Turns command packets into reactions of one app."""
 
     def __init__(
@@ -59,7 +59,7 @@ class CommandReader:
         home: GeoPoint,
         aircraft: Aircraft,
         feed: CameraFeed | None,
-        habits: AppHabits,
+        habits: AppBehaviour,
         altitude: HomeAltitude,
     ) -> None:
         self._home = home
@@ -69,7 +69,7 @@ class CommandReader:
         self._feed = feed
         self._habits = habits
 
-    def reaction(self, packet: wire.Packet) -> Reaction | None:
+    def reaction(self, packet: wire.Packet) -> CommandResponse | None:
         """Return the reaction, or None for what is no command."""
         match packet:
             case wire.EmergencyCommand():
@@ -77,18 +77,18 @@ class CommandReader:
             case wire.CameraControl():
                 return self._camera(packet)
             case wire.ExecuteWaypointMission():
-                return Reaction(packet.PID, True, lambda now_ns: self._fly(packet))
+                return CommandResponse(packet.PID, True, lambda now_ns: self._fly(packet))
             case wire.VirtualStickCommand():
-                return Reaction(packet.PID, True, lambda now_ns: self._stick(packet))
+                return CommandResponse(packet.PID, True, lambda now_ns: self._stick(packet))
             case _:
                 return None
 
-    def _emergency(self, packet: wire.EmergencyCommand) -> Reaction:
+    def _emergency(self, packet: wire.EmergencyCommand) -> CommandResponse:
         acts: dict[int, Callable[[], str]] = {0: self._hover, 1: self._land, 2: self._go_home}
         act = acts.get(packet.action)
         if act is None:
             return _refusal(packet.PID, f"emergency action {packet.action} unknown")
-        return Reaction(packet.PID, True, lambda now_ns: act())
+        return CommandResponse(packet.PID, True, lambda now_ns: act())
 
     def _hover(self) -> str:
         if self._aircraft.is_on_ground and self._takes_off_when_told_to_hover:
@@ -111,16 +111,16 @@ class CommandReader:
     def _takes_off_when_told_to_hover(self) -> bool:
         return self._habits.hover_on_ground is HoverOnGround.TAKEOFF
 
-    def _camera(self, packet: wire.CameraControl) -> Reaction:
+    def _camera(self, packet: wire.CameraControl) -> CommandResponse:
         feed = self._feed
         if feed is None:
             return _refusal(packet.PID, "camera control: no camera")
         if packet.action == 0:
-            return Reaction(packet.PID, True, lambda now_ns: _switch_off(feed))
+            return CommandResponse(packet.PID, True, lambda now_ns: _switch_off(feed))
         fps_hz = packet.target_fps_hz
         if packet.action != 1 or not (isfinite(fps_hz) and fps_hz > 0.0):
             return _refusal(packet.PID, f"camera control: action {packet.action}, {fps_hz:g} fps")
-        return Reaction(packet.PID, True, lambda now_ns: _switch_on(feed, fps_hz, now_ns))
+        return CommandResponse(packet.PID, True, lambda now_ns: _switch_on(feed, fps_hz, now_ns))
 
     def _fly(self, packet: wire.ExecuteWaypointMission) -> str:
         points = self.mission_points(packet)
@@ -197,8 +197,8 @@ class CommandReader:
         return float(north), float(east)
 
 
-def _refusal(pid: int, why: str) -> Reaction:
-    return Reaction(pid, False, lambda now_ns: f"{why}: refused")
+def _refusal(pid: int, why: str) -> CommandResponse:
+    return CommandResponse(pid, False, lambda now_ns: f"{why}: refused")
 
 
 def _switch_on(feed: CameraFeed, fps_hz: float, now_ns: int) -> str:

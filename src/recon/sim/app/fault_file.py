@@ -9,8 +9,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon.sim.app.fault_chance import Chance
-from recon.sim.app.faults import ALL_VEHICLES, Fault, FaultKind, default_times_s
+from recon.sim.app.faults import (
+    ALL_VEHICLES,
+    FaultKind,
+    InjectedFault,
+    RandomFault,
+    default_times_s,
+)
 from recon.sim.errors import FaultError
 
 LARGEST_FILE_BYTES = 1_048_576
@@ -27,8 +32,8 @@ KEYS = {
 class FaultScript:
     """What a file asks for."""
 
-    faults: tuple[Fault, ...] = ()
-    chances: tuple[Chance, ...] = ()
+    faults: tuple[InjectedFault, ...] = ()
+    chances: tuple[RandomFault, ...] = ()
 
 
 def load_faults(path: Path) -> FaultScript:
@@ -71,16 +76,16 @@ class _Entry:
     line: int
     key_lines: Mapping[str, int]
 
-    def fault(self) -> Fault:
+    def fault(self) -> InjectedFault:
         """Return the fault that the table describes."""
         kind = self._kind()
         start_s, duration_s = default_times_s(kind)
         if "duration_s" in self.values:
             duration_s = self._seconds("duration_s", duration_s)
         start_s = self._seconds("start_s", start_s)
-        return Fault(kind, self._vehicle(), start_s, duration_s, self._place())
+        return InjectedFault(kind, self._vehicle(), start_s, duration_s, self._place())
 
-    def chance(self) -> Chance:
+    def chance(self) -> RandomFault:
         """Return the faults by chance that the table describes."""
         if "per_hour" not in self.values:
             raise self._wrong("per_hour", f"a number above 0, {MOST_PER_HOUR:g} at most", "nothing")
@@ -88,7 +93,7 @@ class _Entry:
         from_s, until_s = self._seconds("from_s", 0.0), self._seconds("until_s", 3_600.0)
         if until_s < from_s:
             raise self._wrong("until_s", f"{from_s:g} or more, as from_s", f"{until_s:g}")
-        return Chance(
+        return RandomFault(
             kind=self._kind(),
             vehicle=self._vehicle(),
             per_hour=self._number("per_hour", 0.0, MOST_PER_HOUR),
@@ -96,7 +101,7 @@ class _Entry:
             longest_s=longest_s,
             from_s=from_s,
             until_s=until_s,
-            told_at=self._place(),
+            source=self._place(),
         )
 
     def check_keys(self) -> None:

@@ -4,9 +4,11 @@ A fault is written `NAME[:vehicle[:start_s[:duration_s]]]`; the vehicle is a ser
 the fleet (1 is the first), or `*` for all; times count from the start of the simulation.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from math import inf, isfinite
+from random import Random
 
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.errors import FaultError
@@ -127,14 +129,14 @@ ALL_VEHICLES = "*"
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class InjectedFault:
     """One fault of one vehicle, or of all."""
 
     kind: FaultKind
     vehicle: str = ALL_VEHICLES
     start_s: float = 0.0
     duration_s: float = inf
-    told_at: str = field(default="", compare=False)
+    source: str = field(default="", compare=False)
     """Where it stands in a file, for messages: `FILE: line N: `."""
 
     def is_for(self, serial: str, number: int) -> bool:
@@ -152,7 +154,7 @@ class Fault:
         return self.start_s <= elapsed_s < self.start_s + self.duration_s
 
 
-def parse_fault(text: str) -> Fault:
+def parse_fault(text: str) -> InjectedFault:
     """Return the fault a description names; raises `FaultError`."""
     name, *rest = text.split(":")
     kind = _kind(name)
@@ -163,7 +165,7 @@ def parse_fault(text: str) -> Fault:
         )
     vehicle, start, duration = (*rest, "", "", "")[:3]
     default_start_s, default_duration_s = default_times_s(kind)
-    return Fault(
+    return InjectedFault(
         kind,
         vehicle or ALL_VEHICLES,
         _seconds(start, default_start_s, "start", text),
@@ -199,3 +201,48 @@ def _seconds(word: str, default: float, what: str, text: str) -> float:
     if not (isfinite(value) and value >= 0.0):
         raise FaultError(f"fault {text!r}: expected a {what} in seconds from 0, got {word!r}")
     return value
+
+
+S_PER_HOUR = 3_600.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RandomFault:
+    """A fault that comes now and then to each vehicle that it is for."""
+
+    kind: FaultKind
+    vehicle: str
+    per_hour: float
+    """On average; the times between two begins are exponential."""
+    shortest_s: float
+    longest_s: float
+    """Each lasts as long as is drawn evenly between the two."""
+    from_s: float
+    until_s: float
+    """The last begins before this."""
+    source: str = ""
+
+    def is_for(self, serial: str, number: int) -> bool:
+        """Return whether the vehicle with this serial, `number` of the fleet, may have it."""
+        return is_for(self.vehicle, serial, number)
+
+    def drawn(self, random: Random) -> Iterator[InjectedFault]:
+        """Yield one vehicle's faults, in order of time."""
+        if self.per_hour < 1e-6:
+            return
+        start_s = self.from_s
+        while (start_s := start_s + random.expovariate(self.per_hour / S_PER_HOUR)) < self.until_s:
+            duration_s = random.uniform(self.shortest_s, self.longest_s)
+            yield InjectedFault(self.kind, self.vehicle, start_s, duration_s, self.source)
+
+
+def draw_faults(
+    chances: tuple[RandomFault, ...], seed: int, serial: str, number: int
+) -> tuple[InjectedFault, ...]:
+    """Return all that chance has for one vehicle; one entry's draws do not move another's."""
+    return tuple(
+        fault
+        for row, chance in enumerate(chances)
+        if chance.is_for(serial, number)
+        for fault in chance.drawn(Random(f"{seed}/{serial}/chance {row}"))
+    )

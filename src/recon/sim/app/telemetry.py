@@ -16,7 +16,7 @@ FEW_SATELLITES = 3
 
 
 @dataclass(frozen=True, slots=True)
-class SensorSettings:
+class TelemetrySensorSettings:
     """How wrong the sensors are; each wander is a random walk that is pulled back to 0.
 
     Errors count from takeoff, where the home point is recorded with the same ones.
@@ -34,7 +34,7 @@ class SensorSettings:
     height_drift_time_s: float = 900.0
 
 
-FIELD_SENSORS = SensorSettings(position_drift_m=0.7, height_drift_m=0.8)
+FIELD_SENSORS = TelemetrySensorSettings(position_drift_m=0.7, height_drift_m=0.8)
 """Good to metres, as outside: twice these within a quarter of an hour is nothing unusual."""
 
 
@@ -58,7 +58,7 @@ class HomeAltitude:
 
 
 @dataclass(slots=True)
-class Wander:
+class GaussMarkov:
     """A first-order Gauss-Markov process."""
 
     sigma: float
@@ -73,11 +73,11 @@ class Wander:
 
 
 @dataclass(slots=True)
-class Error:
+class SensorError:
     """What one sensor is off by: something quick and something slow."""
 
-    quick: Wander
-    slow: Wander
+    quick: GaussMarkov
+    slow: GaussMarkov
 
     def step(self, seconds: float, random: Random, slow_random: Random) -> float:
         """Go on for `seconds` and return the sum."""
@@ -85,18 +85,18 @@ class Error:
 
 
 @dataclass(slots=True)
-class Sensors:
+class TelemetrySensors:
     """Turns an aircraft's true state into telemetry packets."""
 
     home: GeoPoint
     altitude: HomeAltitude
-    settings: SensorSettings
+    settings: TelemetrySensorSettings
     random: Random
     slow_random: Random
     """Of the slow errors, which go on however often the quick ones are drawn."""
-    _north: "Error" = field(init=False)
-    _east: "Error" = field(init=False)
-    _height: "Error" = field(init=False)
+    _north: "SensorError" = field(init=False)
+    _east: "SensorError" = field(init=False)
+    _height: "SensorError" = field(init=False)
     _satellites: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -104,7 +104,7 @@ class Sensors:
         level = (s.position_sigma_m, s.position_drift_m, s.position_drift_time_s)
         upright = (s.height_sigma_m, s.height_drift_m, s.height_drift_time_s)
         self._north, self._east, self._height = (
-            Error(Wander(quick, s.wander_time_s), Wander(slow, slow_s))
+            SensorError(GaussMarkov(quick, s.wander_time_s), GaussMarkov(slow, slow_s))
             for quick, slow, slow_s in (level, level, upright)
         )
         self._satellites = self.random.randint(14, 19)
@@ -138,7 +138,7 @@ class Sensors:
         aircraft: Aircraft,
         feed: CameraFeed | None,
         serial: bytes,
-        tells_mission_id: bool = True,
+        reports_mission_id: bool = True,
     ) -> wire.ExtendedTelemetry:
         """Return extended telemetry."""
         return wire.ExtendedTelemetry(
@@ -151,7 +151,7 @@ class Sensors:
             wind_level=aircraft.air.warning_level,
             camera_state=_camera_state(feed),
             flight_mode=aircraft.flight_mode,
-            mission_id=aircraft.mission_id if tells_mission_id else 0,
+            mission_id=aircraft.mission_id if reports_mission_id else 0,
             serial=serial,
         )
 

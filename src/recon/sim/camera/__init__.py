@@ -1,14 +1,22 @@
-"""The eye's camera: what it sees of the land, and what lens, sensor, air and hover do to that.
+"""Cameras: the frames of the imaging drone, and the photos of survey drones.
 
-Every effect is a pure function of the settings' seed, the time and the picture's number.
+The imaging drone's frames come from files, from a real field, or are rendered from the land under
+the simulated sky, with the effects of lens, sensor, haze and hover. Each effect is a pure function
+of the seed, the time and the frame number.
 """
 
 from recon.sim.camera.settings import (
+    CameraSettings,
     ExposureSettings,
     HoverSettings,
-    ImagerSettings,
+    ImageSensorSettings,
     LensSettings,
-    SensorSettings,
 )
 
-__all__ = ["ExposureSettings", "HoverSettings", "ImagerSettings", "LensSettings", "SensorSettings"]
+__all__ = [
+    "CameraSettings",
+    "ExposureSettings",
+    "HoverSettings",
+    "ImageSensorSettings",
+    "LensSettings",
+]

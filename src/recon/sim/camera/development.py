@@ -1,19 +1,19 @@
-"""From the land's colours to light on the sensor: beam, sky, haze, lens and exposure."""
+"""From the land's colours to pixel values: light, haze, exposure, sensor noise, display curve."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
-from recon.model.imagery import RgbImage
-from recon.sim.camera.lens import Lens
-from recon.sim.camera.look import Look
-from recon.sim.camera.sensor import light_of_value, noise_of, read_out
-from recon.sim.camera.settings import ImagerSettings
+from recon.model.imagery import CameraPose, RgbImage
+from recon.sim.camera.lens import GroundRays, Lens
+from recon.sim.camera.settings import CameraSettings, ExposureSettings, ImageSensorSettings
 from recon.sim.land.land_tiles import LandImage
-from recon.sim.land.noise import FloatImage
-from recon.sim.world.ground_light import GroundLight
-from recon.sim.world.keyframes import FloatArray
+from recon.sim.world.keyframes import FloatArray, FloatImage, gaussian
+from recon.sim.world.light import GroundLight
 
 HAZE = (0.48, 0.55, 0.61)
 """Light of far air over white in full sun, red, green, blue: what the horizon fades to."""
@@ -23,7 +23,7 @@ HAZE = (0.48, 0.55, 0.61)
 class Scene:
     """What falls on the sensor of one picture."""
 
-    seen: Look
+    seen: GroundRays
     land: LandImage
     light: GroundLight
     beam: FloatImage
@@ -33,7 +33,7 @@ class Scene:
     number: int
 
 
-def develop(lens: Lens, imager: ImagerSettings, scene: Scene) -> RgbImage:
+def develop(lens: Lens, imager: CameraSettings, scene: Scene) -> RgbImage:
     """Return the pixel values of the lens's window, (rows, cols, 3)."""
     beam = lens.full(scene.beam * _hot_spot(imager, scene))
     beam *= light_free_of_shadow(scene.land[:, :, 3])
@@ -62,7 +62,7 @@ def light_free_of_shadow(shadow: LandImage) -> FloatImage:
     return share
 
 
-def _hot_spot(imager: ImagerSettings, scene: Scene) -> FloatImage:
+def _hot_spot(imager: CameraSettings, scene: Scene) -> FloatImage:
     """Return the beam's factor by the angle between looking and shining (Hapke's opposition)."""
     # A ray that goes where the light goes sees what the sun sees.
     cosine = -(scene.seen.rays @ scene.light.toward_sun.astype(np.float32))
@@ -76,3 +76,100 @@ def _hot_spot(imager: ImagerSettings, scene: Scene) -> FloatImage:
 def _mean_beam(scene: Scene) -> float:
     """Return the beam's share on the ground in view: haze is lit like the land around."""
     return float(np.mean(scene.beam, dtype=np.float64))
+
+
+EXPOSURE, RED, BLUE = 130, 131, 132
+"""Streams of the eye's random numbers."""
+
+Metered = Callable[[npt.ArrayLike, npt.ArrayLike, float], float]
+"""(east (N,), north (N,), time_s) -> mean light on the ground there over the reference's."""
+
+METERED_ACROSS = 5
+METERED_REACH = 0.8
+"""Of the height: the middle of the picture counts, as in most cameras."""
+LOOKS_BACK = 5
+LEAST_LIGHT = 1e-4
+LARGEST_DEVIATION = 3.0
+"""Drifts are held within three standard deviations: a camera's drift is bounded."""
+
+
+def exposure_stops(
+    settings: ExposureSettings, seed: int, pose: CameraPose, time_s: float, metered: Metered
+) -> float:
+    """Return by how many stops the exposure differs from that of full sun."""
+    stops = settings.drift_stops * _drift((seed, EXPOSURE), time_s, settings.drift_s)
+    if settings.follows > 0.0:
+        seen = _followed_light(settings, pose, time_s, metered)
+        stops -= settings.follows * float(np.log2(max(seen, LEAST_LIGHT)))
+    return float(np.clip(stops, -settings.most_stops, settings.most_stops))
+
+
+def white_balance(settings: ExposureSettings, seed: int, time_s: float) -> FloatArray:
+    """Return the gains (3,) of red, green and blue; green's is 1."""
+    red, blue = (
+        1.0 + settings.white_balance * _drift((seed, stream), time_s, settings.white_balance_s)
+        for stream in (RED, BLUE)
+    )
+    return np.array([red, 1.0, blue])
+
+
+def _followed_light(
+    settings: ExposureSettings, pose: CameraPose, time_s: float, metered: Metered
+) -> float:
+    """Return the light beneath the camera, the last moments weighing as the lag has it."""
+    reach_m = METERED_REACH * max(1.0, float(pose.position_enu_m[2]))
+    steps = np.linspace(-reach_m, reach_m, METERED_ACROSS)
+    east, north = (grid.ravel() for grid in np.meshgrid(steps, steps))
+    east, north = east + pose.position_enu_m[0], north + pose.position_enu_m[1]
+    # The quantiles of an exponential: each moment stands for an equal part of its weight.
+    parts = (np.arange(LOOKS_BACK) + 0.5) / LOOKS_BACK
+    ages_s = -settings.lag_s * np.log(1.0 - parts)
+    return float(np.mean([metered(east, north, time_s - float(age)) for age in ages_s]))
+
+
+def _drift(stream: tuple[int, ...], time_s: float, lifetime_s: float) -> float:
+    value = float(gaussian(stream, np.array([time_s]), lifetime_s)[0])
+    return max(-LARGEST_DEVIATION, min(LARGEST_DEVIATION, value))
+
+
+DISPLAY_GAMMA = 2.2
+STEPS = 65_535
+"""Of light: dark pixel values are 1 to 2 apart only with so many."""
+NOISE_STREAM = 140
+
+
+@lru_cache(maxsize=1)
+def light_of_value() -> FloatImage:
+    """Return the light (256,) of each pixel value."""
+    values = np.arange(256, dtype=np.float64) / 255.0
+    return (values**DISPLAY_GAMMA).astype(np.float32)
+
+
+@lru_cache(maxsize=1)
+def value_of_light() -> npt.NDArray[np.uint8]:
+    """Return the pixel value (65536,) of each step of light."""
+    light = np.arange(STEPS + 1, dtype=np.float64) / STEPS
+    return np.rint(255.0 * light ** (1.0 / DISPLAY_GAMMA)).astype(np.uint8)
+
+
+def read_out(
+    light: FloatImage, noise: FloatImage, settings: ImageSensorSettings
+) -> npt.NDArray[np.uint8]:
+    """Return the pixel values of one channel's light (N, M); overwrites both arrays.
+
+    `noise` is of mean 0 and deviation 1; where it is 0 there is none.
+    """
+    noise *= np.sqrt(
+        np.float32(settings.read_noise**2) + light * np.float32(1.0 / settings.full_well)
+    )
+    light += noise
+    light *= np.float32(STEPS)
+    np.clip(light, 0.0, STEPS, out=light)
+    pixels: npt.NDArray[np.uint8] = value_of_light()[light.astype(np.uint16)]
+    return pixels
+
+
+def noise_of(seed: int, number: int, shape: tuple[int, ...]) -> FloatImage:
+    """Return a picture's noise of mean 0 and deviation 1: a function of its number."""
+    random = np.random.Generator(np.random.SFC64((seed, NOISE_STREAM, number)))
+    return random.standard_normal(shape, dtype=np.float32)

@@ -4,26 +4,26 @@ A picture is a function of its view (pose, time, number) and the settings, to th
 places and light are worked out on a coarse lattice of pixels and interpolated between.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import cv2
 import numpy as np
+import numpy.typing as npt
 
 from recon.camera import ImageCircle, OmnidirectionalCamera
 from recon.model.imagery import CameraPose, RgbImage
-from recon.sim.app.camera_feed import View
-from recon.sim.camera.development import Scene, develop
-from recon.sim.camera.exposure import exposure_stops, white_balance
-from recon.sim.camera.hover import true_pose
-from recon.sim.camera.land_picture import land_picture
-from recon.sim.camera.lens import Lens
-from recon.sim.camera.look import look
-from recon.sim.camera.settings import ImagerSettings
+from recon.sim.camera.development import Scene, develop, exposure_stops, white_balance
+from recon.sim.camera.frames import CameraView
+from recon.sim.camera.lens import LATTICE_PX, GroundRays, Lens, look
+from recon.sim.camera.rig import true_pose
+from recon.sim.camera.settings import CameraSettings
 from recon.sim.errors import FrameSourceError
-from recon.sim.land.land_tiles import CELLS_M, land_of
+from recon.sim.land.land_tiles import CELLS_M, LandImage, LandSquare, land_of
 from recon.sim.world import Sky, SkySettings
-from recon.sim.world.keyframes import FloatArray
+from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.light import beam_share, light_under, metered_light
 from recon.sim.world.relief import Relief
-from recon.sim.world.sky_light import beam_share, light_under, metered_light
 
 
 def _clear_sky() -> Sky:
@@ -31,7 +31,7 @@ def _clear_sky() -> Sky:
 
 
 @dataclass(slots=True)
-class FieldFrames:
+class FieldRenderer:
     """Renders views of the land; needs views with a pose.
 
     The ground's height 0 is that of the pose's frame; with relief it rolls about it.
@@ -41,11 +41,11 @@ class FieldFrames:
     image_circle: ImageCircle | None = None
     seed: int = 0
     sky: Sky = field(default_factory=_clear_sky)
-    imager: ImagerSettings = field(default_factory=ImagerSettings)
+    imager: CameraSettings = field(default_factory=CameraSettings)
     relief: Relief | None = None
     _lens: Lens | None = field(default=None, init=False)
 
-    def render(self, view: View) -> RgbImage:
+    def render(self, view: CameraView) -> RgbImage:
         """Return the picture (rows, cols, 3); may be called from several threads."""
         pose, time_s = self.true_pose(view), view.elapsed_s
         lens, land, sun = self.lens, land_of(self.seed), self.sky.sun_at(time_s)
@@ -70,13 +70,13 @@ class FieldFrames:
             land_of(self.seed).square(level, 0.0, 0.0, self.sky.sun_at(0.0))
         self.sky.transmittance(0.0, 0.0, 0.0)
 
-    def true_pose(self, view: View) -> CameraPose:
+    def true_pose(self, view: CameraView) -> CameraPose:
         """Return where the camera truly was; `FrameSourceError` for a view without a pose."""
         if view.pose is None:
             raise FrameSourceError("expected a camera pose to render a field from, got none")
         return true_pose(view.pose, self.imager.hover, self.imager.seed, view.elapsed_s)
 
-    def gains(self, view: View) -> FloatArray:
+    def gains(self, view: CameraView) -> FloatArray:
         """Return exposure and white balance of a view: light's factors (3,), 1 in full sun."""
         return self._gains(self.true_pose(view), view.elapsed_s)
 
@@ -94,3 +94,62 @@ class FieldFrames:
         )
         gains: FloatArray = 2.0**stops * white_balance(exposure, seed, time_s)
         return gains
+
+
+Squares = Callable[[int], LandSquare]
+"""Level -> the land's pixels of that level around the camera."""
+
+FADE_M = 20.0
+"""Towards the edge of a level's square the next coarser one takes over."""
+
+
+def land_picture(lens: Lens, seen: GroundRays, squares: Squares) -> LandImage:
+    """Return red, green, blue and shadow (rows, cols, 4) of the lens's window.
+
+    From coarse to fine, each level where its pixels are called for.
+    """
+    east, north = lens.full(seen.east_m), lens.full(seen.north_m)
+    picture = _sample(squares(len(CELLS_M) - 1), east, north)
+    for level in range(len(CELLS_M) - 2, -1, -1):
+        if seen.footprint_m.min() >= CELLS_M[level + 1]:
+            break
+        square = squares(level)
+        weight = _weight(seen, square, CELLS_M[level + 1])
+        if (box := _box(weight, picture.shape)) is not None:
+            fine = _sample(square, east[box], north[box])
+            share = np.clip(lens.full(weight)[box], 0.0, 1.0)
+            picture[box] = cv2.blendLinear(
+                fine, np.ascontiguousarray(picture[box]), share, 1.0 - share
+            )
+    return picture
+
+
+def _weight(seen: GroundRays, square: LandSquare, coarser_m: float) -> FloatImage:
+    """Return the share of a level on the lattice: 1 where its pixels are as fine as the lens's."""
+    wanted = (coarser_m - seen.footprint_m) / (coarser_m - square.cell_m)
+    east_m, north_m = square.centre_m
+    reach = np.maximum(np.abs(seen.east_m - east_m), np.abs(seen.north_m - north_m))
+    covered = (square.half_width_m - reach) / FADE_M
+    weight: FloatImage = np.clip(np.minimum(wanted, covered), 0.0, 1.0).astype(np.float32)
+    return weight
+
+
+def _box(weight: FloatImage, shape: tuple[int, ...]) -> tuple[slice, slice] | None:
+    """Return the window's rows and columns where a weight on the lattice counts."""
+    rows, cols = np.flatnonzero(weight.any(axis=1)), np.flatnonzero(weight.any(axis=0))
+    if rows.size == 0:
+        return None
+    # One block more on each side: interpolation reaches into it.
+    return (
+        slice(max(0, (rows[0] - 1) * LATTICE_PX), min(shape[0], (rows[-1] + 2) * LATTICE_PX)),
+        slice(max(0, (cols[0] - 1) * LATTICE_PX), min(shape[1], (cols[-1] + 2) * LATTICE_PX)),
+    )
+
+
+def _sample(square: LandSquare, east_m: FloatImage, north_m: FloatImage) -> npt.NDArray[np.uint8]:
+    per_m = np.float32(1.0 / square.cell_m)
+    cols = (east_m - np.float32(square.west_m)) * per_m - np.float32(0.5)
+    rows = (np.float32(square.north_m) - north_m) * per_m - np.float32(0.5)
+    return cv2.remap(
+        square.pixels, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT_101
+    ).astype(np.uint8, copy=False)

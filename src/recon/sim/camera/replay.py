@@ -20,10 +20,9 @@ from recon.camera import (
 )
 from recon.geo import enu_from_points, geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.model.imagery import CameraPose, RgbImage
-from recon.sim.app.camera_feed import View
-from recon.sim.camera.frame_files import read_frame
-from recon.sim.camera.rig import ImagerRig
+from recon.model.imagery import CameraPose
+from recon.sim.camera.frames import StillFrame, read_frame
+from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import ReplayError
 
 FRAME_FILE = "RefFrame.jpeg"
@@ -31,21 +30,7 @@ POINTS_FILE = "GCPs.txt"
 CAMERA_FILE = "camera-model.txt"
 
 
-class StillFrame:
-    """The same picture for ever."""
-
-    def __init__(self, rgb: RgbImage) -> None:
-        self.rgb = rgb
-
-    def prepare(self) -> None:
-        """Nothing is left to do."""
-
-    def render(self, view: View) -> RgbImage:
-        """Return the picture."""
-        return self.rgb
-
-
-def load_replay(folder: Path) -> tuple[ImagerRig, StillFrame]:
+def load_replay(folder: Path) -> tuple[CameraRig, StillFrame]:
     """Return where the eye hangs over a real field, and what it sees; raises `ReplayError`."""
     for name in (FRAME_FILE, POINTS_FILE):
         if not (folder / name).is_file():
@@ -71,7 +56,7 @@ def _rig(
     camera: OmnidirectionalCamera,
     points: tuple[ControlPoint, ...],
     marked_size_px: tuple[int, int],
-) -> ImagerRig:
+) -> CameraRig:
     """Return the rig: the frame's origin is the middle of the control points, on the ground."""
     origin = GeoPoint(
         float(np.mean([p.latitude_deg for p in points])),
@@ -84,7 +69,7 @@ def _rig(
     return rig_over(camera, frame, solution.pose)
 
 
-def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose) -> ImagerRig:
+def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose) -> CameraRig:
     """Return a rig whose marked frame was taken from `pose`, the aircraft pointing north.
 
     Any heading would do: only changes of it turn the camera.
@@ -92,4 +77,4 @@ def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose)
     latitude, longitude, _ = geo_from_enu(frame, (*pose.position_enu_m[:2], 0.0))
     height_m = float(pose.position_enu_m[2])
     marked = TelemetryReference(float(latitude[0]), float(longitude[0]), height_m, 0.0)
-    return ImagerRig(camera, frame, pose, marked)
+    return CameraRig(camera, frame, pose, marked)

@@ -1,16 +1,21 @@
-"""The eye's camera on its aircraft: where it looks when telemetry says this or that."""
+"""Where the imaging drone's camera is: the pose that telemetry gives, and the true one."""
 
 from dataclasses import dataclass
+from math import radians
+
+import numpy as np
 
 from recon.camera import OmnidirectionalCamera, TelemetryReference, displaced_pose
 from recon.geo import shift_east_north_m
 from recon.model.geo import LocalFrame
 from recon.model.imagery import CameraPose
 from recon.model.vehicle import Mount
+from recon.sim.camera.settings import HoverSettings
+from recon.sim.world.keyframes import FloatArray, gaussian, number
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ImagerRig:
+class CameraRig:
     """A lens, and the pose it has when the aircraft is at `marked`, in `frame`.
 
     `frame`'s origin lies on the (flat) ground; everywhere else the pose moves with the aircraft.
@@ -26,3 +31,37 @@ class ImagerRig:
         """Return the camera's pose when the aircraft is truly at `truth`."""
         shift_m = shift_east_north_m(self.frame, self.marked, truth)
         return displaced_pose(self.marked_pose, self.marked, truth, shift_m, self.mount)
+
+
+WOBBLE, MOUNT, DRIFT = 100, 110, 120
+"""Streams of the eye's random numbers: three axes from each."""
+
+
+def true_pose(pose: CameraPose, settings: HoverSettings, seed: int, time_s: float) -> CameraPose:
+    """Return the true pose at a time; `pose` is where aircraft and marking put the camera."""
+    lean_rad = np.array(
+        [
+            radians(settings.mount_error_deg) * number((seed, MOUNT + axis), 0)
+            + radians(settings.wobble_deg)
+            * _value((seed, WOBBLE + axis), time_s, settings.wobble_s)
+            for axis in range(3)
+        ]
+    )
+    drift = [_value((seed, DRIFT + axis), time_s, settings.drift_s) for axis in range(3)]
+    shift_m = np.array(drift) * (settings.drift_m, settings.drift_m, settings.drift_up_m)
+    return CameraPose(pose.rotation_enu_camera @ _rotation(lean_rad), pose.position_enu_m + shift_m)
+
+
+def _value(stream: tuple[int, ...], time_s: float, lifetime_s: float) -> float:
+    return float(gaussian(stream, np.array([time_s]), lifetime_s)[0])
+
+
+def _rotation(vector_rad: FloatArray) -> FloatArray:
+    """Return the rotation about a vector by its length (Rodrigues)."""
+    angle = float(np.linalg.norm(vector_rad))
+    if angle == 0.0:
+        return np.eye(3)
+    x, y, z = vector_rad / angle
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    rotation: FloatArray = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    return rotation

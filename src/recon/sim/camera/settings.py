@@ -75,7 +75,7 @@ class ExposureSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class SensorSettings:
+class ImageSensorSettings:
     """What the sensor adds."""
 
     full_well: float = 6_000.0
@@ -89,14 +89,14 @@ class SensorSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class ImagerSettings:
+class CameraSettings:
     """All that makes the eye's pictures less than perfect."""
 
     seed: int = 0
     hover: HoverSettings = field(default_factory=HoverSettings)
     lens: LensSettings = field(default_factory=LensSettings)
     exposure: ExposureSettings = field(default_factory=ExposureSettings)
-    sensor: SensorSettings = field(default_factory=SensorSettings)
+    sensor: ImageSensorSettings = field(default_factory=ImageSensorSettings)
     haze_m: float = 9_000.0
     """After which 1/e of what is seen is left; a clear summer day's air (30 km of sight)."""
     hot_spot: float = 0.28
@@ -117,7 +117,7 @@ class ImagerSettings:
             hover=HoverSettings(wobble_deg=0.0, mount_error_deg=0.0, drift_m=0.0, drift_up_m=0.0),
             lens=LensSettings(rim_falloff=0.0),
             exposure=ExposureSettings(follows=0.0, drift_stops=0.0, white_balance=0.0),
-            sensor=SensorSettings(full_well=1e12, read_noise=0.0),
+            sensor=ImageSensorSettings(full_well=1e12, read_noise=0.0),
             haze_m=1e12,
             hot_spot=0.0,
         )

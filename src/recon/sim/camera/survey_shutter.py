@@ -16,10 +16,10 @@ import numpy.typing as npt
 from recon.model.survey import SurveyCamera
 from recon.model.units import seconds_to_ns
 from recon.sim.errors import SimulationError
-from recon.sim.flight.kinematics import Motion
+from recon.sim.flight.kinematics import AircraftMotion
 
 FloatArray = npt.NDArray[np.float64]
-TruePath = Callable[[int], Motion | None]
+TruePath = Callable[[int], AircraftMotion | None]
 """Time in ns -> where the aircraft truly is, None while it does not fly."""
 
 LATEST_S = 0.08
@@ -99,7 +99,7 @@ def photos(
     return taken
 
 
-def footprint_m(motion: Motion, camera: SurveyCamera) -> FloatArray:
+def footprint_m(motion: AircraftMotion, camera: SurveyCamera) -> FloatArray:
     """Return the corners (4, 2) east, north that a level camera shows, its top to the yaw."""
     ahead_m = camera.along_m(motion.height_m) / 2.0
     aside_m = camera.across_m(motion.height_m) / 2.0
@@ -111,7 +111,7 @@ def footprint_m(motion: Motion, camera: SurveyCamera) -> FloatArray:
 
 
 def _photo(
-    serial: str, number: int, time_ns: int, motion: Motion, camera: SurveyCamera
+    serial: str, number: int, time_ns: int, motion: AircraftMotion, camera: SurveyCamera
 ) -> SurveyPhoto:
     return SurveyPhoto(
         serial,

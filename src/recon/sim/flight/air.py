@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from math import cos, hypot, pi, radians, sin
 
 from recon.model.units import NS_PER_S
-from recon.sim.flight.kinematics import DRAG_PER_S, Motion
+from recon.sim.flight.kinematics import DRAG_PER_S, AircraftMotion
 from recon.sim.world.wind import Wind
 
 Velocity = tuple[float, float, float]
@@ -81,7 +81,7 @@ class Air:
         """Take the added gusts away."""
         self._squall = None
 
-    def step(self, motion: Motion, now_ns: int, seconds: float) -> None:
+    def step(self, motion: AircraftMotion, now_ns: int, seconds: float) -> None:
         """Feel the wind where the aircraft is, and give way to what is new in it."""
         if self.wind is None and self._squall is None and self.push == self._known == STILL:
             self.felt = STILL
@@ -110,7 +110,7 @@ class Air:
         pushed_mps = self.push[axis]
         return pushed_mps + seconds * (DRAG_PER_S * unknown_mps - pushed_mps / COMES_BACK_WITHIN_S)
 
-    def _look(self, motion: Motion, now_ns: int) -> None:
+    def _look(self, motion: AircraftMotion, now_ns: int) -> None:
         if self._looked_ns is None or now_ns >= self._looked_ns + LOOK_NS:
             self._looked_ns = now_ns
             self._mean = self._world(motion, now_ns)
@@ -121,7 +121,7 @@ class Air:
         north, east, up = squall.at((now_ns - since_ns) / NS_PER_S)
         self.felt = (self._mean[0] + north, self._mean[1] + east, self._mean[2] + up)
 
-    def _world(self, motion: Motion, now_ns: int) -> Velocity:
+    def _world(self, motion: AircraftMotion, now_ns: int) -> Velocity:
         if self.wind is None:
             return STILL
         east, north, up = self.wind.at(

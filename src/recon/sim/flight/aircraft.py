@@ -6,11 +6,16 @@ from math import hypot
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import FlightMode
 from recon.sim.flight.air import Air
-from recon.sim.flight.battery import FORCED_LANDING_FRACTION, Battery
-from recon.sim.flight.flight_modes import GoHome, Grounded, Hold, Land, Manoeuvre, Stick, TakeOff
-from recon.sim.flight.kinematics import Demand, Limits, Motion, hold_height_mps, step
+from recon.sim.flight.battery import FORCED_LANDING_FRACTION, GROUND_LOAD, Battery, flying_load
+from recon.sim.flight.flight_modes import ActiveMode, GoHome, Grounded, Hold, Land, Stick, TakeOff
+from recon.sim.flight.kinematics import (
+    AircraftMotion,
+    Limits,
+    VelocityDemand,
+    hold_height_mps,
+    step,
+)
 from recon.sim.flight.mission import Gimbal, MissionFlight, MissionPoint
-from recon.sim.flight.power import GROUND_LOAD, flying_load
 
 TICK_NS = 50_000_000
 """Motion advances in steps of 50 ms, so that it does not depend on how often it is asked."""
@@ -48,8 +53,8 @@ class Aircraft:
 
     now_ns: int
     settings: AircraftSettings = field(default_factory=AircraftSettings)
-    motion: Motion = field(default_factory=Motion)
-    manoeuvre: Manoeuvre = field(default_factory=Grounded)
+    motion: AircraftMotion = field(default_factory=AircraftMotion)
+    active_mode: ActiveMode = field(default_factory=Grounded)
     gimbal: Gimbal = field(default_factory=Gimbal)
     battery: Battery = field(default_factory=lambda: Battery(1.0, 1500.0))
     is_pilots: bool = False
@@ -65,24 +70,24 @@ class Aircraft:
     @property
     def is_on_ground(self) -> bool:
         """Whether the motors are off."""
-        return isinstance(self.manoeuvre, Grounded)
+        return isinstance(self.active_mode, Grounded)
 
     @property
     def is_flying(self) -> bool:
         """What the flight controller says: lifted off, and the motors not stopped since."""
-        if isinstance(self.manoeuvre, TakeOff):
+        if isinstance(self.active_mode, TakeOff):
             return self.motion.height_m > FLYING_ABOVE_M
         return not self.is_on_ground
 
     @property
     def flight_mode(self) -> FlightMode:
         """The flight mode."""
-        return self.manoeuvre.mode
+        return self.active_mode.mode
 
     @property
     def mission_id(self) -> int:
         """The number of the mission being flown, else 0."""
-        return self._mission_count if isinstance(self.manoeuvre, MissionFlight) else 0
+        return self._mission_count if isinstance(self.active_mode, MissionFlight) else 0
 
     @property
     def is_at_max_height(self) -> bool:
@@ -111,25 +116,25 @@ class Aircraft:
     def hover(self) -> None:
         """Stop and hold; on the ground nothing."""
         if not self.is_on_ground:
-            self.manoeuvre = Hold()
+            self.active_mode = Hold()
 
-    def take_off(self, then: Manoeuvre | None = None) -> None:
+    def take_off(self, then: ActiveMode | None = None) -> None:
         """Start from the ground, which is from now on home, and go on with `then`."""
         if self.is_on_ground:
             self._set_home()
-            self.manoeuvre = TakeOff(self.settings.limits, then or Hold())
+            self.active_mode = TakeOff(self.settings.limits, then or Hold())
         elif then is not None:
-            self.manoeuvre = then
+            self.active_mode = then
 
     def land(self) -> None:
         """Land here."""
-        if not self.is_on_ground and not isinstance(self.manoeuvre, Land):
-            self.manoeuvre = Land(self.settings.landing_confirmation_s)
+        if not self.is_on_ground and not isinstance(self.active_mode, Land):
+            self.active_mode = Land(self.settings.landing_confirmation_s)
 
     def go_home(self) -> None:
         """Return and land; on the ground, or not knowing where it is, nothing."""
         if not self.is_on_ground and self.has_gnss:
-            self.manoeuvre = self._way_home()
+            self.active_mode = self._way_home()
 
     def take_off_and_go_home(self) -> None:
         """What some apps make of a return order on the ground."""
@@ -167,35 +172,35 @@ class Aircraft:
     def stick(self, stick: Stick) -> None:
         """Fly a stick command; on the ground, for a pilot's, or without GNSS, nothing."""
         if not self.is_on_ground and self.obeys_the_app:
-            self.manoeuvre = stick
+            self.active_mode = stick
 
     def pilot_takes(self, mode: FlightMode = FlightMode.GPS_SPORT) -> None:
         """The pilot flips the mode switch, and for now holds."""
         self.is_pilots = True
         if not self.is_on_ground:
-            self.manoeuvre = Hold(mode)
+            self.active_mode = Hold(mode)
 
-    def pilot_gives_back(self) -> None:
+    def pilot_releases(self) -> None:
         """The pilot flips the mode switch back; the aircraft holds until it is told something."""
         self.is_pilots = False
-        if isinstance(self.manoeuvre, Hold):
-            self.manoeuvre = Hold()
+        if isinstance(self.active_mode, Hold):
+            self.active_mode = Hold()
 
     def lose_gnss(self) -> None:
         """Know no longer where it is: whatever was flown ends, and the wind carries it along."""
         self.has_gnss = False
-        if not self.is_on_ground and not isinstance(self.manoeuvre, Land | TakeOff):
-            self.manoeuvre = Hold(FlightMode.ATTI)
+        if not self.is_on_ground and not isinstance(self.active_mode, Land | TakeOff):
+            self.active_mode = Hold(FlightMode.ATTI)
 
     def find_gnss(self) -> None:
         """Know again where it is, and hold there."""
         self.has_gnss = True
         if self.flight_mode is FlightMode.ATTI:
-            self.manoeuvre = Hold()
+            self.active_mode = Hold()
 
     def crash(self) -> None:
         """Fall from where it is, and lie there."""
-        self.manoeuvre = Grounded()
+        self.active_mode = Grounded()
         self._lie_still()
         self._landed_at_ns = None
 
@@ -214,7 +219,7 @@ class Aircraft:
     def _tick(self, seconds: float) -> None:
         self.air.step(self.motion, self.now_ns, seconds)
         if not self.is_on_ground:
-            demand = self._carried(self.manoeuvre.demand(self.motion, seconds))
+            demand = self._carried(self.active_mode.demand(self.motion, seconds))
             wind = self.air.horizontal
             self.motion = _kept_above_ground(
                 step(self.motion, demand, seconds, self.settings.limits, wind)
@@ -228,12 +233,12 @@ class Aircraft:
         if self.battery.fraction < FORCED_LANDING_FRACTION:
             self.land()
 
-    def _carried(self, demand: Demand) -> Demand:
+    def _carried(self, demand: VelocityDemand) -> VelocityDemand:
         """Return what is flown of a demand: the wind adds its part, the height limit takes its."""
         north, east, up = self._drift() if self.is_flying else (0.0, 0.0, 0.0)
         limits = self.settings.limits
         highest = hold_height_mps(self.motion.height_m, self.settings.max_height_m, limits)
-        return Demand(
+        return VelocityDemand(
             demand.velocity_north_mps + north,
             demand.velocity_east_mps + east,
             min(demand.velocity_up_mps + up, highest),
@@ -245,16 +250,16 @@ class Aircraft:
         north, east, up = self.air.push
         if not self.has_gnss:
             return *self.air.horizontal, up
-        if isinstance(self.manoeuvre, Stick):
+        if isinstance(self.active_mode, Stick):
             wind_north, wind_east = self.air.horizontal
             return north + STICK_DRIFT_SHARE * wind_north, east + STICK_DRIFT_SHARE * wind_east, up
         return north, east, up
 
     def _go_on(self) -> None:
-        following = self.manoeuvre.successor(self.motion)
+        following = self.active_mode.successor(self.motion)
         if following is None:
             return
-        self.manoeuvre = following
+        self.active_mode = following
         if isinstance(following, Grounded):
             self._lie_still()
             self._landed_at_ns = self.now_ns
@@ -269,10 +274,12 @@ class Aircraft:
 
     def _lie_still(self) -> None:
         motion = self.motion
-        self.motion = Motion(north_m=motion.north_m, east_m=motion.east_m, yaw_deg=motion.yaw_deg)
+        self.motion = AircraftMotion(
+            north_m=motion.north_m, east_m=motion.east_m, yaw_deg=motion.yaw_deg
+        )
 
 
-def _kept_above_ground(motion: Motion) -> Motion:
+def _kept_above_ground(motion: AircraftMotion) -> AircraftMotion:
     if motion.height_m >= 0.0:
         return motion
     return motion._replace(

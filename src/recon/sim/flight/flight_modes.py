@@ -10,9 +10,9 @@ from typing import Protocol
 from recon.model.vehicle import FlightMode
 from recon.sim.flight.kinematics import (
     BRAKING_MPS2,
-    Demand,
+    AircraftMotion,
     Limits,
-    Motion,
+    VelocityDemand,
     braking_speed_mps,
     hold_height_mps,
 )
@@ -30,7 +30,7 @@ LANDING_SLOW_MPS = 0.8
 LANDING_SLOW_BELOW_M = 6.0
 
 
-class Manoeuvre(Protocol):
+class ActiveMode(Protocol):
     """One thing a vehicle does."""
 
     @property
@@ -38,11 +38,11 @@ class Manoeuvre(Protocol):
         """The flight mode telemetry reports meanwhile."""
         ...
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Return what the next `seconds` ask of the airframe."""
         ...
 
-    def successor(self, motion: Motion) -> "Manoeuvre | None":
+    def successor(self, motion: AircraftMotion) -> "ActiveMode | None":
         """Return what follows when this is done, else None."""
         ...
 
@@ -53,11 +53,11 @@ class Grounded:
 
     mode: FlightMode = FlightMode.GPS_ATTI
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for nothing."""
-        return Demand()
+        return VelocityDemand()
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Stay until ordered otherwise."""
         return None
 
@@ -68,11 +68,11 @@ class Hold:
 
     mode: FlightMode = FlightMode.GPS_ATTI
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for standstill."""
-        return Demand()
+        return VelocityDemand()
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Stay until ordered otherwise."""
         return None
 
@@ -82,20 +82,20 @@ class TakeOff:
     """Start the motors, rise to takeoff height, then do `then`."""
 
     limits: Limits
-    then: Manoeuvre = field(default_factory=Hold)
+    then: ActiveMode = field(default_factory=Hold)
     mode: FlightMode = FlightMode.AUTO_TAKEOFF
     _elapsed_s: float = 0.0
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for a climb once the motors run."""
         self._elapsed_s += seconds
         if self._elapsed_s < SPIN_UP_S:
-            return Demand()
-        return Demand(
+            return VelocityDemand()
+        return VelocityDemand(
             velocity_up_mps=hold_height_mps(motion.height_m, TAKEOFF_HEIGHT_M, self.limits)
         )
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Go on once the height is reached."""
         return self.then if motion.height_m > TAKEOFF_HEIGHT_M - 0.1 else None
 
@@ -113,21 +113,21 @@ class Land:
         waiting = 0.0 < self._waited_s < self.confirmation_s
         return FlightMode.CONFIRM_LANDING if waiting else FlightMode.AUTO_LANDING
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for a descent straight down, after the horizontal speed is gone."""
         if motion.ground_speed_mps > 0.5:
-            return Demand()
+            return VelocityDemand()
         if self._waited_s >= self.confirmation_s:
-            return Demand(velocity_up_mps=-LANDING_SLOW_MPS)
+            return VelocityDemand(velocity_up_mps=-LANDING_SLOW_MPS)
         if motion.height_m <= CONFIRM_HEIGHT_M + 0.05:
             self._waited_s += seconds
-            return Demand()
+            return VelocityDemand()
         # Half a metre above the stop the descent is a crawl, so that braking ends at 0.3 m.
         above_m = motion.height_m - CONFIRM_HEIGHT_M
         fast = LANDING_SLOW_MPS if motion.height_m < LANDING_SLOW_BELOW_M else LANDING_FAST_MPS
-        return Demand(velocity_up_mps=-min(fast, 0.1 + braking_speed_mps(above_m, 0.8)))
+        return VelocityDemand(velocity_up_mps=-min(fast, 0.1 + braking_speed_mps(above_m, 0.8)))
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Stop the motors on the ground."""
         return Grounded() if motion.height_m <= 0.0 else None
 
@@ -146,17 +146,17 @@ class GoHome:
     _height_m: float | None = None
     _elapsed_s: float = 0.0
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for the climb first, then for the way home."""
         self._elapsed_s += seconds
         if self._height_m is None:
             self._height_m = max(self.go_home_height_m, motion.height_m)
         up = hold_height_mps(motion.height_m, self._height_m, self.limits)
         if motion.height_m < self._height_m - 1.0:
-            return Demand(velocity_up_mps=up)
+            return VelocityDemand(velocity_up_mps=up)
         return _towards(motion, self.home_north_m, self.home_east_m, self.speed_mps, up)
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Land once above home."""
         if self._height_m is None or motion.height_m < self._height_m - 1.0:
             return None
@@ -182,7 +182,7 @@ class Stick:
     mode: FlightMode = FlightMode.JOYSTICK
     _elapsed_s: float = 0.0
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for the stick's velocity; after the timeout for standstill, the rest kept."""
         self._elapsed_s += seconds
         x, y = self.velocity_x_mps, self.velocity_y_mps
@@ -191,15 +191,15 @@ class Stick:
         north, east = (x, y) if not self.is_body_frame else _from_body(x, y, motion.yaw_deg)
         up = hold_height_mps(motion.height_m, self.height_m, self.limits)
         north, east = north + self.drift_north_mps, east + self.drift_east_mps
-        return Demand(north, east, up, self.yaw_deg)
+        return VelocityDemand(north, east, up, self.yaw_deg)
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Stay in this mode until ordered otherwise."""
         return None
 
 
 @dataclass(slots=True)
-class Wander:
+class BackAndForth:
     """Fly back and forth over a rectangle as if a pilot did, in position mode, for ever."""
 
     corners_m: tuple[tuple[float, float], ...]
@@ -209,17 +209,17 @@ class Wander:
     mode: FlightMode = FlightMode.GPS_ATTI
     _next: int = 0
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for the next corner, once the height is there."""
         up = hold_height_mps(motion.height_m, self.height_m, self.limits)
         if motion.height_m < 0.5 * self.height_m:
-            return Demand(velocity_up_mps=up)
+            return VelocityDemand(velocity_up_mps=up)
         north_m, east_m = self.corners_m[self._next]
         if hypot(north_m - motion.north_m, east_m - motion.east_m) < 2.0:
             self._next = (self._next + 1) % len(self.corners_m)
         return _towards(motion, north_m, east_m, self.speed_mps, up)
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Stay until ordered otherwise."""
         return None
 
@@ -238,13 +238,13 @@ def _from_body(forward: float, right: float, yaw_deg: float) -> tuple[float, flo
 
 
 def _towards(
-    motion: Motion, north_m: float, east_m: float, speed_mps: float, up_mps: float
-) -> Demand:
+    motion: AircraftMotion, north_m: float, east_m: float, speed_mps: float, up_mps: float
+) -> VelocityDemand:
     """Return the demand that flies level to a point, nose first, and stops there."""
     north, east = north_m - motion.north_m, east_m - motion.east_m
     distance = hypot(north, east)
     if distance < 1e-6:
-        return Demand(velocity_up_mps=up_mps)
+        return VelocityDemand(velocity_up_mps=up_mps)
     share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
     yaw = heading_deg(north, east) if distance > 3.0 else None
-    return Demand(north * share, east * share, up_mps, yaw)
+    return VelocityDemand(north * share, east * share, up_mps, yaw)

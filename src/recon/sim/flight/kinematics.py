@@ -37,7 +37,7 @@ class Limits:
     yaw_rate_dps: float = 60.0
 
 
-class Motion(NamedTuple):
+class AircraftMotion(NamedTuple):
     """Where the vehicle is, how fast, and which way it points."""
 
     north_m: float = 0.0
@@ -56,7 +56,7 @@ class Motion(NamedTuple):
         return hypot(self.velocity_north_mps, self.velocity_east_mps)
 
 
-class Demand(NamedTuple):
+class VelocityDemand(NamedTuple):
     """What a pilot or autopilot asks for; `yaw_deg` None keeps the present heading."""
 
     velocity_north_mps: float = 0.0
@@ -66,8 +66,12 @@ class Demand(NamedTuple):
 
 
 def step(
-    motion: Motion, demand: Demand, seconds: float, limits: Limits, wind: Wind = (0.0, 0.0)
-) -> Motion:
+    motion: AircraftMotion,
+    demand: VelocityDemand,
+    seconds: float,
+    limits: Limits,
+    wind: Wind = (0.0, 0.0),
+) -> AircraftMotion:
     """Return the motion `seconds` later, with every limit kept.
 
     `wind` is the air's velocity north and east. The airframe leans against it, and where it would
@@ -77,7 +81,7 @@ def step(
     up = _follow_vertically(motion.velocity_up_mps, demand.velocity_up_mps, seconds, limits)
     yaw = _turn(motion.yaw_deg, demand.yaw_deg, seconds, limits.yaw_rate_dps)
     pitch, roll = _tilt(motion, (north, east), seconds, yaw, wind)
-    return Motion(
+    return AircraftMotion(
         north_m=motion.north_m + 0.5 * (motion.velocity_north_mps + north) * seconds,
         east_m=motion.east_m + 0.5 * (motion.velocity_east_mps + east) * seconds,
         height_m=motion.height_m + 0.5 * (motion.velocity_up_mps + up) * seconds,
@@ -110,7 +114,7 @@ def hold_height_mps(height_m: float, target_m: float, limits: Limits) -> float:
 
 
 def _follow_horizontally(
-    motion: Motion, demand: Demand, seconds: float, limits: Limits, wind: Wind
+    motion: AircraftMotion, demand: VelocityDemand, seconds: float, limits: Limits, wind: Wind
 ) -> tuple[float, float]:
     asked = _clip(demand.velocity_north_mps, demand.velocity_east_mps, limits.speed_mps)
     wanted_north, wanted_east = _against(asked, wind, limits.airspeed_mps)
@@ -156,7 +160,11 @@ def _against(asked: tuple[float, float], wind: Wind, fastest_mps: float) -> tupl
 
 
 def _tilt(
-    motion: Motion, velocity: tuple[float, float], seconds: float, yaw_deg: float, wind: Wind
+    motion: AircraftMotion,
+    velocity: tuple[float, float],
+    seconds: float,
+    yaw_deg: float,
+    wind: Wind,
 ) -> tuple[float, float]:
     """Return pitch (nose up) and roll (right down) that give this acceleration against drag."""
     north, east = velocity

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from math import hypot, sqrt
 
 from recon.model.vehicle import FlightMode
-from recon.sim.flight.flight_modes import Hold, Land, Manoeuvre, heading_deg
+from recon.sim.flight.flight_modes import ActiveMode, Hold, Land, heading_deg
 from recon.sim.flight.kinematics import (
     BRAKING_MPS2,
-    Demand,
+    AircraftMotion,
     Limits,
-    Motion,
+    VelocityDemand,
     braking_speed_mps,
     hold_height_mps,
 )
@@ -70,12 +70,12 @@ class MissionFlight:
     _loiter_left_s: float | None = None
     _curve: "CurveFollower | None" = None
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for the way to the next waypoint, or for standstill while its action runs."""
         if self._curve is not None:
             return self._curve.demand(motion, seconds)
         if self.next_index >= len(self.points):
-            return Demand()
+            return VelocityDemand()
         target = self.points[self.next_index]
         if not self._has_risen:
             return self._rise(motion, target)
@@ -86,7 +86,7 @@ class MissionFlight:
         previous = self.points[max(0, self.next_index - 1)]
         return _pursue(motion, target, previous.speed_mps, self.limits)
 
-    def successor(self, motion: Motion) -> Manoeuvre | None:
+    def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Land or hover after the last waypoint."""
         flown = self.next_index >= len(self.points)
         if self._curve is not None:
@@ -95,11 +95,11 @@ class MissionFlight:
             return None
         return Land(self.confirmation_s) if self.lands_at_end else Hold()
 
-    def _rise(self, motion: Motion, target: MissionPoint) -> Demand:
+    def _rise(self, motion: AircraftMotion, target: MissionPoint) -> VelocityDemand:
         """Climb to the first waypoint's height before going there, as DJI's safe start does."""
         if motion.height_m >= target.height_m - 1.0:
             self._has_risen = True
-        return Demand(
+        return VelocityDemand(
             velocity_up_mps=hold_height_mps(motion.height_m, target.height_m, self.limits)
         )
 
@@ -111,14 +111,14 @@ class MissionFlight:
         if point.gimbal_pitch_deg is not None:
             self.gimbal.wanted_deg = point.gimbal_pitch_deg
 
-    def _act(self, seconds: float) -> Demand:
+    def _act(self, seconds: float) -> VelocityDemand:
         """Stay until both the loiter time and the gimbal's turn are over."""
         left_s = (self._loiter_left_s or 0.0) - seconds
         self._loiter_left_s = max(0.0, left_s)
         if left_s <= 0.0 and self.gimbal.has_arrived:
             self._loiter_left_s = None
             self.next_index += 1
-        return Demand()
+        return VelocityDemand()
 
 
 class CurveFollower:
@@ -136,7 +136,7 @@ class CurveFollower:
         """Whether the point has reached the end."""
         return self._along_m >= self.path.length_m
 
-    def demand(self, motion: Motion, seconds: float) -> Demand:
+    def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Ask for the point's velocity, corrected towards where it is."""
         place = self.path.place_at(self._along_m)
         behind = [
@@ -154,10 +154,10 @@ class CurveFollower:
             for along, back in zip(place.direction, behind, strict=True)
         )
         yaw = heading_deg(*place.direction[:2]) if hypot(*place.direction[:2]) > 1e-3 else None
-        return Demand(north, east, up, yaw)
+        return VelocityDemand(north, east, up, yaw)
 
 
-def _has_arrived(motion: Motion, point: MissionPoint) -> bool:
+def _has_arrived(motion: AircraftMotion, point: MissionPoint) -> bool:
     distance = sqrt(
         (point.north_m - motion.north_m) ** 2
         + (point.east_m - motion.east_m) ** 2
@@ -166,17 +166,19 @@ def _has_arrived(motion: Motion, point: MissionPoint) -> bool:
     return distance < ARRIVED_WITHIN_M and motion.ground_speed_mps < ARRIVED_BELOW_MPS
 
 
-def _pursue(motion: Motion, target: MissionPoint, speed_mps: float, limits: Limits) -> Demand:
+def _pursue(
+    motion: AircraftMotion, target: MissionPoint, speed_mps: float, limits: Limits
+) -> VelocityDemand:
     """Return the demand that flies straight at a waypoint in 3D and stops there."""
     north, east = target.north_m - motion.north_m, target.east_m - motion.east_m
     up = target.height_m - motion.height_m
     distance = sqrt(north * north + east * east + up * up)
     if distance < 1e-6:
-        return Demand()
+        return VelocityDemand()
     share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
     # A steep leg is flown as fast as the climb or descent limit lets it.
     steepest = limits.climb_mps if up > 0.0 else limits.descent_mps
     if abs(up) * share > steepest:
         share = steepest / abs(up)
     yaw = heading_deg(north, east) if hypot(north, east) > 3.0 else None
-    return Demand(north * share, east * share, up * share, yaw)
+    return VelocityDemand(north * share, east * share, up * share, yaw)

@@ -4,13 +4,68 @@ Pixels of a size `cell_m` are numbered over the whole land: column j covers east
 cells, row i covers north from -i - 1 to -i cells, so the origin is a corner of four.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.land.farmland import Box, FloatArray, Tree
-from recon.sim.land.land_index import LandIndex
+from recon.sim.land.farmland import Box, Building, Farmland, FloatArray, Plot, Pond, Tree
+
+LONGEST_SHADOW_M = 75.0
+"""Of the tallest tree or barn under the lowest sun that shadows are drawn for."""
+
+Thing = TypeVar("Thing")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed(Generic[Thing]):
+    """Things, and the boxes (N, 4) that they may be seen in, as west, south, east, north."""
+
+    things: Sequence[Thing]
+    boxes_m: FloatArray
+
+    def within(self, box: Box) -> list[Thing]:
+        """Return what touches a box, in the land's order."""
+        west, south, east, north = box
+        boxes = self.boxes_m
+        touches = (boxes[:, 0] < east) & (boxes[:, 2] > west)
+        touches &= (boxes[:, 1] < north) & (boxes[:, 3] > south)
+        return [self.things[number] for number in np.flatnonzero(touches).tolist()]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LandIndex:
+    """The land's things by place; trees and buildings with their shadows."""
+
+    plots: Placed[Plot]
+    tracks: Placed[Box]
+    yards: Placed[Box]
+    buildings: Placed[Building]
+    ponds: Placed[Pond]
+    trees: Placed[Tree]
+
+
+@lru_cache(maxsize=2)
+def index_of(land: Farmland) -> LandIndex:
+    """Return a land's index."""
+    far = LONGEST_SHADOW_M
+    return LandIndex(
+        _placed(land.plots, [p.box_m for p in land.plots]),
+        _placed(land.tracks, land.tracks),
+        _placed(land.yards, land.yards),
+        _placed(land.buildings, [b.box_m for b in land.buildings], far),
+        _placed(land.ponds, [p.box_m for p in land.ponds]),
+        _placed(land.trees, [(t.east_m, t.north_m, t.east_m, t.north_m) for t in land.trees], far),
+    )
+
+
+def _placed(things: Sequence[Thing], boxes: Sequence[Box], wider_m: float = 0.0) -> Placed[Thing]:
+    around = np.array(boxes, dtype=np.float64).reshape(-1, 4)
+    return Placed(things, around + wider_m * np.array([-1.0, -1.0, 1.0, 1.0]))
+
 
 MARGIN_PX = 6
 """Blurred edges look this far beyond a part's own pixels."""
@@ -21,7 +76,7 @@ SMALLEST_CROWN_PX = 0.6
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class LandPart:
     """A square of the land's pixels: its first row and column, and its size."""
 
     row: int
@@ -29,9 +84,9 @@ class Part:
     size: int
     cell_m: float
 
-    def with_margin(self) -> "Part":
+    def with_margin(self) -> "LandPart":
         """Return the part with what lies around it."""
-        return Part(
+        return LandPart(
             self.row - MARGIN_PX, self.col - MARGIN_PX, self.size + 2 * MARGIN_PX, self.cell_m
         )
 
@@ -42,13 +97,13 @@ class Part:
         return west, north - self.size * self.cell_m, west + self.size * self.cell_m, north
 
 
-def seen_trees(index: LandIndex, part: Part) -> list[Tree]:
+def seen_trees(index: LandIndex, part: LandPart) -> list[Tree]:
     """Return the trees large enough for a pixel that stand in a part or shade it."""
     trees = index.trees.within(part.box_m)
     return [tree for tree in trees if tree.radius_m > SMALLEST_CROWN_PX * part.cell_m]
 
 
-def slices(part: Part, box: Box) -> tuple[slice, slice]:
+def slices(part: LandPart, box: Box) -> tuple[slice, slice]:
     """Return the part's rows and columns that a box covers."""
     west, south, east, north = (round(edge / part.cell_m) for edge in box)
     row, col, size = part.row, part.col, part.size
@@ -56,7 +111,7 @@ def slices(part: Part, box: Box) -> tuple[slice, slice]:
     return rows, slice(min(size, max(0, west - col)), min(size, max(0, east - col)))
 
 
-def fixed_point(part: Part, points_m: FloatArray) -> npt.NDArray[np.int32]:
+def fixed_point(part: LandPart, points_m: FloatArray) -> npt.NDArray[np.int32]:
     """Return (N, 2) column and row in sixteenths of the part's pixels."""
     cols = points_m[:, 0] / part.cell_m - 0.5 - part.col
     rows = -points_m[:, 1] / part.cell_m - 0.5 - part.row
@@ -66,7 +121,7 @@ def fixed_point(part: Part, points_m: FloatArray) -> npt.NDArray[np.int32]:
     return points
 
 
-def is_near(points: npt.NDArray[np.int32], part: Part, reach_px: int = 2) -> bool:
+def is_near(points: npt.NDArray[np.int32], part: LandPart, reach_px: int = 2) -> bool:
     """Return whether points (N, 2) in sixteenths of pixels may reach into a part."""
     low, high = points.min(axis=0) / 2**FRACTION_BITS, points.max(axis=0) / 2**FRACTION_BITS
     return bool((low < part.size + reach_px).all() and (high > -reach_px).all())

@@ -16,9 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.sim.land.farmland import Farmland, lay_out
-from recon.sim.land.farmland_raster import draw
-from recon.sim.land.farmland_shadows import draw_shadows
-from recon.sim.land.land_part import Part
+from recon.sim.land.farmland_raster import draw, draw_shadows
+from recon.sim.land.land_part import LandPart
 from recon.sim.world import SunPosition
 
 CELLS_M = (0.25, 1.0, 4.0, 16.0)
@@ -91,7 +90,7 @@ class LandTiles:
 
     def _tile(self, level: int, row: int, col: int, sun: SunPosition) -> LandImage:
         """Return a tile's colours and shadows (TILE_PX, TILE_PX, 4)."""
-        part = Part(row * TILE_PX, col * TILE_PX, TILE_PX, CELLS_M[level])
+        part = LandPart(row * TILE_PX, col * TILE_PX, TILE_PX, CELLS_M[level])
         colours = _kept(self._colours, part, TILES_KEPT, lambda: draw(self.land, part, self.seed))
         step = _sun_step(sun)
         stepped = SunPosition(step[0] * SUN_STEP_DEG, step[1] * SUN_STEP_DEG, sun.distance_au)

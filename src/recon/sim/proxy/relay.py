@@ -13,8 +13,7 @@ from random import Random
 from recon.model.units import NS_PER_S
 from recon.sim.closing import close
 from recon.sim.errors import SimulationError
-from recon.sim.proxy.channel import Channel
-from recon.sim.proxy.damage import Damage
+from recon.sim.proxy.damage import Channel, Damage
 
 READ_BYTES = 65_536
 MOST_CONNECTIONS = 64

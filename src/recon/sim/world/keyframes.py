@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+FloatImage = npt.NDArray[np.float32]
 
 PERIODS_PER_LIFETIME = 1.0 / 0.90017
 """Blended like this the correlation falls to 1/e after 0.90017 of a period (solved numerically)."""

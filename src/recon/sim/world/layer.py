@@ -1,4 +1,4 @@
-"""One layer of clouds: where it is, what it lets through."""
+"""One layer of clouds: where it drifts and what it lets through."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,12 +7,11 @@ from statistics import NormalDist
 
 import numpy as np
 
-from recon.sim.land.noise import FloatImage
-from recon.sim.world.drift import drift_m
 from recon.sim.world.fractal_field import AT_ONCE, ROW_POINTS, FractalField, IndexArray
-from recon.sim.world.keyframes import FloatArray, gaussian, generator
+from recon.sim.world.keyframes import FloatArray, FloatImage, gaussian, generator
 from recon.sim.world.penumbra import Penumbra, extinction_table, look_up, spread
 from recon.sim.world.settings import LayerSettings
+from recon.sim.world.wind import velocity
 
 OCTAVES, MODULATION, AXES = 0, 1, 2
 """Streams of a layer's random numbers."""
@@ -103,3 +102,19 @@ def _by_rows(table: FloatImage, excess: FloatImage, spreads: FloatImage) -> Floa
     full[0, : excess.size], full[1, : excess.size] = excess, spreads
     found = look_up(table, full[0].reshape(-1, ROW_POINTS), full[1].reshape(-1, ROW_POINTS))
     return found.ravel()[: excess.size]
+
+
+def drift_m(layer: LayerSettings, time_s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return how far east and north the clouds have moved since time 0; before it: negative."""
+    east_mps, north_mps = velocity(layer.speed_mps, layer.heading_deg)
+    east_m, north_m = east_mps * time_s, north_mps * time_s
+    for shift in layer.shifts:
+        to_east, to_north = velocity(shift.speed_mps, shift.heading_deg)
+        # The change comes in evenly: its integral is a parabola, then a straight line.
+        during_s = np.clip(time_s - shift.start_s, 0.0, shift.duration_s)
+        after_s = np.maximum(time_s - shift.start_s - shift.duration_s, 0.0)
+        lasting_s = during_s * during_s / (2.0 * shift.duration_s) + after_s
+        east_m = east_m + (to_east - east_mps) * lasting_s
+        north_m = north_m + (to_north - north_mps) * lasting_s
+        east_mps, north_mps = to_east, to_north
+    return east_m, north_m

@@ -4,13 +4,16 @@ The model of the European Solar Radiation Atlas (Rigollier, Bauer, Wald, Solar E
 Kasten's thickness of clean air (1996): all that dims is one number, Linke's turbidity.
 """
 
-from dataclasses import dataclass
-from math import exp, radians, sin
+from dataclasses import dataclass, replace
+from math import cos, exp, radians, sin
 
 import numpy as np
+import numpy.typing as npt
 
-from recon.sim.land.noise import FloatImage
+from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.relief import Relief
 from recon.sim.world.settings import LightSettings
+from recon.sim.world.sky import Sky
 from recon.sim.world.sun import SunPosition
 
 SOLAR_CONSTANT_W_M2 = 1361.0
@@ -80,3 +83,90 @@ def _scattered(turbidity: float, height: float) -> float:
     linear = 2.0402 + 1.8945e-2 * turbidity - 1.1161e-2 * turbidity**2
     square = -1.3025 + 3.9231e-2 * turbidity + 8.5079e-3 * turbidity**2
     return zenith * (even + linear * height + square * height**2)
+
+
+REFERENCE_W_M2 = 850.0
+"""Full sun on level ground in which the land's colours are what they are drawn with."""
+SKY_COLOUR = (0.72, 0.95, 1.33)
+"""A clear sky's light over the sun's, red, green, blue, of mean 1: 12 000 K beside 5 500 K."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundLight:
+    """Light on level ground in red, green, blue (3,)."""
+
+    beam: FloatArray
+    """Of the sun, unclouded."""
+    sky: FloatArray
+    """Of the sky and the clouds."""
+    toward_sun: FloatArray
+    """Unit vector, east, north, up."""
+
+    def at(self, transmittance: FloatImage) -> FloatImage:
+        """Return light (..., 3) where this share of the beam comes through."""
+        share = np.asarray(transmittance, dtype=np.float32)[..., np.newaxis]
+        light: FloatImage = self.sky.astype(np.float32) + share * self.beam.astype(np.float32)
+        return light
+
+
+def ground_light(
+    sun: SunPosition, settings: LightSettings, reference_w_m2: float = REFERENCE_W_M2
+) -> GroundLight:
+    """Return the light under broken clouds; in the mean of the colours it is `light.index`.
+
+    What clouds add to the sky's light is white.
+    """
+    clear = clear_sky_light(sun, settings)
+    strength = clear.global_w_m2 / reference_w_m2
+    blue_sky = clear.diffuse_share * np.array(SKY_COLOUR)
+    beam = np.maximum(1.0 - blue_sky, 0.0) if clear.direct_w_m2 > 0.0 else np.zeros(3)
+    from_clouds = (settings.cloud_brightening - 1.0) * clear.diffuse_share
+    return GroundLight(strength * beam, strength * (blue_sky + from_clouds), toward(sun))
+
+
+def toward(sun: SunPosition) -> FloatArray:
+    """Return the unit vector to the sun, east, north, up."""
+    azimuth, elevation = radians(sun.azimuth_deg), radians(sun.elevation_deg)
+    level = cos(elevation)
+    return np.array([level * sin(azimuth), level * cos(azimuth), sin(elevation)])
+
+
+LEAST_SUN_HEIGHT = 0.08
+"""Sine of the lowest sun for which slopes are worked out: 5 degrees."""
+GREEN = 1
+
+
+def light_under(sky: Sky, time_s: float, settings: LightSettings | None = None) -> GroundLight:
+    """Return the light of a moment; without clouds nothing brightens the sky."""
+    settings = settings or LightSettings()
+    if not sky.settings.layers:
+        settings = replace(settings, cloud_brightening=1.0)
+    return ground_light(sky.sun_at(time_s), settings)
+
+
+def metered_light(sky: Sky, east_m: npt.ArrayLike, north_m: npt.ArrayLike, time_s: float) -> float:
+    """Return the mean light at points, in green, over the reference's full sun."""
+    light = light_under(sky, time_s)
+    share = float(np.mean(sky.transmittance(east_m, north_m, time_s), dtype=np.float64))
+    return float(light.sky[GREEN] + share * light.beam[GREEN])
+
+
+def beam_share(
+    sky: Sky,
+    light: GroundLight,
+    relief: Relief | None,
+    east_m: FloatImage,
+    north_m: FloatImage,
+    time_s: float,
+) -> FloatImage:
+    """Return the sun's beam on the ground over that on level ground in clear sky."""
+    share = sky.transmittance(east_m, north_m, time_s)
+    if relief is None:
+        return share
+    rise_east, rise_north = relief.slope(east_m, north_m)
+    sun_east, sun_north, sun_up = (float(part) for part in light.toward_sun)
+    sun_up = max(sun_up, LEAST_SUN_HEIGHT)
+    facing = sun_up - rise_east * sun_east - rise_north * sun_north
+    facing /= sun_up * np.sqrt(1.0 + rise_east**2 + rise_north**2)
+    tilted: FloatImage = (share * np.maximum(facing, 0.0)).astype(np.float32)
+    return tilted

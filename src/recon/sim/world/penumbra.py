@@ -14,9 +14,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.land.noise import FloatImage
-from recon.sim.world.fractal_field import Sample
-from recon.sim.world.keyframes import FloatArray
+from recon.sim.world.fractal_field import FieldSample
+from recon.sim.world.keyframes import FloatArray, FloatImage
 from recon.sim.world.sun import SunPosition
 
 SUN_DIAMETER_RAD = 0.0093
@@ -63,7 +62,7 @@ def _ellipse(sun: SunPosition, height_m: float) -> tuple[float, ...]:
     return across_m, along_m, sin(azimuth), cos(azimuth), height_m / tan(elevation)
 
 
-def spread(edge: Penumbra, axes_rad: float, field: Sample) -> FloatImage:
+def spread(edge: Penumbra, axes_rad: float, field: FieldSample) -> FloatImage:
     """Return how far the field lies above its mean at the ellipse's one end, (N,).
 
     The field's y axis points to azimuth `axes_rad`, its x axis to the right of it.

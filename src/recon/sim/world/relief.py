@@ -6,8 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.land.noise import FloatImage
-from recon.sim.world.keyframes import FloatArray
+from recon.sim.world.keyframes import FloatArray, FloatImage
 from recon.sim.world.settings import expect
 
 WAVES = 9

@@ -11,9 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.model.geo import GroundGrid
-from recon.sim.land.noise import FloatImage
 from recon.sim.world.fractal_field import AT_ONCE, IndexArray
-from recon.sim.world.keyframes import FloatArray
+from recon.sim.world.keyframes import FloatArray, FloatImage
 from recon.sim.world.layer import CloudLayer
 from recon.sim.world.penumbra import penumbra
 from recon.sim.world.settings import SkySettings

@@ -7,7 +7,6 @@ downwind has them later. A pure function of seed, place and time.
 from dataclasses import dataclass
 from math import cos, floor, radians, sin, sqrt
 
-from recon.sim.world.drift import velocity
 from recon.sim.world.keyframes import PERIODS_PER_LIFETIME, number
 from recon.sim.world.settings import WindSettings
 
@@ -81,6 +80,12 @@ class Wind:
     def _downwind_m(self, east_m: float, north_m: float) -> float:
         heading = radians(self.settings.heading_deg)
         return east_m * sin(heading) + north_m * cos(heading)
+
+
+def velocity(speed_mps: float, heading_deg: float) -> tuple[float, float]:
+    """Return the parts to the east and to the north."""
+    heading = radians(heading_deg)
+    return speed_mps * sin(heading), speed_mps * cos(heading)
 
 
 def _noise(seed: int, axis: int, time_s: float, scale_s: float) -> float:

@@ -4,12 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from recon.detection import (
-    DETECTORS,
-    DetectionSettings,
-    DetectionState,
-    RejectedFrame,
-)
+from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap, SunForecast

@@ -1,6 +1,7 @@
-"""What one link has received and its app has not read yet."""
+"""Buffers of one connection: bytes received and not yet read, packets waiting to be sent."""
 
 from dataclasses import dataclass, field
+from heapq import heappop, heappush
 
 READ_EVERY_NS = 100_000_000
 SLOW_BYTES = 32
@@ -12,7 +13,7 @@ MOST_KEPT_BYTES = 1_048_576
 
 
 @dataclass(slots=True)
-class Inbox:
+class AppInbox:
     """Bytes of a link in their order, read at once or a few at a time."""
 
     _unread: bytearray = field(default_factory=bytearray)
@@ -37,3 +38,35 @@ class Inbox:
         at_ns = self.next_read_ns
         self.next_read_ns = at_ns + READ_EVERY_NS if self._unread and at_ns is not None else None
         return data
+
+
+MOST_PACKETS_WAITING = 256
+"""Per link; then the one that is due first is dropped: nobody reads."""
+
+
+@dataclass(slots=True)
+class AppOutbox:
+    """Packets in the order of their times, and of their writing where times are equal."""
+
+    _waiting: list[tuple[int, int, bytes]] = field(default_factory=list)
+    _count: int = 0
+
+    def add(self, packet: bytes, due_ns: int) -> None:
+        """Send a packet at a time."""
+        heappush(self._waiting, (due_ns, self._count, packet))
+        self._count += 1
+        if len(self._waiting) > MOST_PACKETS_WAITING:
+            heappop(self._waiting)
+
+    def pop_due(self, now_ns: int) -> list[bytes]:
+        """Return the packets whose time has come."""
+        packets = []
+        while self._waiting and self._waiting[0][0] <= now_ns:
+            packets.append(heappop(self._waiting)[2])
+        return packets
+
+    def next_after_ns(self, now_ns: int) -> int | None:
+        """Return when the next packet is due that is held back, None without one."""
+        if not self._waiting or self._waiting[0][0] > now_ns:
+            return self._waiting[0][0] if self._waiting else None
+        return min((due_ns for due_ns, _, _ in self._waiting if due_ns > now_ns), default=None)

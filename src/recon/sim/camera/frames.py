@@ -1,19 +1,55 @@
-"""Pictures from files: a folder of frames, or one frame for ever."""
+"""Frames: the view they are taken of, where their pixels come from, and their defects."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from random import Random
+from typing import Protocol
 
 import cv2
 import numpy as np
 
 from recon.camera import CameraError, decode_jpeg
 from recon.camera.omnidirectional import scale_between
-from recon.model.imagery import RgbImage
-from recon.sim.app.camera_feed import View
+from recon.model.imagery import CameraPose, RgbImage
 from recon.sim.errors import FrameSourceError
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
 LARGEST_FILE_BYTES = 64 * 1024 * 1024
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraView:
+    """What a picture is taken of: time since the simulation's start, number, camera pose."""
+
+    elapsed_s: float
+    number: int
+    pose: CameraPose | None
+
+
+class FrameSource(Protocol):
+    """Where pictures come from."""
+
+    def prepare(self) -> None:
+        """Do what the first picture would wait for; may take seconds, once."""
+        ...
+
+    def render(self, view: CameraView) -> RgbImage:
+        """Return (rows, cols, 3) uint8 RGB; may take long, may be called from any thread."""
+        ...
+
+
+class StillFrame:
+    """The same picture for ever."""
+
+    def __init__(self, rgb: RgbImage) -> None:
+        self.rgb = rgb
+
+    def prepare(self) -> None:
+        """Nothing is left to do."""
+
+    def render(self, view: CameraView) -> RgbImage:
+        """Return the picture."""
+        return self.rgb
 
 
 @dataclass(slots=True)
@@ -27,9 +63,9 @@ class FolderFrames:
 
     def prepare(self) -> None:
         """Read the first picture."""
-        self.render(View(0.0, 0, None))
+        self.render(CameraView(0.0, 0, None))
 
-    def render(self, view: View) -> RgbImage:
+    def render(self, view: CameraView) -> RgbImage:
         """Return the picture that is next."""
         index = view.number % len(self.paths)
         last = self._last
@@ -91,3 +127,60 @@ def _decode(path: Path, data: bytes) -> RgbImage:
     if pixels is None:
         raise FrameSourceError(f"{path}: expected a PNG image, got something unreadable")
     return pixels.astype(np.uint8, copy=False)
+
+
+EXPOSURE_GAINS = (0.35, 0.6, 1.7, 2.6)
+"""Up to one and a half stops: what a bright cloud or a dark wood does to the exposure."""
+
+
+class FrameFlaw(Protocol):
+    """One thing that is wrong with one picture."""
+
+    def applied(self, rgb: RgbImage) -> RgbImage:
+        """Return the picture, (rows, cols, 3) uint8, with the flaw; the one given stays whole."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Black:
+    """Nothing but black, as when the video stream starts anew."""
+
+    def applied(self, rgb: RgbImage) -> RgbImage:
+        """Return black."""
+        return np.zeros_like(rgb)
+
+
+@dataclass(frozen=True, slots=True)
+class Torn:
+    """From one row down the picture is shifted sideways: parts of two."""
+
+    row_share: float
+    shift_share: float
+
+    def applied(self, rgb: RgbImage) -> RgbImage:
+        """Return the torn picture."""
+        row = int(self.row_share * rgb.shape[0])
+        shift = max(1, int(self.shift_share * rgb.shape[1]))
+        return np.concatenate([rgb[:row], np.roll(rgb[row:], shift, axis=1)])
+
+
+@dataclass(frozen=True, slots=True)
+class Exposed:
+    """All of it brighter or darker; what is too bright is white."""
+
+    gain: float
+
+    def applied(self, rgb: RgbImage) -> RgbImage:
+        """Return the picture at another exposure."""
+        brighter: RgbImage = np.clip(np.rint(rgb * self.gain), 0.0, 255.0).astype(np.uint8)
+        return brighter
+
+
+def torn(random: Random) -> Torn:
+    """Draw where a picture is torn."""
+    return Torn(random.uniform(0.1, 0.9), random.uniform(0.1, 0.5))
+
+
+def exposed(random: Random) -> Exposed:
+    """Draw an exposure."""
+    return Exposed(random.choice(EXPOSURE_GAINS))

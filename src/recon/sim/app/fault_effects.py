@@ -1,0 +1,117 @@
+"""What active faults do to packets and to the aircraft; all random values come from the seed."""
+
+from collections.abc import Callable, Iterable
+from math import nan
+from random import Random
+
+from recon.model.units import seconds_to_ns
+from recon.sim.app.faults import FAILED_CELL_FRACTION, STALE_BY_M, FaultKind, InjectedFault
+from recon.sim.app.telemetry import HomeAltitude
+from recon.sim.flight.air import Squall
+from recon.sim.flight.aircraft import Aircraft
+
+BURST_S = 1.5
+"""Telemetry in the field comes in bursts, with a second and more of nothing while video runs."""
+ACK_DELAY_S = (0.5, 3.0)
+"""Longer than the station waits before it sends an order again, now and then."""
+CORRUPTED_SHARE = 0.1
+"""Of packets; each has then one to three bytes changed."""
+MOST_CHANGED_BYTES = 3
+
+
+class FaultSchedule:
+    """The faults of one vehicle, since `start_ns`."""
+
+    def __init__(self, faults: Iterable[InjectedFault], seed: str, start_ns: int) -> None:
+        self._by_kind: dict[FaultKind, list[InjectedFault]] = {}
+        for fault in faults:
+            self._by_kind.setdefault(fault.kind, []).append(fault)
+        self._start_ns = start_ns
+        self._delays = Random(f"{seed}/delays")
+        self._changes = Random(f"{seed}/changes")
+
+    def active(self, kind: FaultKind, now_ns: int) -> InjectedFault | None:
+        """Return the fault of a kind that is on, the last told of several, else None."""
+        faults = self._by_kind.get(kind) if self._by_kind else None
+        if faults is None:
+            return None
+        elapsed_ns = now_ns - self._start_ns
+        on = [fault for fault in faults if fault.is_active(elapsed_ns)]
+        return on[-1] if on else None
+
+    def has(self, kind: FaultKind, now_ns: int) -> bool:
+        """Return whether a fault of a kind is on."""
+        return self.active(kind, now_ns) is not None
+
+    def sent_ns(self, now_ns: int) -> int:
+        """Return when what is said now goes out: at once, or with its burst."""
+        fault = self.active(FaultKind.BURSTS, now_ns)
+        if fault is None:
+            return now_ns
+        burst_ns = seconds_to_ns(BURST_S)
+        begin_ns = self._start_ns + seconds_to_ns(fault.start_s)
+        whole = (now_ns - begin_ns) // burst_ns + 1
+        ends_ns = fault.end_ns(self._start_ns)
+        due_ns = begin_ns + whole * burst_ns
+        return due_ns if ends_ns is None else min(due_ns, ends_ns)
+
+    def answered_ns(self, now_ns: int) -> int:
+        """Return when an acknowledgment of now goes out."""
+        if not self.has(FaultKind.DELAYED_ACKS, now_ns):
+            return self.sent_ns(now_ns)
+        return self.sent_ns(now_ns) + seconds_to_ns(self._delays.uniform(*ACK_DELAY_S))
+
+    def on_the_way(self, packet: bytes, now_ns: int) -> bytes:
+        """Return a packet's bytes as they leave, in whole or damaged."""
+        if not self.has(FaultKind.CORRUPTED_BYTES, now_ns):
+            return packet
+        if self._changes.random() >= CORRUPTED_SHARE:
+            return packet
+        changed = bytearray(packet)
+        for _ in range(self._changes.randint(1, MOST_CHANGED_BYTES)):
+            changed[self._changes.randrange(len(changed))] ^= self._changes.randint(1, 255)
+        return bytes(changed)
+
+
+class AircraftFaults:
+    """Begins and ends the faults of one aircraft; how many of a kind overlap does not matter."""
+
+    def __init__(self, aircraft: Aircraft, altitude: HomeAltitude, seed: str) -> None:
+        self._aircraft = aircraft
+        self._altitude = altitude
+        self._headings = Random(f"{seed}/gusts")
+        self._running: dict[FaultKind, int] = {}
+        self._begins: dict[FaultKind, Callable[[], None]] = {
+            FaultKind.PILOT_TAKES: aircraft.pilot_takes,
+            FaultKind.LOW_BATTERY: lambda: aircraft.battery.lose_a_cell(FAILED_CELL_FRACTION),
+            FaultKind.GNSS_LOSS: aircraft.lose_gnss,
+            FaultKind.GUSTS: self._begin_squall,
+            FaultKind.FALLS_SILENT: aircraft.crash,
+            FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._mistake(nan),
+            FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._mistake(STALE_BY_M),
+        }
+        self._ends: dict[FaultKind, Callable[[], None]] = {
+            FaultKind.PILOT_TAKES: aircraft.pilot_releases,
+            FaultKind.GNSS_LOSS: aircraft.find_gnss,
+            FaultKind.GUSTS: aircraft.air.end_squall,
+            FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._mistake(0.0),
+            FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._mistake(0.0),
+        }
+
+    def begin(self, kind: FaultKind) -> None:
+        """Let a fault begin."""
+        self._running[kind] = self._running.get(kind, 0) + 1
+        self._begins[kind]()
+
+    def end(self, kind: FaultKind) -> None:
+        """Let a fault end, unless another of its kind is still on."""
+        self._running[kind] -= 1
+        if self._running[kind] == 0 and kind in self._ends:
+            self._ends[kind]()
+
+    def _begin_squall(self) -> None:
+        squall = Squall(self._headings.uniform(0.0, 360.0))
+        self._aircraft.air.begin_squall(squall, self._aircraft.now_ns)
+
+    def _mistake(self, error_m: float) -> None:
+        self._altitude.fault_m = error_m
