@@ -423,7 +423,7 @@ class TestWatching:
     def test_only_a_ghost_can_be_dismissed(self, client: Client) -> None:
         response = client.post("/api/vehicles/A/hazard/dismiss")
         assert response.status_code == 404
-        assert "no hazard area" in response.json()["error"]
+        assert "No hazard area" in response.json()["error"]
 
     def test_the_separation_holds_are_switched_and_shown(self, client: Client) -> None:
         assert client.get("/api/state").json()["station"]["separation_hold_on"] is True

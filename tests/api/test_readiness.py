@@ -71,7 +71,7 @@ class TestAuthority:
         self.take(client, "pilot")
         answer = self.take(client, "guidance")
         assert (answer["accepted"], answer["rule"]) == (False, "authority")
-        assert "takes nothing from a pilot" in answer["reason"]
+        assert "take control first" in answer["reason"]
         assert authority_of(station.driver.station, "A").holder is AuthorityHolder.PILOT
 
     def test_nobody_leads_what_is_not_known(self, client: Client) -> None:

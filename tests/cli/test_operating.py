@@ -85,16 +85,16 @@ class TestReadiness:
     def test_who_leads_it_is_taken_and_given(self, here: Flown, mission: Path) -> None:
         assert here.recon("release", "SIM-2", "--to", "pilot").code == 0
         refused = here.recon("fly", "SIM-2", mission, "--dry-run")
-        assert "rule holder" in refused.out
+        assert "rule authority" in refused.out
         assert here.recon("release", "SIM-2", "--to", "guidance").code == 1
         taken = here.recon("take", "SIM-2")
         assert (taken.code, taken.out) == (0, "SIM-2: led by the operator\n")
-        assert "rule holder" not in here.recon("fly", "SIM-2", mission, "--dry-run").out
+        assert "rule authority" not in here.recon("fly", "SIM-2", mission, "--dry-run").out
 
     def test_what_is_heard_is_no_hazard(self, here: Flown) -> None:
         said = here.recon("dismiss", "SIM-2")
         assert said.code == 2
-        assert "no hazard area" in said.err
+        assert "No hazard area" in said.err
 
     def test_the_holds_are_switched_and_the_audit_says_so(self, here: Flown) -> None:
         assert here.recon("separation-hold", "off").code == 0

@@ -12,7 +12,7 @@ def test_a_vehicle_that_is_heard_is_no_hazard() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            with pytest.raises(RequestRefusedError, match="no hazard area"):
+            with pytest.raises(RequestRefusedError, match="No hazard area"):
                 await vehicle.dismiss_hazard()
 
     asyncio.run(main())

@@ -70,22 +70,22 @@ def test_a_refusal_says_who_leads_and_how_that_came_about() -> None:
 
 
 @pytest.mark.parametrize(
-    ("who", "advice"),
+    ("who", "what_to_do"),
     [
         (
             AuthorityHolder.PILOT,
-            "the pilot has the sticks and is not fought: ask the pilot, then take",
+            "ask the pilot, then take control",
         ),
         (
             AuthorityHolder.GUIDANCE,
-            "the station's own planning flies it: hold it, or take it over, first",
+            "hold the vehicle, or take control, first",
         ),
     ],
 )
-def test_a_refusal_says_what_to_do(who: AuthorityHolder, advice: str) -> None:
+def test_a_refusal_says_what_to_do(who: AuthorityHolder, what_to_do: str) -> None:
     answer = judged(STICK, AuthorityHolder.OPERATOR, who)
     assert answer is not None
-    assert f"; {advice}" in answer.reason
+    assert f": {what_to_do}" in answer.reason
 
 
 def test_nobody_at_all_is_another_rules_matter() -> None:

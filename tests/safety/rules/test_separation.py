@@ -267,7 +267,7 @@ class TestUnseen:
             assert (found is None) is passes
         refused(
             judged(route((0.0, -400.0), (0.0, -100.0)), own, hazard),
-            "of where B may be, which is not heard any more",
+            "of where B may be, telemetry lost",
             "dismiss its hazard area",
         )
 

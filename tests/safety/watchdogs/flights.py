@@ -108,7 +108,7 @@ class Air:
     def looks(self) -> list[Finding]:
         now_ns = round(self.now_s * S)
         picture = take_picture(
-            [one.tracked(self.now_s, self.rng) for one in self.fleet],
+            [one.watched(self.now_s, self.rng) for one in self.fleet],
             self.airspace,
             SETTINGS,
             now_ns,

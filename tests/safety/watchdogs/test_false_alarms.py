@@ -100,7 +100,7 @@ def alarms_and_holds(apart_m: float) -> tuple[int, int]:
         now_ns = 100 * S + round(step * LOOK_S * S)
         for one in fleet:
             one.flies_on(LOOK_S)
-        picture = take_picture([v.tracked(now_ns) for v in fleet], AIR, SETTINGS, now_ns, since)
+        picture = take_picture([v.watched(now_ns) for v in fleet], AIR, SETTINGS, now_ns, since)
         found = list(separation(picture))
         began += sum(f.key not in since for f in found)
         since = {f.key: since.get(f.key, now_ns) for f in found}

@@ -46,7 +46,9 @@ class TestByHand:
         scene = says(CommandedStation().opens(1), 6.0)
         assert led_by(scene) is AuthorityHolder.PILOT
         refused = scene.record(scene.order(mission()))
-        assert refused.note.startswith("holder: A is led by pilot (it moves, and nothing has been")
+        assert refused.note.startswith(
+            "authority: A is controlled by pilot (it moves, and nothing has been"
+        )
         assert scene.alarms() == set()
         takes(says(scene, 6.0), AuthorityHolder.OPERATOR)
         assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR
@@ -117,7 +119,7 @@ class TestByWord:
         )
         assert refusal is not None
         assert refusal.rule == "authority"
-        assert "take it over first" in refusal.reason
+        assert "take control first" in refusal.reason
         assert led_by(takes(scene, AuthorityHolder.GUIDANCE)) is AuthorityHolder.PILOT
 
     def test_the_operator_takes_it_from_a_pilot_by_explicit_word(

@@ -79,7 +79,9 @@ class TestATick:
         (alarm,) = fault_alarms(station)
         assert broken in alarm.condition.text
         assert alarm.condition.severity is Severity.CRITICAL
-        assert "ZeroDivisionError: division by zero (test_containment.py:" in alarm.condition.text
+        assert (
+            "ZeroDivisionError: division by zero (test_fault_isolation.py:" in alarm.condition.text
+        )
 
     def test_a_blind_watchdog_is_an_alarm_and_the_others_look_on(
         self, monkeypatch: pytest.MonkeyPatch
@@ -215,7 +217,7 @@ class TestAnEvent:
     def test_an_order_that_was_never_judged_is_answered_as_refused(
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("recon.station.kernel.step.commanding.place", failing)
+        monkeypatch.setattr("recon.station.kernel.step.order_gateway.place", failing)
         (result,) = bench.service.all_stop("test").results
         assert (result.accepted, result.rule, result.serial) == (False, "station_fault", "A")
         assert fault_alarms(bench.driver.station)

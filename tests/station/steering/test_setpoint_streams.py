@@ -299,7 +299,7 @@ class TestEnds:
         assert s.phase(order) is Phase.SUPERSEDED
         assert "pilot" in s.note(order)
         assert s.w.driver.station.authorities[SERIAL].holder is AuthorityHolder.PILOT
-        assert s.note(s.goto(50.0)).startswith("holder: ")
+        assert s.note(s.goto(50.0)).startswith("authority: ")
         s.run_for(10.0)
         assert s.sticks(seen_s + 0.05) == []
         assert s.hovers() == []
