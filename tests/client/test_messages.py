@@ -18,7 +18,7 @@ from recon.client.messages import (
     decode,
 )
 from recon.client.order_form import order_form
-from recon.client.telemetry import Telemetry, staleness_at
+from recon.client.telemetry import Telemetry
 from recon.model.command import (
     Body,
     FlyMission,
@@ -32,6 +32,7 @@ from recon.model.command import (
     VirtualStick,
 )
 from recon.model.mission import Mission, Waypoint
+from recon.model.vehicle import staleness_at
 
 PAIRS = [
     (StateMessage, schema.StationState),

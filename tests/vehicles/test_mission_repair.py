@@ -18,7 +18,7 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import VehicleProfile
 from recon.safety.rules.dji_limits import dji_limits
 from recon.safety.rules.finite_numbers import finite_numbers
-from recon.vehicles.mission_repair import DJI, Repaired, joined, repair
+from recon.vehicles.mission_repair import REPAIR_LIMITS, Repaired, joined, repair
 
 Place = tuple[float, float, float]
 FloatArray = npt.NDArray[np.float64]
@@ -360,8 +360,8 @@ def _to_path_m(points: list[Place], path: list[Place]) -> FloatArray:
 
 def test_the_repairs_limits_are_within_the_gates() -> None:
     gate = situation().settings
-    assert DJI.least_leg_m >= gate.min_leg_m
-    assert DJI.longest_leg_m <= gate.max_leg_m
-    assert DJI.longest_path_m <= gate.max_path_m
-    assert DJI.fastest_mps <= gate.max_speed_mps
-    assert DJI.longest_stay_s <= gate.max_loiter_s
+    assert REPAIR_LIMITS.least_leg_m >= gate.min_leg_m
+    assert REPAIR_LIMITS.max_leg_m <= gate.max_leg_m
+    assert REPAIR_LIMITS.max_path_m <= gate.max_path_m
+    assert REPAIR_LIMITS.max_speed_mps <= gate.max_speed_mps
+    assert REPAIR_LIMITS.max_loiter_s <= gate.max_loiter_s

@@ -4,14 +4,11 @@ from typing import Any, Generic, TypeVar
 
 import msgspec
 
-from recon.model.vehicle import Staleness
+from recon.model.vehicle import Staleness, staleness_at
 
 T = TypeVar("T")
 
 _GROWING_WORSE = tuple(Staleness)
-_LIVE_UNDER_S = 1.0
-_LATE_UNDER_S = 3.0
-_LOST_UNDER_S = 10.0
 
 
 class Aged(msgspec.Struct, Generic[T], frozen=True):
@@ -108,15 +105,6 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
         age_s = _older(self.telemetry_age_s, seconds)
         worse = max(self.staleness, staleness_at(age_s), key=_GROWING_WORSE.index)
         return msgspec.structs.replace(self, **changes, telemetry_age_s=age_s, staleness=worse)
-
-
-def staleness_at(age_s: float | None) -> Staleness:
-    """Return the word for an age of core telemetry; None, never received, is silent."""
-    if age_s is None or age_s >= _LOST_UNDER_S:
-        return Staleness.SILENT
-    if age_s >= _LATE_UNDER_S:
-        return Staleness.LOST
-    return Staleness.LATE if age_s >= _LIVE_UNDER_S else Staleness.LIVE
 
 
 def _older(age_s: float | None, seconds: float) -> float | None:

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.fleet.settings import FleetSettings
-from recon.model.vehicle import Staleness, VehicleProfile, VehicleState
+from recon.model.units import NS_PER_S
+from recon.model.vehicle import Staleness, VehicleProfile, VehicleState, staleness_at
 
 
 @dataclass(frozen=True)
@@ -74,15 +75,7 @@ class Fleet:
         return vehicle is not None and vehicle.link_id == link.id
 
 
-STALENESS_TIERS_S = ((1.0, Staleness.LIVE), (3.0, Staleness.LATE), (10.0, Staleness.LOST))
-
-
 def staleness(vehicle: VehicleState, now_ns: int) -> Staleness:
-    """Return the tier of the newest core telemetry's age; never heard counts as silent."""
-    if vehicle.core_received_at_ns is None:
-        return Staleness.SILENT
-    age_s = (now_ns - vehicle.core_received_at_ns) / 1e9
-    for limit_s, tier in STALENESS_TIERS_S:
-        if age_s < limit_s:
-            return tier
-    return Staleness.SILENT
+    """Return the tier of the newest core telemetry's age; never received counts as silent."""
+    received_at_ns = vehicle.core_received_at_ns
+    return staleness_at(None if received_at_ns is None else (now_ns - received_at_ns) / NS_PER_S)

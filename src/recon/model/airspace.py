@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.dji import DJI
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.zone import LandingPad, Region, Zone
 
@@ -24,7 +25,7 @@ class FlightLimits:
     max_distance_from_home_m: float = 1_000.0
     """A small drone is seen with the naked eye to about half of this; controllers reach farther."""
 
-    max_speed_mps: float = 15.0
+    max_speed_mps: float = DJI.max_speed_mps
     """DJI's own limit for missions and sticks."""
 
     min_separation_horizontal_m: float = 15.0

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import Enum, IntEnum
 
+from recon.model.dji import DJI
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.stamped import Stamped
 
@@ -78,6 +79,13 @@ class Failsafe(Enum):
     LAND = "land"
 
 
+LIVE_UNDER_S = 1.0
+"""Core telemetry comes at 10 Hz: a second is ten missing packets."""
+LATE_UNDER_S = 3.0
+"""Running video causes dropouts of a second or two in the field: until then it may just be late."""
+LOST_UNDER_S = 10.0
+
+
 class Staleness(Enum):
     """How old the newest core telemetry is: under 1 s, 3 s, 10 s, or older / never."""
 
@@ -85,6 +93,15 @@ class Staleness(Enum):
     LATE = "late"
     LOST = "lost"
     SILENT = "silent"
+
+
+def staleness_at(age_s: float | None) -> Staleness:
+    """Return the tier of an age of core telemetry in seconds; None: never received."""
+    if age_s is None or age_s >= LOST_UNDER_S:
+        return Staleness.SILENT
+    if age_s >= LATE_UNDER_S:
+        return Staleness.LOST
+    return Staleness.LATE if age_s >= LIVE_UNDER_S else Staleness.LIVE
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +114,7 @@ class VehicleProfile:
     waypoint_altitude: AltitudeReference = AltitudeReference.UNSET
     mount: Mount = Mount.GIMBAL
     pad: GeoPoint | None = None
-    max_waypoints: int = 99
+    max_waypoints: int = DJI.max_waypoints
     battery_factor: float = 1.0
     """Multiplies the reported battery fraction: 2 for an app that halves it."""
     video_latency_s: float = 0.5

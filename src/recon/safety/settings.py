@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from recon.model.dji import DJI
+from recon.model.vehicle import LATE_UNDER_S, LIVE_UNDER_S
 from recon.safety.energy_settings import EnergySettings
 from recon.safety.fence_settings import FenceSettings
 from recon.safety.prediction.settings import PredictionSettings
@@ -13,11 +15,11 @@ from recon.safety.watchdog_settings import WatchdogSettings
 class SafetySettings:
     """Limits of DJI's Mobile SDK 4 where no other reason is given."""
 
-    fresh_telemetry_s: float = 3.0
+    fresh_telemetry_s: float = LATE_UNDER_S
     """Telemetry this old still tells whether a vehicle flies: running video causes dropouts of a
     second or two, and within three no aircraft lands and disarms unseen."""
 
-    motion_telemetry_s: float = 1.0
+    motion_telemetry_s: float = LIVE_UNDER_S
     """Motion is ordered on core telemetry this young at most: at 15 m/s a second is 15 m, as far as
     two vehicles are kept apart."""
     motion_extended_s: float = 3.0
@@ -45,21 +47,21 @@ class SafetySettings:
     altitude_offset_max_m: float = 10_000.0
     """No aircraft is this far from its takeoff point's height: such a number is a broken one."""
 
-    min_waypoints: int = 2
-    min_leg_m: float = 0.5
-    max_leg_m: float = 2_000.0
-    max_path_m: float = 30_000.0
-    min_height_m: float = -200.0
-    max_height_m: float = 500.0
-    max_speed_mps: float = 15.0
-    max_loiter_s: float = 32.767
-    min_gimbal_pitch_deg: float = -90.0
-    max_gimbal_pitch_deg: float = 0.0
-    min_corner_radius_m: float = 0.2
-    max_corner_radius_m: float = 1_000.0
+    min_waypoints: int = DJI.min_waypoints
+    min_leg_m: float = DJI.min_leg_m
+    max_leg_m: float = DJI.max_leg_m
+    max_path_m: float = DJI.max_path_m
+    min_height_m: float = DJI.min_height_m
+    max_height_m: float = DJI.max_height_m
+    max_speed_mps: float = DJI.max_speed_mps
+    max_loiter_s: float = DJI.max_loiter_s
+    min_gimbal_pitch_deg: float = DJI.min_gimbal_pitch_deg
+    max_gimbal_pitch_deg: float = DJI.max_gimbal_pitch_deg
+    min_corner_radius_m: float = DJI.min_corner_radius_m
+    max_corner_radius_m: float = DJI.max_corner_radius_m
 
-    max_stick_speed_mps: float = 15.0
-    max_stick_height_m: float = 500.0
+    max_stick_speed_mps: float = DJI.max_speed_mps
+    max_stick_height_m: float = DJI.max_height_m
     max_stick_timeout_s: float = 5.0
     """An app holds a stick's velocity this long by itself: at 15 m/s already 75 m."""
 

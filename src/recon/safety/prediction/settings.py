@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+from recon.model.dji import DJI
+from recon.model.vehicle import LATE_UNDER_S
+
 
 @dataclass(frozen=True, slots=True)
 class PredictionSettings:
@@ -58,10 +61,10 @@ class PredictionSettings:
     plausible_speed_mps: float = 23.0
     """No DJI survey aircraft flies faster: a reported speed above is cut to this."""
 
-    unknown_speed_mps: float = 15.0
+    unknown_speed_mps: float = DJI.max_speed_mps
     """A vehicle that tells no velocity: as fast as missions and sticks may make it."""
 
-    stale_s: float = 3.0
+    stale_s: float = LATE_UNDER_S
     """Core telemetry older than this: the vehicle is a hazard somewhere near its last place."""
 
     hazard_radius_m: float = 150.0

@@ -16,13 +16,13 @@ from recon.model.command import (
     StartCamera,
     VirtualStick,
 )
+from recon.model.dji import DJI
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation
 
 RULE = "dji_limits"
-ICD_MAX_WAYPOINTS = 99
 CORNER_TOLERANCE_M = 1e-6
 
 
@@ -91,7 +91,7 @@ def _mission(body: FlyMission, situation: Situation) -> Iterator[str]:
 
 def _count(mission: Mission, situation: Situation) -> Iterator[str]:
     profile = situation.vehicle.profile if situation.vehicle is not None else None
-    most = ICD_MAX_WAYPOINTS if profile is None else min(ICD_MAX_WAYPOINTS, profile.max_waypoints)
+    most = DJI.max_waypoints if profile is None else min(DJI.max_waypoints, profile.max_waypoints)
     count, least = len(mission.waypoints), situation.settings.min_waypoints
     if not least <= count <= most:
         yield f"{count} waypoints: this vehicle's app takes {least} to {most}"

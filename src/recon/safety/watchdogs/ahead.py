@@ -8,6 +8,7 @@ from math import hypot
 
 import numpy as np
 
+from recon.model.dji import DJI
 from recon.model.intent import Commanded, Intent
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
@@ -16,9 +17,6 @@ from recon.safety.prediction.course import FloatArray, Part, Row
 from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
 from recon.safety.prediction.sampling import Samples, sample
 from recon.safety.watchdog_settings import WatchdogSettings
-
-FASTEST_TOLD_MPS = 15.0
-"""Of a vehicle told to hold, when nobody has noted how fast it was: no order flies faster."""
 
 ASIDE_COSINE = 0.64
 """A vehicle that flies faster than `ASIDE_MPS` at more than 50 degrees from every way it was told
@@ -116,7 +114,7 @@ def _flies_as_told(
         return False
     if told in (Commanded.HOLD, Commanded.LAND):
         since_s = (now_ns - intent.since_ns) / NS_PER_S
-        return _brakes(flyer, braking or Braking(since_s, FASTEST_TOLD_MPS), prediction)
+        return _brakes(flyer, braking or Braking(since_s, DJI.max_speed_mps), prediction)
     mode = flyer.state.flight_mode.value
     if mode is not None and mode not in _MODES[told]:
         return False

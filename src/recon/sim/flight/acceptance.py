@@ -11,7 +11,11 @@ from recon.sim.flight.mission import MissionPoint
 
 @dataclass(frozen=True, slots=True)
 class SdkLimits:
-    """Mobile SDK 4 limits of missions and virtual sticks, and the aircraft's own settings."""
+    """Mobile SDK 4 limits of missions and virtual sticks, and the aircraft's own settings.
+
+    Not taken from `recon.model.dji` on purpose: a wrong number there must show as a mission that
+    the station sends and the simulated aircraft rejects.
+    """
 
     max_waypoints: int = 99
     least_spacing_m: float = 0.5

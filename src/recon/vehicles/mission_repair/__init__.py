@@ -17,7 +17,7 @@ What cannot be put right so (a single waypoint, a number that is none, a place o
 height out of range, a curved mission with actions) stays as it is; the gate refuses it.
 """
 
-from recon.vehicles.mission_repair.limits import DJI, DjiLimits
+from recon.vehicles.mission_repair.limits import REPAIR_LIMITS, RepairLimits
 from recon.vehicles.mission_repair.repair import Repaired, joined, repair
 
-__all__ = ["DJI", "DjiLimits", "Repaired", "joined", "repair"]
+__all__ = ["REPAIR_LIMITS", "RepairLimits", "Repaired", "joined", "repair"]

@@ -2,11 +2,13 @@
 
 from itertools import accumulate, pairwise
 
-from recon.vehicles.mission_repair.limits import DjiLimits
+from recon.vehicles.mission_repair.limits import RepairLimits
 from recon.vehicles.mission_repair.working import Numbered
 
 
-def cut(points: list[Numbered], most: int, limits: DjiLimits) -> tuple[list[list[Numbered]], str]:
+def cut(
+    points: list[Numbered], most: int, limits: RepairLimits
+) -> tuple[list[list[Numbered]], str]:
     """Return the parts, each beginning where the one before ends, and why there are several.
 
     Always as long a part as can be; a single leg always is one, so an end is always found.
@@ -22,11 +24,11 @@ def cut(points: list[Numbered], most: int, limits: DjiLimits) -> tuple[list[list
 
 
 def _last_that_fits(
-    points: list[Numbered], along_m: list[float], start: int, most: int, limits: DjiLimits
+    points: list[Numbered], along_m: list[float], start: int, most: int, limits: RepairLimits
 ) -> int:
     """The farthest end of a part from `start`; `along_m`: how far along each point is."""
-    is_whole = along_m[-1] - along_m[start] <= limits.longest_path_m
-    longest_m = limits.longest_path_m if is_whole else limits.cut_path_m
+    is_whole = along_m[-1] - along_m[start] <= limits.max_path_m
+    longest_m = limits.max_path_m if is_whole else limits.cut_path_m
     for end in range(min(start + most, len(points)) - 1, start + 1, -1):
         is_short = along_m[end] - along_m[start] <= longest_m
         if is_short and _may_span(points[start], points[end], limits):
@@ -34,15 +36,15 @@ def _last_that_fits(
     return start + 1
 
 
-def _may_span(first: Numbered, last: Numbered, limits: DjiLimits) -> bool:
-    return limits.least_leg_m <= first.distance_m(last) <= limits.longest_leg_m
+def _may_span(first: Numbered, last: Numbered, limits: RepairLimits) -> bool:
+    return limits.least_leg_m <= first.distance_m(last) <= limits.max_leg_m
 
 
-def _why(points: list[Numbered], path_m: float, most: int, limits: DjiLimits) -> str:
+def _why(points: list[Numbered], path_m: float, most: int, limits: RepairLimits) -> str:
     if len(points) > most:
         return f"{len(points)} waypoints are more than the {most} its app takes"
-    if path_m > limits.longest_path_m:
-        most_km = limits.longest_path_m / 1000.0
+    if path_m > limits.max_path_m:
+        most_km = limits.max_path_m / 1000.0
         return f"its path is {path_m / 1000:.1f} km, more than the {most_km:g} km DJI takes"
     span_m = points[0].distance_m(points[-1])
     if span_m < limits.least_leg_m:

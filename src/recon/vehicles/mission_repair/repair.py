@@ -8,7 +8,7 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.units import is_finite
 from recon.model.vehicle import VehicleProfile
 from recon.vehicles.mission_repair.corners import fit_corners
-from recon.vehicles.mission_repair.limits import DJI, DjiLimits
+from recon.vehicles.mission_repair.limits import REPAIR_LIMITS, RepairLimits
 from recon.vehicles.mission_repair.parts import cut
 from recon.vehicles.mission_repair.ranges import into_ranges
 from recon.vehicles.mission_repair.spacing import divide_long, merge_near
@@ -23,7 +23,9 @@ class Repaired:
     repairs: tuple[str, ...] = ()
 
 
-def repair(mission: Mission, profile: VehicleProfile, limits: DjiLimits = DJI) -> Repaired:
+def repair(
+    mission: Mission, profile: VehicleProfile, limits: RepairLimits = REPAIR_LIMITS
+) -> Repaired:
     """Return a mission in parts that DJI and the vehicle's app accept, or unchanged. Pure."""
     if not _is_repairable(mission, limits):
         return Repaired((mission,))
@@ -64,7 +66,7 @@ def _shared(end: Waypoint, beginning: Waypoint) -> Waypoint:
     return replace(end, speed_mps=beginning.speed_mps)
 
 
-def _is_repairable(mission: Mission, limits: DjiLimits) -> bool:
+def _is_repairable(mission: Mission, limits: RepairLimits) -> bool:
     points = mission.waypoints
     if len(points) < limits.min_waypoints or not all(_is_sound(p, limits) for p in points):
         return False
@@ -74,21 +76,21 @@ def _is_repairable(mission: Mission, limits: DjiLimits) -> bool:
     return sum(distance_m(a, b) for a, b in pairwise(points)) <= limits.most_repaired_m
 
 
-def _is_sound(point: Waypoint, limits: DjiLimits) -> bool:
+def _is_sound(point: Waypoint, limits: RepairLimits) -> bool:
     """Whether its place and numbers are such as a repair may go by."""
     numbers = (point.height_above_takeoff_m, point.speed_mps, point.corner_radius_m)
     actions = (point.loiter_s or 0.0, point.gimbal_pitch_deg or 0.0)
     if not is_finite(*numbers, *actions):
         return False
     is_place = LatLon(point.latitude_deg, point.longitude_deg).is_valid()
-    is_high = limits.lowest_m <= point.height_above_takeoff_m <= limits.highest_m
+    is_high = limits.min_height_m <= point.height_above_takeoff_m <= limits.max_height_m
     return is_place and is_high and point.speed_mps >= 0.0 and (point.loiter_s or 0.0) >= 0.0
 
 
-def _has_fitting_legs(part: list[Numbered], limits: DjiLimits) -> bool:
+def _has_fitting_legs(part: list[Numbered], limits: RepairLimits) -> bool:
     """Whether cutting has helped: near the poles a leg's length depends on where it is measured."""
     legs_m = [a.distance_m(b) for a, b in (*pairwise(part), (part[0], part[-1]))]
-    return all(limits.least_leg_m <= leg_m <= limits.longest_leg_m for leg_m in legs_m)
+    return all(limits.least_leg_m <= leg_m <= limits.max_leg_m for leg_m in legs_m)
 
 
 def _in_parts(parts: list[list[Numbered]], why: str) -> str:
@@ -100,7 +102,7 @@ def _in_parts(parts: list[list[Numbered]], why: str) -> str:
 
 
 def _with_corners(
-    parts: list[list[Numbered]], limits: DjiLimits
+    parts: list[list[Numbered]], limits: RepairLimits
 ) -> tuple[list[list[Numbered]], list[str]]:
     fitted, told = list[list[Numbered]](), list[str]()
     for part in parts:

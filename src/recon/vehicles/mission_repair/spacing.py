@@ -5,11 +5,11 @@ from math import ceil
 
 from recon.model.mission import Waypoint
 from recon.model.units import wrap_degrees
-from recon.vehicles.mission_repair.limits import DjiLimits
+from recon.vehicles.mission_repair.limits import RepairLimits
 from recon.vehicles.mission_repair.working import Numbered, listed
 
 
-def merge_near(points: list[Numbered], limits: DjiLimits) -> tuple[list[Numbered], list[str]]:
+def merge_near(points: list[Numbered], limits: RepairLimits) -> tuple[list[Numbered], list[str]]:
     """Return the waypoints at least 1 m from the one before, and what became of the others.
 
     Each is merged into the last one kept, which stays where it is: so none moves by 1 m or more.
@@ -29,16 +29,16 @@ def merge_near(points: list[Numbered], limits: DjiLimits) -> tuple[list[Numbered
     return kept, told
 
 
-def _merged(first: Numbered, second: Numbered, limits: DjiLimits) -> tuple[Numbered, str]:
+def _merged(first: Numbered, second: Numbered, limits: RepairLimits) -> tuple[Numbered, str]:
     """The first one's place with both ones' actions; what is left is flown as from the second."""
     a, b = first.waypoint, second.waypoint
     lost: list[str] = []
     if a.gimbal_pitch_deg is not None and b.gimbal_pitch_deg not in (None, a.gimbal_pitch_deg):
         lost.append(f"gimbal pitch {a.gimbal_pitch_deg:g} deg of waypoint {first.number}")
     loiter_s = _both_stays(a, b)
-    if loiter_s is not None and loiter_s > limits.longest_stay_s:
-        lost.append(f"{loiter_s - limits.longest_stay_s:.3g} s of their stays together")
-        loiter_s = limits.longest_stay_s
+    if loiter_s is not None and loiter_s > limits.max_loiter_s:
+        lost.append(f"{loiter_s - limits.max_loiter_s:.3g} s of their stays together")
+        loiter_s = limits.max_loiter_s
     pitch_deg = a.gimbal_pitch_deg if b.gimbal_pitch_deg is None else b.gimbal_pitch_deg
     merged = first.with_(
         speed_mps=b.speed_mps,
@@ -54,12 +54,12 @@ def _both_stays(a: Waypoint, b: Waypoint) -> float | None:
     return sum(stays) if stays else None
 
 
-def divide_long(points: list[Numbered], limits: DjiLimits) -> tuple[list[Numbered], list[str]]:
+def divide_long(points: list[Numbered], limits: RepairLimits) -> tuple[list[Numbered], list[str]]:
     """Return the waypoints with new ones on every leg longer than 2 km, and which these are."""
     divided, told = [points[0]], list[str]()
     for a, b in pairwise(points):
         leg_m = a.distance_m(b)
-        if leg_m > limits.longest_leg_m:
+        if leg_m > limits.max_leg_m:
             count = ceil(leg_m / limits.cut_leg_m)
             divided += [_between(a, b, k / count) for k in range(1, count)]
             told.append(
