@@ -46,7 +46,7 @@ class TestAuthority:
             "holder": "operator",
             "holder_name": "",
             "age_s": None,
-            "reason": "nobody has taken it yet",
+            "reason": "not yet transferred",
         }
 
     @pytest.mark.parametrize("holder", ["pilot", "guidance", "operator"])

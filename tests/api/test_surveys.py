@@ -122,7 +122,7 @@ class TestWords:
         assert answer == {
             "accepted": False,
             "rule": "survey",
-            "reason": "there is no survey 77; none was created",
+            "reason": "Survey 77 not found; no survey was created yet",
             "survey": None,
         }
 
@@ -140,7 +140,7 @@ class TestLooks:
     def test_those_there_are_are_named(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
         told = client.get("/api/surveys/77").json()["error"]
-        assert told == f"there is no survey 77; there are: {number} field (created)"
+        assert told == f"Survey 77 not found; available: {number} field (created)"
 
     def test_one_without_rows_says_why(self, client: Client) -> None:
         asked = {**ASKED, "speed_mps": 14.0}

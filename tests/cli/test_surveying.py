@@ -153,5 +153,5 @@ def test_a_survey_that_is_not_there_is_told_with_those_there_are(here: Flown) ->
     looked, paused = here.recon("survey", "status", 9_999), here.recon("survey", "pause", 9_999)
     assert (looked.code, paused.code) == (2, 1)
     for told in (looked.err, paused.out):
-        assert "there is no survey 9999; there are: " in told
+        assert "Survey 9999 not found; available: " in told
         assert f"{made} west field (created)" in told

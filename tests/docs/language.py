@@ -35,7 +35,7 @@ INSTEAD = {
     r"for ever": "forever, indefinitely",
     r"in so many words": "explicitly",
     r"not any more|any more": "no longer",
-    r"is none|are none": "does not exist; NaN",
+    r"(is|are) (?-i:none)": "does not exist; NaN",
     r"put this answer away": "dismiss",
     r"bark(s|ed)?": "raise an alarm",
     r"who (is|are|flies|has|comes|waits|can|could|moves|stands|leads)": "vehicles that ...",

@@ -1,4 +1,4 @@
-"""What a site allows in its air: limits, boundary, zones, pads and the ground below."""
+"""A site's airspace: limits, boundary, zones, pads and elevation."""
 
 from dataclasses import dataclass
 
@@ -14,22 +14,22 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class FlightLimits:
-    """What a site allows every vehicle; each can be set in site.toml."""
+    """Limits for every vehicle of a site, each optional in site.toml."""
 
     max_height_above_ground_m: float = 120.0
     """The open category's ceiling in Europe, 400 ft (122 m) in the United States."""
 
     min_height_above_ground_m: float = 5.0
-    """Crops, sprinklers and people stand lower; takeoff and landing are not held to it."""
+    """Above crops, sprinklers and persons; does not apply to takeoff and landing."""
 
     max_distance_from_home_m: float = 1_000.0
-    """A small drone is seen with the naked eye to about half of this; controllers reach farther."""
+    """A small drone is visible unaided to about half of this; controllers reach farther."""
 
     max_speed_mps: float = DJI.max_speed_mps
     """DJI's own limit for missions and sticks."""
 
     min_separation_horizontal_m: float = 15.0
-    """Three times what two GNSS positions may be off together (2 x 2.5 m), with room to see it."""
+    """Three times the combined error of two GNSS positions (2 x 2.5 m)."""
 
     min_separation_vertical_m: float = 6.0
     """Two barometers drift apart by a few metres in an hour; the return's layers are 8 m apart."""
@@ -38,14 +38,14 @@ class FlightLimits:
     """Kept to the boundary and to keep-out zones: GNSS error and a gust."""
 
     battery_reserve_fraction: float = 0.25
-    """What must be left in the battery after coming home."""
+    """Battery fraction that must remain after the return home."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElevationModel:
-    """The ground's ellipsoidal heights in the middle of each cell of a grid, (rows, cols).
+    """The ground's ellipsoidal heights at the centre of each cell of a grid, (rows, cols).
 
-    NaN where the file tells none. Between the middles the ground is taken as bilinear.
+    NaN where the file has no data. Between the centres the ground is bilinear.
     """
 
     grid: GroundGrid
@@ -54,7 +54,7 @@ class ElevationModel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Airspace:
-    """What holds in a site's air; without a site only the limits do.
+    """The airspace of a site; without a site only the limits apply.
 
     `frame` has its origin on the ground; without `elevation` the ground is assumed to be flat at
     that height.

@@ -1,25 +1,25 @@
-"""Who leads a vehicle: the pilot, the operator or guidance. Taking over is always explicit."""
+"""Control authority over a vehicle: pilot, operator or guidance. Transfers are explicit."""
 
 from dataclasses import dataclass
 from enum import Enum
 
 
 class AuthorityHolder(Enum):
-    """Who may set a vehicle in motion. Anyone may stop it."""
+    """The party that may set a vehicle in motion. Any party may stop it."""
 
     PILOT = "pilot"
-    """The person with the sticks; the station lets go and does not fight."""
+    """The person with the controller; the station stops commanding."""
     OPERATOR = "operator"
-    """A person or a program at the station."""
+    """A user or a program at the station."""
     GUIDANCE = "guidance"
     """The station's own planning."""
 
 
 @dataclass(frozen=True, slots=True)
 class ControlAuthority:
-    """Who leads a vehicle, since when, and how that came about."""
+    """The authority holder of a vehicle, since when, and why."""
 
     holder: AuthorityHolder = AuthorityHolder.OPERATOR
     holder_name: str = ""
     since_ns: int = 0
-    reason: str = "nobody has taken it yet"
+    reason: str = "not yet transferred"

@@ -1,4 +1,4 @@
-"""Commands, what becomes of them, and refusals."""
+"""Commands, their phases, and refusals."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -44,7 +44,7 @@ class FlyMission:
 
 
 class StickFrame(Enum):
-    """Frame of a stick command's velocity: ICD mode A is ground, mode B is body."""
+    """Frame of a stick's velocity: ICD mode A is ground, mode B is body."""
 
     GROUND = "ground"
     BODY = "body"
@@ -67,7 +67,7 @@ class VirtualStick:
 
 @dataclass(frozen=True, slots=True)
 class GoTo:
-    """Fly straight to a place and hold there, steered by the station with a stream of sticks.
+    """Fly straight to a target and hold there, steered by the station with a setpoint stream.
 
     `yaw_deg` None keeps the heading.
     """
@@ -80,7 +80,7 @@ class GoTo:
 
 @dataclass(frozen=True, slots=True)
 class Nudge:
-    """Move by this much from where the vehicle is, and hold there; steered as `GoTo` is."""
+    """Move by an offset from the present position and hold there; steered like `GoTo`."""
 
     north_m: float
     east_m: float
@@ -92,11 +92,11 @@ class Nudge:
 
 @dataclass(frozen=True, slots=True)
 class HoldPosition:
-    """Hold the present position against wind and drift, steered by the station, until told else."""
+    """Hold the present position against wind and drift, steered by the station, until replaced."""
 
 
 SteeredBody = GoTo | Nudge | HoldPosition
-"""Never on the wire themselves: the station turns them into a stream of `VirtualStick`."""
+"""Not on the wire: the station turns them into a stream of `VirtualStick`."""
 WireBody = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
 Body = WireBody | SteeredBody
 
@@ -104,9 +104,9 @@ EMERGENCY_BODIES = (Hover, LandNow, ReturnHome)
 CAMERA_BODIES = (StartCamera, StopCamera)
 STEERED_BODIES = (GoTo, Nudge, HoldPosition)
 MOVING_BODIES = (FlyMission, VirtualStick, *STEERED_BODIES)
-"""What sets a vehicle on a path of the station's choosing."""
+"""Bodies that set a vehicle in motion along a path of the station's choosing."""
 TAKEOFF_BODIES = (Hover, FlyMission, VirtualStick)
-"""What apps in the field answer with a takeoff, and may be asked for as one."""
+"""Bodies that companion apps may carry out as a takeoff."""
 
 BODY_NAMES: dict[type, str] = {
     Hover: "hover",
@@ -124,10 +124,10 @@ BODY_NAMES: dict[type, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """One order to one vehicle, or (all stop only) to one link that has no identity.
+    """One order to one vehicle, or (all stop only) to one link without a serial.
 
-    `takeoff` is the operator's explicit word that the vehicle may leave the ground. `asked_as` is
-    the role of whoever asks: only the vehicle's holder sets it in motion.
+    `takeoff` explicitly allows the vehicle to leave the ground. `asked_as` is the role of the
+    client: only the authority holder may set the vehicle in motion.
     """
 
     id: int
@@ -147,30 +147,30 @@ class Command:
 
     @property
     def moves(self) -> bool:
-        """Whether this sets its vehicle in motion: it leads somewhere, or may leave the ground.
+        """Whether this may move its vehicle, takeoff included.
 
-        A stick counts whatever it asks for; whether it only stops, `safety.standstill` tells.
+        A stick always counts; `safety.standstill` decides whether it only stops.
         """
         return self.takeoff or isinstance(self.body, MOVING_BODIES)
 
     @property
     def is_emergency(self) -> bool:
-        """Whether this travels in the ICD's Emergency Command packet."""
+        """Whether this is sent as the ICD's Emergency Command packet."""
         return isinstance(self.body, EMERGENCY_BODIES)
 
 
 class Phase(Enum):
-    """Where a command is in its life. Only telemetry confirms; an acknowledgment does not."""
+    """Life cycle of a command. Only telemetry confirms; an acknowledgment does not."""
 
     QUEUED = "queued"
     SENT = "sent"
     ACKNOWLEDGED = "acknowledged"
     CONFIRMED = "confirmed"
-    """By telemetry: it is being carried out."""
+    """Telemetry shows that it is being carried out."""
     STARTED = "started"
-    """By telemetry: the mission is flown."""
+    """Telemetry shows that the mission is being flown."""
     DONE = "done"
-    """By telemetry: it is carried out."""
+    """Telemetry shows that it is complete."""
     REFUSED_BY_STATION = "refused_by_station"
     REFUSED_BY_APP = "refused_by_app"
     TIMED_OUT = "timed_out"
@@ -180,7 +180,7 @@ class Phase(Enum):
 
     @property
     def is_final(self) -> bool:
-        """Whether the life has ended. It ends once: no other phase follows a final one."""
+        """Whether this phase is final: no other phase follows it."""
         return self not in LIVING_PHASES
 
 

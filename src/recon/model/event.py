@@ -1,4 +1,4 @@
-"""Everything that can happen to the station: one ordered queue of these drives it."""
+"""The events that drive the station, in one ordered queue."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ class LinkOpened:
 
 @dataclass(frozen=True, slots=True)
 class LinkClosed:
-    """A connection ended, with the reason in words."""
+    """A connection closed; `reason` is a sentence for the operator."""
 
     link_id: int
     reason: str
@@ -26,7 +26,7 @@ class LinkClosed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PacketReceived:
-    """An app said something."""
+    """A packet arrived from a companion app."""
 
     link_id: int
     report: Report
@@ -42,7 +42,7 @@ class CommandSent:
 
 @dataclass(frozen=True, slots=True)
 class CommandAnswered:
-    """An app acknowledged (or refused) a command; `positive` None: the ack missed its time."""
+    """An app acknowledged or refused a command; `positive` is None when the ack timed out."""
 
     link_id: int
     command_id: int
@@ -61,20 +61,20 @@ class CommandDropped:
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """Time went on."""
+    """Periodic timer event."""
 
 
 @dataclass(frozen=True, slots=True)
 class SticksDue:
-    """The time of the next stick of a stream has come: beats come exact, ticks only often."""
+    """The next setpoint of a stream is due. Its own event, because ticks are not precise enough."""
 
 
 @dataclass(frozen=True, slots=True)
 class OperatorOrder:
-    """Somebody orders one body for one vehicle (or one link without identity).
+    """One order for one vehicle, or for one link without a serial.
 
-    `command_id` is given by whoever asks, so that the answer can be told apart. `owner` names the
-    connection whose end ends a stream of sticks; None for orders that outlive their giver.
+    `command_id` is chosen by the client, to match the answer. `owner` names the API stream whose
+    end stops a setpoint stream; None for orders that do not depend on a connection.
     """
 
     command_id: int
@@ -89,7 +89,7 @@ class OperatorOrder:
 
 @dataclass(frozen=True, slots=True)
 class AuthorityTaken:
-    """Somebody explicitly takes a vehicle over, or gives it away: `holder` leads it from now on."""
+    """Control authority over a vehicle is explicitly given to `holder`."""
 
     serial: str
     holder: AuthorityHolder
@@ -98,28 +98,28 @@ class AuthorityTaken:
 
 @dataclass(frozen=True, slots=True)
 class OwnerConnected:
-    """A connection has opened that may hold streams of sticks."""
+    """An API stream opened that setpoint streams may depend on."""
 
     owner: str
 
 
 @dataclass(frozen=True, slots=True)
 class OwnerDisconnected:
-    """The connection that held streams of sticks has ended."""
+    """An API stream closed; the setpoint streams that depend on it end."""
 
     owner: str
 
 
 @dataclass(frozen=True, slots=True)
 class ClockRead:
-    """The computer's clock was looked at: the station's own time does not follow it."""
+    """The computer's clock was read; station time does not follow its adjustments."""
 
     wall_ns: int
 
 
 @dataclass(frozen=True, slots=True)
 class PreflightOverridden:
-    """Somebody lets a vehicle fly missions although its checklist is not passed, and says why."""
+    """An operator allows missions despite a failed preflight checklist, with a reason."""
 
     serial: str
     by: str
@@ -128,7 +128,7 @@ class PreflightOverridden:
 
 @dataclass(frozen=True, slots=True)
 class HazardDismissed:
-    """Somebody has seen where a stale vehicle is, and takes it out of the air."""
+    """An operator has located a lost vehicle and clears its hazard area."""
 
     serial: str
     by: str
@@ -136,7 +136,7 @@ class HazardDismissed:
 
 @dataclass(frozen=True, slots=True)
 class SeparationHoldSwitched:
-    """Somebody switches the holds of the separation watchdog on or off."""
+    """Holds by the separation watchdog are switched on or off."""
 
     is_on: bool
     by: str
@@ -144,10 +144,10 @@ class SeparationHoldSwitched:
 
 @dataclass(frozen=True, slots=True)
 class FleetReturnOrdered:
-    """Somebody calls vehicles home in layers, as landing missions.
+    """Vehicles return home in height layers, as landing missions.
 
-    The holds that it begins with get the ids from `first_command_id` on, in the order of `serials`;
-    the missions that follow have the station's own.
+    The initial holds take the ids from `first_command_id` on, in the order of `serials`; the
+    missions that follow take ids of the station's own.
     """
 
     first_command_id: int
@@ -157,7 +157,7 @@ class FleetReturnOrdered:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyAsked:
-    """Somebody asks for a survey; its id is given by whoever asks. Nothing flies by it."""
+    """A survey is to be planned; its id is chosen by the client. Nothing flies yet."""
 
     survey: Survey
     by: str
@@ -165,9 +165,9 @@ class SurveyAsked:
 
 @dataclass(frozen=True, slots=True)
 class SurveyStarted:
-    """Somebody starts a survey with these vehicles, and by that gives them to guidance.
+    """A survey starts with these vehicles, which gives guidance control authority over them.
 
-    `takeoff` is the explicit word that each may leave the ground, once.
+    `takeoff` allows each vehicle to leave the ground, for this start only.
     """
 
     survey_id: int
@@ -178,7 +178,7 @@ class SurveyStarted:
 
 @dataclass(frozen=True, slots=True)
 class SurveyStopped:
-    """Somebody pauses a survey, or aborts it for good; its vehicles hold."""
+    """A survey is paused, or aborted for good; its vehicles hold."""
 
     survey_id: int
     by: str
@@ -187,14 +187,14 @@ class SurveyStopped:
 
 @dataclass(frozen=True, slots=True)
 class AuditTroubled:
-    """The audit cannot be written, for this reason; None: it can again."""
+    """The audit cannot be written; `problem` is None when it can be written again."""
 
     problem: str | None
 
 
 @dataclass(frozen=True, slots=True)
 class StationFaulted:
-    """The station's own code failed: doing what, and what came of it, in words."""
+    """The station's own code raised: what it was doing, and the error."""
 
     where: str
     what: str
@@ -202,7 +202,7 @@ class StationFaulted:
 
 @dataclass(frozen=True, slots=True)
 class AlarmAcknowledged:
-    """A person has seen an alarm."""
+    """An operator acknowledged an alarm."""
 
     alarm_id: int
     by: str
@@ -210,7 +210,7 @@ class AlarmAcknowledged:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorkerResult:
-    """Heavy work came back; `result` is a value of the room that did it, or the error's text."""
+    """A job finished: a result of the room that ran it, or the text of its error."""
 
     job_id: int
     kind: str
@@ -220,7 +220,7 @@ class WorkerResult:
 
 @dataclass(frozen=True, slots=True)
 class DeadlineMissed:
-    """Heavy work was not done in time, or was dropped for newer work."""
+    """A job missed its deadline, or was dropped for a newer one."""
 
     job_id: int
     kind: str

@@ -43,15 +43,15 @@ class CameraPose:
 
 
 class Registration(Enum):
-    """How a ground image was laid on the ground."""
+    """How a ground image was georeferenced."""
 
     UNREGISTERED = "unregistered"
-    """By the marked frame's pose moved by telemetry: metres off are possible."""
+    """By the reference frame's pose and telemetry: errors of metres are possible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroundImage:
-    """A frame laid on the ground: `rgb` (R, C, 3) uint8, `valid` (R, C) bool, on `grid`."""
+    """An orthorectified frame: `rgb` (R, C, 3) uint8, `valid` (R, C) bool, on `grid`."""
 
     grid: GroundGrid
     frame_id: int
@@ -61,4 +61,4 @@ class GroundImage:
     pose: CameraPose
     registration: Registration = Registration.UNREGISTERED
     serial: str = ""
-    """The vehicle whose camera saw it; empty when unknown."""
+    """The vehicle that took it; empty when unknown."""

@@ -1,4 +1,4 @@
-"""What the station last told a vehicle to do, so that its path can be foreseen."""
+"""What the station last commanded a vehicle to do, to predict its path."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -11,23 +11,22 @@ class Commanded(Enum):
     """The state a vehicle was commanded into."""
 
     NOTHING = "nothing"
-    """The station has told it nothing since it took off, was restarted, or let go of it."""
+    """Nothing commanded since takeoff, a restart, or the end of the last order."""
     HOLD = "hold"
     MISSION = "mission"
     STICK = "stick"
-    """A stream of sticks towards a place."""
+    """A setpoint stream towards a target."""
     RETURN = "return"
     LAND = "land"
 
 
 @dataclass(frozen=True, slots=True)
 class Intent:
-    """What a vehicle is doing on the station's word.
+    """What a vehicle is doing by command of the station.
 
-    `mission` is set for MISSION: the part it was last sent, of which it has passed the first
-    `passed` waypoints (0: on its way to the first). `target`, `target_height_above_takeoff_m` and
-    `speed_mps` are set for STICK (of a single stick the height alone). `command_id` is the order
-    behind it.
+    `mission` is set for MISSION: the part last sent, with its first `passed` waypoints flown (0:
+    on the way to the first). `target`, `target_height_above_takeoff_m` and `speed_mps` are set for
+    STICK (for a single stick only the height). `command_id` is the order that commanded it.
     """
 
     commanded: Commanded = Commanded.NOTHING

@@ -1,11 +1,11 @@
-"""Missions as the station thinks of them: heights above takeoff, positions on the globe."""
+"""Missions: WGS84 positions, heights above takeoff."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """One waypoint. `speed_mps` is flown from here to the next; None means no action."""
+    """One waypoint. `speed_mps` holds from here to the next waypoint; None means no action."""
 
     latitude_deg: float
     longitude_deg: float

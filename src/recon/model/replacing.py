@@ -1,4 +1,4 @@
-"""`replace` for frozen values that are replaced with every packet.
+"""A fast `replace` for frozen values that change with every packet.
 
 It does what `dataclasses.replace` does, which reads and sets each field by name: 10 us for a value
 of thirty fields. A value that keeps its fields in a dictionary (a dataclass without `slots`) is
@@ -16,7 +16,7 @@ else:
     def replace(value: Any, /, **changes: Any) -> Any:
         """Return a frozen value with some of its fields changed.
 
-        Raises TypeError for a field that there is none of.
+        Raises TypeError for an unknown field.
         """
         kind = type(value)
         names = _fields_copied(kind)
@@ -35,7 +35,7 @@ else:
 def _fields_copied(kind: type[Any]) -> frozenset[str] | None:
     """Return the names of a type's fields if its values may be copied as dictionaries, else None.
 
-    Not where making one does more than set its fields, or where it keeps more than fields.
+    Copying is wrong for types with `__post_init__`, `init=False` fields or cached properties.
     """
     if not dataclasses.is_dataclass(kind) or hasattr(kind, "__slots__"):
         return None

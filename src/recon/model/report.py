@@ -1,6 +1,6 @@
-"""What a companion app reported, in the station's words (decoded from packets by `vehicles`).
+"""Reports of companion apps, decoded from packets by `vehicles`.
 
-None in a field means the app said "unknown", or said something that cannot be true.
+A field is None when the app reports it as unknown or out of range.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class CoreReport:
 
     is_flying: bool | None
     position: LatLon | None
-    """None without a fix (the app sends 0, 0 then)."""
+    """None without a fix: the app then sends 0, 0."""
     reported_altitude_m: float | None
     height_above_takeoff_m: float | None
     velocity_ned: VelocityNed | None
@@ -78,7 +78,7 @@ class MessageSeverity(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class MessageReport:
-    """A text from the app, made harmless for screens and logs."""
+    """A text from the app, sanitised for screens and logs."""
 
     severity: MessageSeverity
     text: str

@@ -1,10 +1,10 @@
-"""How bad something is that a person must know."""
+"""Severity of an alarm."""
 
 from enum import Enum
 
 
 class Severity(Enum):
-    """How bad it is, the worst first."""
+    """Severity levels, the worst first."""
 
     CRITICAL = "critical"
     ERROR = "error"

@@ -1,4 +1,4 @@
-"""Where cloud shadows lie on the ground, and where they will."""
+"""Cloud shadows on the ground: shade maps and sun forecasts."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -31,14 +31,14 @@ class ShadeMap:
     grid: GroundGrid
     captured_at_ns: int
     source_serials: tuple[str, ...]
-    """The vehicles whose cameras saw this; empty where the method was not told."""
+    """The vehicles that took the frames; empty when unknown to the method."""
     transmittance: FloatMap
     """In [0, 1]; in sun from `SUNLIT_TRANSMITTANCE` on."""
     valid: MaskMap
     confidence: FloatMap
-    """In [0, 1]: how much the method had to go by, not how far from the threshold it came out."""
+    """In [0, 1]: how much evidence there was, not the distance from the threshold."""
     metres_per_pixel: FloatMap
-    """What the coarser side of one camera pixel covers on the ground there."""
+    """Ground size of the longer side of one camera pixel."""
 
     def __post_init__(self) -> None:
         for name in ("transmittance", "valid", "confidence", "metres_per_pixel"):
@@ -53,7 +53,7 @@ class ShadeMap:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SunForecast:
-    """How likely each cell of `grid` is in sun at some moments to come.
+    """Probability that each cell of `grid` is in sun, by lead time.
 
     `lead_s` (L,) float64 counts from `issued_at_ns` and rises. Beyond a cell's horizon the
     forecast knows nothing of that cell: `sun_probability` is `prior_sunlit` there.
@@ -65,11 +65,11 @@ class SunForecast:
     sun_probability: npt.NDArray[np.uint8]
     """(L, R, C), in 255ths."""
     horizon_s: FloatMap
-    """(R, C): until what lead the cell is foreseen from something seen; 0 where unseen now."""
+    """(R, C): the longest lead time with a prediction from observations; 0 where unobserved."""
     prior_sunlit: float
-    """The share in sun of what was seen lately: what is said where nothing better is known."""
+    """The recently observed share in sun, used where there is no prediction."""
     method: str
-    """The method that made it; its fallback's name where it fell back."""
+    """The method that made it, or its fallback."""
     velocity_mps: tuple[float, float] | None = None
     """East and north velocity of the shadows, where the method found one."""
 
@@ -86,7 +86,7 @@ class SunForecast:
         t1_ns: int | npt.NDArray[np.int64],
         t2_ns: int | npt.NDArray[np.int64],
     ) -> FloatArray:
-        """Return (N,): how likely a moment drawn from t1 to t2 finds the cell in sun.
+        """Return (N,): the mean probability of sun between t1 and t2.
 
         `cells` (N, 2) are rows and columns; the times are one for all or (N,), and equal times ask
         for one moment. Between leads the probability is interpolated; before the first lead it is

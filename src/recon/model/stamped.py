@@ -1,4 +1,4 @@
-"""A value together with the moment it was received."""
+"""A value with its receive time."""
 
 from dataclasses import dataclass
 from typing import Generic, TypeVar
@@ -10,13 +10,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Stamped(Generic[T]):
-    """A value that knows its age; `value` is None while it is unknown."""
+    """A value and when it was received; `value` is None while unknown."""
 
     value: T | None = None
     received_at_ns: int | None = None
 
     def age_s(self, now_ns: int) -> float | None:
-        """Return the value's age in seconds, or None when nothing was ever received."""
+        """Return the age in seconds, None when nothing was received yet."""
         if self.received_at_ns is None:
             return None
         return (now_ns - self.received_at_ns) / NS_PER_S

@@ -1,4 +1,4 @@
-"""A survey: which region is to be imaged, from where, how dense; and how far it has come."""
+"""A survey: region, height, overlap, budget; and its progress."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ class SurveyCamera:
     """A camera that looks straight down from a gimbal, its longer side across the flight.
 
     There is no shutter command and no capture report: the pilot starts an interval timer, and
-    when within the interval it fires is not known.
+    its phase is unknown.
     """
 
     across_deg: float = 66.0
@@ -34,28 +34,28 @@ class SurveyCamera:
 
 @dataclass(frozen=True, slots=True)
 class SurveyBudget:
-    """When a survey ends although it is not done; None: never for that reason."""
+    """Limits after which a survey ends incomplete; None: no limit."""
 
     rounds: int = 6
-    """Of flights over what is missing; the first round counts."""
+    """Rounds of flights over the missing ground, the first included."""
     time_s: float | None = None
     """From the start to the beginning of the last flight, pauses included."""
     flown_m: float | None = None
-    """Planned metres of all missions together: batteries, said as a way."""
+    """Total planned length of all missions: a battery budget as a distance."""
 
 
 class WhenDone(Enum):
-    """What a survey's vehicles do when there is nothing more for them to fly."""
+    """What a survey's vehicles do when nothing is left to fly."""
 
     RETURN_HOME = "return_home"
-    """They fly home in layers and land: when it is done, or no battery lasts for a row."""
+    """Return home in layers and land, also when the battery lasts for no further row."""
     HOVER = "hover"
-    """They stay where they are until somebody orders something."""
+    """Hover until commanded otherwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Survey:
-    """What is asked for; `region` is in east-north metres of the site's local frame.
+    """A survey request; `region` is in east-north metres of the site's local frame.
 
     The height is above each vehicle's own takeoff point; footprints are worked out as if the
     ground lay as low as that point everywhere.
@@ -76,15 +76,15 @@ class Survey:
     planner: str = "lawnmower_once"
     budget: SurveyBudget = SurveyBudget()
     counts_neighbours: bool = False
-    """Whether a place counts as imaged from a neighbouring row too. A mosaic is made of what was
-    seen from nearly above; for counting or looking any photo does."""
+    """Whether a cell also counts as imaged from a neighbouring row. A mosaic needs nearly vertical
+    views; for counting or inspection any photo will do."""
     cell_m: float = 4.0
     """Progress is kept in cells of this size: finer than shadows' edges are known."""
     when_done: WhenDone = WhenDone.RETURN_HOME
 
 
 class SurveyPhase(Enum):
-    """Where a survey is in its life."""
+    """Life cycle of a survey."""
 
     CREATED = "created"
     RUNNING = "running"
@@ -94,34 +94,34 @@ class SurveyPhase(Enum):
 
     @property
     def is_final(self) -> bool:
-        """Whether it never flies again."""
+        """Whether the survey never flies again."""
         return self in (SurveyPhase.ABORTED, SurveyPhase.DONE)
 
 
 def none_such(survey_id: int, known: Iterable[tuple[int, str, str]]) -> str:
-    """Return the sentence for a survey that is not there; `known` are (id, name, phase)."""
+    """Return the sentence for an unknown survey id; `known` are (id, name, phase)."""
     there = ", ".join(f"{number} {name} ({phase})" for number, name, phase in known)
-    return f"there is no survey {survey_id}; " + (
-        f"there are: {there}" if there else "none was created"
+    return f"Survey {survey_id} not found; " + (
+        f"available: {there}" if there else "no survey was created yet"
     )
 
 
 class CellState(IntEnum):
-    """How far one cell has come; it only ever rises."""
+    """Progress of one cell; it never decreases."""
 
     NOT_YET = 0
-    """No photo shows it for sure."""
+    """No photo certainly shows it."""
     IN_SHADE = 1
-    """A photo shows it for sure, but none for sure in sun."""
+    """A photo certainly shows it, but none certainly in sun."""
     IN_SUN = 2
-    """A photo shows it for sure, and it was in sun then."""
+    """A photo certainly shows it in sun."""
 
 
 @dataclass(frozen=True, slots=True)
 class MissionFor:
-    """A mission for one vehicle, to go through the gate like any order of guidance.
+    """A mission for one vehicle, to be judged by the gate like any order of guidance.
 
-    `number` counts the survey's missions from 1: whoever flies it tells it back when it has ended.
+    `number` counts the survey's missions from 1 and identifies the mission when it ends.
     """
 
     serial: str

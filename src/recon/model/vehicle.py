@@ -1,4 +1,4 @@
-"""Vehicles: what each one is (profile) and what is known of it now (state)."""
+"""Vehicles: their profiles (configuration) and states (telemetry)."""
 
 from dataclasses import dataclass, field
 from enum import Enum, IntEnum
@@ -41,7 +41,7 @@ class FlightMode(IntEnum):
 
 
 class CameraState(IntEnum):
-    """What the app says of the DJI camera (field DJICam)."""
+    """State of the DJI camera as the app reports it (field DJICam)."""
 
     NOT_CONNECTED = 0
     FEED_OFF = 1
@@ -49,7 +49,7 @@ class CameraState(IntEnum):
 
 
 class BatteryWarning(IntEnum):
-    """What the aircraft's own thresholds say (field BatWarning)."""
+    """Warning by the aircraft's own thresholds (field BatWarning)."""
 
     NONE = 0
     LOW = 1
@@ -65,14 +65,14 @@ class AltitudeReference(Enum):
 
 
 class Mount(Enum):
-    """How the camera hangs: a gimbal keeps it level, a fixed mount tilts with the aircraft."""
+    """Camera mount: a gimbal keeps it level, a fixed mount tilts with the aircraft."""
 
     GIMBAL = "gimbal"
     FIXED = "fixed"
 
 
 class Failsafe(Enum):
-    """What an aircraft does by itself when it loses its controller."""
+    """What the aircraft does when its controller signal is lost."""
 
     GO_HOME = "go_home"
     HOVER = "hover"
@@ -87,7 +87,7 @@ LOST_UNDER_S = 10.0
 
 
 class Staleness(Enum):
-    """How old the newest core telemetry is: under 1 s, 3 s, 10 s, or older / never."""
+    """Age of the newest core telemetry: under 1 s, 3 s, 10 s, or older / never received."""
 
     LIVE = "live"
     LATE = "late"
@@ -106,7 +106,7 @@ def staleness_at(age_s: float | None) -> Staleness:
 
 @dataclass(frozen=True, slots=True)
 class VehicleProfile:
-    """What a vehicle is and accepts; set per serial in the site's file."""
+    """Configuration of a vehicle, by serial in site.toml."""
 
     serial: str
     name: str = ""
@@ -121,21 +121,21 @@ class VehicleProfile:
     """Capture-to-receive latency of image packets, which carry no time of their own."""
     video_latency_sigma_s: float = 0.25
     endurance_s: float | None = None
-    """How long a full battery lasts in the air; None while nobody has said."""
+    """Hover time of a full battery; None when not configured."""
     go_home_height_m: float | None = None
-    """The height above takeoff that the aircraft climbs to before it goes home: set in the
-    aircraft, told here, for it cannot be read or set over the ICD."""
+    """Height above takeoff to which the aircraft climbs before it flies home. Set in the aircraft
+    and repeated here: the ICD can neither read nor set it."""
     failsafe: Failsafe | None = None
     camera_interval_s: float | None = None
-    """Of the interval timer that the pilot starts; there is no shutter command."""
+    """Interval of the camera's timer, started by the pilot: the ICD has no shutter command."""
     priority: int = 0
-    """Of two vehicles in conflict the one with the lower number is held first."""
+    """In a conflict of two vehicles, the one with the lower number is held first."""
     packet_gap_s: float = 0.1
     """Least time between two packets to the app; some apps read one packet per segment."""
 
     @property
     def display_name(self) -> str:
-        """The name people see: the given one, else the serial."""
+        """The name shown to operators: the configured one, else the serial."""
         return self.name or self.serial
 
 
@@ -164,7 +164,7 @@ class VelocityNed:
 
 @dataclass(frozen=True, slots=True)
 class TrackPoint:
-    """One point of where a vehicle has been."""
+    """One past position of a vehicle."""
 
     at_ns: int
     latitude_deg: float
@@ -174,7 +174,7 @@ class TrackPoint:
 
 @dataclass(frozen=True)
 class VehicleState:
-    """What is known of one vehicle, each value with the moment it was received.
+    """Telemetry of one vehicle, each value with its receive time.
 
     Heights are above the vehicle's own takeoff point (barometric) unless the name says otherwise;
     `reported_altitude_m` is the app's WGS84 altitude, which may be off by tens of metres.
@@ -205,18 +205,18 @@ class VehicleState:
     image_received_at_ns: int | None = None
     image_count: int = 0
     altitude_offset_m: Stamped[float] = Stamped()
-    """Altitude minus height above takeoff, of one packet: what a wgs84 app must have subtracted."""
+    """Altitude minus height above takeoff, of one packet: the offset for waypoint altitudes of a wgs84 app."""
     altitude_offset_at_takeoff_m: float | None = None
     takeoff_point: LatLon | None = None
     rival_link_ids: tuple[int, ...] = ()
-    """Other open links that claim this serial; which one is the vehicle is being settled."""
+    """Other open links that claim this serial, until identity is resolved."""
     in_conflict: bool = False
-    """Whether the old link spoke on after a rival came: an operator's matter."""
+    """Whether the old link kept sending after a rival appeared: the operator must resolve it."""
     track: tuple[TrackPoint, ...] = field(default=())
 
     @property
     def display_name(self) -> str:
-        """The name people see."""
+        """The name shown to operators."""
         if self.profile is not None:
             return self.profile.display_name
         return self.serial if self.serial is not None else f"unidentified link {self.link_id}"

@@ -16,7 +16,7 @@ class Region:
     """A polygon with holes, in east-north metres of the site's local frame.
 
     `outline_m` is (N, 2), N >= 3, its last point joined to the first and not repeated; each of
-    `holes_m` likewise. Edges are straight in the local frame. The edge itself is of the region.
+    `holes_m` likewise. Edges are straight in the local frame. The edge belongs to the region.
     """
 
     outline_m: FloatArray
@@ -24,7 +24,7 @@ class Region:
 
 
 class ZoneKind(Enum):
-    """What a zone asks of a vehicle over its region."""
+    """Kind of restriction over a zone's region."""
 
     KEEP_OUT = "keep_out"
     """Stay out between floor and ceiling; without either, at every height."""
@@ -33,19 +33,19 @@ class ZoneKind(Enum):
 
 
 class HeightDatum(Enum):
-    """What a zone's floor and ceiling count from."""
+    """Reference of a zone's floor and ceiling."""
 
     GROUND = "ground"
-    """The ground below."""
+    """Height above ground."""
     WGS84 = "wgs84"
-    """The WGS84 ellipsoid."""
+    """Height above the WGS84 ellipsoid."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Zone:
-    """A region where a rule of height or presence holds.
+    """A region with a restriction on height or entry.
 
-    `floor_m` and `ceiling_m` are heights above `datum`, None where the zone has no such end;
+    `floor_m` and `ceiling_m` are heights above `datum`, None where open-ended;
     `datum` is None when it has neither.
     """
 
@@ -59,7 +59,7 @@ class Zone:
 
 @dataclass(frozen=True, slots=True)
 class LandingPad:
-    """A place to land; `serial` is the vehicle it belongs to, None for one that any may use."""
+    """A place to land; `serial` is the vehicle it belongs to, None for a shared pad."""
 
     name: str
     serial: str | None

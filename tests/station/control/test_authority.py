@@ -91,7 +91,7 @@ class TestByHand:
 class TestByWord:
     def test_the_operator_leads_until_somebody_takes_it(self, scene: CommandedStation) -> None:
         assert led_by(scene) is AuthorityHolder.OPERATOR
-        assert authority.authority_of(scene.station, "A").reason == "nobody has taken it yet"
+        assert authority.authority_of(scene.station, "A").reason == "not yet transferred"
 
     def test_guidance_flies_what_was_given_to_it_and_nothing_else(
         self, scene: CommandedStation

@@ -41,7 +41,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
       holder: "operator",
       holder_name: "",
       age_s: null,
-      reason: "nobody has taken it yet",
+      reason: "not yet transferred",
     },
     preflight_override: null,
     steering: null,
