@@ -52,8 +52,10 @@ def draw(seed: int) -> Scene:
     """Return the scene of a seed."""
     rng = np.random.default_rng(seed)
     need = Need(float(rng.uniform(8.0, 25.0)), float(rng.uniform(3.0, 10.0)))
+    # The rule keeps 3 m and 1.5 m beyond the site's limits: watchdog margin and track error.
     limits = FlightLimits(
-        min_separation_horizontal_m=need.horizontal_m, min_separation_vertical_m=need.vertical_m
+        min_separation_horizontal_m=need.horizontal_m - 3.0,
+        min_separation_vertical_m=need.vertical_m - 1.5,
     )
     spread_m = float(rng.choice([50.0, 100.0, 200.0, 300.0]))
     order = str(rng.choice(ORDERS, p=ORDER_SHARES))

@@ -30,7 +30,6 @@ from recon.safety.prediction.sampling import Samples
 from recon.safety.rules.separation import separation as rule
 from recon.safety.watchdogs import WATCHDOGS, Picture, WatchedVehicle, take_picture
 from recon.safety.watchdogs.closeness import closeness, near_pairs
-from recon.safety.watchdogs.separation import watched_separation
 from recon.station.kernel.driver import spare_what_is_loaded
 
 VEHICLES = 64
@@ -139,7 +138,11 @@ def timed_ms(work: Callable[[], object], times: int) -> np.ndarray:
 
 def naive(picture: Picture) -> int:
     """How many pairs come too near, asked one by one."""
-    flies, need, count = picture.ahead.as_it_flies, watched_separation(picture), 0
+    flies, need, count = (
+        picture.ahead.as_it_flies,
+        picture.minima,
+        0,
+    )
     tracks = [_track(flies, number) for number in range(len(picture.flying))]
     for one, other in combinations(tracks, 2):
         count += any(
@@ -156,7 +159,10 @@ def _track(flies: Samples, number: int) -> list[tuple[float, float, float]]:
 
 
 def vectorised(picture: Picture) -> int:
-    flies, need = picture.ahead.as_it_flies, watched_separation(picture)
+    flies, need = (
+        picture.ahead.as_it_flies,
+        picture.minima,
+    )
     first, second = near_pairs(flies, need)
     return int((closeness(flies, first, flies, second, need)[0] < 1.0).any(axis=1).sum())
 

@@ -22,7 +22,7 @@ from recon.safety.energy import (
     path_need,
     place_of,
 )
-from recon.safety.energy_settings import EnergySettings
+from recon.safety.settings import EnergySettings
 
 SETTINGS = EnergySettings(
     level_load=1.25,

@@ -6,9 +6,10 @@ from tests.safety.traffic import SETTINGS
 
 from recon.safety.prediction.course import Course, CourseWriter, Part
 from recon.safety.prediction.foresee import may_meet, surroundings
-from recon.safety.prediction.meetings import Separation, first_meeting
+from recon.safety.prediction.meetings import first_meeting
+from recon.safety.separation_minima import SeparationMinima
 
-NEED = Separation(horizontal_m=15.0, vertical_m=8.0)
+NEED = SeparationMinima(horizontal_m=15.0, vertical_m=8.0)
 
 places_m = st.floats(-120.0, 120.0)
 heights_m = st.floats(20.0, 70.0)

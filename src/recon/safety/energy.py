@@ -28,7 +28,7 @@ from recon.model.mission import Mission
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home
-from recon.safety.energy_settings import EnergySettings
+from recon.safety.settings import EnergySettings
 
 Point = tuple[float, float, float]
 """North and east of home, and above takeoff, in metres."""

@@ -13,8 +13,8 @@ from recon.model.units import wrap_degrees
 from recon.safety.as_sent import as_sent
 from recon.safety.datum import places_m
 from recon.safety.departure import Departure
-from recon.safety.fence_settings import FenceSettings
 from recon.safety.flown_path import Kind, Pieces, block, joined, legs_between
+from recon.safety.settings import FenceSettings
 from recon.safety.ways_home import ways_home
 
 FloatArray = npt.NDArray[np.float64]

@@ -1,14 +1,280 @@
-"""The gate's thresholds, each with its reason."""
+"""The thresholds of the gate, the prediction and the watchdogs, each with its reason."""
 
 from dataclasses import dataclass, field
 
 from recon.model.dji import DJI
 from recon.model.vehicle import LATE_UNDER_S, LIVE_UNDER_S
-from recon.safety.energy_settings import EnergySettings
-from recon.safety.fence_settings import FenceSettings
-from recon.safety.prediction.settings import PredictionSettings
-from recon.safety.preflight_settings import PreflightSettings
-from recon.safety.watchdog_settings import WatchdogSettings
+
+@dataclass(frozen=True, slots=True)
+class PreflightSettings:
+    """Beside what the site's limits and the gate's rules say."""
+
+    early_battery_fraction: float = 0.5
+    """A flight begun with less is a short one; somebody should know."""
+
+    earliest_clock_s: float = 1_735_689_600.0
+    """2025-01-01 UTC. A clock before this program was written was never set: a computer without a
+    network starts in 1970, or where its battery ran out."""
+
+    clock_set_s: float = 2.0
+    """A clock that was set by more since the start: what is recorded no longer fits what other
+    clocks say (photos, the sun)."""
+
+    pad_ground_m: float = 5.0
+    """A pad's altitude and the elevation model may differ by this: models are good to metres. A
+    wrong pad puts every height of its vehicle wrong."""
+
+    strong_wind_level: int = 2
+    """The aircraft's own warning of strong wind."""
+
+    least_go_home_m: float = 20.0
+    most_go_home_m: float = 500.0
+    """What DJI's aircraft can be set to: another number was never read off one."""
+
+
+@dataclass(frozen=True, slots=True)
+class EnergySettings:
+    """Loads count in hovering: 1.0 empties a full battery in the profile's endurance.
+
+    They are on the careful side: what multirotors are measured to use, and a little more.
+    """
+
+    level_load: float = 1.25
+    """Level flight: at moderate speeds cheaper than hovering, at 15 m/s up to a quarter dearer."""
+
+    climb_load: float = 1.6
+    """Lifting a drone at 2 m/s takes a quarter to a half more than holding it up."""
+
+    sink_load: float = 1.0
+    """Sinking is a little cheaper than hovering; in a gust it is not."""
+
+    climb_mps: float = 2.0
+    sink_mps: float = 2.0
+    """Slower than aircraft can (2.6 and 3.2 m/s and more), for what takes longer costs more."""
+
+    landing_mps: float = 1.5
+    """Go-home's landing on average: 3 m/s high up, under 1 m/s near the ground."""
+
+    touchdown_s: float = 15.0
+    """The stop at 0.3 m, until the app has confirmed the landing, and the last of the descent."""
+
+    home_mps: float = 8.0
+    """Go-home flies at about 10 m/s, against the wind slower over the ground."""
+
+    brake_mps2: float = 2.5
+    """What the separation watchdog counts with too; a stop at a waypoint costs speed over this."""
+
+    slowest_mps: float = 0.1
+    """No leg is flown slower than this: nothing is divided by zero."""
+
+    gimbal_s: float = 3.0
+    """A mission waits at a waypoint until the gimbal has turned: 90 degrees at 30 a second."""
+
+    wind_loads: tuple[float, ...] = (1.0, 1.2, 1.5)
+    """By the aircraft's wind warning (none, wind, strong wind and worse): it leans, and flies
+    farther through the air than over the ground."""
+
+    unknown_wind_load: float = 1.2
+    """An app that tells no wind is taken to be in some."""
+
+    landing_fraction: float = 0.10
+    """Left when a way home ends, reserve or not: at about this charge aircraft land by themselves,
+    wherever they are."""
+
+    nearer_m: float = 1.0
+    """An order that ends this much farther from home at most does not lead away from it: a place
+    being held, with its corrections."""
+
+
+@dataclass(frozen=True, slots=True)
+class FenceSettings:
+    """Beside what the site's own limits say."""
+
+    braking_mps2: float = 2.5
+    """What a loaded aircraft brakes with: how far a stick's velocity still carries it."""
+
+    steering_overshoot_m: float = 3.0
+    """A steered order may pass its target by this: the sticks that brake it reach up to 1.9 m
+    beyond, and its position is no better than a metre."""
+
+    height_noise_m: float = 1.0
+    """A barometer and a hovering aircraft hold a height no better: the height that a vehicle sets
+    out from counts as this much nearer to the one it goes to."""
+
+    column_radius_m: float = 5.0
+    """Round a place of takeoff or landing it may be low: what GNSS may be off when it comes down,
+    and when it goes up."""
+
+    zone_vertical_margin_m: float = 5.0
+    """Kept above and below a keep-out zone: barometers drift by metres within an hour."""
+
+    not_worse_m: float = 0.01
+    """A vehicle that already breaks a rule may be moved if that makes it no worse; this is for
+    what rounding adds."""
+
+    stop_slack_m: float = 2.0
+    """A stick without velocity is refused for its height only beyond this: its height was judged a
+    moment ago where the vehicle was then, and to stop is better than not to stop."""
+
+    same_height_m: float = 1.0
+    """A stick without velocity only stops while it asks for the present height within this, which
+    is how well a barometer tells one and a hovering aircraft keeps it: any more is a climb."""
+
+    speed_rounding_mps: float = 1e-5
+    """What the wire's 32-bit floats may add to a speed of 15 m/s, and to the norm of two."""
+
+
+@dataclass(frozen=True, slots=True)
+class PredictionSettings:
+    """How vehicles are thought to fly, and how wrong that may be."""
+
+    braking_mps2: float = 2.5
+    """What a loaded aircraft brakes and gains speed with."""
+
+    reaction_s: float = 1.0
+    """From an order at the station to the aircraft's first deceleration: link, app and pacing."""
+
+    time_uncertainty: float = 0.1
+    """Of the time gone by: an aircraft holds its ground speed within a few percent, and takes a
+    little longer or shorter at each of its corners and stops."""
+
+    slack_s: float = 3.0
+    """Beyond that: gaining speed and stopping are counted in whole legs."""
+
+    start_delay_s: float = 8.0
+    """A mission under judgement, or another's that has not begun, starts at once or as late as
+    this; later it counts as ignored."""
+
+    piece_s: float = 3.0
+    """Paths are compared in pieces of this time, or of their own uncertainty when that is more."""
+
+    stick_horizon_s: float = 5.0
+    """A stick without a known target is foreseen this far: no app holds one longer."""
+
+    free_s: float = 5.0
+    """A vehicle that the station has told nothing may be flown by a pilot. It may use its speed in
+    any direction for this long; a standing one is taken to stand, and watched."""
+
+    stands_s: float = 30.0
+    """What follows a steered order: a place is held this long before others must fear it no more;
+    from then on each new order is judged anew, and the watchdog looks ahead."""
+
+    climb_mps: float = 3.0
+    sink_mps: float = 4.0
+    """What aircraft of all sizes do at most by themselves on the way home and down."""
+
+    takeoff_height_m: float = 3.0
+    """A hover that takes off ends so high at most: DJI's own takeoff ends at 1.2 m, and bounces."""
+
+    landing_mps: float = 1.0
+    landing_wait_s: float = 30.0
+    """A landing is slow near the ground, and waits for confirmation at its end; then it is down."""
+
+    go_home_speed_mps: float = 10.0
+    """DJI's aircraft fly home at 8 to 15 m/s."""
+
+    unknown_climb_m: float = 500.0
+    """The highest go-home height that can be set in an aircraft: assumed when nobody has told."""
+
+    plausible_speed_mps: float = 23.0
+    """No DJI survey aircraft flies faster: a reported speed above is cut to this."""
+
+    unknown_speed_mps: float = DJI.max_speed_mps
+    """A vehicle that tells no velocity: as fast as missions and sticks may make it."""
+
+    stale_s: float = LATE_UNDER_S
+    """Core telemetry older than this: the vehicle is a hazard somewhere near its last place."""
+
+    hazard_radius_m: float = 150.0
+    """How far such a hazard grows, or to its own stopping volume when that is larger."""
+
+    hazard_least_speed_mps: float = 2.0
+    """How fast it grows at least: one that hung still may have begun to move since."""
+
+    track_error_horizontal_m: float = 1.0
+    track_error_vertical_m: float = 0.5
+    """Off its predicted path in a fault-free flight: aircraft fly some decimetres beside a row, and
+    a barometer resolves decimetres. The gate keeps this beyond the watchdog's minima."""
+
+    corridor_m: float = 10.0
+    """Half the width of a way home: GNSS error, wind, and where home really is."""
+
+    escape_s: float = 20.0
+    """Two vehicles already too near each other may be led apart: for this long only getting nearer
+    is refused. Time for 100 m at a survey's speed."""
+
+
+@dataclass(frozen=True, slots=True)
+class WatchdogSettings:
+    """Times in seconds, lengths in metres."""
+
+    period_s: float = 0.1
+    """Ten times a second, as often as telemetry comes."""
+
+    lingers_s: float = 3.0
+    """A finding stays this long after it was last made, so that alarms do not flicker."""
+
+    horizon_s: float = 10.0
+    """How far ahead vehicles are kept apart: two at 15 m/s need 7 s each to stand still."""
+
+    sample_s: float = 0.25
+    """At 30 m/s of closing speed the nearest sample is at most 4 m along from the nearest point:
+    at 15 m of distance that hides half a metre, which the margin below holds."""
+
+    margin_horizontal_m: float = 2.0
+    margin_vertical_m: float = 1.0
+    """What is watched for is this much more than what must be kept: noise and sampling."""
+
+    confirm_s: float = 0.2
+    """An alarm that lasts this long becomes a hold: never for one odd packet, never unannounced."""
+
+    hold_margin_s: float = 2.0
+    """A vehicle is held when what is left is the time that it and then the other need to stop, and
+    this: for a lost packet, and for the watch itself."""
+
+    effect_s: float = 2.0
+    """A hold shows within this, or not at all: reaction, braking begun, and telemetry of it."""
+
+    hold_again_s: float = 5.0
+    """A vehicle that was held and is in conflict again is held again, not more often than this."""
+
+    hold_retry_s: float = 1.0
+    """A hold that could not be given is tried again after this, and the other one is held
+    meanwhile: a link comes back within seconds, and each try is on record."""
+
+    helps_s: float = 0.25
+    """A hold helps if it puts the conflict off by this, or away..."""
+    helps_share: float = 0.05
+    """... or widens the least distance by this share of what must be kept."""
+
+    near_s: float = 5.0
+    """A conflict this near is critical."""
+
+    fence_factor: float = 1.25
+    """Of the stopping distance: what is looked at ahead for fences and zones."""
+
+    link_late_s: float = 1.0
+    """A vehicle in the air that says nothing for this long, ten times its usual pause."""
+
+    height_drift_m: float = 10.0
+    """Between the reported altitude and the height above takeoff since takeoff: barometers drift
+    by metres in an hour of changing weather; more than that, and one of the two is wrong."""
+
+    height_off_m: float = 4.0
+    """From the heights of the leg being flown: half of what layers are apart."""
+
+    jump_m: float = 10.0
+    """Beyond what its speed explains: GNSS wanders by metres, a jump is a new fix or a lie."""
+
+    jump_per_s: float = 5.0
+    """More for each second between two positions: vehicles turn and gusts push."""
+
+    burst_s: float = 1.0
+    """Packets come in bursts: the time between two may be wrong by this."""
+
+    stick_quiet_s: float = 0.5
+    """A stream with no stick sent for this long: below 5 Hz aircraft may hover, and at 1 s the
+    app's own timeout ends it."""
 
 
 @dataclass(frozen=True, slots=True)

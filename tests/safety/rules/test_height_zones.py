@@ -27,9 +27,8 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.model.zone import HeightDatum, LandingPad
 from recon.safety import PreparedAirspace
-from recon.safety.fence_settings import FenceSettings
 from recon.safety.rules.height_zones import height_zones
-from recon.safety.settings import SafetySettings
+from recon.safety.settings import FenceSettings, SafetySettings
 
 FARM = square(100.0, -50.0, 200.0, 50.0)
 FLOOR = airspace(height_zone(FARM, floor_m=50.0))

@@ -25,9 +25,8 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.model.zone import LandingPad
 from recon.safety import PreparedAirspace
-from recon.safety.fence_settings import FenceSettings
 from recon.safety.rules.min_height import min_height
-from recon.safety.settings import SafetySettings
+from recon.safety.settings import FenceSettings, SafetySettings
 
 FLAT = airspace(limits=replace(WIDE, min_height_above_ground_m=10.0))
 

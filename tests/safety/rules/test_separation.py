@@ -43,15 +43,15 @@ class TestStanding:
         assert found is not None
         assert found.reason == (
             "A: between waypoints 1 and 2, about 17 s from now, it could come within 10 m and 0 m "
-            "in height of B (while it hovers); 15 m, or 6 m in height, must be kept: fly at "
+            "in height of B (while it hovers); 18 m, or 7.5 m in height, must be kept: fly at "
             "another height, elsewhere, or later"
         )
 
-    @pytest.mark.parametrize(("east_m", "height_m"), [(15.5, 40.0), (0.0, 46.5), (10.0, 33.5)])
+    @pytest.mark.parametrize(("east_m", "height_m"), [(18.5, 40.0), (0.0, 48.0), (10.0, 32.0)])
     def test_it_passes_beside_above_and_below(self, east_m: float, height_m: float) -> None:
         assert judged(NORTH, aircraft("A"), aircraft("B", (100.0, east_m), height_m)) is None
 
-    @pytest.mark.parametrize(("east_m", "height_m"), [(14.5, 40.0), (0.0, 45.5), (10.0, 34.5)])
+    @pytest.mark.parametrize(("east_m", "height_m"), [(17.5, 40.0), (0.0, 47.0), (10.0, 33.0)])
     def test_nearer_than_both_is_refused(self, east_m: float, height_m: float) -> None:
         refused(judged(NORTH, aircraft("A"), aircraft("B", (100.0, east_m), height_m)))
 
@@ -61,10 +61,10 @@ class TestStanding:
         )
         wide = PreparedAirspace(replace(AIR.airspace, limits=limits))
         for place, height_m, passes in (
-            ((100.0, 29.0), 40.0, False),
-            ((100.0, 31.0), 40.0, True),
-            ((100.0, 0.0), 48.5, False),
-            ((100.0, 0.0), 49.5, True),
+            ((100.0, 32.5), 40.0, False),
+            ((100.0, 33.5), 40.0, True),
+            ((100.0, 0.0), 50.0, False),
+            ((100.0, 0.0), 51.0, True),
         ):
             found = judged(NORTH, aircraft("A"), aircraft("B", place, height_m), airspace=wide)
             assert (found is None) is passes

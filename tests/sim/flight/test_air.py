@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
 from recon.safety.energy import Consumption
-from recon.safety.energy_settings import EnergySettings
+from recon.safety.settings import EnergySettings
 from recon.sim.flight.air import Air, Squall
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery, flying_load

@@ -19,12 +19,12 @@ class FleetReturnSettings:
     zone_margin_m: float = 6.0
     """Left above a zone that is flown over: as much as between two vehicles."""
 
-    horizontal_slack_m: float = 3.0
-    """Added to the least separation: a hovering vehicle drifts by a metre or two, and telemetry of
+    horizontal_slack_m: float = 2.0
+    """Added to the gate's minimum: a hovering vehicle drifts by a metre or two, and telemetry of
     a vehicle at 8 m/s is a few tenths of a second old."""
 
-    vertical_slack_m: float = 1.0
-    """As above; less than what the layers' 8 m leave over the least separation's 6 m."""
+    vertical_slack_m: float = 0.4
+    """As above; less than the difference between the layers' 8 m and the gate's 7.5 m."""
 
     detour_slack_m: float = 1.0
     """Added to the margin at boundary and zones: a waypoint is rounded, a corner is not."""

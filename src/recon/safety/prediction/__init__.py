@@ -5,9 +5,9 @@ from recon.safety.prediction.flyer import Flyer, flyer
 from recon.safety.prediction.foresee import foresee_order, foresee_traffic
 from recon.safety.prediction.hazard_area import HazardArea, hazard_area_of, hazard_courses
 from recon.safety.prediction.intents import Follower
-from recon.safety.prediction.meetings import Meeting, Separation, first_meeting
+from recon.safety.prediction.meetings import Meeting, first_meeting
 from recon.safety.prediction.plane import Plane
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.settings import PredictionSettings
 
 __all__ = [
     "FOREVER_S",
@@ -19,7 +19,6 @@ __all__ = [
     "Part",
     "Plane",
     "PredictionSettings",
-    "Separation",
     "first_meeting",
     "flyer",
     "foresee_order",

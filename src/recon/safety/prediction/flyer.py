@@ -10,7 +10,7 @@ from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, takeoff_up_m
 from recon.safety.prediction.course import ALL_HEIGHTS_M
 from recon.safety.prediction.plane import Plane
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.settings import PredictionSettings
 
 
 class Flyer(NamedTuple):

@@ -26,9 +26,9 @@ from recon.safety.prediction.flyer import Flyer
 from recon.safety.prediction.hazard_area import hazard_area_of, hazard_courses
 from recon.safety.prediction.intents import UNHOMED_RADIUS_M, Follower
 from recon.safety.prediction.legs import STANDING_MPS, stopping_distance_m
-from recon.safety.prediction.meetings import Separation
 from recon.safety.prediction.orders import write_order
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.separation_minima import SeparationMinima
+from recon.safety.settings import PredictionSettings
 
 ROUNDING_M = 1e-6
 
@@ -82,7 +82,9 @@ class Surroundings:
     until_s: float
 
 
-def surroundings(course: Course, need: Separation, settings: PredictionSettings) -> Surroundings:
+def surroundings(
+    course: Course, need: SeparationMinima, settings: PredictionSettings
+) -> Surroundings:
     """Return where and until when anything can come too near to a course."""
     rows = course.rows
     east_m, north_m = float(rows[0, EAST_0]), float(rows[0, NORTH_0])

@@ -11,7 +11,7 @@ from recon.safety.prediction.course import ALL_HEIGHTS_M, FOREVER_S, Course, Cou
 from recon.safety.prediction.flyer import Flyer
 from recon.safety.prediction.intents import go_home_top_m
 from recon.safety.prediction.legs import stopping_distance_m
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.settings import PredictionSettings
 
 LONGEST_RISE_S = 10.0
 """A climb that was under way is taken to go on this long at most."""

@@ -16,7 +16,7 @@ from recon.safety.prediction.legs import (
     stop,
     stopping_distance_m,
 )
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.settings import PredictionSettings
 
 UNDER_WAY_MPS = 2.0
 """A returning vehicle this fast towards its home is under way, be it higher or lower than told."""

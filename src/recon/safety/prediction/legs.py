@@ -4,7 +4,7 @@ from math import hypot, sqrt
 from typing import NamedTuple
 
 from recon.safety.prediction.course import FOREVER_S, CourseWriter, Part
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.settings import PredictionSettings
 
 LEAST_M = 1e-3
 LEAST_S = 1e-3

@@ -15,8 +15,9 @@ from recon.safety.prediction.course import (
     Part,
 )
 from recon.safety.prediction.sampling import sample
-from recon.safety.prediction.settings import PredictionSettings
 from recon.safety.prediction.tubes import IntArray, Tubes, cut
+from recon.safety.separation_minima import SeparationMinima
+from recon.safety.settings import PredictionSettings
 
 BoolArray = npt.NDArray[np.bool_]
 
@@ -25,14 +26,6 @@ _APART_S = 4.0 * FOREVER_S
 
 CLOSER_M = 0.5
 """Two vehicles led apart may seem this much nearer by the noise of their positions."""
-
-
-@dataclass(frozen=True, slots=True)
-class Separation:
-    """What two vehicles must keep: the one horizontally, or the other vertically."""
-
-    horizontal_m: float
-    vertical_m: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +44,7 @@ class Meeting:
 def first_meeting(
     own: Course,
     others: Sequence[Course],
-    need: Separation,
+    need: SeparationMinima,
     settings: PredictionSettings,
 ) -> Meeting | None:
     """Return where `own` first comes nearer than `need` to any other course; None if it does not.
@@ -128,7 +121,7 @@ def _vertical_gap_m(mine: Tubes, theirs: Tubes, pairs: _Pairs) -> FloatArray:
     return gap
 
 
-def _may_be_near(mine: Tubes, theirs: Tubes, pairs: _Pairs, need: Separation) -> BoolArray:
+def _may_be_near(mine: Tubes, theirs: Tubes, pairs: _Pairs, need: SeparationMinima) -> BoolArray:
     """Whether their boxes are: cheap, and right for all but the few that are then looked at."""
     reach_m = need.horizontal_m + mine.radius_m[pairs.own] + theirs.radius_m[pairs.other]
     mine_low, mine_high = _box(mine)
@@ -168,7 +161,7 @@ class _Now:
     vertical_m: FloatArray
 
 
-def _now(own: Course, others: Sequence[Course], theirs: Tubes, need: Separation) -> _Now:
+def _now(own: Course, others: Sequence[Course], theirs: Tubes, need: SeparationMinima) -> _Now:
     """How near the others are from here.
 
     Here is all the way since it was last heard: one that is leaving was nearer then.

@@ -10,7 +10,7 @@ from recon.safety.prediction.course import Part
 from recon.safety.prediction.flyer import Flyer
 from recon.safety.prediction.intents import Follower
 from recon.safety.prediction.legs import LEAST_S, STANDING_MPS, stop, stopping_distance_m
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.settings import PredictionSettings
 
 SWEEPING_DEG = 15.0
 """A body-frame stick that turns the vehicle by more than this sweeps a sector, not a line."""

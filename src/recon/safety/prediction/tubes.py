@@ -25,7 +25,7 @@ from recon.safety.prediction.course import (
     FloatArray,
     Part,
 )
-from recon.safety.prediction.settings import PredictionSettings
+from recon.safety.settings import PredictionSettings
 
 IntArray = npt.NDArray[np.int64]
 

@@ -17,7 +17,6 @@ from recon.safety.prediction import (
     Meeting,
     Part,
     Plane,
-    Separation,
     first_meeting,
     flyer,
     foresee_order,
@@ -25,6 +24,7 @@ from recon.safety.prediction import (
     part_words,
 )
 from recon.safety.prediction.foresee import may_enter, may_meet, surroundings
+from recon.safety.separation_minima import SeparationMinima, gate_minima
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -39,7 +39,7 @@ def separation(command: Command, situation: Situation) -> Refusal | None:
         return None
     if vehicle is None:
         return None
-    prediction, need = situation.settings.prediction, _need(situation)
+    prediction, need = situation.settings.prediction, _minima(situation)
     frame = frame_for(situation.airspace, vehicle)
     if frame is None:
         return _refusal(vehicle.display_name, NOWHERE)
@@ -67,7 +67,7 @@ def _others(
 ) -> tuple[Course, ...] | Refusal:
     """The courses of all traffic that can come near the order's course while it lasts."""
     prediction = situation.settings.prediction
-    around = surroundings(course, _need(situation), prediction)
+    around = surroundings(course, _minima(situation), prediction)
     courses: list[Course] = []
     for other in situation.traffic:
         seen = _placed(other.vehicle, plane, situation)
@@ -83,12 +83,11 @@ def _others(
     return tuple(courses)
 
 
-def _need(situation: Situation) -> Separation:
-    limits = situation.airspace.airspace.limits
-    return Separation(limits.min_separation_horizontal_m, limits.min_separation_vertical_m)
+def _minima(situation: Situation) -> SeparationMinima:
+    return gate_minima(situation.airspace.airspace.limits, situation.settings)
 
 
-def _words(meeting: Meeting, other: Course, need: Separation) -> str:
+def _words(meeting: Meeting, other: Course, need: SeparationMinima) -> str:
     where, when_s = part_words(meeting.own_part), ceil(meeting.at_s)
     if meeting.other_part == Part.UNSEEN:
         return (

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from recon.safety.watchdog_settings import WatchdogSettings
+from recon.safety.settings import WatchdogSettings
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.fences import fences
 from recon.safety.watchdogs.finding import Finding

@@ -16,7 +16,7 @@ from recon.safety.prediction import Flyer, Follower, PredictionSettings
 from recon.safety.prediction.course import FloatArray, Part, Row
 from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
 from recon.safety.prediction.sampling import Samples, sample
-from recon.safety.watchdog_settings import WatchdogSettings
+from recon.safety.settings import WatchdogSettings
 
 ASIDE_COSINE = 0.64
 """A vehicle that flies faster than `ASIDE_MPS` at more than 50 degrees from every way it was told

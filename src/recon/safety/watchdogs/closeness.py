@@ -10,9 +10,10 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from recon.safety.prediction import HazardArea, Separation
+from recon.safety.prediction import HazardArea
 from recon.safety.prediction.course import FloatArray
 from recon.safety.prediction.sampling import Samples
+from recon.safety.separation_minima import SeparationMinima
 
 IntArray = npt.NDArray[np.int64]
 
@@ -31,7 +32,7 @@ class Approach:
     vertical_m: float
 
 
-def near_pairs(ahead: Samples, need: Separation) -> tuple[IntArray, IntArray]:
+def near_pairs(ahead: Samples, need: SeparationMinima) -> tuple[IntArray, IntArray]:
     """Return the pairs whose reach lets them come too near at all, as two arrays of indices."""
     reach_m = np.hypot(
         ahead.east_m - ahead.east_m[:, :1], ahead.north_m - ahead.north_m[:, :1]
@@ -58,7 +59,7 @@ def _all_pairs(count: int) -> tuple[IntArray, IntArray]:
 
 
 def closeness(
-    a: Samples, first: IntArray, b: Samples, second: IntArray, need: Separation
+    a: Samples, first: IntArray, b: Samples, second: IntArray, need: SeparationMinima
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return closeness, horizontal and vertical gaps of P pairs at K moments, each (P, K)."""
     horizontal_m = np.hypot(
@@ -70,7 +71,7 @@ def closeness(
 
 
 def hazard_closeness(
-    ahead: Samples, times_s: FloatArray, hazard: HazardArea, need: Separation
+    ahead: Samples, times_s: FloatArray, hazard: HazardArea, need: SeparationMinima
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the same of V vehicles to where a hazard area may be, each (V, K)."""
     radius_m = np.minimum(hazard.largest_m, hazard.radius_m + hazard.growth_mps * times_s)
@@ -104,7 +105,7 @@ def approach(
     )
 
 
-def _shares(horizontal_m: FloatArray, vertical_m: FloatArray, need: Separation) -> FloatArray:
+def _shares(horizontal_m: FloatArray, vertical_m: FloatArray, need: SeparationMinima) -> FloatArray:
     """Closeness; of what is too near, deeper in a circle is nearer at whatever height."""
     level, upright = horizontal_m / need.horizontal_m, vertical_m / need.vertical_m
     shares: FloatArray = np.maximum(level, upright)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from recon.model.intent import Commanded
 from recon.model.severity import Severity
 from recon.model.vehicle import AltitudeReference, FlightMode
-from recon.safety.watchdog_settings import WatchdogSettings
+from recon.safety.settings import WatchdogSettings
 from recon.safety.watchdogs.finding import Finding
 from recon.safety.watchdogs.picture import Picture, WatchedVehicle
 

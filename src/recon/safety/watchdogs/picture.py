@@ -10,9 +10,9 @@ from recon.model.severity import Severity
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety.airspace import PreparedAirspace
-from recon.safety.energy_settings import EnergySettings
 from recon.safety.prediction import Flyer, HazardArea, PredictionSettings
-from recon.safety.watchdog_settings import WatchdogSettings
+from recon.safety.separation_minima import SeparationMinima, watchdog_minima
+from recon.safety.settings import EnergySettings, WatchdogSettings
 from recon.safety.watchdogs.ahead import Ahead
 from recon.safety.watchdogs.finding import Finding
 
@@ -157,6 +157,11 @@ class Picture:
     def foreseen(self) -> tuple[WatchedVehicle, ...]:
         """Those that `ahead` is of."""
         return self.flying + self.unseen
+
+    @property
+    def minima(self) -> SeparationMinima:
+        """The minima below which the separation watchdog raises an alarm."""
+        return watchdog_minima(self.airspace.airspace.limits, self.settings)
 
     def lasted_s(self, key: str) -> float:
         """Return how long a finding has been made, 0 for a new one."""

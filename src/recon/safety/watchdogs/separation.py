@@ -18,7 +18,8 @@ import numpy as np
 
 from recon.model.authority import AuthorityHolder
 from recon.model.severity import Severity
-from recon.safety.prediction import HazardArea, Separation
+from recon.safety.prediction import HazardArea
+from recon.safety.separation_minima import SeparationMinima
 from recon.safety.watchdogs.closeness import (
     Approach,
     IntArray,
@@ -38,7 +39,10 @@ def separation(picture: Picture) -> Iterator[Finding]:
     """Find the pairs of vehicles, and of vehicles and hazard areas, that come too near."""
     if not picture.flying:
         return
-    need, heard = watched_separation(picture), len(picture.flying)
+    need, heard = (
+        picture.minima,
+        len(picture.flying),
+    )
     for watched in picture.watched:
         if watched.hazard is not None:
             yield from _hazard(picture, watched.hazard, need)
@@ -54,15 +58,6 @@ def separation(picture: Picture) -> Iterator[Finding]:
             continue  # nobody hears either: there is nothing to be done
         found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
         yield _pair(picture, int(first[row]), int(second[row]), found, need)
-
-
-def watched_separation(picture: Picture) -> Separation:
-    """Return what is watched for: what must be kept, and a margin."""
-    limits, settings = picture.airspace.airspace.limits, picture.settings
-    return Separation(
-        limits.min_separation_horizontal_m + settings.margin_horizontal_m,
-        limits.min_separation_vertical_m + settings.margin_vertical_m,
-    )
 
 
 def in_order_of_yielding(
@@ -81,7 +76,9 @@ def in_order_of_yielding(
     return (later, earlier) if rank(later) <= rank(earlier) else (earlier, later)
 
 
-def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separation) -> Finding:
+def _pair(
+    picture: Picture, one: int, other: int, found: Approach, need: SeparationMinima
+) -> Finding:
     both = picture.foreseen[one], picture.foreseen[other]
     yielding, second = in_order_of_yielding(*both)
     indices = {id(both[0]): one, id(both[1]): other}
@@ -100,7 +97,7 @@ def _pair(picture: Picture, one: int, other: int, found: Approach, need: Separat
     return _finding(picture, key, yielding, text, found, held)
 
 
-def _hazard(picture: Picture, hazard: HazardArea, need: Separation) -> Iterator[Finding]:
+def _hazard(picture: Picture, hazard: HazardArea, need: SeparationMinima) -> Iterator[Finding]:
     ahead = picture.ahead
     flies = hazard_closeness(ahead.as_it_flies, ahead.times_s, hazard, need)
     rows = np.flatnonzero((flies[0][: len(picture.flying)] < 1.0).any(axis=1))
@@ -149,7 +146,7 @@ def _can_be_held(picture: Picture, candidate: WatchedVehicle) -> bool:
 
 
 def _helps(
-    picture: Picture, pair: tuple[IntArray, IntArray], found: Approach, need: Separation
+    picture: Picture, pair: tuple[IntArray, IntArray], found: Approach, need: SeparationMinima
 ) -> bool:
     """Whether the first of the pair, held, comes less near to the second, which flies on."""
     ahead = picture.ahead

@@ -14,6 +14,7 @@ from recon.guidance.fleet_return import (
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import home_enu_m, places_m, takeoff_up_m, vehicle_enu_m
+from recon.safety.separation_minima import gate_minima
 from recon.station.operations.fleet_return.settings import ReturnSettings
 from recon.station.state.station import Station
 
@@ -71,10 +72,10 @@ def ground_up_m(station: Station, vehicles: Sequence[Returning]) -> tuple[float,
 
 def separation(station: Station, settings: ReturnSettings) -> Separation:
     """Return how far apart the plan keeps vehicles."""
-    limits = station.airspace.airspace.limits
+    gate = gate_minima(station.airspace.airspace.limits, station.settings.safety)
     return Separation(
-        limits.min_separation_horizontal_m + settings.plan.horizontal_slack_m,
-        limits.min_separation_vertical_m + settings.plan.vertical_slack_m,
+        gate.horizontal_m + settings.plan.horizontal_slack_m,
+        gate.vertical_m + settings.plan.vertical_slack_m,
     )
 
 

@@ -11,7 +11,7 @@ from recon.model.vehicle import Staleness, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import frame_for, home_enu_m, vehicle_enu_m
 from recon.safety.energy import consumption
-from recon.safety.energy_settings import EnergySettings
+from recon.safety.settings import EnergySettings
 from recon.station.control.authority import authority_of
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station

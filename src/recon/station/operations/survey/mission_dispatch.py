@@ -1,7 +1,6 @@
 """A survey's mission as an order: its way there at the first height that the gate lets it fly."""
 
 from collections.abc import Iterator
-from copy import copy
 from dataclasses import replace
 
 from recon.model.authority import AuthorityHolder
@@ -9,7 +8,7 @@ from recon.model.command import FlyMission, Refusal
 from recon.model.event import OperatorOrder
 from recon.model.survey import MissionFor
 from recon.model.vehicle import VehicleState
-from recon.safety import PreparedAirspace, Situation, judge
+from recon.safety import judge
 from recon.safety.rules.height_zones import RULE as HEIGHT_ZONES
 from recon.safety.rules.keep_out import RULE as KEEP_OUT
 from recon.safety.rules.max_height import RULE as MAX_HEIGHT
@@ -17,7 +16,6 @@ from recon.safety.rules.min_height import RULE as MIN_HEIGHT
 from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.operations.survey.approach import with_approaches
-from recon.station.operations.survey.settings import SETTINGS
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 
@@ -35,34 +33,19 @@ def order_of(
     """Return the order, without its number; and why it is not asked for, or words for its refusal.
 
     Limits and zones are the gate's alone: where it refuses every height, the first is ordered, so
-    that its refusal is on record. It is not asked for while it would come so near to another
-    vehicle that the gate lets it pass and the watchdog would hold both: neighbouring rows may lie
-    just as far apart.
+    that its refusal is on record. A mission that would come too near to another vehicle is not
+    ordered but waits: the other vehicle may soon have flown on.
     """
     orders = tuple(_orders(station, record, given, vehicle))
     for order in orders:
         command = command_of(station, order, now_ns)
-        refusal = judge(command, _held_apart(situation(station, command, now_ns)))
+        refusal = judge(command, situation(station, command, now_ns))
         if refusal is not None and refusal.rule == SEPARATION:
             return order, refusal
         if refusal is None or refusal.rule not in HEIGHT_RULES:
             return order, ""
     tried = "" if len(orders) == 1 else "; nor is another height of its way to the first row free"
     return orders[0], tried
-
-
-def _held_apart(seen: Situation) -> Situation:
-    """The situation, with vehicles to be kept apart so far that no watchdog barks."""
-    airspace, watch = seen.airspace.airspace, seen.settings.watch
-    limits, slack_m = airspace.limits, SETTINGS.kept_apart_m
-    horizontal_m = limits.min_separation_horizontal_m + watch.margin_horizontal_m + slack_m
-    vertical_m = limits.min_separation_vertical_m + watch.margin_vertical_m
-    wider = replace(
-        limits, min_separation_horizontal_m=horizontal_m, min_separation_vertical_m=vertical_m
-    )
-    prepared: PreparedAirspace = copy(seen.airspace)
-    prepared.airspace = replace(airspace, limits=wider)
-    return replace(seen, airspace=prepared)
 
 
 def _orders(

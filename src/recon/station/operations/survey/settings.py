@@ -23,9 +23,6 @@ class SurveyCarrying:
     home_waits_s: float = 60.0
     """A turn home comes within a minute; who waits longer is told to people, with why."""
 
-    kept_apart_m: float = 1.0
-    """Beyond what the separation watchdog barks at: aircraft are some decimetres off their rows."""
-
     track_step_m: float = 5.0
     """A flown way is drawn with corners this far apart."""
 
