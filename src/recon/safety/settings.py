@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from recon.model.dji import DJI
 from recon.model.vehicle import LATE_UNDER_S, LIVE_UNDER_S
 
+
 @dataclass(frozen=True, slots=True)
 class PreflightSettings:
     """Beside what the site's limits and the gate's rules say."""
