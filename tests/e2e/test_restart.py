@@ -1,4 +1,4 @@
-"""The station is killed in mid-flight and started again: taken up whole, and nothing commanded.
+"""The station is killed in flight and started again: all is restored, and nothing is commanded.
 
 Real processes and sockets: a station, a simulator whose drones fly missions, a relay between them
 that counts every command packet, and the shell.
@@ -15,6 +15,10 @@ import pytest
 from tests.cli.flown import Flown, addresses, run_options, sim_options
 from tests.cli.processes import Started, started
 from tests.e2e.wire_tap import WireTap, tapped
+from tests.record.audits import until
+
+from recon.record.snapshot_file import read_snapshot
+from recon.station.recovery.snapshot import decode_snapshot
 
 VEHICLES = 3
 HEIGHTS_M = {"SIM-1": 30.0, "SIM-2": 40.0, "SIM-3": 50.0}
@@ -34,7 +38,7 @@ def modes(vehicles: list[dict[str, Any]]) -> set[str | None]:
 
 
 def write_mission(folder: Path, vehicle: dict[str, Any]) -> Path:
-    """Slowly to and fro over where a vehicle stands: minutes long."""
+    """A mission of minutes: slowly back and forth over the takeoff point."""
     position, height_m = vehicle["position"], HEIGHTS_M[vehicle["serial"]]
     waypoints = [
         {
@@ -50,11 +54,11 @@ def write_mission(folder: Path, vehicle: dict[str, Any]) -> Path:
     return path
 
 
-def audit_holds(audit: Path, command_id: int, kind: str) -> bool:
-    """Whether the newest file has an order's entry; read while the station writes on."""
-    text = sorted(audit.glob("*.jsonl"))[-1].read_text(encoding="ascii")
-    lines = [json.loads(line) for line in text.splitlines(keepends=True) if line.endswith("\n")]
-    return any(line["kind"] == kind and line["details"].get("id") == command_id for line in lines)
+def is_stored(audit: Path, command_id: int, phase: str) -> bool:
+    """Whether the recovery snapshot holds an order; read while the station writes on."""
+    snapshot = read_snapshot(audit, decode_snapshot).value
+    assert snapshot is not None
+    return any(o.id == command_id and o.phase.value == phase for o in snapshot.orders)
 
 
 class Field:
@@ -76,12 +80,12 @@ class Field:
         return Flown(station, None, url, link_port, self.audit)
 
     def take_off(self) -> None:
-        standing = self.here.until(lambda told: len(told) == VEHICLES and None not in modes(told))
+        standing = self.here.until(lambda them: len(them) == VEHICLES and None not in modes(them))
         for vehicle in standing:
             path = write_mission(self.folder, vehicle)
             flying = self.here.recon("fly", vehicle["serial"], path, "--takeoff")
             assert flying.code == 0, flying
-        self.here.until(lambda told: modes(told) == {"gps_waypoint"})
+        self.here.until(lambda them: modes(them) == {"gps_waypoint"})
 
 
 @pytest.fixture
@@ -90,24 +94,23 @@ def field(tmp_path: Path) -> Any:
         yield Field(stack, tmp_path)
 
 
-def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: Field) -> None:
+def test_a_station_killed_in_flight_is_restored_and_commands_nothing(field: Field) -> None:
     field.take_off()
     here = field.here
     assert here.recon("release", "SIM-2", "--to", "pilot").code == 0
-    # An order is under way: this drone has no camera, and its app answers nothing.
+    # An open order: this drone has no camera, and its app answers nothing.
     (filming,) = here.recon("camera", "SIM-3", "--on", "--wait", "0", "--json").json
-    while not audit_holds(field.audit, filming["command_id"], "order.sent"):
-        pass
+    until(lambda: is_stored(field.audit, filming["command_id"], "sent"))
     here.station.process.send_signal(signal.SIGKILL)
     here.station.wait()
     field.tap.take()
 
     again = field.start()
     vehicles = again.until(
-        lambda told: (
-            len(told) == VEHICLES
-            and all(v["link_id"] is not None and v["staleness"] == "live" for v in told)
-            and None not in modes(told)
+        lambda them: (
+            len(them) == VEHICLES
+            and all(v["link_id"] is not None and v["staleness"] == "live" for v in them)
+            and None not in modes(them)
         )
     )
     flying = by_serial(vehicles)
@@ -118,9 +121,9 @@ def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: 
         "SIM-2": "pilot",
         "SIM-3": "operator",
     }
-    # Seconds pass: repeats come every 0.7 s, and watchdogs look ten times a second.
-    seen_ns = again.get("/api/state")["time_ns"]
-    again.until(lambda told: again.get("/api/state")["time_ns"] > seen_ns + 4_000_000_000)
+    # Wait: orders are repeated every 0.7 s, and watchdogs run ten times a second.
+    restored_ns = again.get("/api/state")["time_ns"]
+    again.until(lambda _: again.get("/api/state")["time_ns"] > restored_ns + 4_000_000_000)
     assert field.tap.take() == {}
 
     state = again.get("/api/state")
@@ -128,7 +131,7 @@ def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: 
     assert interrupted["phase"] == "failed"
     assert "restarted" in interrupted["note"]
     assert any(a["rule"] == "restarted" and a["serial"] == "SIM-3" for a in state["alarms"])
-    # That each came near where it itself might have been, before it was heard, is no alarm.
+    # Each vehicle comes close to its own hazard area before its telemetry returns: no alarm.
     assert not {"separation", "unidentified", "link_lost"} & {a["rule"] for a in state["alarms"]}
 
     verdict = again.recon("audit", "verify", field.audit)
@@ -140,7 +143,7 @@ def test_a_station_killed_in_mid_flight_is_taken_up_and_commands_nothing(field: 
     assert held.json[0]["command_id"] > filming["command_id"]
     assert set(field.tap.take()) == {("SIM-1", "EmergencyCommand")}
 
-    # Its home is known again: without, the gate would refuse every mission.
+    # Its takeoff point is restored: without it the gate would refuse every mission.
     dry = again.recon("fly", "SIM-1", field.folder / "SIM-1.json", "--dry-run")
     assert dry.code == 0, dry.out
     assert again.station.end(signal.SIGTERM) == 0

@@ -29,7 +29,7 @@ def written(folder: Path, count: int, put: Callable[[AuditLog], None] | None = N
     log = AuditLog(folder)
     files = audit_files(folder)
     if files:
-        log.follow(read_run_end(files[-1], lambda line: None))
+        log.follow(read_run_end(files[-1]))
     log.start()
     for number in range(count):
         log.put(entry(f"entry {number}"), number)

@@ -34,8 +34,8 @@ def show_command(
         str | None, typer.Option(help="Only kinds that begin so, like `order` or `alarm.raised`.")
     ] = None,
     who: Annotated[str | None, typer.Option("--by", help="Only what this one asked.")] = None,
-    sightings: Annotated[
-        bool, typer.Option("--sightings", help="Also where each vehicle was seen.")
+    positions: Annotated[
+        bool, typer.Option("--positions", help="Include vehicle positions.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="The lines as they are.")] = False,
 ) -> None:
@@ -43,7 +43,7 @@ def show_command(
     with _files_that_can_be_read():
         for line in _lines(paths):
             is_chosen = (
-                (sightings or kind is not None or line.kind != "vehicle.seen")
+                (positions or kind is not None or line.kind != "vehicle.position")
                 and (kind is None or line.kind.startswith(kind))
                 and (vehicle is None or vehicle in (line.serial, line.vehicle))
                 and (who is None or line.by == who)

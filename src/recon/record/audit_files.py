@@ -1,7 +1,7 @@
 """An audit's folder: one file a run, numbered, read in bounded pieces."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,9 +13,8 @@ from recon.record.errors import RecordError
 
 _NAME = re.compile(r"recon-audit-(\d{6})-\d{8}T\d{6}Z\.jsonl")
 MOST_RUNS = 999_999
-READ_TAIL_BYTES = 16 * 1024 * 1024
-"""What a start reads of the last run: 64 vehicles in the air write this in half an hour, and the
-last line of each holds all that is needed of it."""
+READ_TAIL_BYTES = 1024 * 1024
+"""What a start reads of the last run, to find its last whole line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +76,8 @@ def raw_lines(file: BinaryIO) -> Iterator[RawLine]:
             _skip_line(file)
 
 
-def read_run_end(
-    path: Path, take: Callable[[AuditLine], None], at_most_bytes: int = READ_TAIL_BYTES
-) -> RunEnd:
-    """Hand the last lines of a file to `take`, the oldest first, whatever else is in it.
-
-    Raises `RecordError` when the file cannot be read.
-    """
+def read_run_end(path: Path, at_most_bytes: int = READ_TAIL_BYTES) -> RunEnd:
+    """Return how a file ends; raises `RecordError` when it cannot be read."""
     last, last_hash, bad_lines, torn_bytes = None, None, 0, 0
     try:
         with path.open("rb") as file:
@@ -98,7 +92,6 @@ def read_run_end(
                     bad_lines += 1
                     continue
                 last_hash = line_hash(raw.data)
-                take(last)
     except OSError as problem:
         raise RecordError(f"cannot read the audit {path}: {problem}") from problem
     return RunEnd(path, last, last_hash, bad_lines, torn_bytes)

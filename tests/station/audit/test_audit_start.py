@@ -5,27 +5,20 @@ from pathlib import Path
 import pytest
 from tests.record.audits import entry, until, written
 
-from recon.record.audit import FAILED_KIND, STOPPED_KIND, AuditEntry
+from recon.record.audit import FAILED_KIND, STOPPED_KIND
 from recon.record.audit_check import check_audit
 from recon.record.audit_files import audit_files
 from recon.record.audit_log import AuditLog
 from recon.record.errors import RecordError
 from recon.station.audit.start import (
-    MOST_FILES_LOOKED_AT,
+    MAX_FILES_READ,
     AuditPlace,
     begin_audit,
     default_place,
     ended_entry,
     started_entry,
 )
-from recon.station.recovery.last_run import LastRun
 from recon.station.state.settings import StationSettings
-
-ORDER = {"id": 41, "phase": "queued", "order": "hover", "body": {}}
-
-
-def put_order(log: AuditLog) -> None:
-    log.put(AuditEntry("order.queued", "x", "y", "A", "Anna", ORDER), 1)
 
 
 class TestPlace:
@@ -37,61 +30,67 @@ class TestPlace:
             Path("/state/recon/audit/any-port"), is_shared=True
         )
 
-    def test_without_a_word_it_is_in_the_users_state_folder(self) -> None:
+    def test_by_default_it_is_in_the_users_state_folder(self) -> None:
         assert default_place(3001, {}).folder.is_relative_to(Path.home() / ".local" / "state")
 
 
 class TestBegin:
-    def test_nothing_there_is_a_first_run(self, tmp_path: Path) -> None:
+    def test_an_empty_folder_is_a_first_run(self, tmp_path: Path) -> None:
         begun = begin_audit(AuditPlace(tmp_path / "new"))
-        assert begun.last == LastRun()
+        assert (begun.runs_before, begun.ended_in_order) == (0, False)
         assert begun.troubles == ()
 
-    def test_the_last_run_is_read_and_its_chain_followed(self, tmp_path: Path) -> None:
+    def test_the_chain_of_the_last_run_continues(self, tmp_path: Path) -> None:
         written(tmp_path, 2)
-        first = written(tmp_path, 3, put_order)
+        first = written(tmp_path, 3)
         begun = begin_audit(AuditPlace(tmp_path))
-        assert begun.last.last_id == 41
+        assert begun.runs_before == 2
         begun.log.start()
         begun.log.put(entry(), 1)
         begun.log.close()
         assert check_audit(first).is_end_known
         assert all(check_audit(path).is_whole for path in audit_files(tmp_path))
 
-    def test_a_run_that_was_killed_at_once_does_not_hide_the_one_before(
-        self, tmp_path: Path
-    ) -> None:
-        first = written(tmp_path, 1, put_order)
+    def test_whether_the_last_run_was_stopped_or_killed_is_read(self, tmp_path: Path) -> None:
+        written(tmp_path, 1, lambda log: log.put(ended_entry(None), 1))
+        assert begin_audit(AuditPlace(tmp_path)).ended_in_order
+        written(tmp_path, 1)
+        assert not begin_audit(AuditPlace(tmp_path)).ended_in_order
+
+    def test_the_chain_continues_over_a_run_that_was_killed_at_once(self, tmp_path: Path) -> None:
+        first = written(tmp_path, 1)
         killed = written(tmp_path, 1)
         killed.write_bytes(killed.read_bytes().splitlines(keepends=True)[0])
         (tmp_path / "recon-audit-000003-20250601T000000Z.jsonl").touch()
         begun = begin_audit(AuditPlace(tmp_path))
-        assert begun.last.last_id == 41
+        assert begun.runs_before == 3
         begun.log.start()
         begun.log.put(entry(), 1)
         begun.log.close()
-        # The chain leads on over the file that has nothing in it.
+        # The empty file is skipped.
         assert check_audit(first).is_end_known
         assert check_audit(killed).is_end_known
 
-    def test_only_a_few_files_are_looked_at(self, tmp_path: Path) -> None:
-        written(tmp_path, 1, put_order)
-        for number in range(2, 3 + MOST_FILES_LOOKED_AT):
+    def test_only_a_few_files_are_read(self, tmp_path: Path) -> None:
+        written(tmp_path, 1, lambda log: log.put(ended_entry(None), 1))
+        for number in range(2, 3 + MAX_FILES_READ):
             (tmp_path / f"recon-audit-{number:06d}-20250601T000000Z.jsonl").touch()
-        assert begin_audit(AuditPlace(tmp_path)).last.last_id == 0
+        begun = begin_audit(AuditPlace(tmp_path))
+        assert not begun.ended_in_order
+        assert begun.runs_before == 2 + MAX_FILES_READ
 
-    def test_damage_is_told_and_no_reason_not_to_start(self, tmp_path: Path) -> None:
-        path = written(tmp_path, 5, put_order)
+    def test_damage_is_reported_and_the_station_starts(self, tmp_path: Path) -> None:
+        path = written(tmp_path, 5)
         data = path.read_bytes()
         path.write_bytes(b"garbage\n" + data[:-20])
         begun = begin_audit(AuditPlace(tmp_path))
-        told = " ".join(begun.troubles)
-        assert "damaged" in told
-        assert "cut short" in told
+        troubles = " ".join(begun.troubles)
+        assert "damaged" in troubles
+        assert "incomplete" in troubles
 
-    def test_a_folder_that_is_shared_is_not_read(self, tmp_path: Path) -> None:
-        written(tmp_path, 1, put_order)
-        assert begin_audit(AuditPlace(tmp_path, is_shared=True)).last.last_id == 0
+    def test_a_shared_folder_is_not_read(self, tmp_path: Path) -> None:
+        written(tmp_path, 1)
+        assert begin_audit(AuditPlace(tmp_path, is_shared=True)).runs_before == 0
 
     def test_a_running_stations_folder_is_refused(self, tmp_path: Path) -> None:
         running = AuditLog(tmp_path)
@@ -102,22 +101,25 @@ class TestBegin:
             begin_audit(AuditPlace(tmp_path))
         running.close()
 
-    def test_a_folder_that_is_a_file_is_trouble_alone(self, tmp_path: Path) -> None:
+    def test_a_file_in_place_of_a_shared_folder_does_not_stop_the_start(
+        self, tmp_path: Path
+    ) -> None:
         place = tmp_path / "audit"
         place.write_text("not a folder")
         assert begin_audit(AuditPlace(place, is_shared=True)).troubles == ()
 
 
-class TestFirstAndLastWord:
-    def test_the_start_tells_version_settings_site_and_numbers(self) -> None:
-        last = LastRun(last_id=7, was_stopped=True, lines=9)
-        told = started_entry(StationSettings(), {"name": "field", "sha256": "ab"}, last, ("x",))
-        assert told.details["site"]["sha256"] == "ab"
-        assert told.details["settings"]["order_expiry_s"] == 5.0
-        assert told.details["first_id"] > 1_000
-        assert told.details["last_run_ended_in_order"] is True
+class TestFirstAndLastEntry:
+    def test_a_start_has_version_settings_site_and_ids(self) -> None:
+        site = {"name": "field", "sha256": "ab"}
+        started = started_entry(StationSettings(), site, True, (2001, -9), ("x",))
+        assert started.details["site"]["sha256"] == "ab"
+        assert started.details["settings"]["order_expiry_s"] == 5.0
+        assert (started.details["first_id"], started.details["next_own_id"]) == (2001, -9)
+        assert started.details["last_run_ended_in_order"] is True
+        assert started.details["troubles"] == ["x"]
 
-    def test_an_end_by_a_fault_is_no_end_in_order(self) -> None:
+    def test_an_end_by_a_fault_is_not_a_stop(self) -> None:
         assert ended_entry(None).kind == STOPPED_KIND
         failed = ended_entry(ValueError("shapes (5,) (4,)"))
         assert failed.kind == FAILED_KIND

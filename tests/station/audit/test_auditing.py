@@ -180,7 +180,7 @@ class TestLinks:
         assert kinds(scene)[:2] == ["link.opened", "link.identified"]
         assert scene[0].details["address"] == "10.0.0.1:5"
         closed = steps.handle(LinkClosed(1, "the app closed the connection"))
-        assert kinds(closed) == ["link.closed", "vehicle.seen"]
+        assert kinds(closed) == ["link.closed", "vehicle.position"]
         assert closed[0].serial == "A"
         assert "the app closed the connection" in closed[0].text
 
@@ -215,9 +215,9 @@ class TestFlights:
         here.run_for(40.0)
         here.order("SIM-1", LandNow())
         here.run_for(60.0)
-        flight = [k for k in audited.kinds("vehicle.") if k != "vehicle.seen"]
+        flight = [k for k in audited.kinds("vehicle.") if k != "vehicle.position"]
         assert flight == ["vehicle.took_off", "vehicle.landed"]
-        home = audited.of("vehicle.took_off")[0].details["home"]
+        home = audited.of("vehicle.took_off")[0].details["takeoff_point"]
         true = here.app("SIM-1").settings.home
         assert home["latitude_deg"] == pytest.approx(true.latitude_deg, abs=3e-5)
         assert home["longitude_deg"] == pytest.approx(true.longitude_deg, abs=3e-5)
@@ -227,13 +227,13 @@ class TestFlights:
         audited = Audited(here)
         here.run_for(60.0)
         assert audited.kinds("vehicle.")[0] == "vehicle.flying"
-        assert 11 <= len(audited.of("vehicle.seen")) <= 13
+        assert 11 <= len(audited.of("vehicle.position")) <= 13
 
     def test_a_vehicle_on_the_ground_every_minute(self) -> None:
         here = world(1, airborne=Airborne.NONE)
         audited = Audited(here)
         here.run_for(170.0)
-        assert len(audited.of("vehicle.seen")) == 3
+        assert len(audited.of("vehicle.position")) == 3
 
 
 class TestAlarms:
@@ -315,7 +315,7 @@ class TestNothing:
         here.run_for(5.0)
         audited = Audited(here)
         here.run_for(60.0)
-        assert set(audited.kinds()) <= {"vehicle.seen", "vehicle.flying"}
+        assert set(audited.kinds()) <= {"vehicle.position", "vehicle.flying"}
         assert len(audited.entries) <= 56
 
     def test_the_same_steps_give_the_same_entries(self) -> None:

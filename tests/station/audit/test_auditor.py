@@ -41,6 +41,22 @@ def test_an_audit_that_cannot_be_written_is_an_alarm_until_it_can(tmp_path: Path
     assert kinds.count("alarm.raised") == 1
 
 
+def test_a_recovery_snapshot_that_cannot_be_written_is_an_alarm_too(tmp_path: Path) -> None:
+    auditor = Auditor(AuditLog(tmp_path), LogPrinter(), lambda: NOW_NS)
+    driver = AsyncioDriver(Station(), lambda: NOW_NS, auditor.observe)
+    auditor.handle = driver.handle
+    auditor.snapshot_problem = lambda: "the recovery snapshot cannot be written to /here: full"
+    driver.handle(Tick())
+    driver.handle(Tick())
+    (alarm,) = driver.station.alarms.alarms.values()
+    assert "the recovery snapshot cannot be written to /here: full" in alarm.condition.text
+    auditor.snapshot_problem = lambda: None
+    driver.handle(Tick())
+    driver.handle(Tick())
+    (alarm,) = driver.station.alarms.alarms.values()
+    assert not alarm.is_active
+
+
 class Terminal:
     """Stands in for the log: stands still until it is told to go on."""
 

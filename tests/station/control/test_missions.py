@@ -7,7 +7,7 @@ from tests.safety.cases import mission, waypoint
 from tests.station.audited import Audited
 from tests.station.commanded import PROFILES, CommandedStation
 from tests.station.flown import GPS, NORTHWARD, WAYPOINT, at, flies, hovering, row
-from tests.station.recovery.test_restart import restart_world
+from tests.station.recovery.restarts import restart_world
 from tests.station.station_world import HOME, World, world
 
 from recon.geo.distance import horizontal_distance_m
@@ -278,7 +278,7 @@ def test_a_restart_in_flight_sends_no_next_part() -> None:
     assert "flown in 3 parts" in queued.details["repairs"][0]
     assert w.run_until(lambda: parts_flown(w.record(order)) == 1, 30.0)
     w.run_for(5.0)
-    restart_world(w, audited)
+    restart_world(w)
     w.run_for(60.0)
     assert w.record(order).phase is Phase.FAILED
     assert not any(isinstance(event, CommandSent) for event in w.driver.log)

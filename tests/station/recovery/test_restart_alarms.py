@@ -1,8 +1,7 @@
 """A start with many vehicles in the air: nobody is flooded with alarms, nothing is held."""
 
 import pytest
-from tests.station.audited import Audited
-from tests.station.recovery.test_restart import restart
+from tests.station.recovery.restarts import restart, saved
 from tests.station.station_world import World, world
 
 from recon.station.state.alarm_book import Alarm
@@ -15,17 +14,16 @@ LATEST_S = 8.0
 def restarted(count: int, missing: frozenset[str] = frozenset()) -> World:
     """Vehicles in the air whose station ends without a word; one app after the other returns."""
     here = world(count, keeps_log=False)
-    audited = Audited(here)
     here.run_for(6.0)
     assert not any(alarm.is_active for alarm in alarms(here))
+    snapshot = saved(here.driver.station, here.driver.now_ns)
     apps = [connected.app for connected in here.connected.values()]
     for connected in tuple(here.connected.values()):
         here.driver.disconnect(connected.link_id)
         connected.app.disconnected()
     here.connected.clear()
     here.run_for(GONE_S)
-    here.driver.station = restart(here, audited)
-    here.driver.observe = None
+    here.driver.station = restart(here, snapshot)
     assert len(here.driver.station.restored_flights) == count
     for app in apps:
         here.run_for(LATEST_S / count)

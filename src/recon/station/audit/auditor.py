@@ -1,4 +1,4 @@
-"""The audit of a running station: every step's entries, into the file, the log and the memory."""
+"""The audit of a running station: the entries of every step, into the file, the log and memory."""
 
 from collections.abc import Callable, Iterable
 
@@ -11,28 +11,33 @@ from recon.station.state.station import Station
 
 
 class Auditor:
-    """Sees every step of a driver. Nothing here waits: not for a disk, not for a terminal."""
+    """Observes every step of a driver; never waits for a disk or a terminal."""
 
     def __init__(self, log: AuditLog, printer: LogPrinter, now_ns: Callable[[], int]) -> None:
         self.log = log
         self._printer = printer
         self._now_ns = now_ns
         self._memory = Auditing()
-        self._told_problem: str | None = None
+        self._reported_problem: str | None = None
+        self.snapshot_problem: Callable[[], str | None] = lambda: None
+        """Why the recovery snapshot cannot be written; None while it can."""
         self.handle: Callable[[Event], None] = lambda event: None
-        """Where to say that the audit cannot be written; the driver's queue."""
+        """The driver's queue, for `AuditTroubled`."""
 
     def observe(self, before: Station, after: Station, event: Event) -> None:
-        """Take what a step changed into the audit."""
+        """Write what a step changed; once a tick, report whether writing works."""
         now_ns = self._now_ns()
         self._memory, entries = audit(self._memory, before, event, after, now_ns)
         self.put(entries)
-        if isinstance(event, Tick) and self.log.problem != self._told_problem:
-            self._told_problem = self.log.problem
-            self.handle(AuditTroubled(self._told_problem))
+        if isinstance(event, Tick):
+            problems = (self.log.problem, self.snapshot_problem())
+            problem = "; ".join(each for each in problems if each is not None) or None
+            if problem != self._reported_problem:
+                self._reported_problem = problem
+                self.handle(AuditTroubled(problem))
 
     def put(self, entries: Iterable[AuditEntry]) -> None:
-        """Take entries that no step made: the station's own start and end."""
+        """Write entries, also those of the station's start and end, which no step makes."""
         for entry in entries:
             self.log.put(entry, self._now_ns())
             self._printer.put(entry)

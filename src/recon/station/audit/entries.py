@@ -20,10 +20,9 @@ from recon.model.event import (
 from recon.record.audit import AuditEntry
 from recon.safety import Override
 from recon.station.audit.alarm_entries import AlarmsLogged, alarm_entries, seen_entry
+from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
-from recon.station.audit.unidentified_snapshots import unidentified_entries
-from recon.station.audit.vehicle_snapshots import Sightings, sightings
 from recon.station.control import authority, preflight
 from recon.station.operations.survey.audit import survey_entries
 from recon.station.state.station import Station
@@ -39,8 +38,7 @@ class Auditing:
     orders: OrdersLogged = field(default_factory=OrdersLogged)
     alarms: AlarmsLogged = field(default_factory=AlarmsLogged)
     links: LinksLogged = field(default_factory=LinksLogged)
-    sightings: Sightings = field(default_factory=Sightings)
-    unidentified: Mapping[str, int] = field(default_factory=dict)
+    flights: FlightsLogged = field(default_factory=FlightsLogged)
 
 
 def audit(
@@ -49,28 +47,26 @@ def audit(
     """Return the entries of one step, in the order of cause and effect."""
     entries = list(_words(before, event, after))
     entries += survey_entries(before, event, after, now_ns)
-    links, told = link_entries(memory.links, before, event, after, now_ns)
-    entries += told
-    seen, told = sightings(memory.sightings, before, event, after, now_ns)
-    entries += told
-    unidentified, told = unidentified_entries(memory.unidentified, before, event, after, now_ns)
-    entries += told
+    links, new = link_entries(memory.links, before, event, after, now_ns)
+    entries += new
+    flights, new = flight_entries(memory.flights, before, event, after, now_ns)
+    entries += new
     if after.authorities is not before.authorities:
         entries += _authorities(before.authorities, after)
     if after.preflight_overrides is not before.preflight_overrides:
         entries += _overrides(before.preflight_overrides, after)
     orders = memory.orders
     if after.orders is not before.orders:
-        orders, told = order_entries(orders, before.orders, after.orders, now_ns)
-        entries += told
+        orders, new = order_entries(orders, before.orders, after.orders, now_ns)
+        entries += new
     if isinstance(event, Tick):
-        orders, told = ended_streams(orders, now_ns)
-        entries += told
+        orders, new = ended_streams(orders, now_ns)
+        entries += new
     alarms = memory.alarms
     if after.alarms is not before.alarms:
-        alarms, told = alarm_entries(alarms, after.alarms, now_ns)
-        entries += told
-    return Auditing(orders, alarms, links, seen, unidentified), tuple(entries)
+        alarms, new = alarm_entries(alarms, after.alarms, now_ns)
+        entries += new
+    return Auditing(orders, alarms, links, flights), tuple(entries)
 
 
 def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
@@ -101,7 +97,7 @@ def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry
 def _refused(
     station: Station, what: str, refusal: Refusal | None, by: str, serial: str
 ) -> Iterator[AuditEntry]:
-    """A word that changed nothing; what it would have changed is told where it did."""
+    """A word that changed nothing; what it would have changed is new where it did."""
     if refusal is not None:
         details = {"rule": refusal.rule, "reason": refusal.reason}
         yield _about(station, f"{what}.refused", f"refused: {refusal.reason}", by, serial, details)

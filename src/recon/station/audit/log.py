@@ -10,14 +10,14 @@ import threading
 import structlog
 
 from recon.record.audit import AuditEntry, shown
-from recon.station.audit.vehicle_snapshots import SEEN_KIND
+from recon.station.audit.flight_entries import POSITION_KIND
 
 _log = structlog.get_logger("recon")
 
 WAITING_LINES = 1000
 CLOSE_WITHIN_S = 1.0
 
-_QUIET_KINDS = frozenset({SEEN_KIND})
+_QUIET_KINDS = frozenset({POSITION_KIND})
 _LOUD_KINDS = ("alarm.raised", "alarm.worse", "order.refused", "order.failed", "audit.trouble")
 
 

@@ -1,4 +1,4 @@
-"""How a station's audit begins: the folder, what the last run left there, and the first lines."""
+"""The start of an audit: its folder, the chain of the last run, and the first and last entries."""
 
 import os
 import sys
@@ -9,22 +9,20 @@ from typing import Any
 
 from recon import __version__
 from recon.record.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
-from recon.record.audit_files import RunEnd, audit_files, read_run_end
+from recon.record.audit_files import RunEnd, audit_files, read_run_end, run_number
 from recon.record.audit_log import AuditLog, refuse_other_writer
 from recon.record.errors import RecordError
-from recon.station.recovery.last_run import LastRun
-from recon.station.recovery.restart import first_ids
 from recon.station.state.settings import StationSettings
 
-MOST_FILES_LOOKED_AT = 5
-"""A start that was killed at once left a file that tells nothing; more than a few of them in a row
-are no accident of a restart."""
+MAX_FILES_READ = 5
+"""A station killed during its start leaves an empty file; more than a few of them in a row have
+another cause."""
 
 
 @dataclass(frozen=True, slots=True)
 class AuditPlace:
-    """Where the audit goes. A folder that is `shared` by stations is written to, never read: what
-    another station saw is not what this one knew."""
+    """The folder of the audit. One `is_shared` by stations is written only: neither the audit chain
+    nor the recovery snapshot of another station belongs to this one."""
 
     folder: Path
     is_shared: bool = False
@@ -32,16 +30,19 @@ class AuditPlace:
 
 @dataclass(frozen=True, slots=True)
 class Begun:
-    """An audit ready to be written, and what the last run tells. `troubles` are sentences."""
+    """An audit ready for writing. `troubles` are sentences about files of earlier runs."""
 
     log: AuditLog
-    last: LastRun
-    troubles: tuple[str, ...]
+    runs_before: int = 0
+    """The number of the last run in the folder."""
+    ended_in_order: bool = False
+    """Whether the last run was stopped; False when it was killed, or there was none."""
+    troubles: tuple[str, ...] = ()
 
 
 def default_place(link_port: int, environment: Mapping[str, str] = os.environ) -> AuditPlace:
-    """Return the place in the user's state folder: one folder a port, so that a station that is
-    started again finds its own; without a fixed port, a folder that is only written to."""
+    """Return the folder in the user's state folder: one for each port, so that a restarted station
+    finds its own; without a fixed port, a shared one."""
     if sys.platform == "win32":
         base = Path(environment.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
     else:
@@ -55,67 +56,67 @@ def default_place(link_port: int, environment: Mapping[str, str] = os.environ) -
 
 
 def begin_audit(place: AuditPlace) -> Begun:
-    """Read what the last run left and take up its chain.
+    """Return the audit that continues the chain of the last run.
 
-    Raises `RecordError` only when another running station writes there: whatever else is wrong
-    with the folder is no reason not to fly.
+    Raises `RecordError` only when another running station writes there: anything else that is wrong
+    with the folder must not keep the station from starting.
     """
-    log, last = AuditLog(place.folder), LastRun()
+    log = AuditLog(place.folder)
     if place.is_shared:
-        return Begun(log, last, ())
+        return Begun(log)
     refuse_other_writer(place.folder)
     try:
         files = audit_files(place.folder)
     except RecordError as problem:
-        return Begun(log, last, (str(problem),))
+        return Begun(log, troubles=(str(problem),))
     troubles: list[str] = []
-    newest: RunEnd | None = None
-    for path in reversed(files[-MOST_FILES_LOOKED_AT:]):
-        run, end = _read(path, troubles)
-        newest = end if newest is None or newest.last is None else newest
-        if run.lines > 1:
-            last = run
-            break
-    log.follow(newest)
-    return Begun(log, last, tuple(troubles))
+    runs_before = run_number(files[-1]) if files else 0
+    for path in reversed(files[-MAX_FILES_READ:]):
+        end = _read_end(path, troubles)
+        if end is not None and end.last is not None:
+            log.follow(end)
+            return Begun(log, runs_before, end.last.kind == STOPPED_KIND, tuple(troubles))
+    return Begun(log, runs_before, troubles=tuple(troubles))
 
 
 def started_entry(
-    settings: StationSettings, site: Mapping[str, Any], last: LastRun, troubles: tuple[str, ...]
+    settings: StationSettings,
+    site: Mapping[str, Any],
+    ended_in_order: bool,
+    first_ids: tuple[int, int],
+    troubles: tuple[str, ...],
 ) -> AuditEntry:
-    """Return the entry of a station's start: version, settings, site, and where it takes up."""
+    """Return the entry of a start: version, settings, site and the first ids of orders."""
     details = {
         "version": __version__,
         "python": sys.version.split()[0],
         "site": dict(site),
-        "first_id": first_ids(last)[0],
-        "next_own_id": first_ids(last)[1],
-        "last_run_ended_in_order": last.was_stopped,
-        "last_run_lines": last.lines,
+        "first_id": first_ids[0],
+        "next_own_id": first_ids[1],
+        "last_run_ended_in_order": ended_in_order,
         "troubles": list(troubles),
         "settings": asdict(settings),
     }
-    return AuditEntry(STARTED_KIND, f"the station starts, version {__version__}", details=details)
+    return AuditEntry(STARTED_KIND, f"station started, version {__version__}", details=details)
 
 
 def ended_entry(problem: BaseException | None) -> AuditEntry:
-    """Return the entry of a station's end, in order or by a fault of its own."""
-    words = "what flies, flies on by its last order"
+    """Return the entry of a stop, or of an end by a fault in the station's own code."""
+    text = "vehicles in flight continue their last order"
     if problem is None:
-        return AuditEntry(STOPPED_KIND, f"the station stops; {words}")
+        return AuditEntry(STOPPED_KIND, f"station stopped; {text}")
     fault = f"{type(problem).__name__}: {problem}"
-    return AuditEntry(FAILED_KIND, f"the station ends by a fault ({fault}); {words}")
+    return AuditEntry(FAILED_KIND, f"station ended by a fault ({fault}); {text}")
 
 
-def _read(path: Path, troubles: list[str]) -> tuple[LastRun, RunEnd | None]:
-    run = LastRun()
+def _read_end(path: Path, troubles: list[str]) -> RunEnd | None:
     try:
-        end = read_run_end(path, run.take)
+        end = read_run_end(path)
     except RecordError as problem:
         troubles.append(str(problem))
-        return run, None
+        return None
     if end.bad_lines:
         troubles.append(f"{path}: {end.bad_lines} lines of the last run's audit are damaged")
     if end.torn_bytes:
-        troubles.append(f"{path}: the last run's audit ends in a line cut short")
-    return run, end
+        troubles.append(f"{path}: the last line of the last run's audit is incomplete")
+    return end

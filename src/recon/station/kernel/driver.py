@@ -54,7 +54,7 @@ class AsyncioDriver:
         observe: Callable[[Station, Station, Event], None] | None = None,
     ) -> None:
         self.station = station
-        self._observe = observe
+        self.observe = observe
         self.now_ns = now_ns
         self.started_at_ns = now_ns()
         self.links: LinkServer | None = None
@@ -110,8 +110,8 @@ class AsyncioDriver:
         except Exception as fault:
             self.station, outputs = after_fault(before, event, fault, now_ns)
         with self._contained("writing the audit", event):
-            if self._observe is not None:
-                self._observe(before, self.station, event)
+            if self.observe is not None:
+                self.observe(before, self.station, event)
         for output in outputs:
             with self._contained(f"carrying out {type(output).__name__}", event):
                 self._carry_out(output)

@@ -18,6 +18,7 @@ from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.errors import ReconError
+from recon.model.event import Event
 from recon.model.units import ns_to_seconds
 from recon.record.errors import RecordError
 from recon.site import Site
@@ -36,7 +37,8 @@ from recon.station.audit.start import (
 from recon.station.kernel.build import first_state, worker_tasks
 from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
 from recon.station.kernel.worker import ThreadWorker
-from recon.station.recovery.restart import first_ids, restart_entries, restored
+from recon.station.recovery.restart import LastRun, restart_entries, restored
+from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
 from recon.station.state.station import Station
 
 HTTP_BACKLOG = 128
@@ -78,22 +80,36 @@ class Started:
     """What the last run left that this one goes on with, in words; empty for nothing."""
 
 
+Observe = Callable[[Station, Station, Event], None]
 OnStart = Callable[[Started], Awaitable[None]]
 
 
 async def run(config: RunConfig, on_start: OnStart) -> None:
     """Run a station until SIGINT or SIGTERM. Raises `StartError` when it cannot start."""
     _refuse_open_door(config)
-    begun = _begin_audit(config)
+    place = config.audit or default_place(config.link_port)
+    begun = _begin_audit(place)
+    last_run, is_snapshot_good = _last_run(place, begun)
     http_socket = _listen(config.http_host, config.http_port, "--http-port")
     async with AsyncExitStack() as stack:
         stack.callback(http_socket.close)
         clock = station_clock()
-        station = restored(first_state(config.site), begun.last, clock())
-        auditor = _start_auditor(config, begun, clock, stack)
+        station = restored(first_state(config.site), last_run, clock())
+        auditor = _start_auditor(config, begun, last_run, clock, stack)
         auditor.put(restart_entries(station))
         driver = AsyncioDriver(station, clock, auditor.observe)
         auditor.handle = driver.handle
+        if not place.is_shared:
+            snapshots = SnapshotWriter(
+                place.folder,
+                clock,
+                last_order_id=last_run.first_ids[0] - 1,
+                keep_current=is_snapshot_good,
+            )
+            auditor.snapshot_problem = lambda: snapshots.problem
+            driver.observe = _both(snapshots.observe, auditor.observe)
+            snapshots.start(station)
+            stack.callback(snapshots.close)
         capture = _start_capture(config, driver)
         if capture is not None:
             stack.callback(capture.close)
@@ -102,7 +118,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
         driver.links = links
         service = Service.around(
-            driver, config.site, _text(config.capture_folder), begun.log, first_ids(begun.last)[0]
+            driver, config.site, _text(config.capture_folder), begun.log, last_run.first_ids[0]
         )
         service.link_addresses = await _start_links(links, config)
         stack.push_async_callback(links.stop)
@@ -115,7 +131,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         stack.enter_context(_stopped_by_signals(server))
         serving = asyncio.create_task(server.serve(sockets=[http_socket]))
         started = _started(config, service, links, http_socket)
-        taken_up = _taken_up(station, begun)
+        taken_up = _taken_up(station, (*begun.troubles, *last_run.troubles))
         audit_folder = str(begun.log.folder)
         await on_start(replace(started, audit_folder=audit_folder, taken_up=taken_up))
         done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
@@ -134,17 +150,35 @@ def _refuse_open_door(config: RunConfig) -> None:
         )
 
 
-def _begin_audit(config: RunConfig) -> Begun:
+def _begin_audit(place: AuditPlace) -> Begun:
     try:
-        return begin_audit(config.audit or default_place(config.link_port))
+        return begin_audit(place)
     except RecordError as problem:
         raise StartError(str(problem)) from problem
 
 
+def _last_run(place: AuditPlace, begun: Begun) -> tuple[LastRun, bool]:
+    return (LastRun(), False) if place.is_shared else load_last_run(place.folder, begun.runs_before)
+
+
+def _both(first: Observe, second: Observe) -> Observe:
+    """Return an observer that calls two; the recovery snapshot comes before the audit."""
+
+    def observe(before: Station, after: Station, event: Event) -> None:
+        first(before, after, event)
+        second(before, after, event)
+
+    return observe
+
+
 def _start_auditor(
-    config: RunConfig, begun: Begun, clock: Callable[[], int], stack: AsyncExitStack
+    config: RunConfig,
+    begun: Begun,
+    last_run: LastRun,
+    clock: Callable[[], int],
+    stack: AsyncExitStack,
 ) -> Auditor:
-    """Begin the audit; its last line is written after everything else has ended."""
+    """Start the audit; its last entry is written after everything else has ended."""
     printer = LogPrinter()
     auditor = Auditor(begun.log, printer, clock)
     printer.start()
@@ -158,18 +192,20 @@ def _start_auditor(
         "folder": _text(folder),
         "sha256": None if folder is None else site_digest(folder),
     }
-    auditor.put([started_entry(settings, site, begun.last, begun.troubles)])
+    troubles = (*begun.troubles, *last_run.troubles)
+    first_ids = last_run.first_ids
+    auditor.put([started_entry(settings, site, begun.ended_in_order, first_ids, troubles)])
     return auditor
 
 
-def _taken_up(station: Station, begun: Begun) -> str:
-    """What a person must know who starts a station after one that ended in flight."""
+def _taken_up(station: Station, troubles: tuple[str, ...]) -> str:
+    """What the operator must know who starts a station after one that ended in flight."""
     names = [station.fleet.vehicles[serial].display_name for serial in station.restored_flights]
     names += [state.display_name for state in station.watchdog_state.lost.values()]
-    words = [f"flying when last seen: {', '.join(names)}"] if names else []
+    parts = [f"in flight at last contact: {', '.join(names)}"] if names else []
     if station.orders.records:
-        words.append(f"{len(station.orders.records)} orders were interrupted")
-    return "; ".join((*words, *begun.troubles))
+        parts.append(f"{len(station.orders.records)} orders were interrupted")
+    return "; ".join((*parts, *troubles))
 
 
 def _listen(host: str, port: int, option: str) -> socket.socket:

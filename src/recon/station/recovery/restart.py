@@ -1,255 +1,292 @@
-"""A start after the station ended in mid-flight: what was known is known again, nothing is ordered.
+"""A restart in flight: a fresh station takes over what the recovery snapshot holds.
 
-Restored from the last run's audit: the numbers of orders go on, so none is used twice; who led
-each vehicle (a pilot stays, what guidance led is the operator's); vehicles that flew, as lost ones,
-until they are heard or somebody says where they are; orders that were under way, as failed. A
-vehicle's takeoff point is believed again only when its own telemetry shows the same flight.
+Theory of operation. A snapshot of the last run is read before the first event. From it come
+
+- order ids: they continue above every id used before, so that none is used twice;
+- authority: a pilot keeps it; guidance passes it to the operator, for surveys end with the run;
+- vehicles in flight: lost vehicles, with alarm and hazard area, until their telemetry returns or
+  an operator dismisses them. A snapshot older than 90 minutes, or from the future, restores none;
+- open orders: failed, with an alarm for each vehicle, because their outcome is unknown.
+
+Nothing is sent. For `settle_s` the apps reconnect and one alarm lists the vehicles that are still
+missing (`traffic/identity_grace.py`). When a restored vehicle reports again, `recheck` compares
+position, height, altitude offset and battery with the snapshot: if they cannot belong to the same
+flight, the restored takeoff point is dropped, because every height and every way home depends on
+it. If no snapshot can be read, the start goes on without one and raises an alarm.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import msgspec
 
 from recon.geo.distance import horizontal_distance_m
 from recon.model.authority import AuthorityHolder, ControlAuthority
-from recon.model.command import Command, Phase
+from recon.model.command import BODY_NAMES, Body, Command, Phase
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
-from recon.station.audit.unidentified_snapshots import restored_entries
-from recon.station.audit.vehicle_snapshots import RESTORED_KIND, sighting_entry
-from recon.station.recovery.last_run import LastRun, OpenOrder
+from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
 from recon.station.state.recovery_settings import RestartSettings
 from recon.station.state.station import Station
-from recon.station.state.vehicle_snapshot import Place, VehicleSnapshot
+from recon.station.state.vehicle_snapshot import PositionSnapshot, VehicleSnapshot
 from recon.station.traffic.known_traffic import MANY_LOST, with_lost
 
-INTERRUPTED = "the station was restarted; look what the vehicle does"
+INTERRUPTED = "the station was restarted during this order; check what the vehicle is doing"
 IDS_ROUNDED_TO = 1_000
 OWN_IDS_SKIPPED = 100_000
+IDS_PER_LOST_RUN = 1_000_000_000
+"""Without a readable snapshot ids start at this times the number of runs in the audit's folder:
+no run uses so many."""
+
+_BODIES = {name: kind for kind, name in BODY_NAMES.items()}
 
 
-def first_ids(last: LastRun) -> tuple[int, int]:
-    """Return the first number for orders, and for the station's own, that no run has used.
+@dataclass(frozen=True, slots=True)
+class LastRun:
+    """What the last run left: its snapshot, None without any, and sentences about files that could
+    not be used. `runs_before` is the number of the last run in the audit's folder."""
 
-    The last entries before a power failure may be missing: so the next round thousand.
-    """
-    rounds = (last.last_id + IDS_ROUNDED_TO - 1) // IDS_ROUNDED_TO + 1 if last.last_id else 0
-    own = last.least_own_id - OWN_IDS_SKIPPED if last.least_own_id else 0
-    return rounds * IDS_ROUNDED_TO + 1, own - 1
+    snapshot: RecoverySnapshot | None = None
+    troubles: tuple[str, ...] = ()
+    runs_before: int = 0
+
+    @property
+    def first_ids(self) -> tuple[int, int]:
+        """The first id for orders (positive), and for the station's own commands (negative).
+
+        The snapshot may be a second old: order ids continue at the next round thousand.
+        """
+        if self.snapshot is None:
+            used = self.runs_before * IDS_PER_LOST_RUN
+            return used + 1, -used - 1
+        last, own = self.snapshot.last_order_id, self.snapshot.next_own_id
+        rounds = (last + IDS_ROUNDED_TO - 1) // IDS_ROUNDED_TO + 1 if last else 0
+        return rounds * IDS_ROUNDED_TO + 1, own if own == -1 else own - OWN_IDS_SKIPPED
 
 
-def restored(station: Station, last: LastRun, now_ns: int) -> Station:
-    """Return a fresh station with what the last run knew."""
-    settings = station.settings.restart
-    station = replace(station, next_own_id=first_ids(last)[1])
-    if last.last_at_ns is None:
+def restored(station: Station, last_run: LastRun, now_ns: int) -> Station:
+    """Return a fresh station with what the last run left."""
+    station = replace(station, next_own_id=last_run.first_ids[1])
+    station = _with_troubles(station, last_run.troubles, now_ns)
+    snapshot = last_run.snapshot
+    if snapshot is None:
         return station
-    gone_s = ns_to_seconds(now_ns - last.last_at_ns)
+    settings = station.settings.restart
+    station = _with_interrupted(station, snapshot, now_ns)
+    gone_s = ns_to_seconds(now_ns - snapshot.taken_at_ns)
     if not 0.0 <= gone_s <= settings.forgotten_after_s:
-        return _with_interrupted(station, last, now_ns)
-    flights = _may_still_fly(last.sightings, now_ns, settings)
-    seen = {
-        serial: _vehicle(s, serial, station.fleet.profiles.get(serial))
-        for serial, s in flights.items()
+        return station
+    flights = _may_still_fly(snapshot.vehicles, now_ns, settings)
+    vehicles = {
+        serial: _vehicle(flight, serial, station.fleet.profiles.get(serial))
+        for serial, flight in flights.items()
     }
-    fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, **seen})
-    # Who flew before was led by somebody: the operator, unless the audit names another.
-    known = dict.fromkeys(flights, (AuthorityHolder.OPERATOR, "")) | dict(last.authorities)
-    authorities = {serial: _authority(*authority, now_ns) for serial, authority in known.items()}
-    station = replace(
+    fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, **vehicles})
+    # A vehicle without a named holder is the operator's.
+    operator = ControlAuthority()
+    holders = dict.fromkeys(flights, (operator.holder, "")) | {
+        serial: (authority.holder, authority.holder_name)
+        for serial, authority in snapshot.authorities.items()
+    }
+    authorities = {serial: _authority(*holder, now_ns) for serial, holder in holders.items()}
+    return replace(
         station,
         fleet=fleet,
         authorities={**station.authorities, **authorities},
         restored_flights=flights,
         restored_at_ns=now_ns,
-        watchdog_state=replace(station.watchdog_state, lost=_lost(last, now_ns, settings)),
+        watchdog_state=replace(station.watchdog_state, lost=_lost(snapshot, now_ns, settings)),
     )
-    return _with_interrupted(station, last, now_ns)
 
 
 def restart_entries(station: Station) -> Iterator[AuditEntry]:
-    """Yield what a restored station tells the audit, so that the next start knows it too."""
-    for serial, vehicle in station.fleet.vehicles.items():
-        if serial in station.restored_flights:
-            text = "flew when the last run saw it last; lost until it is heard"
-            yield sighting_entry(RESTORED_KIND, text, station, vehicle)
-    yield from restored_entries(station)
+    """Yield the audit entries of what a restart restored."""
+    for serial in station.restored_flights:
+        text = f"{_name(station, serial)}: in flight in the last run; lost until telemetry returns"
+        yield AuditEntry("vehicle.restored", text, "station", serial, _name(station, serial))
+    for key, vehicle in station.watchdog_state.lost.items():
+        text = f"{vehicle.display_name}: in flight in the last run, without a serial; lost"
+        yield AuditEntry("vehicle.restored", text, details={"name": key})
     for serial, authority in station.authorities.items():
         name = _name(station, serial)
-        who = {
+        details: dict[str, str | int] = {
             "holder": authority.holder.value,
             "holder_name": authority.holder_name,
             "reason": authority.reason,
         }
-        text = f"{name}: is led by the {authority.holder.value}: {authority.reason}"
-        yield AuditEntry("authority.taken", text, "station", serial, name, who)
+        text = f"{name}: authority: {authority.holder.value}: {authority.reason}"
+        yield AuditEntry("authority.taken", text, "station", serial, name, details)
     for record in station.orders.records.values():
-        command = record.command
-        text = f"{record.vehicle_name}: {command.name.replace('_', ' ')}: failed ({record.note})"
-        details: dict[str, str | int] = {
-            "id": command.id,
-            "phase": record.phase.value,
-            "note": record.note,
-        }
-        yield AuditEntry(
-            "order.failed", text, "station", command.serial, record.vehicle_name, details
-        )
+        command, name = record.command, record.vehicle_name
+        text = f"{name}: {command.name.replace('_', ' ')}: failed ({record.note})"
+        details = {"id": command.id, "phase": record.phase.value, "note": record.note}
+        yield AuditEntry("order.failed", text, "station", command.serial, name, details)
 
 
 def recheck(station: Station, serial: str | None, now_ns: int) -> Station:
-    """Return the station once a restored vehicle has been heard: its home is believed or not."""
+    """Return the station after telemetry of a restored vehicle: keep its takeoff point or not."""
     settings, serial = station.settings.restart, serial or ""
-    sighting = station.restored_flights.get(serial)
+    last = station.restored_flights.get(serial)
     vehicle = station.fleet.vehicles.get(serial)
-    if sighting is None or vehicle is None or vehicle.core_received_at_ns == sighting.heard_ns:
+    if last is None or vehicle is None or vehicle.core_received_at_ns == last.received_at_ns:
         return station
-    left = {key: s for key, s in station.restored_flights.items() if key != serial}
+    left = {key: other for key, other in station.restored_flights.items() if key != serial}
     station = replace(station, restored_flights=left)
-    doubt = another_flight(sighting, vehicle, now_ns, settings)
-    if doubt is None:
+    mismatch = flight_mismatch(last, vehicle, now_ns, settings)
+    if mismatch is None:
         return station
-    # A home that belongs to another flight would put every height and every way home wrong.
-    doubted = replace(vehicle, takeoff_point=None, altitude_offset_at_takeoff_m=None)
-    fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, serial: doubted})
+    # The takeoff point of another flight would make every height and every way home wrong.
+    unknown = replace(vehicle, takeoff_point=None, altitude_offset_at_takeoff_m=None)
+    fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, serial: unknown})
     station = replace(station, fleet=fleet)
-    if sighting.home is None or vehicle.is_flying.value is not True:
+    if last.takeoff_point is None or vehicle.is_flying.value is not True:
         return station
-    return _note(station, vehicle, f"its takeoff point is not known any more: {doubt}", now_ns)
+    text = f"takeoff point unknown after the restart: {mismatch}; confirm the home point with the "
+    return _with_alarm(station, vehicle.serial, vehicle.display_name, text + "pilot", now_ns)
 
 
-def another_flight(
-    sighting: VehicleSnapshot, vehicle: VehicleState, now_ns: int, settings: RestartSettings
+def flight_mismatch(
+    last: VehicleSnapshot, vehicle: VehicleState, now_ns: int, settings: RestartSettings
 ) -> str | None:
-    """Return why a vehicle may not be on the flight it was seen on; None when all agrees."""
-    gone_s = ns_to_seconds(now_ns - sighting.heard_ns)
+    """Return why a vehicle may be on another flight than before the restart; None if it is not."""
+    gone_s = ns_to_seconds(now_ns - last.received_at_ns)
     if vehicle.is_flying.value is not True:
-        return "it does not fly"
+        return "not in flight"
     return (
-        _place_doubt(sighting, vehicle, gone_s, settings)
-        or _height_doubt(sighting, vehicle, gone_s, settings)
-        or _battery_doubt(sighting, vehicle, settings)
+        _position_mismatch(last, vehicle, gone_s, settings)
+        or _height_mismatch(last, vehicle, gone_s, settings)
+        or _battery_mismatch(last, vehicle, settings)
     )
 
 
-def _place_doubt(
-    sighting: VehicleSnapshot, vehicle: VehicleState, gone_s: float, settings: RestartSettings
+def _position_mismatch(
+    last: VehicleSnapshot, vehicle: VehicleState, gone_s: float, settings: RestartSettings
 ) -> str | None:
     here = vehicle.position.value
-    if sighting.place is None or here is None:
-        return "its place is unknown"
-    far_m = horizontal_distance_m(_lat_lon(sighting.place), here)
-    if far_m > settings.place_error_m + gone_s * settings.fastest_mps:
-        return f"it is {far_m:.0f} m from where it was seen {gone_s:.0f} s ago"
+    if last.position is None or here is None:
+        return "position unknown"
+    moved_m = horizontal_distance_m(_lat_lon(last.position), here)
+    limit_m = settings.place_error_m + gone_s * settings.fastest_mps
+    if moved_m > limit_m:
+        return f"moved {moved_m:.0f} m in {gone_s:.0f} s, at most {limit_m:.0f} m are possible"
     return None
 
 
-def _height_doubt(
-    sighting: VehicleSnapshot, vehicle: VehicleState, gone_s: float, settings: RestartSettings
+def _height_mismatch(
+    last: VehicleSnapshot, vehicle: VehicleState, gone_s: float, settings: RestartSettings
 ) -> str | None:
-    """Height above takeoff moves on; altitude minus it belongs to the takeoff point, and stays."""
+    """The height changes in flight; altitude minus height depends on the takeoff point alone."""
     height_m, offset_m = vehicle.height_above_takeoff_m.value, vehicle.altitude_offset_m.value
-    then_m, offset_then_m = sighting.height_above_takeoff_m, sighting.altitude_offset_m
-    if height_m is None or then_m is None or offset_m is None or offset_then_m is None:
-        return "its height is unknown"
-    if abs(height_m - then_m) > settings.height_error_m + gone_s * settings.fastest_climb_mps:
-        return f"it is at {height_m:.0f} m and was at {then_m:.0f} m {gone_s:.0f} s ago"
-    if abs(offset_m - offset_then_m) > settings.height_error_m:
-        return "its heights have another takeoff point"
+    last_m, last_offset_m = last.height_above_takeoff_m, last.altitude_offset_m
+    if height_m is None or last_m is None or offset_m is None or last_offset_m is None:
+        return "height unknown"
+    limit_m = settings.height_error_m + gone_s * settings.fastest_climb_mps
+    if abs(height_m - last_m) > limit_m:
+        return f"height changed from {last_m:.0f} m to {height_m:.0f} m in {gone_s:.0f} s"
+    if abs(offset_m - last_offset_m) > settings.height_error_m:
+        return "heights refer to another takeoff point"
     return None
 
 
-def _battery_doubt(
-    sighting: VehicleSnapshot, vehicle: VehicleState, settings: RestartSettings
+def _battery_mismatch(
+    last: VehicleSnapshot, vehicle: VehicleState, settings: RestartSettings
 ) -> str | None:
-    now, then = vehicle.battery_fraction.value, sighting.battery_fraction
-    if now is None or then is None:
-        return "its battery is unknown"
-    return "its battery was changed" if now > then + settings.battery_gain_fraction else None
+    now, before = vehicle.battery_fraction.value, last.battery_fraction
+    if now is None or before is None:
+        return "battery unknown"
+    return "battery replaced" if now > before + settings.battery_gain_fraction else None
 
 
 def _may_still_fly(
-    sightings: Mapping[str, VehicleSnapshot], now_ns: int, settings: RestartSettings
+    vehicles: Mapping[str, VehicleSnapshot], now_ns: int, settings: RestartSettings
 ) -> dict[str, VehicleSnapshot]:
     return {
-        key: sighting
-        for key, sighting in sightings.items()
-        if sighting.is_flying is not False
-        and 0.0 <= ns_to_seconds(now_ns - sighting.heard_ns) <= settings.forgotten_after_s
+        key: last
+        for key, last in vehicles.items()
+        if last.is_flying is not False
+        and 0.0 <= ns_to_seconds(now_ns - last.received_at_ns) <= settings.forgotten_after_s
     }
 
 
-def _lost(last: LastRun, now_ns: int, settings: RestartSettings) -> Mapping[str, VehicleState]:
-    """What flew without a serial, under new names: links are numbered anew."""
+def _lost(
+    snapshot: RecoverySnapshot, now_ns: int, settings: RestartSettings
+) -> Mapping[str, VehicleState]:
+    """Return the vehicles without a serial under new names: link ids start again at 1."""
     lost: Mapping[str, VehicleState] = {}
-    for key, sighting in _may_still_fly(last.unidentified, now_ns, settings).items():
+    for key, last in _may_still_fly(snapshot.unidentified, now_ns, settings).items():
         name = key if key == MANY_LOST else f"lost-{len(lost) + 1}"
         profile = VehicleProfile(serial="", name=f"unidentified {name}")
-        lost = with_lost(lost, name, _vehicle(sighting, None, profile))
+        lost = with_lost(lost, name, _vehicle(last, None, profile))
     return lost
 
 
 def _vehicle(
-    sighting: VehicleSnapshot, serial: str | None, profile: VehicleProfile | None
+    last: VehicleSnapshot, serial: str | None, profile: VehicleProfile | None
 ) -> VehicleState:
-    at_ns = sighting.heard_ns
+    at_ns = last.received_at_ns
     return VehicleState(
         serial=serial,
         profile=profile,
-        is_simulated=sighting.is_simulated,
-        is_flying=Stamped(sighting.is_flying, at_ns),
-        position=Stamped(_lat_lon_or_none(sighting.place), at_ns),
-        height_above_takeoff_m=Stamped(sighting.height_above_takeoff_m, at_ns),
-        velocity_ned=Stamped(_velocity(sighting), at_ns),
-        battery_fraction=Stamped(sighting.battery_fraction, at_ns),
-        altitude_offset_m=Stamped(sighting.altitude_offset_m, at_ns),
-        altitude_offset_at_takeoff_m=sighting.altitude_offset_at_takeoff_m,
-        takeoff_point=_lat_lon_or_none(sighting.home),
+        is_simulated=last.is_simulated,
+        is_flying=Stamped(last.is_flying, at_ns),
+        position=Stamped(_lat_lon_or_none(last.position), at_ns),
+        height_above_takeoff_m=Stamped(last.height_above_takeoff_m, at_ns),
+        velocity_ned=Stamped(_velocity(last), at_ns),
+        battery_fraction=Stamped(last.battery_fraction, at_ns),
+        altitude_offset_m=Stamped(last.altitude_offset_m, at_ns),
+        altitude_offset_at_takeoff_m=last.altitude_offset_at_takeoff_m,
+        takeoff_point=_lat_lon_or_none(last.takeoff_point),
         core_received_at_ns=at_ns,
     )
 
 
-def _velocity(sighting: VehicleSnapshot) -> VelocityNed | None:
-    parts = (
-        sighting.velocity_north_mps,
-        sighting.velocity_east_mps,
-        sighting.velocity_down_mps,
-    )
-    north, east, down = parts
+def _velocity(last: VehicleSnapshot) -> VelocityNed | None:
+    north, east = last.velocity_north_mps, last.velocity_east_mps
+    down = last.velocity_down_mps
     return None if north is None or east is None or down is None else VelocityNed(north, east, down)
 
 
 def _authority(holder: AuthorityHolder, holder_name: str, now_ns: int) -> ControlAuthority:
     if holder is AuthorityHolder.GUIDANCE:
-        reason = "the station's planning led it until the station was restarted"
+        reason = "guidance had control before the station was restarted"
         return ControlAuthority(AuthorityHolder.OPERATOR, "", now_ns, reason)
-    reason = f"the {holder.value} led it when the station was restarted"
+    reason = f"the {holder.value} had control before the station was restarted"
     return ControlAuthority(holder, holder_name, now_ns, reason)
 
 
-def _with_interrupted(station: Station, last: LastRun, now_ns: int) -> Station:
-    """Put the orders that were under way into the book, as failed, with an alarm each vehicle."""
-    records: dict[int, OrderRecord] = dict(station.orders.records)
-    book = station.alarms
-    for order in last.orders.values():
-        records[order.id] = _interrupted(order, now_ns)
-        condition = _condition(order.serial, order.vehicle, INTERRUPTED)
-        book = alarm_book.note(book, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, orders=OrderBook(records), alarms=book)
+def _with_interrupted(station: Station, snapshot: RecoverySnapshot, now_ns: int) -> Station:
+    """Record the open orders of the last run as failed, with an alarm for each vehicle."""
+    for order in snapshot.orders:
+        record = _interrupted(order, now_ns)
+        if record is None:
+            continue
+        records = {**station.orders.records, order.id: record}
+        station = replace(station, orders=OrderBook(records))
+        station = _with_alarm(station, order.serial, order.vehicle_name, INTERRUPTED, now_ns)
+    return station
 
 
-def _note(station: Station, vehicle: VehicleState, text: str, now_ns: int) -> Station:
-    condition = _condition(vehicle.serial, vehicle.display_name, text)
+def _with_troubles(station: Station, troubles: tuple[str, ...], now_ns: int) -> Station:
+    """Return the station with one alarm about snapshot files that could not be used."""
+    if not troubles:
+        return station
+    text = (
+        f"{'; '.join(troubles)}. Confirm with the pilots which vehicles are in the air before you "
+        "give orders"
+    )
+    condition = Condition("recovery_snapshot", Severity.ERROR, "restarted", "", text)
     book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
     return replace(station, alarms=book)
 
 
-def _condition(serial: str | None, name: str, text: str) -> Condition:
-    return Condition(
+def _with_alarm(station: Station, serial: str | None, name: str, text: str, now_ns: int) -> Station:
+    condition = Condition(
         key=f"restarted:{serial}:{text[:20]}",
         severity=Severity.ERROR,
         rule="restarted",
@@ -257,35 +294,40 @@ def _condition(serial: str | None, name: str, text: str) -> Condition:
         text=f"{name}: {text}",
         serial=serial,
     )
+    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book)
 
 
-def _interrupted(order: OpenOrder, now_ns: int) -> OrderRecord:
+def _interrupted(order: OrderSnapshot, now_ns: int) -> OrderRecord | None:
+    """Return the order as failed; None when its body is not of the type it names."""
+    try:
+        body: Body = msgspec.convert(order.body, _BODIES[order.order])
+    except (KeyError, msgspec.ValidationError):
+        return None
     command = Command(
         id=order.id,
-        body=order.body,
-        issued_by=order.by,
-        issued_at_ns=order.given_at_ns,
-        expires_at_ns=order.given_at_ns,
+        body=body,
+        issued_by=order.issued_by,
+        issued_at_ns=order.issued_at_ns,
+        expires_at_ns=order.issued_at_ns,
         serial=order.serial,
-        # Links are numbered anew: an old number would name another connection.
+        # Link ids start again at 1: the old one would name another connection.
         link_id=None,
         takeoff=order.takeoff,
     )
-    was = PhaseChange(order.phase, order.given_at_ns, "in the run before")
+    before = PhaseChange(order.phase, order.issued_at_ns, "in the last run")
     failed = PhaseChange(Phase.FAILED, now_ns, INTERRUPTED)
-    return OrderRecord(command, order.vehicle, (was, failed))
+    return OrderRecord(command, order.vehicle_name, (before, failed))
 
 
 def _name(station: Station, serial: str) -> str:
-    known: Mapping[str, VehicleState] = station.fleet.vehicles
-    vehicle, profile = known.get(serial), station.fleet.profiles.get(serial)
-    named = vehicle or profile
-    return serial if named is None else named.display_name
+    known = station.fleet.vehicles.get(serial) or station.fleet.profiles.get(serial)
+    return serial if known is None else known.display_name
 
 
-def _lat_lon(place: Place) -> LatLon:
-    return LatLon(place.latitude_deg, place.longitude_deg)
+def _lat_lon(point: PositionSnapshot) -> LatLon:
+    return LatLon(point.latitude_deg, point.longitude_deg)
 
 
-def _lat_lon_or_none(place: Place | None) -> LatLon | None:
-    return None if place is None else _lat_lon(place)
+def _lat_lon_or_none(point: PositionSnapshot | None) -> LatLon | None:
+    return None if point is None else _lat_lon(point)

@@ -1,0 +1,105 @@
+"""Takeoffs, landings and positions in the audit, for whoever reconstructs a flight.
+
+One entry per vehicle every five seconds in the air and every minute on the ground, and one
+whenever a flight begins or ends or its link closes.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from recon.model.event import Event, LinkClosed, PacketReceived
+from recon.model.geo import LatLon
+from recon.model.report import CoreReport
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import VehicleState
+from recon.record.audit import AuditEntry
+from recon.station.state.station import Station
+
+POSITION_KIND = "vehicle.position"
+TOOK_OFF_KIND = "vehicle.took_off"
+LANDED_KIND = "vehicle.landed"
+FLYING_KIND = "vehicle.flying"
+
+FLYING_EVERY_S = 5.0
+GROUNDED_EVERY_S = 60.0
+MAX_REMEMBERED = 512
+
+
+@dataclass(frozen=True, slots=True)
+class FlightsLogged:
+    """When each vehicle's position was last written, by serial."""
+
+    written_at_ns: Mapping[str, int] = field(default_factory=dict)
+
+
+def flight_entries(
+    memory: FlightsLogged, before: Station, event: Event, after: Station, now_ns: int
+) -> tuple[FlightsLogged, tuple[AuditEntry, ...]]:
+    """Return the entry of a packet or a closed link, if one is due."""
+    entries = tuple(_entries(memory, before, event, after, now_ns))
+    if not entries:
+        return memory, ()
+    written = {**memory.written_at_ns, **{entry.serial or "": now_ns for entry in entries}}
+    return FlightsLogged(dict(list(written.items())[-MAX_REMEMBERED:])), entries
+
+
+def _entries(
+    memory: FlightsLogged, before: Station, event: Event, after: Station, now_ns: int
+) -> Iterator[AuditEntry]:
+    match event:
+        case PacketReceived(link_id, CoreReport()):
+            vehicle = after.fleet.vehicle_of_link(link_id)
+            if vehicle is not None and vehicle.serial is not None:
+                kind, text = _due(memory, before, vehicle, now_ns)
+                if kind:
+                    yield _entry(kind, text, after, vehicle)
+        case LinkClosed(link_id):
+            vehicle = before.fleet.vehicle_of_link(link_id)
+            if vehicle is not None and vehicle.serial is not None and vehicle.is_flying.value:
+                yield _entry(POSITION_KIND, "last position before its link closed", after, vehicle)
+
+
+def _due(
+    memory: FlightsLogged, before: Station, vehicle: VehicleState, now_ns: int
+) -> tuple[str, str]:
+    """Return the kind and text of the entry that is due; empty when none is."""
+    serial = vehicle.serial or ""
+    old = before.fleet.vehicles.get(serial)
+    match None if old is None else old.is_flying.value, vehicle.is_flying.value:
+        case False, True:
+            return TOOK_OFF_KIND, "took off"
+        case True, False:
+            return LANDED_KIND, "landed"
+    written_ns = memory.written_at_ns.get(serial)
+    if written_ns is None and vehicle.is_flying.value:
+        return FLYING_KIND, "in flight at first contact"
+    every_s = FLYING_EVERY_S if vehicle.is_flying.value else GROUNDED_EVERY_S
+    if written_ns is None or now_ns - written_ns >= seconds_to_ns(every_s):
+        return POSITION_KIND, "position"
+    return "", ""
+
+
+def _entry(kind: str, text: str, station: Station, vehicle: VehicleState) -> AuditEntry:
+    name, serial = vehicle.display_name, vehicle.serial or ""
+    velocity = vehicle.velocity_ned.value
+    authority, intent = station.authorities.get(serial), station.intents.get(serial)
+    details: dict[str, Any] = {
+        "is_flying": vehicle.is_flying.value,
+        "position": _position(vehicle.position.value),
+        "height_above_takeoff_m": vehicle.height_above_takeoff_m.value,
+        "velocity_north_mps": None if velocity is None else velocity.north_mps,
+        "velocity_east_mps": None if velocity is None else velocity.east_mps,
+        "velocity_down_mps": None if velocity is None else velocity.down_mps,
+        "battery_fraction": vehicle.battery_fraction.value,
+        "takeoff_point": _position(vehicle.takeoff_point),
+        "holder": "operator" if authority is None else authority.holder.value,
+        "commanded": "nothing" if intent is None else intent.commanded.value,
+    }
+    return AuditEntry(kind, f"{name}: {text}", "station", vehicle.serial, name, details)
+
+
+def _position(point: LatLon | None) -> dict[str, float] | None:
+    if point is None:
+        return None
+    return {"latitude_deg": point.latitude_deg, "longitude_deg": point.longitude_deg}
