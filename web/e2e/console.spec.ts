@@ -21,7 +21,7 @@ for (const look of LOOKS) {
       await expect(page.locator("button.craft")).toHaveCount(5);
       await page.keyboard.press("1");
       await wear(page, look);
-      await page.locator(".state-word").click();
+      await page.locator(".status-button").click();
       expect(await smallTexts(page)).toEqual([]);
       expect(await smallTargets(page)).toEqual([]);
       expect(await faintTexts(page)).toEqual([]);
@@ -79,7 +79,7 @@ test("keeps the labels of vehicles close together apart", async ({ page }) => {
   const labels = page.locator(".craft-label");
   await expect(labels).toHaveCount(4);
   await expect.poll(() => overlaps(page, ".craft-label")).toEqual([]);
-  await expect(page.locator(".craft-holder:visible")).not.toHaveCount(0);
+  await expect(page.locator(".craft-label-line:visible")).not.toHaveCount(0);
   const places = () => labels.evaluateAll((all) => all.map((one) => one.style.transform));
   const before = await places();
   for (let message = 1; message <= 10; message += 1) {
@@ -103,15 +103,15 @@ test("draws a plain map, and the ground image when there is one", async ({ page 
 test("says that contact is lost for as long as it is, and finds back", async ({ page }) => {
   const fake = await FakeStation.behind(page, station([vehicle(1)]));
   await page.goto("/");
-  await expect(page.getByTestId("state-word")).toHaveText("Flying");
+  await expect(page.getByTestId("status-button")).toHaveText("Flying");
   await fake.vanish();
   await expect(page.getByText("No contact with the station.")).toBeVisible();
-  await expect(page.getByTestId("state-word")).toHaveText("Communication lost");
+  await expect(page.getByTestId("status-button")).toHaveText("Communication lost");
   await expect(page.locator(".vehicle.is-stale")).toHaveCount(1);
   await expect(page.locator(".craft.is-stale")).toHaveCount(1);
   fake.comeBack();
   await expect(page.getByText("No contact with the station.")).toBeHidden();
-  await expect(page.getByTestId("state-word")).toHaveText("Flying");
+  await expect(page.getByTestId("status-button")).toHaveText("Flying");
 });
 
 test("gives an order only to whom it names, and only when held", async ({ page }) => {

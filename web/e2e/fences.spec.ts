@@ -63,7 +63,7 @@ test("takes a vehicle over, overrides its checklist and dismisses a hazard area"
 test("flies a vehicle to a press on the map only when the gate allows it", async ({ page }) => {
   const fake = await open(page);
   const reason = "the way leads through the keep-out zone Barn";
-  fake.judgement = { accepted: false, rule: "keep_out", reason };
+  fake.check = { accepted: false, rule: "keep_out", reason };
   await page.keyboard.press("1");
   await page.keyboard.press("g");
   await page.locator(".map-canvas").click({ position: { x: 420, y: 120 } });
@@ -71,7 +71,7 @@ test("flies a vehicle to a press on the map only when the gate allows it", async
   await expect(page.locator(".fly-course")).toHaveText(/m towards \d{3}°, about/);
   const go = page.getByRole("button", { name: "Fly 1 Alder there and hold" });
   await expect(go).toHaveAttribute("aria-disabled", "true");
-  fake.judgement = {};
+  fake.check = {};
   await expect(page.getByText("The safety gate allows it as of now.")).toBeVisible();
   await hold(page, go, () => expect.poll(() => fake.orders.length).toBe(1));
   const [given] = fake.orders;

@@ -55,9 +55,9 @@ test("contact lost, help and a held button", async ({ page }) => {
   await page.screenshot({ path: "screens/answer.png" });
   await fake.vanish();
   await expect(page.getByText("No contact with the station.")).toBeVisible();
-  await page.locator(".state-word").click();
+  await page.locator(".status-button").click();
   await page.screenshot({ path: "screens/lost.png" });
-  await page.locator(".state-word").click();
+  await page.locator(".status-button").click();
   await page.keyboard.press("?");
   await page.screenshot({ path: "screens/help.png" });
 });

@@ -4,7 +4,7 @@ import { vehicleKey } from "./fleet/vehicleStatus";
 import { actOnKey } from "./keys";
 import { MapView } from "./map/MapView";
 import { AlarmList } from "./panels/alarms/AlarmList";
-import { LostBanner } from "./panels/bar/ConnectionBanner";
+import { ConnectionBanner } from "./panels/bar/ConnectionBanner";
 import { TopBar } from "./panels/bar/TopBar";
 import { CommandList } from "./panels/commands/CommandList";
 import { VehicleDetail } from "./panels/detail/VehicleDetail";
@@ -22,11 +22,11 @@ import "./layout.css";
 
 /** The whole page. */
 export function App() {
-  const { source, fleet, selection, desk, theme, fit, flyHere } = useConsole();
+  const { source, fleet, selection, orderApi, theme, fit, flyHere } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
-  const select = (key: number, how: (key: number) => void) => {
-    if (keys().includes(key)) how(key);
+  const select = (key: number, action: (key: number) => void) => {
+    if (keys().includes(key)) action(key);
   };
 
   const clear = () => {
@@ -37,7 +37,7 @@ export function App() {
   onMount(() => {
     const onKeyDown = (event: KeyboardEvent) => {
       actOnKey(event, {
-        allStop: () => void desk.allStop(),
+        allStop: () => void orderApi.allStop(),
         selectOnly: (number) => select(number, selection.only),
         toggle: (number) => select(number, selection.toggle),
         selectAll: () => selection.all(keys()),
@@ -57,7 +57,7 @@ export function App() {
     <div class="page" classList={{ "is-lost": source.connection().kind === "lost" }}>
       <TopBar onHelp={() => setHelpOpen(!isHelpOpen())} />
       <div class="banners">
-        <LostBanner />
+        <ConnectionBanner />
         <SeparationBanner />
       </div>
       <aside class="side side-vehicles" aria-label="Vehicles">

@@ -4,41 +4,41 @@ import { createSelection, type Selection, selectedVehicles } from "./fleet/selec
 import type { LonLat } from "./map/localGrid";
 import { createOverlay, type Overlay } from "./map/overlays";
 import { createFlyHere, type FlyHere } from "./orders/flyHere";
-import { createDesk, type Desk } from "./orders/orderApi";
+import { createOrderApi, type OrderApi } from "./orders/orderApi";
 import { type Targets, targetsOf } from "./orders/targets";
 import type { SurveyView } from "./protocol";
 import type { Clock, Instant } from "./source/clock";
 import type { StationSource } from "./source/stationSource";
 import type { ThemeSwitch } from "./theme/theme";
 
-/** What every part of the page shares. */
+/** State and services shared by all parts of the page. */
 export interface Console {
   readonly source: StationSource;
-  /** What held buttons are timed by. */
+  /** Clock for hold-to-confirm buttons. */
   readonly clock: Clock;
-  /** The newest state as a store: a panel's parts change only where the state did. */
+  /** The newest state as a store; a panel rerenders only where the state changed. */
   readonly fleet: FleetView;
   readonly selection: Selection;
-  /** Whom an order would go to. */
+  /** The vehicles an order would be sent to. */
   readonly targets: Accessor<Targets>;
-  readonly desk: Desk;
+  readonly orderApi: OrderApi;
   readonly flyHere: FlyHere;
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
-  /** Seconds to add to every age of the newest state, growing as one looks. */
+  /** Seconds to add to every age in the newest state; grows until the next state. */
   readonly behindS: Accessor<number>;
   readonly fitRequests: Accessor<number>;
-  /** Asks the map to show everything. */
+  /** Zooms the map to show everything. */
   fit(): void;
-  /** Aims at what is in the map's middle, for those who move the map by keys. */
-  aimAtMiddle(): void;
-  /** The map says where its middle is. */
-  setMiddle(middle: () => LonLat): void;
+  /** Sets the fly-here target to the map centre, for operators using the keyboard. */
+  aimAtCentre(): void;
+  /** Registers a function that returns the map centre. */
+  setMapCentre(centre: () => LonLat): void;
 }
 
-const FLOWN: readonly SurveyView["phase"][] = ["running", "paused"];
+const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
 
-/** Puts the page's shared parts together; `now` ticks as often as ages shall be shown anew. */
+/** Creates the shared parts; `now` changes as often as displayed ages are refreshed. */
 export function createConsole(
   source: StationSource,
   theme: ThemeSwitch,
@@ -53,31 +53,31 @@ export function createConsole(
     return source.behindS(now()) ?? 0;
   });
   const targets = createMemo(() => targetsOf(selectedVehicles(fleet.vehicles, selection)));
-  const desk = createDesk(source, clock);
-  const alone = createMemo(() => {
+  const orderApi = createOrderApi(source, clock);
+  const single = createMemo(() => {
     const [only, ...others] = selectedVehicles(fleet.vehicles, selection);
     return only === undefined || only.serial === null || others.length > 0 ? null : only;
   });
-  const flyHere = createFlyHere(alone, source, desk, clock);
-  let middle: (() => LonLat) | null = null;
+  const flyHere = createFlyHere(single, source, orderApi, clock);
+  let centre: (() => LonLat) | null = null;
   return {
     source,
     clock,
     fleet,
     selection,
     targets,
-    desk,
+    orderApi,
     flyHere,
-    overlay: createOverlay(() => fleet.surveys.some(({ phase }) => FLOWN.includes(phase))),
+    overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
     behindS,
     fitRequests,
     fit: () => setFitRequests((count) => count + 1),
-    aimAtMiddle: () => {
-      if (middle !== null) flyHere.aim(middle());
+    aimAtCentre: () => {
+      if (centre !== null) flyHere.aim(centre());
     },
-    setMiddle: (of) => {
-      middle = of;
+    setMapCentre: (of) => {
+      centre = of;
     },
   };
 }
@@ -86,9 +86,9 @@ const ConsoleContext = createContext<Console>();
 
 export const ConsoleProvider = ConsoleContext.Provider;
 
-/** The shared parts, for a component inside the page. */
+/** The shared parts, for components inside `ConsoleProvider`. */
 export function useConsole(): Console {
   const shared = useContext(ConsoleContext);
-  if (shared === undefined) throw new Error("A part of the page was used outside ConsoleProvider.");
+  if (shared === undefined) throw new Error("useConsole was called outside ConsoleProvider.");
   return shared;
 }

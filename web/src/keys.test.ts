@@ -15,15 +15,15 @@ function press(init: KeyboardEventInit, target?: HTMLElement) {
   } satisfies KeyActions;
   const event = new KeyboardEvent("keydown", { bubbles: true, cancelable: true, ...init });
   (target ?? document.body).dispatchEvent(event);
-  const isTaken = actOnKey(event, actions);
+  const isHandled = actOnKey(event, actions);
   const called = Object.entries(actions).filter(([, action]) => action.mock.calls.length > 0);
   return {
-    isTaken,
+    isHandled,
     called: called.map(([name, action]) => [name, ...(action.mock.calls[0] ?? [])]),
   };
 }
 
-describe("the page's keys", () => {
+describe("keyboard shortcuts", () => {
   it.each([
     [{ key: "?", code: "Slash", shiftKey: true }, ["help"]],
     [{ key: "Escape", code: "Escape" }, ["clear"]],
@@ -34,7 +34,7 @@ describe("the page's keys", () => {
     [{ key: "S", code: "KeyS", shiftKey: true }, ["allStop"]],
     [{ key: "f", code: "KeyF" }, ["fit"]],
     [{ key: "T", code: "KeyT" }, ["toggleTheme"]],
-  ])("%j does %j", (init, expected) => expect(press(init).called).toEqual([expected]));
+  ])("%j runs %j", (init, expected) => expect(press(init).called).toEqual([expected]));
 
   it.each([
     { key: "s", code: "KeyS" },
@@ -43,11 +43,11 @@ describe("the page's keys", () => {
     { key: "1", code: "Digit1", altKey: true },
     { key: "s", code: "KeyS", ctrlKey: true, shiftKey: true },
     { key: "S", code: "KeyS", shiftKey: true, repeat: true },
-  ])("leaves %j alone", (init) => {
-    expect(press(init)).toEqual({ isTaken: false, called: [] });
+  ])("ignore %j", (init) => {
+    expect(press(init)).toEqual({ isHandled: false, called: [] });
   });
 
-  it("leaves keys to text fields", () => {
+  it("ignore keys typed into text fields", () => {
     const field = document.createElement("textarea");
     document.body.append(field);
     expect(press({ key: "3", code: "Digit3" }, field).called).toEqual([]);

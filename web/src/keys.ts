@@ -1,25 +1,25 @@
 import { isTyping } from "./panels/orders/shortcuts";
 
-/** The page's keys as the help shows them. */
-export const SHORTCUTS: readonly { readonly keys: string; readonly does: string }[] = [
-  { keys: "Shift + S", does: "ALL STOP: everything that flies holds, at once" },
-  { keys: "Shift + H, held", does: "Hover the selected vehicles (0.4 s)" },
-  { keys: "Shift + R, held", does: "Return the selected vehicles home (1.5 s)" },
-  { keys: "Shift + L, held", does: "Land the selected vehicles (1.5 s)" },
-  { keys: "1 to 9", does: "Select that vehicle alone" },
-  { keys: "Shift + 1 to 9", does: "Add that vehicle, or take it out" },
-  { keys: "Ctrl + A", does: "Select all vehicles" },
-  { keys: "G", does: "Fly here: say on the map where the one selected vehicle is to fly" },
+/** Keyboard shortcuts as listed in the help. */
+export const SHORTCUTS: readonly { readonly keys: string; readonly action: string }[] = [
+  { keys: "Shift + S", action: "ALL STOP: all flying vehicles hold position" },
+  { keys: "Hold Shift + H", action: "Hover the selected vehicles (0.4 s)" },
+  { keys: "Hold Shift + R", action: "Return the selected vehicles home (1.5 s)" },
+  { keys: "Hold Shift + L", action: "Land the selected vehicles (1.5 s)" },
+  { keys: "1 to 9", action: "Select only that vehicle" },
+  { keys: "Shift + 1 to 9", action: "Add that vehicle to the selection, or remove it" },
+  { keys: "Ctrl + A", action: "Select all vehicles" },
+  { keys: "G", action: "Fly here: set a target on the map for the selected vehicle" },
   {
     keys: "Esc",
-    does: "Clear the target, leave fly here, select none; while holding, give no order",
+    action: "Clear the target, leave fly here, clear the selection; cancels a held order",
   },
-  { keys: "F", does: "Fit everything into the map" },
-  { keys: "T", does: "High contrast for bright sun, and back" },
-  { keys: "?", does: "This help" },
+  { keys: "F", action: "Show everything on the map" },
+  { keys: "T", action: "High contrast for bright sun, on or off" },
+  { keys: "?", action: "Show this help" },
 ];
 
-/** What keys can do to the page. */
+/** Actions bound to keys. */
 export interface KeyActions {
   allStop(): void;
   selectOnly(number: number): void;
@@ -32,7 +32,7 @@ export interface KeyActions {
   help(): void;
 }
 
-/** Acts on one key press; says whether the key was one of the page's. */
+/** Runs the action of a key press; returns false for a key without one. */
 export function actOnKey(event: KeyboardEvent, actions: KeyActions): boolean {
   if (isTyping(event) || event.altKey) return false;
   const action = actionOf(event, actions);
@@ -46,7 +46,7 @@ function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void) | nul
   if (event.ctrlKey || event.metaKey) {
     return event.code === "KeyA" && !event.shiftKey ? actions.selectAll : null;
   }
-  // A held key must not repeat what it did.
+  // Ignore key repeat.
   if (event.repeat) return null;
   if (event.key === "?") return actions.help;
   const number = digitOf(event.code);

@@ -8,7 +8,7 @@ import { browserClock } from "./source/clock";
 import { LiveSource, tokenOf } from "./source/liveSource";
 import { createThemeSwitch } from "./theme/theme";
 
-/** How often ages are shown anew. */
+/** Refresh interval of displayed ages. */
 const AGE_TICK_MS = 100;
 
 function Page() {

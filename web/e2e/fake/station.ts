@@ -15,7 +15,7 @@ export class FakeStation {
   /** Every other thing said to the station: its path and what it carried. */
   readonly said: [path: string, body: unknown][] = [];
   /** What the gate says to orders that are checked. */
-  judgement: Partial<OrderResult> = {};
+  check: Partial<OrderResult> = {};
   preflight: PreflightView | null = null;
   /** What is told of any survey's ways. */
   ways: SurveyWays | null = null;
@@ -106,7 +106,7 @@ export class FakeStation {
   }
 
   private judge(request: OrderRequest) {
-    const judged = this.results(request).map((result) => ({ ...result, ...this.judgement }));
+    const judged = this.results(request).map((result) => ({ ...result, ...this.check }));
     return { json: { results: judged } };
   }
 

@@ -3,110 +3,112 @@ import type { StationState } from "../protocol";
 import type { StationSource } from "../source/stationSource";
 import { formatAge } from "../text/quantities";
 
-/** A frame as a state announces it. Its age is that at the moment the state was made. */
+/** A frame announced in a state; ages count to the moment the state was created. */
 export interface AnnouncedFrame {
   readonly id: number;
   readonly captured_age_s: number;
   readonly captured_sigma_s: number;
 }
 
-/** When a picture was taken. */
+/** When a frame was captured. */
 export interface Capture {
-  /** Age in the newest state, seconds: one that grows from state to state. */
+  /** Age at the time of the newest state, seconds. */
   readonly age_s: number;
   readonly sigma_s: number;
 }
 
-/** What is known of the picture that is on the screen. */
-export interface ShownFrame {
-  /** Null when the picture came without its frame's number. */
+/** Information about the displayed picture. */
+export interface FrameInfo {
+  /** Null when the picture came without its frame number. */
   readonly id: number | null;
-  /** Null when no state has announced this very frame (yet). */
+  /** Null while no state has announced this frame. */
   readonly capture: Capture | null;
-  /** For how long a newer frame had been announced when the newest state was made; null when none is. */
-  readonly overtaken_for_s: number | null;
+  /** How long before the newest state a newer frame was announced; null without a newer frame. */
+  readonly superseded_for_s: number | null;
 }
 
-interface Heard {
+interface Announcement {
   readonly id: number;
   captured_at_s: number;
   sigma_s: number;
-  overtaken_at_s: number | null;
+  superseded_at_s: number | null;
 }
 
-interface OnScreen {
+interface CurrentPicture {
   readonly id: number | null;
-  /** What was announced of this very frame, by the same run of the station. */
-  heard: Heard | null;
+  /** This frame's announcement by the same run of the station. */
+  announced: Announcement | null;
   isOfThisRun: boolean;
-  overtaken_at_s: number | null;
+  superseded_at_s: number | null;
 }
 
-/** Announcements are remembered for so many frames, for pictures that are still on the way. */
-const REMEMBERED = 32;
-/** A station's start, as its states tell it, does not move by more while it runs. */
+/** Number of announcements kept for pictures that are still loading. */
+const MAX_ANNOUNCEMENTS = 32;
+/** A larger change of the reported start time means that the station has restarted. */
 const SAME_START_S = 1;
 
 /**
- * Keeps what the station announced of the picture on the screen, however old that picture is by now:
- * its caption must never be that of a newer one which did not load.
+ * Keeps the announcement of the displayed picture, whatever its age: the caption must never describe a
+ * newer frame whose picture did not load.
  */
-export class FrameOnScreen {
-  private readonly heard = new Map<number, Heard>();
-  private newest: Heard | null = null;
-  private shown: OnScreen | null = null;
+export class DisplayedFrame {
+  private readonly announced = new Map<number, Announcement>();
+  private newest: Announcement | null = null;
+  private shown: CurrentPicture | null = null;
   private now_s = 0;
   private started_s: number | null = null;
   private runs = 0;
 
-  /** Which run of the station the newest state is of; frame numbers start anew with each. */
+  /** Number of station restarts seen; frame numbers start over with each run. */
   get run(): number {
     return this.runs;
   }
 
-  /** Takes in a state and the frame it announces, if it does. */
-  hear(state: Pick<StationState, "time_ns" | "station">, frame: AnnouncedFrame | null): void {
+  /** Processes a state and the frame it announces, if any. */
+  receive(state: Pick<StationState, "time_ns" | "station">, frame: AnnouncedFrame | null): void {
     this.now_s = state.time_ns / 1e9;
-    this.noticeRestart(this.now_s - state.station.uptime_s);
+    this.checkRestart(this.now_s - state.station.uptime_s);
     if (frame !== null) this.announce(frame);
-    if (this.shown !== null) this.follow(this.shown);
+    if (this.shown !== null) this.matchAnnouncement(this.shown);
   }
 
-  /** The picture of frame `id` is on the screen from now on. */
+  /** The picture of frame `id` is now displayed. */
   show(id: number | null): void {
-    this.shown = { id, heard: null, isOfThisRun: true, overtaken_at_s: null };
-    this.follow(this.shown);
+    this.shown = { id, announced: null, isOfThisRun: true, superseded_at_s: null };
+    this.matchAnnouncement(this.shown);
   }
 
-  /** Nothing is on the screen any more. */
+  /** No picture is displayed now. */
   clear(): void {
     this.shown = null;
   }
 
-  /** What is known of the picture on the screen; null while there is none. */
-  facts(): ShownFrame | null {
+  /** Information about the displayed picture; null without one. */
+  info(): FrameInfo | null {
     const shown = this.shown;
     if (shown === null) return null;
-    const { heard } = shown;
-    const overtaken_at_s = heard?.overtaken_at_s ?? shown.overtaken_at_s;
+    const { announced } = shown;
+    const superseded_at_s = announced?.superseded_at_s ?? shown.superseded_at_s;
     return {
       id: shown.id,
       capture:
-        heard === null ? null : { age_s: this.now_s - heard.captured_at_s, sigma_s: heard.sigma_s },
-      overtaken_for_s: overtaken_at_s === null ? null : this.now_s - overtaken_at_s,
+        announced === null
+          ? null
+          : { age_s: this.now_s - announced.captured_at_s, sigma_s: announced.sigma_s },
+      superseded_for_s: superseded_at_s === null ? null : this.now_s - superseded_at_s,
     };
   }
 
-  private noticeRestart(started_s: number): void {
+  private checkRestart(started_s: number): void {
     const before_s = this.started_s;
     this.started_s = started_s;
     if (before_s === null || Math.abs(started_s - before_s) < SAME_START_S) return;
     this.runs += 1;
-    this.heard.clear();
+    this.announced.clear();
     this.newest = null;
-    // The same number now means another frame, and the two clocks need not agree.
+    // The same number now means a different frame, and the two clocks may differ.
     if (this.shown !== null) {
-      this.shown = { ...this.shown, heard: null, isOfThisRun: false, overtaken_at_s: null };
+      this.shown = { ...this.shown, announced: null, isOfThisRun: false, superseded_at_s: null };
     }
   }
 
@@ -117,75 +119,75 @@ export class FrameOnScreen {
       Object.assign(this.newest, { captured_at_s, sigma_s });
       return;
     }
-    if (this.newest !== null) this.newest.overtaken_at_s = this.now_s;
-    this.newest = { id: frame.id, captured_at_s, sigma_s, overtaken_at_s: null };
-    this.heard.set(frame.id, this.newest);
-    for (const known of this.heard.keys()) {
-      if (this.heard.size <= REMEMBERED) break;
-      this.heard.delete(known);
+    if (this.newest !== null) this.newest.superseded_at_s = this.now_s;
+    this.newest = { id: frame.id, captured_at_s, sigma_s, superseded_at_s: null };
+    this.announced.set(frame.id, this.newest);
+    for (const known of this.announced.keys()) {
+      if (this.announced.size <= MAX_ANNOUNCEMENTS) break;
+      this.announced.delete(known);
     }
   }
 
-  private follow(shown: OnScreen): void {
+  private matchAnnouncement(shown: CurrentPicture): void {
     const { id, isOfThisRun } = shown;
-    if (id !== null && isOfThisRun) shown.heard ??= this.heard.get(id) ?? null;
-    if (shown.heard !== null || this.newest === null) return;
-    // A picture can be ahead of the states, but only of the same run.
+    if (id !== null && isOfThisRun) shown.announced ??= this.announced.get(id) ?? null;
+    if (shown.announced !== null || this.newest === null) return;
+    // A picture can be newer than the newest state, but only within one run.
     const isAhead = id !== null && isOfThisRun && id > this.newest.id;
-    if (!isAhead) shown.overtaken_at_s ??= this.now_s;
+    if (!isAhead) shown.superseded_at_s ??= this.now_s;
   }
 }
 
-/** `FrameOnScreen` for a part of the page. */
-export interface FrameTracker {
-  readonly facts: Accessor<ShownFrame | null>;
-  /** Changes when the station was started anew. */
+/** A `DisplayedFrame` as signals for a component. */
+export interface DisplayedFrameSignal {
+  readonly info: Accessor<FrameInfo | null>;
+  /** Changes when the station has restarted. */
   readonly run: Accessor<number>;
   show(id: number | null): void;
   clear(): void;
 }
 
-/** Follows the source's states; `announced` finds in each the frame this part of the page shows. */
-export function createFrameOnScreen(
+/** Tracks the displayed frame; `announced` picks the relevant frame from each state. */
+export function createDisplayedFrame(
   source: Pick<StationSource, "state">,
   announced: (state: StationState) => AnnouncedFrame | null,
-): FrameTracker {
-  const frame = new FrameOnScreen();
-  const [facts, setFacts] = createSignal<ShownFrame | null>(null);
+): DisplayedFrameSignal {
+  const frame = new DisplayedFrame();
+  const [info, setInfo] = createSignal<FrameInfo | null>(null);
   const [run, setRun] = createSignal(0);
   createComputed(() => {
     const state = source.state();
     if (state === null) return;
-    frame.hear(state, announced(state));
+    frame.receive(state, announced(state));
     setRun(frame.run);
-    setFacts(frame.facts());
+    setInfo(frame.info());
   });
   return {
-    facts,
+    info,
     run,
     show: (id) => {
       frame.show(id);
-      setFacts(frame.facts());
+      setInfo(frame.info());
     },
     clear: () => {
       frame.clear();
-      setFacts(null);
+      setInfo(null);
     },
   };
 }
 
-/** So long a newer picture may be on its way before its absence is told. */
-const NEWER_AFTER_S = 2;
+/** A newer picture may take this long to load before the caption mentions it. */
+const LOADING_S = 2;
 
-/** The picture on the screen in words: `frame 12, taken 0.8 s ago ± 0.2 s`. */
-export function frameCaption(frame: ShownFrame, behindS: number): string {
-  const name = frame.id === null ? "frame without a number" : `frame ${frame.id}`;
+/** Caption of the displayed picture: `frame 12, taken 0.8 s ago ± 0.2 s`. */
+export function frameCaption(frame: FrameInfo, behindS: number): string {
+  const name = frame.id === null ? "unnumbered frame" : `frame ${frame.id}`;
   const { capture } = frame;
-  if (capture === null) return `${name}, time taken unknown`;
+  if (capture === null) return `${name}, capture time unknown`;
   return `${name}, taken ${formatAge(capture.age_s + behindS)} ago ± ${capture.sigma_s.toFixed(1)} s`;
 }
 
-/** Whether a newer frame was announced a while ago and its picture is not on the screen. */
-export function lacksNewer(frame: ShownFrame, behindS: number): boolean {
-  return frame.overtaken_for_s !== null && frame.overtaken_for_s + behindS > NEWER_AFTER_S;
+/** Whether a newer frame was announced a while ago but its picture is not displayed. */
+export function isSuperseded(frame: FrameInfo, behindS: number): boolean {
+  return frame.superseded_for_s !== null && frame.superseded_for_s + behindS > LOADING_S;
 }

@@ -8,8 +8,8 @@ import {
   simulation,
   stalenessNow,
   stalenessOfAge,
-  vehicleCondition,
   vehicleKey,
+  vehicleStatus,
 } from "./vehicleStatus";
 
 describe("staleness", () => {
@@ -26,7 +26,7 @@ describe("staleness", () => {
     expect(stalenessOfAge(ageS)).toBe(tier);
   });
 
-  it("gets worse as the station's own news grows old, and never better", () => {
+  it("gets worse as the state ages, and never better", () => {
     const live = vehicle(1, { staleness: "live", telemetry_age_s: 0.2 });
     expect(stalenessNow(live, 0)).toBe("live");
     expect(stalenessNow(live, 3)).toBe("lost");
@@ -35,8 +35,8 @@ describe("staleness", () => {
   });
 });
 
-describe("how far a lost vehicle may be", () => {
-  it("grows, at no more than 15 m/s", () => {
+describe("the reach of a lost vehicle", () => {
+  it("grows by at most 15 m/s", () => {
     const ages = [0, 1, 2, 5, 10, 60];
     const reaches = ages.map((ageS) => reachM(ageS, 3, true));
     for (const [index, reach] of reaches.entries()) {
@@ -46,22 +46,22 @@ describe("how far a lost vehicle may be", () => {
     }
   });
 
-  it("stays where it was on the ground", () => {
+  it("is constant on the ground", () => {
     expect(reachM(100, 0, false)).toBe(reachM(0, 0, false));
   });
 });
 
-describe("a vehicle's word", () => {
+describe("a vehicle's status", () => {
   const flag = (value: boolean | null) => ({ value, age_s: 0.1 });
   const mode = (value: string | null) => ({ value, age_s: 0.1 });
 
   it.each([
     ["Flying", null, {}],
-    ["On ground", null, { is_flying: flag(false) }],
+    ["On the ground", null, { is_flying: flag(false) }],
     ["Unknown", null, { is_flying: flag(null) }],
     ["Landing", null, { flight_mode: mode("auto_landing") }],
     ["Landing", null, { flight_mode: mode("CONFIRM_LANDING") }],
-    ["On ground", null, { flight_mode: mode("auto_landing"), is_flying: flag(false) }],
+    ["On the ground", null, { flight_mode: mode("auto_landing"), is_flying: flag(false) }],
     ["Returning", null, { flight_mode: mode("go_home") }],
     ["Flying", "error", { conflict_link_ids: [4] }],
     ["Flying", "warning", { staleness: "late" }],
@@ -69,16 +69,16 @@ describe("a vehicle's word", () => {
     ["No contact", "critical", { staleness: "lost" }],
     ["No contact", "critical", { staleness: "silent", is_flying: flag(null) }],
     ["No contact", "warning", { staleness: "silent", is_flying: flag(false) }],
-  ] as const)("%s (%s) for %j", (word, severity, changes) => {
+  ] as const)("%s (%s) for %j", (activity, severity, changes) => {
     const changed = vehicle(1, { ...changes, conflict_link_ids: [] });
     const conflicts = "conflict_link_ids" in changes ? [...changes.conflict_link_ids] : [];
     const one = { ...changed, conflict_link_ids: conflicts };
-    expect(vehicleCondition(one, 0)).toEqual({ word, severity });
+    expect(vehicleStatus(one, 0)).toEqual({ activity, severity });
   });
 });
 
 describe("alarms", () => {
-  it("come worst first, then unacknowledged, then newest", () => {
+  it("are sorted worst first, then unacknowledged, then newest", () => {
     const sorted = sortAlarms([
       alarm(1, { severity: "info" }),
       alarm(2, { severity: "critical", is_acknowledged: true }),
@@ -96,7 +96,7 @@ describe("alarms", () => {
   });
 });
 
-describe("simulated and real", () => {
+describe("simulated and real vehicles", () => {
   const real = vehicle(1);
   const simulated = vehicle(2, { is_simulated: true });
 
@@ -105,11 +105,11 @@ describe("simulated and real", () => {
     [[real], "none"],
     [[simulated], "all"],
     [[real, simulated], "mixed"],
-  ] as const)("%# is told apart", (vehicles, kind) => expect(simulation(vehicles)).toBe(kind));
+  ] as const)("case %# is classified", (vehicles, kind) => expect(simulation(vehicles)).toBe(kind));
 });
 
 describe("the selection", () => {
-  it("starts with nobody and never grows by itself", () => {
+  it("starts empty and changes only by the operator", () => {
     createRoot((dispose) => {
       const selection = createSelection();
       expect(selection.keys()).toEqual([]);
@@ -119,7 +119,7 @@ describe("the selection", () => {
     });
   });
 
-  it("selects one, adds, takes out, and drops those that went", () => {
+  it("selects one, adds, removes, and drops absent vehicles", () => {
     createRoot((dispose) => {
       const selection = createSelection();
       selection.only(2);
@@ -135,7 +135,7 @@ describe("the selection", () => {
     });
   });
 
-  it("gives the vehicles in the fleet's order", () => {
+  it("returns the vehicles in fleet order", () => {
     createRoot((dispose) => {
       const selection = createSelection();
       selection.all([3, 1]);
@@ -147,7 +147,7 @@ describe("the selection", () => {
 });
 
 describe("a vehicle's key", () => {
-  it("tells unidentified ones apart by their links", () => {
+  it("differs between unidentified vehicles by their links", () => {
     const keys = [
       vehicle(1),
       vehicle(2, { number: 0, link_id: 1 }),

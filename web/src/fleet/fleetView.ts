@@ -15,12 +15,12 @@ import type {
 import type { StationSource } from "../source/stationSource";
 import { vehicleKey } from "./vehicleStatus";
 
-/** The newest state for the panels. Tracks are left out: only the map reads them, from the source. */
-export type FleetView = Readonly<Contents>;
+/** The newest state for the panels, without tracks: only the map reads those, from the source. */
+export type FleetView = Readonly<FleetData>;
 
 type KeyedVehicle = VehicleView & { readonly key: number };
 
-interface Contents {
+interface FleetData {
   hasState: boolean;
   vehicles: KeyedVehicle[];
   links: LinkView[];
@@ -34,7 +34,7 @@ interface Contents {
   surveys: SurveyView[];
 }
 
-const NOTHING: Contents = {
+const NO_DATA: FleetData = {
   hasState: false,
   vehicles: [],
   links: [],
@@ -49,11 +49,11 @@ const NOTHING: Contents = {
 };
 
 /**
- * Keeps a store in step with the source. Rows are matched by what identifies them, so that a button
- * one is holding is never replaced by a new one.
+ * Mirrors the source's state in a store. Rows are matched by their ids, so that a button being held is
+ * never replaced.
  */
 export function createFleetView(source: Pick<StationSource, "state">): FleetView {
-  const [view, setView] = createStore<Contents>({ ...NOTHING });
+  const [view, setView] = createStore<FleetData>({ ...NO_DATA });
   createComputed(() => {
     const state = source.state();
     if (state === null) return;

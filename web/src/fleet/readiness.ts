@@ -3,9 +3,9 @@ import type { Connection } from "../source/stationSource";
 import { alarmText, plainWords } from "../text/names";
 import { formatAge, formatFraction } from "../text/quantities";
 import { severityRank, worstSeverity } from "./severity";
-import { simulation, vehicleCondition } from "./vehicleStatus";
+import { simulation, vehicleStatus } from "./vehicleStatus";
 
-export type StateWord =
+export type ReadinessLabel =
   | "Communication lost"
   | "Landing"
   | "Flying"
@@ -13,22 +13,22 @@ export type StateWord =
   | "Warnings"
   | "Ready";
 
-/** One thing that stands behind the state word. */
+/** One reason for the readiness label. */
 export interface Reason {
   readonly severity: Severity;
-  /** The vehicle it is about; null when it is about the station. */
+  /** The vehicle concerned; null for the station. */
   readonly vehicleName: string | null;
   readonly text: string;
 }
 
-/** The state of the whole, with everything that makes it so, worst first. */
+/** The state of station and fleet, with all reasons, worst first. */
 export interface Readiness {
-  readonly word: StateWord;
+  readonly label: ReadinessLabel;
   readonly severity: Severity | null;
   readonly reasons: readonly Reason[];
 }
 
-/** The one word on top of the page, and why. */
+/** The label at the top of the page, and its reasons. */
 export function readiness(
   state: StationState | null,
   connection: Connection,
@@ -42,29 +42,30 @@ export function readiness(
     ...fleetReasons(state),
   ].sort((a, b) => severityRank(a.severity) - severityRank(b.severity));
   const severity = worstSeverity(reasons.map((reason) => reason.severity));
-  return { word: stateWord(state, connection, behindS, severity), severity, reasons };
+  const label = readinessLabel(state, connection, behindS, severity);
+  return { label, severity, reasons };
 }
 
 function withoutState(connection: Connection): Readiness {
   const text =
-    connection.kind === "lost" ? connection.reason : "Waiting for the first news of the station.";
-  const word = connection.kind === "lost" ? "Communication lost" : "Not ready";
+    connection.kind === "lost" ? `${connection.reason}.` : "Waiting for data from the station.";
+  const label = connection.kind === "lost" ? "Communication lost" : "Not ready";
   const severity = connection.kind === "lost" ? "critical" : "info";
-  return { word, severity, reasons: [{ severity, vehicleName: null, text }] };
+  return { label, severity, reasons: [{ severity, vehicleName: null, text }] };
 }
 
-function stateWord(
+function readinessLabel(
   state: StationState,
   connection: Connection,
   behindS: number,
   severity: Severity | null,
-): StateWord {
-  const conditions = state.vehicles.map((vehicle) => vehicleCondition(vehicle, behindS));
-  const isLost = conditions.some(
-    (condition) => condition.word === "No contact" && condition.severity === "critical",
+): ReadinessLabel {
+  const statuses = state.vehicles.map((vehicle) => vehicleStatus(vehicle, behindS));
+  const isLost = statuses.some(
+    ({ activity, severity }) => activity === "No contact" && severity === "critical",
   );
   if (connection.kind === "lost" || isLost) return "Communication lost";
-  if (conditions.some((condition) => condition.word === "Landing")) return "Landing";
+  if (statuses.some(({ activity }) => activity === "Landing")) return "Landing";
   if (state.vehicles.some((vehicle) => vehicle.is_flying.value === true)) return "Flying";
   if (state.vehicles.length === 0 || severity === "critical" || severity === "error") {
     return "Not ready";
@@ -74,7 +75,7 @@ function stateWord(
 
 function streamReasons(connection: Connection, behindS: number): Reason[] {
   if (connection.kind !== "lost") return [];
-  const text = `${connection.reason} Last news ${formatAge(behindS)} ago.`;
+  const text = `${connection.reason}. Last data ${formatAge(behindS)} ago.`;
   return [{ severity: "critical", vehicleName: null, text }];
 }
 
@@ -88,7 +89,7 @@ function alarmReasons(state: StationState): Reason[] {
     }));
 }
 
-/** What the page sees for itself; what the station raised an alarm for is not said twice. */
+/** Conditions detected by the page itself, without those the station has raised an alarm for. */
 function vehicleReasons(
   vehicle: VehicleView,
   alarms: readonly AlarmView[],
@@ -107,7 +108,7 @@ function isAbout(alarm: AlarmView, vehicle: VehicleView): boolean {
   return alarm.serial === null && alarm.link_id === vehicle.link_id;
 }
 
-/** A condition under the name of the station's rule for it. */
+/** A condition, with the name of the station's alarm rule for it. */
 interface Condition {
   readonly rule: string;
   readonly severity: Severity;
@@ -116,34 +117,34 @@ interface Condition {
 
 function conditionsOf(vehicle: VehicleView, behindS: number): Condition[] {
   const found: Condition[] = [];
-  const say = (rule: string, severity: Severity, text: string) =>
+  const add = (rule: string, severity: Severity, text: string) =>
     found.push({ rule, severity, text });
-  const { word, severity } = vehicleCondition(vehicle, behindS);
-  if (word === "No contact") {
+  const { activity, severity } = vehicleStatus(vehicle, behindS);
+  if (activity === "No contact") {
     const ageS = vehicle.telemetry_age_s;
     const since = ageS === null ? "yet" : `for ${formatAge(ageS + behindS)}`;
-    say("link_lost", severity ?? "warning", `No telemetry ${since}.`);
+    add("link_lost", severity ?? "warning", `No telemetry ${since}.`);
     return found;
   }
   if (vehicle.serial === null) {
-    say("unidentified", "warning", "Its app has not said which aircraft it is.");
+    add("unidentified", "warning", "Waiting for serial number.");
   }
   if (vehicle.conflict_link_ids.length > 0) {
-    say("serial_conflict", "error", "A second link claims to be this vehicle.");
+    add("serial_conflict", "error", "A second link reports the same serial number.");
   }
   if (vehicle.position.latitude_deg === null) {
-    say("position", "warning", "Its position is not known.");
+    add("position", "warning", "Position unknown.");
   }
   if (hasBatteryWarning(vehicle)) {
-    say("battery", "warning", `The aircraft warns of its battery: ${batteryText(vehicle)}.`);
+    add("battery", "warning", `Aircraft battery warning: ${batteryText(vehicle)}.`);
   }
   return found;
 }
 
-/** Whether the aircraft itself warns; its own thresholds know the pack and the way home. */
+/** Whether the aircraft reports a battery warning; its thresholds account for the pack and the way home. */
 export function hasBatteryWarning(vehicle: Pick<VehicleView, "battery_warning">): boolean {
-  const word = vehicle.battery_warning.value;
-  return word !== null && plainWords(word) !== "none";
+  const warning = vehicle.battery_warning.value;
+  return warning !== null && plainWords(warning) !== "none";
 }
 
 function batteryText(vehicle: VehicleView): string {
@@ -159,7 +160,7 @@ function fleetReasons(state: StationState): Reason[] {
   const none: Reason = {
     severity: "warning",
     vehicleName: null,
-    text: "No vehicle has connected. Open a companion app and point it at the station's address.",
+    text: "No vehicle connected. Start a companion app and enter the station's address.",
   };
   return state.vehicles.length === 0 ? [none] : [];
 }

@@ -2,16 +2,16 @@ import { type Accessor, createSignal } from "solid-js";
 import type { VehicleView } from "../protocol";
 import { vehicleKey } from "./vehicleStatus";
 
-/** Which vehicles are selected, by `vehicleKey`, in the order they were. Nothing is ever selected by itself. */
+/** The selected vehicles by `vehicleKey`, in order of selection. Only the operator selects. */
 export interface Selection {
   readonly keys: Accessor<readonly number[]>;
   has(key: number): boolean;
-  /** Selects this one and no other. */
+  /** Selects only this vehicle. */
   only(key: number): void;
   toggle(key: number): void;
   all(keys: readonly number[]): void;
   clear(): void;
-  /** Drops those that are not among `present`. */
+  /** Removes vehicles that are not in `present`. */
   keep(present: readonly number[]): void;
 }
 

@@ -1,6 +1,6 @@
 import type { AlarmView, Severity } from "../protocol";
 
-/** Worst first; the order in which everything is listed. */
+/** Worst first, as everything is listed. */
 export const SEVERITIES: readonly Severity[] = ["critical", "error", "warning", "info"];
 
 /** 0 for the worst. */
@@ -8,12 +8,12 @@ export function severityRank(severity: Severity): number {
   return SEVERITIES.indexOf(severity);
 }
 
-/** The worst of several; null of none. */
+/** The worst severity; null for an empty list. */
 export function worstSeverity(severities: readonly Severity[]): Severity | null {
   return SEVERITIES.find((severity) => severities.includes(severity)) ?? null;
 }
 
-/** Alarms as they are read: the worst first, those not acknowledged before the others, then the newest. */
+/** Alarms sorted for display: worst first, then unacknowledged, then newest. */
 export function sortAlarms(alarms: readonly AlarmView[]): AlarmView[] {
   return [...alarms].sort(
     (a, b) =>

@@ -3,19 +3,19 @@ import { plainWords } from "../text/names";
 import { agedBy } from "../text/quantities";
 
 /**
- * What tells vehicles on the page apart: the station's number, which stays for its life. Those that
- * have not said who they are have none yet (0) and go by their link, as a negative number.
+ * Identifies a vehicle on the page: the station's number, which never changes. An unidentified vehicle
+ * has none (0) and is keyed by its link, as a negative number.
  */
 export function vehicleKey(vehicle: Pick<VehicleView, "number" | "link_id">): number {
   return vehicle.number > 0 ? vehicle.number : -(vehicle.link_id ?? 0);
 }
 
-/** What a vehicle's badge shows. */
+/** Text of a vehicle's badge. */
 export function badgeText(vehicle: Pick<VehicleView, "number">): string {
   return vehicle.number > 0 ? String(vehicle.number) : "?";
 }
 
-/** Whether what flies is real: `mixed` is a danger and is shown as one. */
+/** Which vehicles are simulated; `mixed` is dangerous and shown as such. */
 export type Simulation = "none" | "all" | "mixed";
 
 export function simulation(vehicles: readonly Pick<VehicleView, "is_simulated">[]): Simulation {
@@ -26,7 +26,7 @@ export function simulation(vehicles: readonly Pick<VehicleView, "is_simulated">[
 
 const ORDER: readonly Staleness[] = ["live", "late", "lost", "silent"];
 
-/** The station's own tiers (newest telemetry under 1 s, 3 s, 10 s, older or never). */
+/** The station's staleness tiers: telemetry younger than 1 s, 3 s, 10 s; older or never received. */
 export function stalenessOfAge(ageS: number | null): Staleness {
   if (ageS === null || ageS >= 10) return "silent";
   if (ageS >= 3) return "lost";
@@ -34,7 +34,7 @@ export function stalenessOfAge(ageS: number | null): Staleness {
   return "live";
 }
 
-/** A vehicle's staleness at present: what the station said or worse, as its news grows old here. */
+/** A vehicle's current staleness: the station's value, or worse as the state ages on this page. */
 export function stalenessNow(
   vehicle: Pick<VehicleView, "staleness" | "telemetry_age_s">,
   behindS: number,
@@ -43,33 +43,33 @@ export function stalenessNow(
   return ORDER.indexOf(here) > ORDER.indexOf(vehicle.staleness) ? here : vehicle.staleness;
 }
 
-/** Position error to begin with, and the fastest and hardest a DJI aircraft flies on its own. */
+/** Initial position error, and the highest speed and acceleration of a DJI aircraft on a mission. */
 const START_M = 3;
 const FASTEST_MPS = 15;
 const ACCELERATION_MPS2 = 2;
 
 /**
- * How far a vehicle may be from where it was last seen, in metres: on with its speed, gathering more,
- * never faster than the fastest. On the ground it stays where it was.
+ * How far a vehicle may be from its last position, metres: it keeps its speed, accelerates, and never
+ * exceeds the highest speed. On the ground it does not move.
  */
 export function reachM(ageS: number, speedMps: number, isFlying: boolean): number {
   if (!isFlying) return START_M;
-  const gathering = speedMps * ageS + 0.5 * ACCELERATION_MPS2 * ageS * ageS;
-  return START_M + Math.min(gathering, Math.max(FASTEST_MPS, speedMps) * ageS);
+  const accelerated_m = speedMps * ageS + 0.5 * ACCELERATION_MPS2 * ageS * ageS;
+  return START_M + Math.min(accelerated_m, Math.max(FASTEST_MPS, speedMps) * ageS);
 }
 
-export type VehicleWord =
+export type VehicleActivity =
   | "No contact"
   | "Unidentified"
   | "Landing"
   | "Returning"
   | "Flying"
-  | "On ground"
+  | "On the ground"
   | "Unknown";
 
-/** What a vehicle is doing, in one word and how grave that is (null: as it should be). */
-export interface VehicleCondition {
-  readonly word: VehicleWord;
+/** What a vehicle is doing, and the severity of that (null: normal). */
+export interface VehicleStatus {
+  readonly activity: VehicleActivity;
   readonly severity: Severity | null;
 }
 
@@ -84,22 +84,22 @@ export function isLanding(vehicle: Pick<VehicleView, "flight_mode" | "is_flying"
   return vehicle.is_flying.value === true && LANDING_MODES.includes(mode(vehicle));
 }
 
-/** The word for a vehicle; `behindS` is how old the station's news is here. */
-export function vehicleCondition(vehicle: VehicleView, behindS: number): VehicleCondition {
+/** A vehicle's status; `behindS` is the age of the newest state on this page, seconds. */
+export function vehicleStatus(vehicle: VehicleView, behindS: number): VehicleStatus {
   const staleness = stalenessNow(vehicle, behindS);
   if (staleness === "lost" || staleness === "silent") {
-    const isAloft = vehicle.is_flying.value !== false;
-    return { word: "No contact", severity: isAloft ? "critical" : "warning" };
+    const mayBeFlying = vehicle.is_flying.value !== false;
+    return { activity: "No contact", severity: mayBeFlying ? "critical" : "warning" };
   }
-  if (vehicle.serial === null) return { word: "Unidentified", severity: "warning" };
+  if (vehicle.serial === null) return { activity: "Unidentified", severity: "warning" };
   const isConflicting = vehicle.conflict_link_ids.length > 0;
   const severity = isConflicting ? "error" : staleness === "late" ? "warning" : null;
-  return { word: doing(vehicle), severity };
+  return { activity: activityOf(vehicle), severity };
 }
 
-function doing(vehicle: VehicleView): VehicleWord {
+function activityOf(vehicle: VehicleView): VehicleActivity {
   if (vehicle.is_flying.value === null) return "Unknown";
-  if (!vehicle.is_flying.value) return "On ground";
+  if (!vehicle.is_flying.value) return "On the ground";
   if (isLanding(vehicle)) return "Landing";
   if (RETURN_MODES.includes(mode(vehicle))) return "Returning";
   return "Flying";

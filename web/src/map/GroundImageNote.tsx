@@ -1,25 +1,29 @@
 import { Match, Show, Switch } from "solid-js";
 import { useConsole } from "../console";
-import { frameCaption, lacksNewer } from "../fleet/displayedFrame";
-import type { ShownGround } from "./groundImageLayer";
+import { frameCaption, isSuperseded } from "../fleet/displayedFrame";
+import type { GroundImageInfo } from "./groundImageLayer";
 
-/** A frame is taken about once a second; five missed in a row and the ground may look otherwise by now. */
+/** Frames arrive about once a second; after five missed ones the ground may have changed. */
 const OLD_AFTER_S = 5;
 
-/** Which frame lies on the ground, how old it is and how well it is placed: the one shown, not the newest. */
-export function GroundImageNote(props: { shown: ShownGround | null }) {
+/** Number, age and alignment of the displayed ground image, which may not be the newest. */
+export function GroundImageNote(props: { shown: GroundImageInfo | null }) {
   const { fleet } = useConsole();
   return (
     <Switch fallback={<p class="map-note">No ground image yet</p>}>
       <Match when={props.shown}>{(shown) => <ShownNote shown={shown()} />}</Match>
       <Match when={fleet.groundImage}>
-        <p class="map-note">Ground image on its way</p>
+        <p class="map-note">Loading ground image</p>
       </Match>
     </Switch>
   );
 }
 
-function ShownNote(props: { shown: ShownGround }) {
+const ALIGNMENT: Readonly<Record<GroundImageInfo["registration"], string>> = {
+  unregistered: "not aligned",
+};
+
+function ShownNote(props: { shown: GroundImageInfo }) {
   const { behindS } = useConsole();
   const isOld = () => {
     const { capture } = props.shown;
@@ -30,9 +34,9 @@ function ShownNote(props: { shown: ShownGround }) {
       <Show when={isOld()}>
         <strong class="map-note-old">old</strong>{" "}
       </Show>
-      Ground image: {frameCaption(props.shown, behindS())}, {props.shown.registration}
-      <Show when={lacksNewer(props.shown, behindS())}>
-        <span class="tone-warning">, newer not loaded</span>
+      Ground image: {frameCaption(props.shown, behindS())}, {ALIGNMENT[props.shown.registration]}
+      <Show when={isSuperseded(props.shown, behindS())}>
+        <span class="tone-warning">; a newer frame exists</span>
       </Show>
     </p>
   );

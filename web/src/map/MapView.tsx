@@ -11,29 +11,29 @@ import { readColours } from "./colours";
 import { FlyHereLayer } from "./flyHereLayer";
 import { GroundImageNote } from "./GroundImageNote";
 import { GraticuleLayer } from "./graticuleLayer";
-import { createGroundOnMap, GroundImageLayer } from "./groundImageLayer";
+import { createDisplayedGround, GroundImageLayer } from "./groundImageLayer";
 import { HazardLayer } from "./hazardLayer";
 import type { Box } from "./localGrid";
 import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { PadLayer } from "./padLayer";
-import { type Layer, type Meant, positionOf, wholeView } from "./scene";
+import { type Layer, type PlannedTarget, positionOf, wholeView } from "./scene";
 import { SteeringLayer } from "./steeringLayer";
 import { SurveyRowsLayer } from "./surveyRowsLayer";
 import { TrailLayer } from "./trailLayer";
 import { VehicleLayer } from "./vehicleLayer";
 
-// Under Vite MapLibre does not find its worker by itself and stays blank.
+// Under Vite MapLibre does not find its worker and stays blank.
 setWorkerUrl(workerUrl);
 
-/** Ages on the map grow in steps of this while nothing new comes in. */
-const LATE_STEP_S = 0.2;
+/** Step of displayed ages on the map while no new state arrives. */
+const AGE_STEP_S = 0.2;
 
-/** The map with everything that has a place. */
+/** The map with everything that has a position. */
 export function MapView() {
-  const { source, selection, theme, behindS, fitRequests, flyHere, overlay, setMiddle } =
+  const { source, selection, theme, behindS, fitRequests, flyHere, overlay, setMapCentre } =
     useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
-  const ground = createGroundOnMap(source);
+  const ground = createDisplayedGround(source);
   let holder!: HTMLDivElement;
   let labels!: HTMLDivElement;
   let scaleBar!: HTMLDivElement;
@@ -62,7 +62,7 @@ export function MapView() {
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }, [tools, notes]),
     ];
     made.on("click", ({ lngLat }) => flyHere.aim({ lon: lngLat.lng, lat: lngLat.lat }));
-    setMiddle(() => ({ lon: made.getCenter().lng, lat: made.getCenter().lat }));
+    setMapCentre(() => ({ lon: made.getCenter().lng, lat: made.getCenter().lat }));
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
       setMap(made);
@@ -70,9 +70,9 @@ export function MapView() {
     onCleanup(() => made.remove());
   });
 
-  // While news comes in, states alone move the map; only old news is drawn anew as it ages.
-  const lateS = createMemo(() => Math.floor(behindS() / LATE_STEP_S) * LATE_STEP_S);
-  const meant = createMemo<Meant | null>(() => {
+  // New states update the map; between them it is redrawn only as the state ages.
+  const agedBehindS = createMemo(() => Math.floor(behindS() / AGE_STEP_S) * AGE_STEP_S);
+  const plannedTarget = createMemo<PlannedTarget | null>(() => {
     const [vehicle, at, course] = [flyHere.vehicle(), flyHere.target(), flyHere.course()];
     if (vehicle === null || at === null) return null;
     const text = course === null ? vehicleLabel(vehicle) : courseText(course);
@@ -81,7 +81,12 @@ export function MapView() {
   createEffect(() => {
     const state = source.state();
     if (map() === null || state === null) return;
-    const scene = { state, behindS: lateS(), selected: selection.keys(), meant: meant() };
+    const scene = {
+      state,
+      behindS: agedBehindS(),
+      selected: selection.keys(),
+      plannedTarget: plannedTarget(),
+    };
     for (const layer of layers) layer.update(scene);
   });
 
@@ -120,7 +125,7 @@ export function MapView() {
         <button type="button" class="button" onClick={() => map()?.zoomOut()} aria-label="Zoom out">
           −
         </button>
-        <button type="button" class="button" onClick={() => fit(false)} title="Fit everything (F)">
+        <button type="button" class="button" onClick={() => fit(false)} title="Show everything (F)">
           Fit
         </button>
         <button
@@ -129,10 +134,10 @@ export function MapView() {
           aria-pressed={flyHere.isOn()}
           disabled={flyHere.vehicle() === null}
           aria-label="Fly here"
-          title="Fly the one selected vehicle to a place on the map (G)"
+          title="Fly the selected vehicle to a position on the map (G)"
           onClick={() => flyHere.toggle()}
         >
-          <AimSign />
+          <AimIcon />
         </button>
       </div>
       <div class="map-scale">
@@ -149,10 +154,10 @@ export function MapView() {
   );
 }
 
-/** A ring with a cross, drawn: not every font has such a sign. */
-function AimSign() {
+/** A ring with a cross as SVG: not every font has one. */
+function AimIcon() {
   return (
-    <svg class="aim-sign" viewBox="0 0 24 24" width="24" height="24" aria-hidden="true">
+    <svg class="aim-icon" viewBox="0 0 24 24" width="24" height="24" aria-hidden="true">
       <circle cx="12" cy="12" r="7" />
       <path d="M12 1v8M12 15v8M1 12h8M15 12h8" />
     </svg>
@@ -162,7 +167,7 @@ function AimSign() {
 function createMap(container: HTMLElement, ground: string): MapLibre {
   const map = new MapLibre({
     container,
-    // No sprite, no glyphs, no tiles: nothing is asked of any network.
+    // No sprite, glyphs or tiles: no network requests.
     style: {
       version: 8,
       sources: {},
@@ -176,7 +181,7 @@ function createMap(container: HTMLElement, ground: string): MapLibre {
     pitchWithRotate: false,
     touchPitch: false,
   });
-  // North is always up: headings are then read as they are.
+  // North is always up, so that headings can be read directly.
   map.touchZoomRotate.disableRotation();
   map.keyboard.disableRotation();
   return map;
@@ -186,7 +191,7 @@ function view(isFirst: boolean) {
   return { padding: 90, maxZoom: 19, animate: !isFirst, duration: 400 };
 }
 
-/** Vehicles that cannot be drawn, so that none is forgotten. */
+/** Lists vehicles that cannot be drawn on the map. */
 function UnplacedNote() {
   const { source } = useConsole();
   const unplaced = () =>
@@ -194,7 +199,7 @@ function UnplacedNote() {
   return (
     <Show when={unplaced().length > 0}>
       <p class="map-note wire-text">
-        Not on the map, position unknown: {listNames(unplaced().map(vehicleLabel))}
+        Position unknown, not on the map: {listNames(unplaced().map(vehicleLabel))}
       </p>
     </Show>
   );

@@ -11,34 +11,34 @@ import { addFeatures, setFeatures } from "./features";
 import { type Hatch, hatchImage } from "./hatch";
 import type { Layer, Scene } from "./scene";
 
-/** How the areas of one kind look. Each differs from the others in line and filling, not in colour alone. */
-export interface AreaLook {
+/** Style of the areas of one kind. Kinds differ in line and fill, not only in colour. */
+export interface AreaStyle {
   readonly kind: AreaView["kind"];
   colour(colours: Colours): string;
   readonly width_px: number;
-  /** Lengths of dash and gap in line widths; null for a whole line. */
+  /** Lengths of dash and gap in line widths; null for a solid line. */
   readonly dash: readonly [number, number] | null;
-  /** Stripes that fill the area; null leaves it empty. */
+  /** Fill pattern; null for no fill. */
   readonly hatch: Hatch | null;
 }
 
-/** The site's areas of one kind: outline, stripes, names. */
+/** The site's areas of one kind: outline, fill pattern, labels. */
 export class AreaLayer implements Layer {
   private map: MapLibre | null = null;
   private shown = "";
   private readonly labels: AreaLabels;
   private readonly id: string;
 
-  constructor(private readonly look: AreaLook) {
-    this.id = `area-${look.kind}`;
-    this.labels = new AreaLabels(`area-label-${look.kind}`);
+  constructor(private readonly style: AreaStyle) {
+    this.id = `area-${style.kind}`;
+    this.labels = new AreaLabels(`area-label-${style.kind}`);
   }
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
     addFeatures(map, this.id);
-    if (this.look.hatch !== null) {
-      map.addImage(this.id, hatchImage(this.look.hatch, this.look.colour(colours)));
+    if (this.style.hatch !== null) {
+      map.addImage(this.id, hatchImage(this.style.hatch, this.style.colour(colours)));
       map.addLayer(this.stripes());
     }
     map.addLayer(this.casing(colours));
@@ -49,21 +49,22 @@ export class AreaLayer implements Layer {
   update(scene: Scene): void {
     if (this.map === null) return;
     const { site } = scene.state;
-    const areas = areasOf(site, this.look.kind);
-    // A site hardly ever changes, and states come ten times a second.
+    const areas = areasOf(site, this.style.kind);
+    // Sites rarely change, and states arrive ten times a second.
     const shown = JSON.stringify(areas);
     if (shown === this.shown) return;
     this.shown = shown;
-    setFeatures(this.map, this.id, areaFeatures(site, this.look.kind));
+    setFeatures(this.map, this.id, areaFeatures(site, this.style.kind));
     this.labels.show(areas);
   }
 
   recolour(colours: Colours): void {
-    const { map, look } = this;
+    const { map, style } = this;
     if (map === null) return;
     map.setPaintProperty(`${this.id}-casing`, "line-color", colours.casing);
-    map.setPaintProperty(`${this.id}-line`, "line-color", look.colour(colours));
-    if (look.hatch !== null) map.updateImage(this.id, hatchImage(look.hatch, look.colour(colours)));
+    map.setPaintProperty(`${this.id}-line`, "line-color", style.colour(colours));
+    if (style.hatch !== null)
+      map.updateImage(this.id, hatchImage(style.hatch, style.colour(colours)));
   }
 
   private stripes(): FillLayerSpecification {
@@ -71,25 +72,25 @@ export class AreaLayer implements Layer {
     return { id: `${this.id}-fill`, type: "fill", source: this.id, paint };
   }
 
-  /** So that the line stands out on a picture of the ground too. */
+  /** Makes the line visible on the ground image too. */
   private casing(colours: Colours): LineLayerSpecification {
     const paint = {
       "line-color": colours.casing,
-      "line-width": this.look.width_px + 2.5,
+      "line-width": this.style.width_px + 2.5,
       "line-opacity": 0.7,
     };
     return { id: `${this.id}-casing`, type: "line", source: this.id, paint };
   }
 
   private outline(colours: Colours): LineLayerSpecification {
-    const { look } = this;
-    const paint = { "line-color": look.colour(colours), "line-width": look.width_px };
-    const dashed = look.dash === null ? paint : { ...paint, "line-dasharray": [...look.dash] };
+    const { style } = this;
+    const paint = { "line-color": style.colour(colours), "line-width": style.width_px };
+    const dashed = style.dash === null ? paint : { ...paint, "line-dasharray": [...style.dash] };
     return { id: `${this.id}-line`, type: "line", source: this.id, paint: dashed };
   }
 }
 
-/** The line nobody flies over: thick and whole. */
+/** The flight boundary: a thick solid line. */
 export class BoundaryLayer extends AreaLayer {
   constructor() {
     super({
@@ -102,7 +103,7 @@ export class BoundaryLayer extends AreaLayer {
   }
 }
 
-/** Where one flies between a floor and a ceiling only: wide stripes in a dashed line. */
+/** Zones with a floor and a ceiling: wide stripes inside a dashed line. */
 export class HeightZoneLayer extends AreaLayer {
   constructor() {
     super({
@@ -115,7 +116,7 @@ export class HeightZoneLayer extends AreaLayer {
   }
 }
 
-/** Where nobody flies: crossed stripes in a heavy line. */
+/** Keep-out zones: crossed stripes inside a heavy line. */
 export class KeepOutLayer extends AreaLayer {
   constructor() {
     super({
@@ -128,7 +129,7 @@ export class KeepOutLayer extends AreaLayer {
   }
 }
 
-/** What is to be looked at: a dotted line that forbids nothing. */
+/** Survey regions: a dotted line. */
 export class SurveyLayer extends AreaLayer {
   constructor() {
     super({
@@ -141,24 +142,24 @@ export class SurveyLayer extends AreaLayer {
   }
 }
 
-/** An area narrower than this on the screen has no room for its label; nearer to it, it has. */
+/** Areas narrower than this on the screen get no label. */
 const LEAST_WIDTH_PX = 40;
 
-interface Placed {
+interface PlacedLabel {
   readonly area: AreaView;
   readonly marker: Marker;
 }
 
-/** The names of areas, with their heights: the map has no letters of its own. */
+/** Labels of areas as HTML markers: the map style has no fonts. */
 export class AreaLabels {
   private map: MapLibre | null = null;
-  private placed: readonly Placed[] = [];
+  private placed: readonly PlacedLabel[] = [];
 
   constructor(private readonly className: string) {}
 
   add(map: MapLibre): void {
     this.map = map;
-    map.on("zoom", () => this.hideThoseWithoutRoom());
+    map.on("zoom", () => this.hideNarrow());
   }
 
   show(areas: readonly AreaView[]): void {
@@ -171,7 +172,7 @@ export class AreaLabels {
       marker.setLngLat([lon, lat]).addTo(map);
       return { area, marker };
     });
-    this.hideThoseWithoutRoom();
+    this.hideNarrow();
   }
 
   private element(area: AreaView): HTMLElement {
@@ -181,7 +182,7 @@ export class AreaLabels {
     return element;
   }
 
-  private hideThoseWithoutRoom(): void {
+  private hideNarrow(): void {
     const { map } = this;
     if (map === null) return;
     for (const { area, marker } of this.placed) {

@@ -3,7 +3,7 @@ import type { AreaView, SiteView } from "../protocol";
 import { formatQuantity } from "../text/quantities";
 import type { LonLat } from "./localGrid";
 
-/** The areas of one kind, as features to draw. */
+/** The areas of one kind as GeoJSON features. */
 export function areaFeatures(site: SiteView | null, kind: AreaView["kind"]): Feature[] {
   return areasOf(site, kind).map((area) => ({
     type: "Feature",
@@ -19,7 +19,7 @@ export function areasOf(site: SiteView | null, kind: AreaView["kind"]): AreaView
   return (site?.areas ?? []).filter((area) => area.kind === kind && outerRing(area).length > 2);
 }
 
-/** What an area is called on the map. Heights say from where they count. */
+/** An area's label on the map; heights include their datum. */
 export function areaText(area: AreaView): string {
   switch (area.kind) {
     case "boundary":
@@ -27,22 +27,22 @@ export function areaText(area: AreaView): string {
     case "keep_out":
       return joined(named("Keep out", area.name), areaHeights(area));
     case "height":
-      return joined(named("Heights", area.name), areaHeights(area));
+      return joined(named("Height limit", area.name), areaHeights(area));
     case "survey":
       return named("Survey", area.name);
   }
 }
 
 function named(what: string, name: string): string {
-  const isSaid = name === "" || name.toLowerCase() === what.toLowerCase();
-  return isSaid ? what : `${what}: ${name}`;
+  const isRepeated = name === "" || name.toLowerCase() === what.toLowerCase();
+  return isRepeated ? what : `${what}: ${name}`;
 }
 
 function joined(text: string, heights: string): string {
   return heights === "" ? text : `${text}, ${heights}`;
 }
 
-/** The heights an area holds between; empty when it has none, which for a keep-out means all. */
+/** An area's height range as text; empty without limits, which for a keep-out zone means all heights. */
 export function areaHeights({ floor_m, ceiling_m, datum }: AreaView): string {
   if (floor_m === null && ceiling_m === null) return "";
   const from = datum === "wgs84" ? "WGS84" : "above ground";
@@ -52,7 +52,7 @@ export function areaHeights({ floor_m, ceiling_m, datum }: AreaView): string {
   return `${metres(floor_m)} to ${metres(ceiling_m)} ${from}`;
 }
 
-/** Where an area's label stands: the northernmost corner of a boundary, the middle of all others. */
+/** Position of an area's label: the northernmost corner of a boundary, otherwise the centre. */
 export function labelPoint(area: AreaView): LonLat {
   const ring = outerRing(area);
   if (area.kind === "boundary") {

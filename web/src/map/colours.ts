@@ -1,6 +1,6 @@
 import { colourVariable, VEHICLE_COLOURS } from "../theme/theme";
 
-/** The theme's colours as the map's drawing needs them. */
+/** The theme's colours used on the map. */
 export interface Colours {
   readonly ground: string;
   readonly grid: string;

@@ -8,11 +8,11 @@ const SOURCE = "fly-here";
 const CASING = "fly-here-casing";
 const WAY = "fly-here-way";
 
-/** Where a vehicle would fly: a dashed ring and the way there, until somebody confirms it. */
+/** The unconfirmed fly-here target: a dashed ring and the line to it. */
 export class FlyHereLayer implements Layer {
   private map: MapLibre | null = null;
   private drawn = "";
-  private readonly targets = new TargetMarkers("target-meant");
+  private readonly targets = new TargetMarkers("target-planned");
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
@@ -34,12 +34,15 @@ export class FlyHereLayer implements Layer {
   update(scene: Scene): void {
     const { map } = this;
     if (map === null) return;
-    const { meant } = scene;
-    this.targets.show(map, meant === null ? [] : [{ key: 0, colour: "var(--text)", ...meant }]);
-    const drawn = JSON.stringify([meant?.from, meant?.at]);
+    const { plannedTarget } = scene;
+    this.targets.show(
+      map,
+      plannedTarget === null ? [] : [{ key: 0, colour: "var(--text)", ...plannedTarget }],
+    );
+    const drawn = JSON.stringify([plannedTarget?.from, plannedTarget?.at]);
     if (drawn === this.drawn) return;
     this.drawn = drawn;
-    const { from, at } = meant ?? {};
+    const { from, at } = plannedTarget ?? {};
     const way =
       !from || !at
         ? []

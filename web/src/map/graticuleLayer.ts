@@ -7,17 +7,17 @@ import { gridOrigin, type Layer, type Scene } from "./scene";
 
 const SOURCE = "graticule";
 const LINES = "graticule-lines";
-/** Lines are at least this far apart on the screen. */
+/** Smallest distance between lines on the screen. */
 const LEAST_GAP_PX = 96;
-/** Labels keep this far from the map's corners, where other things stand. */
+/** Distance of labels from the map's corners, which hold other controls. */
 const LABEL_MARGIN_PX = 56;
 
-/** The plain background's metric grid with labels at the edges, and the scale bar. */
+/** Metric grid with labels at the edges, and the scale bar. */
 export class GraticuleLayer implements Layer {
   private map: MapLibre | null = null;
   private origin: LonLat | null = null;
 
-  /** `labels` lies over the map and is filled here; `scaleBar` gets its width and text. */
+  /** Fills `labels`, an element over the map, and sets width and text of `scaleBar`. */
   constructor(
     private readonly labels: HTMLElement,
     private readonly scaleBar: HTMLElement,
@@ -32,7 +32,7 @@ export class GraticuleLayer implements Layer {
   }
 
   update(scene: Scene): void {
-    // The origin stays once it is known: a grid that jumps is worse than one off centre.
+    // Keep the first origin: a grid that jumps is worse than one off centre.
     if (this.origin !== null) return;
     this.origin = gridOrigin(scene.state);
     if (this.origin !== null) this.draw();

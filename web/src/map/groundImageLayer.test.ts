@@ -7,7 +7,7 @@ import { GroundImageLayer } from "./groundImageLayer";
 
 type Shown = { readonly url: string; readonly coordinates: [number, number][] };
 
-/** As much of a map as an image needs; remembers what it was given. */
+/** The parts of a map an image layer uses; records calls. */
 function fakeMap() {
   const shown: Shown[] = [];
   const added: { id: string; before: string | undefined }[] = [];
@@ -42,32 +42,32 @@ function image(frame_id: number): GroundImageView {
 }
 
 function setUp() {
-  const asked: { frameId: number; answer: (outcome: Outcome<Picture>) => void }[] = [];
-  const onGround: number[] = [];
+  const requests: { frameId: number; answer: (outcome: Outcome<Picture>) => void }[] = [];
+  const displayed: number[] = [];
   let run = 0;
   const layer = new GroundImageLayer(
-    (frameId) => new Promise((answer) => asked.push({ frameId, answer })),
-    { run: () => run, show: (shownImage) => onGround.push(shownImage.frame_id) },
+    (frameId) => new Promise((answer) => requests.push({ frameId, answer })),
+    { run: () => run, show: (shownImage) => displayed.push(shownImage.frame_id) },
   );
   const restart = () => {
     run += 1;
   };
   const { map, shown, added } = fakeMap();
   layer.add(map);
-  const say = (frame_id: number, seconds = 1) =>
+  const update = (frame_id: number, seconds = 1) =>
     layer.update({
       state: station([], { time_ns: seconds * 1e9, ground_image: image(frame_id) }),
       behindS: 0,
       selected: [],
-      meant: null,
+      plannedTarget: null,
     });
   const answer = async (index: number, frameId: number | null) => {
-    asked[index]?.answer({ kind: "answered", value: { blob: new Blob(["x"]), frameId } });
+    requests[index]?.answer({ kind: "answered", value: { blob: new Blob(["x"]), frameId } });
     await Promise.resolve();
     await Promise.resolve();
     await Promise.resolve();
   };
-  return { asked, shown, added, onGround, restart, say, answer };
+  return { requests, shown, added, displayed, restart, update, answer };
 }
 
 let revoked: string[];
@@ -85,95 +85,95 @@ beforeEach(() => {
 });
 
 describe("the ground image", () => {
-  it("lies at its corners, above the background and under everything else", async () => {
-    const { say, answer, shown, added } = setUp();
-    say(1);
+  it("is placed at its corners, above the background and below everything else", async () => {
+    const { update, answer, shown, added } = setUp();
+    update(1);
     await answer(0, 1);
     expect(shown).toEqual([{ type: "image", url: "blob:1", coordinates: image(1).corners }]);
     expect(added).toEqual([{ id: "ground-image", before: "trails" }]);
   });
 
-  it("is fetched once, one at a time, and its old address is let go", async () => {
-    const { say, answer, asked, shown } = setUp();
-    say(1);
-    say(1);
-    say(2);
-    expect(asked.map(({ frameId }) => frameId)).toEqual([1]);
+  it("is fetched once, one at a time, and the old URL is revoked", async () => {
+    const { update, answer, requests, shown } = setUp();
+    update(1);
+    update(1);
+    update(2);
+    expect(requests.map(({ frameId }) => frameId)).toEqual([1]);
     await answer(0, 1);
-    say(2);
+    update(2);
     await answer(1, 2);
-    say(2);
-    expect(asked.map(({ frameId }) => frameId)).toEqual([1, 2]);
+    update(2);
+    expect(requests.map(({ frameId }) => frameId)).toEqual([1, 2]);
     expect(shown.at(-1)).toEqual({ url: "blob:2", coordinates: image(2).corners });
     expect(revoked).toEqual(["blob:1"]);
   });
 
-  it("waits for the place of a picture that is newer than the state", async () => {
-    const { say, answer, shown } = setUp();
-    say(1);
+  it("waits for the position of a picture newer than the state", async () => {
+    const { update, answer, shown } = setUp();
+    update(1);
     await answer(0, 2);
     expect(shown).toEqual([]);
-    say(2);
+    update(2);
     expect(shown).toMatchObject([{ coordinates: image(2).corners }]);
   });
 
-  it("drops a picture whose place was never told, rather than show it elsewhere", async () => {
-    const { say, answer, asked, shown } = setUp();
-    say(1);
+  it("drops a picture whose position was never announced", async () => {
+    const { update, answer, requests, shown } = setUp();
+    update(1);
     await answer(0, 2);
-    say(3);
+    update(3);
     expect(shown).toEqual([]);
-    expect(asked.map(({ frameId }) => frameId)).toEqual([1, 3]);
+    expect(requests.map(({ frameId }) => frameId)).toEqual([1, 3]);
     await answer(1, 3);
     expect(shown).toMatchObject([{ coordinates: image(3).corners }]);
   });
 
-  it("tells which frame lies there: the one that was shown, not the newest", async () => {
-    const { say, answer, onGround, asked } = setUp();
-    say(1);
-    expect(onGround).toEqual([]);
+  it("reports the displayed frame, not the newest", async () => {
+    const { update, answer, displayed, requests } = setUp();
+    update(1);
+    expect(displayed).toEqual([]);
     await answer(0, 1);
-    say(2);
-    say(3);
-    expect(onGround).toEqual([1]);
+    update(2);
+    update(3);
+    expect(displayed).toEqual([1]);
     await answer(1, 2);
-    expect(onGround).toEqual([1, 2]);
-    expect(asked.map(({ frameId }) => frameId)).toEqual([1, 2]);
+    expect(displayed).toEqual([1, 2]);
+    expect(requests.map(({ frameId }) => frameId)).toEqual([1, 2]);
   });
 
-  it("does not show a picture without its number", async () => {
-    const { say, answer, shown, onGround } = setUp();
-    say(1);
+  it("does not show an unnumbered picture", async () => {
+    const { update, answer, shown, displayed } = setUp();
+    update(1);
     await answer(0, null);
-    say(1);
+    update(1);
     expect(shown).toEqual([]);
-    expect(onGround).toEqual([]);
+    expect(displayed).toEqual([]);
   });
 
-  it("takes no frame of a restarted station for that of the same number before", async () => {
-    const { say, answer, asked, onGround, restart } = setUp();
-    say(7);
+  it("distinguishes frames with the same number across a station restart", async () => {
+    const { update, answer, requests, displayed, restart } = setUp();
+    update(7);
     await answer(0, 7);
     restart();
-    say(7);
-    expect(asked.map(({ frameId }) => frameId)).toEqual([7, 7]);
+    update(7);
+    expect(requests.map(({ frameId }) => frameId)).toEqual([7, 7]);
     restart();
-    say(3);
+    update(3);
     await answer(1, 7);
-    say(3);
+    update(3);
     await answer(2, 3);
-    expect(onGround).toEqual([7, 3]);
+    expect(displayed).toEqual([7, 3]);
   });
 
-  it("asks again after a while when a picture did not come", async () => {
-    const { say, asked } = setUp();
-    say(1, 1);
-    asked[0]?.answer({ kind: "failed", problem: "no" });
+  it("retries a failed picture", async () => {
+    const { update, requests } = setUp();
+    update(1, 1);
+    requests[0]?.answer({ kind: "failed", problem: "no" });
     await vi.waitFor(() => {
-      say(1, 4);
-      expect(asked).toHaveLength(2);
+      update(1, 4);
+      expect(requests).toHaveLength(2);
     });
-    say(1, 4.1);
-    expect(asked).toHaveLength(2);
+    update(1, 4.1);
+    expect(requests).toHaveLength(2);
   });
 });

@@ -1,21 +1,21 @@
 import type { ImageSource, Map as MapLibre } from "maplibre-gl";
 import { type Accessor, createSignal } from "solid-js";
-import { createFrameOnScreen, type ShownFrame } from "../fleet/displayedFrame";
+import { createDisplayedFrame, type FrameInfo } from "../fleet/displayedFrame";
 import type { GroundImageView, StationState } from "../protocol";
 import type { Outcome, Picture, StationSource } from "../source/stationSource";
 import type { Layer, Scene } from "./scene";
 
 const SOURCE = "ground-image";
 const LAYER = "ground-image";
-/** After a picture that did not come, wait so long (station time) before asking again. */
+/** Wait this long (station time) before requesting a failed picture again. */
 const RETRY_NS = 2e9;
-/** Places of so many frames are remembered while their pictures are on the way. */
-const REMEMBERED = 8;
+/** Number of frame positions kept while their pictures are loading. */
+const MAX_PLACES = 8;
 
-/** Told what lies on the ground, and knows which run of the station the newest state is of. */
-export interface GroundWitness {
+/** Notified of the displayed ground image; `run` counts restarts of the station. */
+export interface GroundImageListener {
   readonly run: () => number;
-  /** The picture of this very frame is on the map from now on. */
+  /** The picture of this frame is now on the map. */
   show(image: GroundImageView): void;
 }
 
@@ -27,7 +27,7 @@ interface Place {
 type Corner = [number, number];
 type Corners = [Corner, Corner, Corner, Corner];
 
-/** The newest frame of the imaging vehicle, laid on the ground under everything else. */
+/** The newest frame of the imaging drone, drawn below everything else. */
 export class GroundImageLayer implements Layer {
   private map: MapLibre | null = null;
   private readonly places = new Map<number, Place>();
@@ -38,10 +38,10 @@ export class GroundImageLayer implements Layer {
   private notBefore_ns = 0;
   private run = 0;
 
-  /** `fetchImage` brings the newest picture; which frame it is comes with it. */
+  /** `fetchImage` returns the newest picture with its frame number. */
   constructor(
     private readonly fetchImage: (frameId: number) => Promise<Outcome<Picture>>,
-    private readonly witness: GroundWitness,
+    private readonly listener: GroundImageListener,
   ) {}
 
   add(map: MapLibre): void {
@@ -50,25 +50,25 @@ export class GroundImageLayer implements Layer {
 
   update(scene: Scene): void {
     const image = scene.state.ground_image;
-    this.noticeRestart();
+    this.checkRestart();
     if (image === null) return;
     this.remember(image);
     this.showWaiting();
-    // One at a time: on a slow link the newest is fetched next, those between are passed over.
+    // One request at a time: on a slow link the newest frame is next and those between are skipped.
     const isWanted = image.frame_id !== this.shownFrame && this.waiting === null;
     if (!isWanted || this.isFetching || scene.state.time_ns < this.notBefore_ns) return;
     this.isFetching = true;
     this.notBefore_ns = scene.state.time_ns + RETRY_NS;
-    void this.bring(image.frame_id).finally(() => {
+    void this.load(image.frame_id).finally(() => {
       this.isFetching = false;
     });
   }
 
   recolour(): void {}
 
-  /** Frame numbers start anew with the station: what was known by them is worth nothing. */
-  private noticeRestart(): void {
-    const run = this.witness.run();
+  /** Frame numbers start over with the station, so earlier ones are invalid. */
+  private checkRestart(): void {
+    const run = this.listener.run();
     if (run === this.run) return;
     this.run = run;
     this.places.clear();
@@ -77,12 +77,12 @@ export class GroundImageLayer implements Layer {
     this.notBefore_ns = 0;
   }
 
-  private async bring(asked: number): Promise<void> {
+  private async load(requestedId: number): Promise<void> {
     const { run } = this;
-    const outcome = await this.fetchImage(asked);
+    const outcome = await this.fetchImage(requestedId);
     if (outcome.kind === "failed" || run !== this.run) return;
     const { blob, frameId } = outcome.value;
-    // Without its number nobody knows where it belongs, nor how old it is.
+    // Without a frame number its position and age are unknown.
     if (frameId === null) return;
     this.waiting = { blob, frameId };
     this.notBefore_ns = 0;
@@ -93,23 +93,23 @@ export class GroundImageLayer implements Layer {
     const corners = cornersOf(image);
     if (corners !== null) this.places.set(image.frame_id, { image, corners });
     for (const known of this.places.keys()) {
-      if (this.places.size <= REMEMBERED) break;
+      if (this.places.size <= MAX_PLACES) break;
       this.places.delete(known);
     }
   }
 
-  /** Shows the picture that came as soon as its own place is known: never one frame in another's place. */
+  /** Shows the loaded picture once its position is known; never at another frame's position. */
   private showWaiting(): void {
     const waiting = this.waiting;
     if (waiting === null) return;
     const place = this.places.get(waiting.frameId);
     const newest = Math.max(...this.places.keys());
-    // A state with its place may still come; after a later frame's it will not.
+    // A state with its position may still arrive, but not after a later frame's.
     if (place !== undefined || newest > waiting.frameId) this.waiting = null;
     if (place === undefined) return;
     this.shownFrame = waiting.frameId;
     this.show(URL.createObjectURL(waiting.blob), place.corners);
-    this.witness.show(place.image);
+    this.listener.show(place.image);
   }
 
   private show(url: string, coordinates: Corners): void {
@@ -118,7 +118,7 @@ export class GroundImageLayer implements Layer {
     const source = this.map?.getSource<ImageSource>(SOURCE);
     if (source === undefined) this.addImage(url, coordinates);
     else source.updateImage({ url, coordinates });
-    // MapLibre has read the one before, or has just been told to forget it.
+    // MapLibre has loaded the previous image, or has just dropped it.
     if (before !== null) URL.revokeObjectURL(before);
   }
 
@@ -142,21 +142,22 @@ function cornersOf(image: GroundImageView): Corners | null {
   ];
 }
 
-/** The ground image on the map. */
-export interface ShownGround extends ShownFrame {
-  /** How well it is placed, as the station said of this very frame. */
-  readonly registration: string;
+/** The displayed ground image. */
+export interface GroundImageInfo extends FrameInfo {
+  /** How this frame was aligned with the ground. */
+  readonly registration: GroundImageView["registration"];
 }
 
-/** Between the layer, which knows what lies on the ground, and the note, which tells it. */
-export interface GroundOnMap extends GroundWitness {
-  readonly shown: Accessor<ShownGround | null>;
+/** Connects the layer, which displays the ground image, and the note, which describes it. */
+export interface DisplayedGround extends GroundImageListener {
+  readonly shown: Accessor<GroundImageInfo | null>;
 }
 
-/** Keeps the facts of the ground image that is shown, as the source's states go on. */
-export function createGroundOnMap(source: Pick<StationSource, "state">): GroundOnMap {
-  const frame = createFrameOnScreen(source, announcedIn);
-  const [registration, setRegistration] = createSignal("");
+/** Tracks the displayed ground image over the source's states. */
+export function createDisplayedGround(source: Pick<StationSource, "state">): DisplayedGround {
+  const frame = createDisplayedFrame(source, announcedIn);
+  const [registration, setRegistration] =
+    createSignal<GroundImageView["registration"]>("unregistered");
   return {
     run: frame.run,
     show: (image) => {
@@ -164,8 +165,8 @@ export function createGroundOnMap(source: Pick<StationSource, "state">): GroundO
       frame.show(image.frame_id);
     },
     shown: () => {
-      const facts = frame.facts();
-      return facts === null ? null : { ...facts, registration: registration() };
+      const info = frame.info();
+      return info === null ? null : { ...info, registration: registration() };
     },
   };
 }

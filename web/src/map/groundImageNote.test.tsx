@@ -4,7 +4,7 @@ import type { GroundImageView, StationState } from "../protocol";
 import { at, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
 import { GroundImageNote } from "./GroundImageNote";
-import { createGroundOnMap, type GroundOnMap } from "./groundImageLayer";
+import { createDisplayedGround, type DisplayedGround } from "./groundImageLayer";
 
 function image(frame_id: number, captured_age_s: number): GroundImageView {
   return {
@@ -21,30 +21,30 @@ function image(frame_id: number, captured_age_s: number): GroundImageView {
   };
 }
 
-/** The state of a moment that announces this frame, taken at the second of its number. */
+/** The state at `second` that announces this frame; frame n is captured at second n. */
 function announcing(frame_id: number, second: number): StationState {
   const ground_image = image(frame_id, second - frame_id);
   return station([vehicle(1)], { time_ns: second * 1e9, ground_image });
 }
 
 let page: RenderedPage;
-let ground: GroundOnMap;
+let ground: DisplayedGround;
 const note = () => find(page.root, ".map-note");
 const text = () => note().textContent;
 const isOld = () => note().classList.contains("is-old");
 
-function Part() {
-  ground = createGroundOnMap(useConsole().source);
+function Note() {
+  ground = createDisplayedGround(useConsole().source);
   return <GroundImageNote shown={ground.shown()} />;
 }
 
 afterEach(() => page.dispose());
 
 describe("the note on the ground image", () => {
-  it("looks old, and says so, from 5 s on", () => {
-    page = renderPage(Part, announcing(12, 12.8));
+  it("is marked old after 5 s", () => {
+    page = renderPage(Note, announcing(12, 12.8));
     ground.show(image(12, 0.8));
-    expect(text()).toBe("Ground image: frame 12, taken 0.8 s ago ± 0.2 s, unregistered");
+    expect(text()).toBe("Ground image: frame 12, taken 0.8 s ago ± 0.2 s, not aligned");
     page.age(4.1);
     expect(isOld()).toBe(false);
     page.age(4.3);
@@ -52,26 +52,26 @@ describe("the note on the ground image", () => {
     expect(text()).toMatch(/^old Ground image: frame 12, taken 5\.1 s ago/);
   });
 
-  it("is the shown frame's for as long as no newer picture comes", () => {
-    page = renderPage(Part, announcing(12, 12.8));
+  it("describes the displayed frame until a newer picture has loaded", () => {
+    page = renderPage(Note, announcing(12, 12.8));
     ground.show(image(12, 0.8));
-    page.say(announcing(13, 13.8));
-    expect(text()).toBe("Ground image: frame 12, taken 1.8 s ago ± 0.2 s, unregistered");
-    page.say(announcing(15, 15.9));
+    page.receive(announcing(13, 13.8));
+    expect(text()).toBe("Ground image: frame 12, taken 1.8 s ago ± 0.2 s, not aligned");
+    page.receive(announcing(15, 15.9));
     expect(text()).toBe(
-      "Ground image: frame 12, taken 3.9 s ago ± 0.2 s, unregistered, newer not loaded",
+      "Ground image: frame 12, taken 3.9 s ago ± 0.2 s, not aligned; a newer frame exists",
     );
-    page.say(announcing(17, 17.8));
+    page.receive(announcing(17, 17.8));
     expect(isOld()).toBe(true);
     ground.show(image(17, 0.8));
-    expect(text()).toBe("Ground image: frame 17, taken 0.8 s ago ± 0.2 s, unregistered");
+    expect(text()).toBe("Ground image: frame 17, taken 0.8 s ago ± 0.2 s, not aligned");
     expect(isOld()).toBe(false);
   });
 
-  it("says that there is none, or none yet", () => {
-    page = renderPage(Part, station([vehicle(1)], { time_ns: 12e9 }));
+  it("reports a missing or loading image", () => {
+    page = renderPage(Note, station([vehicle(1)], { time_ns: 12e9 }));
     expect(text()).toBe("No ground image yet");
-    page.say(announcing(12, 12.8));
-    expect(text()).toBe("Ground image on its way");
+    page.receive(announcing(12, 12.8));
+    expect(text()).toBe("Loading ground image");
   });
 });

@@ -9,14 +9,14 @@ export interface Hatch {
   readonly opacity: number;
 }
 
-/** What the map takes as a picture. */
+/** An image as MapLibre takes it. */
 export interface HatchImage {
   readonly width: number;
   readonly height: number;
   readonly data: Uint8ClampedArray;
 }
 
-/** The tile in a colour as the style sheet writes it (`#rrggbb`). */
+/** Renders the tile in a colour written `#rrggbb`. */
 export function hatchImage(hatch: Hatch, colour: string): HatchImage {
   const { tile_px: side } = hatch;
   const [red, green, blue] = rgbOf(colour);
@@ -30,7 +30,7 @@ export function hatchImage(hatch: Hatch, colour: string): HatchImage {
   return { width: side, height: side, data };
 }
 
-/** Stripes go on from tile to tile: what counts is the place modulo the side. */
+/** Stripes continue across tiles: only the position modulo the tile size counts. */
 function isStriped({ isCrossed, tile_px: side, stripe_px }: Hatch, x: number, y: number): boolean {
   const isUp = (x + y) % side < stripe_px;
   const isDown = (x - y + side) % side < stripe_px;

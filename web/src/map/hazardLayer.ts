@@ -11,7 +11,7 @@ const AREA = "hazards-area";
 const EDGE = "hazards-edge";
 const WAY = "hazards-way";
 
-/** A growing circle around each vehicle that is not heard, and its way home: it may be anywhere there. */
+/** Hazard areas of lost vehicles: a growing circle and the corridor to home. */
 export class HazardLayer implements Layer {
   private map: MapLibre | null = null;
   private hasHazards = false;
@@ -45,7 +45,7 @@ export class HazardLayer implements Layer {
   update(scene: Scene): void {
     if (this.map === null) return;
     const hazards = scene.state.vehicles.flatMap((one) => hazardOf(one, scene.behindS) ?? []);
-    // Most of the time there are none, and drawing costs.
+    // Usually empty; avoid redrawing.
     if (hazards.length === 0 && !this.hasHazards) return;
     this.hasHazards = hazards.length > 0;
     setFeatures(this.map, SOURCE, hazards.flatMap(featuresOf));

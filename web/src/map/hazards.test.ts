@@ -5,30 +5,30 @@ import { metresPerDegree } from "./localGrid";
 
 const LOST = { staleness: "lost", telemetry_age_s: 5 } as const;
 
-describe("a hazard", () => {
-  it("grows between the station's messages, and not beyond its largest", () => {
+describe("a hazard area", () => {
+  it("grows between states, up to its largest radius", () => {
     const one = vehicle(3, { ...LOST, hazard: hazard([0, 0]) });
     expect(hazardOf(one, 0)?.radius_m).toBe(50);
     expect(hazardOf(one, 4)?.radius_m).toBe(90);
     expect(hazardOf(one, 60)?.radius_m).toBe(150);
   });
 
-  it("is never drawn smaller than the station says", () => {
+  it("is never smaller than the station reports", () => {
     const one = vehicle(3, { ...LOST, hazard: hazard([0, 0], { largest_radius_m: 20 }) });
     expect(hazardOf(one, 4)?.radius_m).toBe(50);
   });
 
-  it("brings its way home along", () => {
+  it("includes the corridor to home", () => {
     const corridor: [number, number][] = [at(0, 0), at(100, 0)];
     const one = vehicle(3, { ...LOST, hazard: hazard([0, 0], { corridor }) });
     expect(hazardOf(one, 0)).toMatchObject({ corridor, corridorHalfWidth_m: 12 });
   });
 
-  it("is gone when the station says none: landed, or somebody dismissed it", () => {
+  it("does not exist when the station reports none", () => {
     expect(hazardOf(vehicle(3, LOST), 0)).toBeNull();
   });
 
-  it("is worked out here when the news itself has grown old", () => {
+  it("is computed by the page when the state is old", () => {
     expect(hazardOf(vehicle(1), 0)).toBeNull();
     const soon = hazardOf(vehicle(1), 4)?.radius_m ?? 0;
     expect(soon).toBeGreaterThan(3);
@@ -38,8 +38,8 @@ describe("a hazard", () => {
   });
 });
 
-describe("the band around a way", () => {
-  it("is as wide as said on both sides, and closed", () => {
+describe("the band around a line", () => {
+  it("has the half width on both sides and is closed", () => {
     const ring = band(at(0, 0), at(300, 400), 10);
     const per = metresPerDegree(FIELD.lat);
     // The distance from the line through the origin along (3, 4).
@@ -52,5 +52,5 @@ describe("the band around a way", () => {
     expect(ring[0]).toEqual(ring.at(-1));
   });
 
-  it("is nothing for a way of no length", () => expect(band(at(0, 0), at(0, 0), 10)).toEqual([]));
+  it("is empty for a line without length", () => expect(band(at(0, 0), at(0, 0), 10)).toEqual([]));
 });

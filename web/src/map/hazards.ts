@@ -5,26 +5,26 @@ import type { Point } from "./features";
 import { type LonLat, metresPerDegree } from "./localGrid";
 import { positionOf } from "./scene";
 
-/** Beyond this the circle says nothing any more. */
+/** Largest radius drawn. */
 const WIDEST_M = 2000;
 
-/** A circle that a vehicle may be in, and the way home it may be on. */
+/** Area a lost vehicle may be in: a circle, and the corridor to its home. */
 export interface HazardShape {
   readonly centre: LonLat;
   readonly radius_m: number;
-  /** From the last place to home; empty when it goes nowhere or nobody knows. */
+  /** From the last position to home; empty if the vehicle stays there or home is unknown. */
   readonly corridor: readonly Point[];
   readonly corridorHalfWidth_m: number;
 }
 
 /**
- * Where a vehicle may be by now. The station says it for what it does not hear, and nothing for what was
- * dismissed; for news that has grown old on this side of the network the page works it out itself.
+ * The hazard area of a vehicle. The station reports it for lost vehicles until it is cleared; when the
+ * state itself is old on this page, the page computes one.
  */
 export function hazardOf(vehicle: VehicleView, behindS: number): HazardShape | null {
   if (vehicle.hazard !== null) return ofStation(vehicle.hazard, behindS);
-  const wasHeard = vehicle.staleness === "live" || vehicle.staleness === "late";
-  const isLate = wasHeard && stalenessNow(vehicle, behindS) !== "live";
+  const wasConnected = vehicle.staleness === "live" || vehicle.staleness === "late";
+  const isLate = wasConnected && stalenessNow(vehicle, behindS) !== "live";
   return isLate ? ofPage(vehicle, behindS) : null;
 }
 
@@ -43,13 +43,13 @@ function ofPage(vehicle: VehicleView, behindS: number): HazardShape | null {
   const ageS = agedBy(vehicle.position.age_s, behindS);
   if (centre === null || ageS === null) return null;
   const { north_mps, east_mps } = vehicle.velocity_ned;
-  // A vehicle of unknown speed may have had any: 15 m/s is what DJI's missions allow.
+  // With unknown speed assume 15 m/s, the most DJI missions allow.
   const speedMps = groundSpeedMps(north_mps, east_mps) ?? 15;
   const radius_m = Math.min(WIDEST_M, reachM(ageS, speedMps, vehicle.is_flying.value !== false));
   return { centre, radius_m, corridor: [], corridorHalfWidth_m: 0 };
 }
 
-/** The band of a half width on both sides of a straight way, as a closed ring. */
+/** The band of width 2 `half_m` around a line, as a closed ring. */
 export function band(from: Point, to: Point, half_m: number): Point[] {
   const per = metresPerDegree(from[1]);
   const east_m = (to[0] - from[0]) * per.lon;

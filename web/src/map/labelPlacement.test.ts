@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import {
   type LabelPlace,
   type LabelSpot,
-  leaderOf,
+  labelLine,
   MOST_LABELS,
   placeLabels as placeIn,
 } from "./labelPlacement";
@@ -12,7 +12,7 @@ const NOTHING: ReadonlyMap<number, LabelPlace> = new Map();
 
 const VIEW = { width_px: 2000, height_px: 2000, covered: [] };
 
-/** Places labels in the middle of a large view, where nothing sticks out. */
+/** Places labels in the centre of a large view. */
 function placeLabels(spots: readonly LabelSpot[], previous: ReadonlyMap<number, LabelPlace>) {
   const moved = spots.map((one) => ({ ...one, x_px: one.x_px + 1000, y_px: one.y_px + 1000 }));
   return placeIn(moved, previous, VIEW);
@@ -25,7 +25,7 @@ function spot(key: number, x_px: number, y_px: number): LabelSpot {
 function boxOf(spots: readonly LabelSpot[], places: ReadonlyMap<number, LabelPlace>, key: number) {
   const at = spots.find((one) => one.key === key);
   const place = places.get(key);
-  if (at === undefined || place === undefined) throw new Error(`Label ${key} got no place.`);
+  if (at === undefined || place === undefined) throw new Error(`Label ${key} has no position.`);
   return { left: at.x_px + place.dx_px, top: at.y_px + place.dy_px };
 }
 
@@ -48,7 +48,7 @@ function slotsOf(places: ReadonlyMap<number, LabelPlace>): number[] {
 }
 
 describe("labels", () => {
-  it("stand below their vehicles while there is room", () => {
+  it("are below their vehicles while there is room", () => {
     const places = placeLabels([spot(1, 0, 0), spot(2, 400, 0)], NOTHING);
     expect([...places.values()]).toEqual([
       { slot: 0, dx_px: -60, dy_px: 26 },
@@ -56,12 +56,12 @@ describe("labels", () => {
     ]);
   });
 
-  it("give way to a lower number, and to symbols", () => {
+  it("make room for a lower number and for symbols", () => {
     const spots = [spot(1, 0, 0), spot(2, 40, 0)];
     const places = placeLabels(spots, NOTHING);
     expect(places.get(1)?.slot).toBe(0);
     expect(places.get(2)?.slot).toBe(1);
-    // A symbol in the place below, whose own label is free to go anywhere.
+    // A symbol occupies the position below.
     expect(placeLabels([spot(1, 0, 0), spot(2, 0, 40)], NOTHING).get(1)?.slot).not.toBe(0);
   });
 
@@ -91,16 +91,16 @@ describe("labels", () => {
     expect(slots).toContain(place?.slot);
   });
 
-  it("keep clear of what else stands on the map", () => {
+  it("avoid other elements on the map", () => {
     const note = { left: 900, top: 1020, right: 1100, bottom: 1080 };
     const places = placeIn([spot(1, 1000, 1000)], NOTHING, { ...VIEW, covered: [note] });
     expect(places.get(1)?.slot).toBe(3);
   });
 
-  it("stay where they are when vehicles tremble at the edge of a clash", () => {
+  it("do not move when vehicles jitter at the edge of an overlap", () => {
     let places: Map<number, LabelPlace> = new Map();
     const seen = new Set<string>();
-    // 120 px apart they just touch; the second trembles 3 px either way about that.
+    // At 120 px they just touch; the second jitters by 3 px.
     for (let frame = 0; frame < 40; frame += 1) {
       const spots = [spot(1, 0, 0), spot(2, 120 + 3 * Math.sin(frame * 2.1), 0)];
       places = placeLabels(spots, places);
@@ -109,7 +109,7 @@ describe("labels", () => {
     expect([...seen]).toHaveLength(1);
   });
 
-  it("come back below when there is room to spare, and not before", () => {
+  it("return below only with room to spare", () => {
     const near = placeLabels([spot(1, 0, 0), spot(2, 90, 0)], NOTHING);
     expect(near.get(2)?.slot).toBe(1);
     const further = placeLabels([spot(1, 0, 0), spot(2, 124, 0)], near);
@@ -117,7 +117,7 @@ describe("labels", () => {
     expect(placeLabels([spot(1, 0, 0), spot(2, 129, 0)], further).get(2)?.slot).toBe(0);
   });
 
-  it("get the same places from the same frame", () => {
+  it("get the same positions from the same frame", () => {
     const spots = Array.from({ length: MOST_LABELS }, (_, index) =>
       spot(index + 1, (index * 53) % 300, (index * 31) % 200),
     );
@@ -126,41 +126,41 @@ describe("labels", () => {
     expect(slotsOf(placeLabels(spots, second))).toEqual(slotsOf(second));
   });
 
-  it("cost a bounded number of looks at other labels, however many vehicles there are", () => {
-    let looks = 0;
+  it("need a bounded number of comparisons for any number of vehicles", () => {
+    let reads = 0;
     const counted = (key: number): LabelSpot => ({
       key,
       ...SIZE,
       y_px: 0,
       get x_px() {
-        looks += 1;
+        reads += 1;
         return 0;
       },
     });
     const spots = (count: number) => Array.from({ length: count }, (_, index) => counted(index));
     placeIn(spots(MOST_LABELS), NOTHING, VIEW);
-    const most = looks;
-    looks = 0;
+    const most = reads;
+    reads = 0;
     const places = placeIn(spots(10 * MOST_LABELS), NOTHING, VIEW);
     expect(most).toBeLessThan(30 * MOST_LABELS);
-    expect(looks).toBeLessThanOrEqual(most + 9 * MOST_LABELS);
+    expect(reads).toBeLessThanOrEqual(most + 9 * MOST_LABELS);
     expect(slotsOf(places).slice(MOST_LABELS)).toEqual(Array(9 * MOST_LABELS).fill(0));
   });
 });
 
-describe("a leader", () => {
-  it("is drawn only to a label that was moved", () => {
-    expect(leaderOf({ slot: 0, dx_px: -60, dy_px: 26 }, SIZE)).toBeNull();
+describe("a label line", () => {
+  it("is drawn only to a moved label", () => {
+    expect(labelLine({ slot: 0, dx_px: -60, dy_px: 26 }, SIZE)).toBeNull();
   });
 
   it("runs from the label's nearest edge towards the vehicle", () => {
-    expect(leaderOf({ slot: 1, dx_px: 60, dy_px: -14 }, SIZE)).toEqual({
+    expect(labelLine({ slot: 1, dx_px: 60, dy_px: -14 }, SIZE)).toEqual({
       x_px: 0,
       y_px: 14,
       length_px: 42,
       angle_rad: Math.atan2(-0, -60),
     });
-    const above = leaderOf({ slot: 3, dx_px: -60, dy_px: -88 }, SIZE);
+    const above = labelLine({ slot: 3, dx_px: -60, dy_px: -88 }, SIZE);
     expect(above).toMatchObject({ x_px: 60, y_px: 28, length_px: 42 });
     expect(above?.angle_rad).toBeCloseTo(Math.PI / 2);
   });

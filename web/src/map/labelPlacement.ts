@@ -1,6 +1,6 @@
-/** Where the vehicles' labels stand on the screen, so that none hides another or a vehicle. Pixels throughout. */
+/** Places the vehicles' labels on the screen so that they hide neither each other nor a vehicle. All in pixels. */
 
-/** A label that wants a place: its vehicle's point on the screen and its own size. */
+/** A label to place: its vehicle's position on the screen and the label's size. */
 export interface LabelSpot {
   readonly key: number;
   readonly x_px: number;
@@ -9,17 +9,17 @@ export interface LabelSpot {
   readonly height_px: number;
 }
 
-/** Where a label stands: its upper left corner as seen from its vehicle's point. */
+/** A label's position: its upper left corner relative to its vehicle. */
 export interface LabelPlace {
-  /** Which of the places was taken; 0 is the usual one, below the vehicle. */
+  /** Index of the candidate position; 0 is the default, below the vehicle. */
   readonly slot: number;
   readonly dx_px: number;
   readonly dy_px: number;
 }
 
-/** A line from the vehicle to a label that was moved away, starting at the label's edge. */
-export interface Leader {
-  /** The start as seen from the label's upper left corner. */
+/** The line from a moved label's edge to its vehicle. */
+export interface LabelLine {
+  /** Start relative to the label's upper left corner. */
   readonly x_px: number;
   readonly y_px: number;
   readonly length_px: number;
@@ -27,18 +27,18 @@ export interface Leader {
   readonly angle_rad: number;
 }
 
-/** Half the side of the square a vehicle's symbol keeps for itself. */
+/** Half the side of the square reserved for a vehicle's symbol. */
 const SYMBOL_HALF_PX = 18;
-/** How far from the vehicle's point labels are tried, nearest first: symbol and margin are cleared by all. */
+/** Distances from the vehicle at which positions are tried; all clear the symbol and its margin. */
 const REACHES_PX = [26, 60, 94] as const;
-/** A label moves only to a place this much wider than itself on every side: without, it would flicker. */
+/** A label moves only to a position with this much free space on every side, so that it does not flicker. */
 const MARGIN_PX = 8;
-/** More labels than this are not looked after: they stay below. It bounds the work of one frame. */
+/** Labels beyond this number stay below their vehicles, which bounds the work per frame. */
 export const MOST_LABELS = 64;
 
 type Corner = readonly [dx_px: number, dy_px: number];
 
-/** The places around a vehicle at one reach, best first: below, right, left, above, then the diagonals. */
+/** Candidate positions at one distance, best first: below, right, left, above, then the diagonals. */
 function cornersAt(reach: number, width: number, height: number): readonly Corner[] {
   return [
     [-width / 2, reach],
@@ -60,18 +60,18 @@ export interface Box {
   readonly bottom: number;
 }
 
-/** The part of the screen the map fills, from its upper left corner. */
+/** The map's size on the screen and the elements covering it. */
 export interface LabelView {
   readonly width_px: number;
   readonly height_px: number;
-  /** What else stands on the map, and would hide a label. */
+  /** Other elements on the map that would hide a label. */
   readonly covered: readonly Box[];
 }
 
 /**
- * Places labels one after the other, in the order of `spots`: the first free place, else the one that
- * hides least. What sticks out of `view` is hidden too. `previous` holds where they stood in the last frame; a label leaves its place only when it
- * is taken, or when a better one is free with some room to spare.
+ * Places labels one after the other, in the order of `spots`: at the first free position, else at the
+ * one with the smallest hidden area, which includes any part outside `view`. `previous` holds the positions
+ * of the last frame; a label leaves its position only when that is taken or a better one has room to spare.
  */
 export function placeLabels(
   spots: readonly LabelSpot[],
@@ -81,10 +81,8 @@ export function placeLabels(
   const taken: Box[] = [...view.covered, ...spots.slice(0, MOST_LABELS).map(symbolBox)];
   const places = new Map<number, LabelPlace>();
   spots.forEach((spot, index) => {
-    const isLookedAfter = index < MOST_LABELS;
-    const place = isLookedAfter
-      ? choose(spot, previous.get(spot.key)?.slot ?? 0, taken, view)
-      : null;
+    const isArranged = index < MOST_LABELS;
+    const place = isArranged ? choose(spot, previous.get(spot.key)?.slot ?? 0, taken, view) : null;
     places.set(spot.key, place ?? placeAt(spot, 0));
     if (place !== null) taken.push(labelBox(spot, place));
   });
@@ -100,7 +98,7 @@ function choose(spot: LabelSpot, kept: number, taken: readonly Box[], view: Labe
     const isKept = place.slot === kept;
     const hidden = hiddenArea(isKept ? box : grown(box), taken) + outsideArea(box, view);
     if (hidden === 0) return place;
-    // In a crowd without a free place, staying counts for something too.
+    // Without a free position, prefer the previous one.
     const cost = isKept ? hidden / 2 : hidden;
     if (cost >= least) continue;
     least = cost;
@@ -157,11 +155,11 @@ function outsideArea(box: Box, view: LabelView): number {
   return (box.right - box.left) * (box.bottom - box.top) - inside;
 }
 
-/** The line that ties a label to its vehicle; null while it stands in its usual place. */
-export function leaderOf(
+/** The line from a label to its vehicle; null at the default position. */
+export function labelLine(
   place: LabelPlace,
   size: { readonly width_px: number; readonly height_px: number },
-): Leader | null {
+): LabelLine | null {
   if (place.slot === 0) return null;
   const { dx_px, dy_px } = place;
   const nearX = Math.min(Math.max(0, dx_px), dx_px + size.width_px);

@@ -1,4 +1,4 @@
-/** The map's metric grid: east and north of an origin, for the eye and not for measuring. */
+/** The map's metric grid, east and north of an origin; for display, not for measurement. */
 
 export interface LonLat {
   readonly lon: number;
@@ -33,7 +33,7 @@ export function roundStepM(least_m: number): number {
   return factor * power;
 }
 
-/** One grid line: `m` metres east (or north) of the origin lies at `deg` of longitude (or latitude). */
+/** One grid line: `m` metres east (or north) of the origin, at `deg` longitude (or latitude). */
 export interface GridLine {
   readonly m: number;
   readonly deg: number;
@@ -45,10 +45,10 @@ export interface Grid {
   readonly northings: readonly GridLine[];
 }
 
-/** A safety net: no view has more lines than this each way. */
+/** Upper bound of grid lines in each direction. */
 const MOST_LINES = 200;
 
-/** The lines that cross `box`, `step_m` apart, counted from `origin`. */
+/** Grid lines that cross `box`, `step_m` apart, counted from `origin`. */
 export function gridLines(box: Box, origin: LonLat, step_m: number): Grid {
   const per = metresPerDegree(origin.lat);
   return {
@@ -74,7 +74,7 @@ function lines(
   });
 }
 
-/** A closed ring of `radius_m` around a point, as longitude and latitude. */
+/** A closed ring with `radius_m` around a point, as longitude and latitude. */
 export function circle(centre: LonLat, radius_m: number, corners = 48): [number, number][] {
   const per = metresPerDegree(centre.lat);
   return Array.from({ length: corners + 1 }, (_, index) => {
@@ -86,7 +86,7 @@ export function circle(centre: LonLat, radius_m: number, corners = 48): [number,
   });
 }
 
-/** The smallest box around points, at least `least_m` wide and high; null of no points. */
+/** The smallest box around `points`, at least `least_m` wide and high; null without points. */
 export function boxAround(points: readonly LonLat[], least_m: number): Box | null {
   if (points.length === 0) return null;
   const lons = points.map((point) => point.lon);

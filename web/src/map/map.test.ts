@@ -37,7 +37,7 @@ describe("the grid", () => {
     expect(roundStepM(least)).toBeCloseTo(step, 9);
   });
 
-  it("has its lines at whole steps from the origin, inside the view", () => {
+  it("has lines at whole steps from the origin, inside the view", () => {
     const [west, south] = at(-130, -70);
     const [east, north] = at(260, 90);
     const origin = { lon: FIELD.lon, lat: FIELD.lat };
@@ -47,26 +47,26 @@ describe("the grid", () => {
     expect(grid.eastings[1]?.deg).toBe(FIELD.lon);
   });
 
-  it("never draws without end", () => {
+  it("has a bounded number of lines", () => {
     const world = { west: -180, south: -80, east: 180, north: 80 };
     const grid = gridLines(world, { lon: 0, lat: 0 }, 1);
     expect(grid.eastings.length).toBeLessThanOrEqual(200);
   });
 
-  it("counts from the site, else from the first vehicle with a place", () => {
+  it("starts at the site's origin, else at the first vehicle with a position", () => {
     expect(gridOrigin(station([vehicle(1)]))).toEqual({ lon: FIELD.lon, lat: FIELD.lat });
-    const placed = vehicle(2);
-    const withoutSite = station([vehicle(1, UNPLACED), placed], { site: null });
+    const positioned = vehicle(2);
+    const withoutSite = station([vehicle(1, UNPLACED), positioned], { site: null });
     expect(gridOrigin(withoutSite)).toEqual({
-      lon: placed.position.longitude_deg,
-      lat: placed.position.latitude_deg,
+      lon: positioned.position.longitude_deg,
+      lat: positioned.position.latitude_deg,
     });
     expect(gridOrigin(station([], { site: null }))).toBeNull();
   });
 });
 
 describe("the first view", () => {
-  it("holds every vehicle and the ground image", () => {
+  it("contains every vehicle and the ground image", () => {
     const state = station([vehicle(1), vehicle(4), vehicle(2, UNPLACED)]);
     const box = wholeView(state);
     for (const { position } of [vehicle(1), vehicle(4)]) {
@@ -77,13 +77,13 @@ describe("the first view", () => {
     }
   });
 
-  it("leaves a lone vehicle its surroundings", () => {
+  it("leaves a single vehicle its surroundings", () => {
     const box = boxAround([{ lon: FIELD.lon, lat: FIELD.lat }], 120);
     const per = metresPerDegree(FIELD.lat);
     expect(((box?.east ?? 0) - (box?.west ?? 0)) * per.lon).toBeCloseTo(120);
   });
 
-  it("shows the site when nothing is placed, and waits without one", () => {
+  it("shows the site without any position, and waits without a site", () => {
     expect(wholeView(station([]))).not.toBeNull();
     expect(wholeView(station([vehicle(1, UNPLACED)], { site: null }))).toBeNull();
   });

@@ -5,7 +5,7 @@ import { shadeLine, station, survey } from "../testing/fakeState";
 import { createOverlay, ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { wayFeatures } from "./surveyRowsLayer";
 
-/** As much of MapLibre as an overlay uses; what it shows is kept. */
+/** The parts of MapLibre an overlay uses; records calls. */
 function fakeMap() {
   const sources = new Map<string, { urls: string[]; updateImage(to: { url: string }): void }>();
   const added: { id: string; before: string | undefined }[] = [];
@@ -29,7 +29,7 @@ function fakeMap() {
   return { map: map as unknown as MapLibre, sources, added };
 }
 
-const bring = async (): Promise<Outcome<Picture>> => ({
+const fetchPicture = async (): Promise<Outcome<Picture>> => ({
   kind: "answered",
   value: { blob: new Blob(["x"]), frameId: 1 },
 });
@@ -42,7 +42,7 @@ function scene(second: number, number: number) {
     forecast: line.forecast === null ? null : { ...line.forecast, number },
   };
   const state = station([], { time_ns: second * 1e9, shade, surveys: [survey(7)] });
-  return { state, behindS: 0, selected: [], meant: null };
+  return { state, behindS: 0, selected: [], plannedTarget: null };
 }
 
 const settled = () => new Promise((done) => setTimeout(done));
@@ -53,11 +53,11 @@ beforeEach(() => {
 });
 afterEach(() => vi.restoreAllMocks());
 
-describe("what lies over the ground image", () => {
-  it("is the one that is chosen, above the ground image and under the lines", async () => {
+describe("the overlay", () => {
+  it("is the selected one, above the ground image and below the lines", async () => {
     const { map, sources, added } = fakeMap();
     const overlay = createOverlay();
-    const shadePicture = vi.fn(bring);
+    const shadePicture = vi.fn(fetchPicture);
     const layer = new ShadeLayer(overlay, { shadePicture });
     layer.add(map);
     layer.update(scene(1, 3));
@@ -77,15 +77,15 @@ describe("what lies over the ground image", () => {
     expect(sources.has("shade")).toBe(false);
   });
 
-  it("is fetched anew for another lead", async () => {
+  it("is fetched again for another lead", async () => {
     const overlay = createOverlay();
-    const forecastPicture = vi.fn(bring);
+    const forecastPicture = vi.fn(fetchPicture);
     const layer = new ForecastLayer(overlay, { forecastPicture });
     layer.add(fakeMap().map);
     overlay.show("forecast");
     layer.update(scene(1, 3));
     await settled();
-    overlay.lookAhead(60);
+    overlay.setLead(60);
     layer.update(scene(2, 3));
     await settled();
     expect(forecastPicture.mock.calls).toEqual([
@@ -94,7 +94,7 @@ describe("what lies over the ground image", () => {
     ]);
   });
 
-  it("asks again after a while for a picture that did not come", async () => {
+  it("retries a failed picture", async () => {
     const overlay = createOverlay();
     const surveyCells = vi.fn(async () => ({ kind: "failed", problem: "no" }) as const);
     const layer = new SurveyCellsLayer(overlay, { surveyCells });
@@ -110,8 +110,8 @@ describe("what lies over the ground image", () => {
   });
 });
 
-describe("a survey's ways", () => {
-  it("are planned, flown now, and flown; what is no line yet is left out", () => {
+describe("a survey's paths", () => {
+  it("are planned, being flown or flown; single points are omitted", () => {
     const line: [number, number][] = [
       [1, 2],
       [3, 4],

@@ -4,83 +4,83 @@ import type { Outcome, Picture, StationSource } from "../source/stationSource";
 import { shownSurvey } from "../text/survey";
 import type { Layer, Scene } from "./scene";
 
-/** What lies over the ground image: one at a time, so that each can be read. */
+/** Overlays on the ground image; one at a time, so that each can be read. */
 export type OverlayKind = "none" | "shade" | "forecast" | "cells";
 
-/** Which overlay the map shows, and for which lead. */
+/** The selected overlay and forecast lead. */
 export interface Overlay {
   readonly kind: Accessor<OverlayKind>;
-  /** How far ahead the forecast is shown, seconds from its shade map. */
+  /** Lead of the displayed forecast, seconds after its shade map. */
   readonly lead_s: Accessor<number>;
   show(kind: OverlayKind): void;
-  lookAhead(lead_s: number): void;
+  setLead(lead_s: number): void;
 }
 
-/** Until somebody chooses, a survey that is flown shows its cells: they are what is flown for. */
-export function createOverlay(isSurveyFlown: Accessor<boolean> = () => false): Overlay {
-  const [chosen, show] = createSignal<OverlayKind | null>(null);
-  const [lead_s, lookAhead] = createSignal(0);
+/** Until the operator selects an overlay, an active survey shows its coverage. */
+export function createOverlay(isSurveyActive: Accessor<boolean> = () => false): Overlay {
+  const [selected, select] = createSignal<OverlayKind | null>(null);
+  const [lead_s, setLead] = createSignal(0);
   return {
-    kind: () => chosen() ?? (isSurveyFlown() ? "cells" : "none"),
+    kind: () => selected() ?? (isSurveyActive() ? "cells" : "none"),
     lead_s,
     show: (kind) => {
-      show(kind);
+      select(kind);
     },
-    lookAhead,
+    setLead,
   };
 }
 
-/** After a picture that did not come, wait so long (station time) before asking again. */
+/** Wait this long (station time) before requesting a failed picture again. */
 const RETRY_NS = 2e9;
 
-/** A picture that a moment asks for; `key` changes whenever another picture would come. */
-export interface Wanted {
+/** The picture to show for a scene; `key` changes when a different picture is needed. */
+export interface OverlayRequest {
   readonly key: string;
   readonly corners: readonly (readonly [number, number])[];
-  bring(): Promise<Outcome<Picture>>;
+  fetch(): Promise<Outcome<Picture>>;
 }
 
 type Corners = [[number, number], [number, number], [number, number], [number, number]];
 
-/** A picture of the ground's cells, over the ground image and under everything else. */
+/** A picture of grid cells, above the ground image and below everything else. */
 export abstract class PictureOverlay implements Layer {
   private map: MapLibre | null = null;
   private address: string | null = null;
   private shown: string | null = null;
-  private wanted: Wanted | null = null;
+  private wanted: OverlayRequest | null = null;
   private isFetching = false;
   private notBefore_ns = 0;
 
   protected constructor(private readonly id: string) {}
 
-  /** What the scene asks for; null shows nothing. */
-  protected abstract want(scene: Scene): Wanted | null;
+  /** The picture for this scene; null for none. */
+  protected abstract requestFor(scene: Scene): OverlayRequest | null;
 
   add(map: MapLibre): void {
     this.map = map;
   }
 
   update(scene: Scene): void {
-    this.wanted = this.want(scene);
+    this.wanted = this.requestFor(scene);
     if (this.wanted === null) this.clear();
     const isNew = this.wanted !== null && this.wanted.key !== this.shown;
     if (!isNew || this.isFetching || scene.state.time_ns < this.notBefore_ns) return;
     this.isFetching = true;
     this.notBefore_ns = scene.state.time_ns + RETRY_NS;
-    void this.fetch(this.wanted as Wanted).finally(() => {
+    void this.fetch(this.wanted as OverlayRequest).finally(() => {
       this.isFetching = false;
     });
   }
 
   recolour(): void {}
 
-  private async fetch(asked: Wanted): Promise<void> {
-    const outcome = await asked.bring();
-    const corners = cornersOf(asked.corners);
-    // What was asked for may be switched off by now; a newer picture of the same is shown next.
+  private async fetch(request: OverlayRequest): Promise<void> {
+    const outcome = await request.fetch();
+    const corners = cornersOf(request.corners);
+    // The overlay may have been switched off meanwhile.
     if (outcome.kind === "failed" || corners === null || this.wanted === null) return;
     this.notBefore_ns = 0;
-    this.shown = asked.key;
+    this.shown = request.key;
     this.show(URL.createObjectURL(outcome.value.blob), corners);
   }
 
@@ -113,7 +113,7 @@ export abstract class PictureOverlay implements Layer {
   }
 }
 
-function cornersOf(corners: Wanted["corners"]): Corners | null {
+function cornersOf(corners: OverlayRequest["corners"]): Corners | null {
   const [nw, ne, se, sw] = corners;
   if (nw === undefined || ne === undefined || se === undefined || sw === undefined) return null;
   return [
@@ -124,7 +124,7 @@ function cornersOf(corners: Wanted["corners"]): Corners | null {
   ];
 }
 
-/** Where the ground lies in shade now. */
+/** Current shade on the ground. */
 export class ShadeLayer extends PictureOverlay {
   constructor(
     private readonly overlay: Overlay,
@@ -133,15 +133,15 @@ export class ShadeLayer extends PictureOverlay {
     super("shade");
   }
 
-  protected want(scene: Scene): Wanted | null {
+  protected requestFor(scene: Scene): OverlayRequest | null {
     const map = scene.state.shade?.map ?? null;
     if (this.overlay.kind() !== "shade" || map === null) return null;
     const key = `${map.number}`;
-    return { key, corners: map.corners, bring: () => this.source.shadePicture(map.number) };
+    return { key, corners: map.corners, fetch: () => this.source.shadePicture(map.number) };
   }
 }
 
-/** How likely the ground lies in sun, so many seconds after the newest shade map. */
+/** Forecast probability of sun at a lead after the newest shade map. */
 export class ForecastLayer extends PictureOverlay {
   constructor(
     private readonly overlay: Overlay,
@@ -150,19 +150,19 @@ export class ForecastLayer extends PictureOverlay {
     super("forecast");
   }
 
-  protected want(scene: Scene): Wanted | null {
+  protected requestFor(scene: Scene): OverlayRequest | null {
     const forecast = scene.state.shade?.forecast ?? null;
     const lead_s = this.overlay.lead_s();
     if (this.overlay.kind() !== "forecast" || forecast === null) return null;
     return {
       key: `${forecast.number}:${lead_s}`,
       corners: forecast.corners,
-      bring: () => this.source.forecastPicture(forecast.number, lead_s),
+      fetch: () => this.source.forecastPicture(forecast.number, lead_s),
     };
   }
 }
 
-/** Which cells of a survey are imaged in sun (filled), in shade (striped), or not yet (empty). */
+/** Survey coverage: cells photographed in sun (filled), in shade (striped), not yet (empty). */
 export class SurveyCellsLayer extends PictureOverlay {
   constructor(
     private readonly overlay: Overlay,
@@ -171,14 +171,14 @@ export class SurveyCellsLayer extends PictureOverlay {
     super("survey-cells");
   }
 
-  protected want(scene: Scene): Wanted | null {
+  protected requestFor(scene: Scene): OverlayRequest | null {
     const survey = shownSurvey(scene.state.surveys);
     const cells = survey?.cells ?? null;
     if (this.overlay.kind() !== "cells" || survey === null || cells === null) return null;
     return {
       key: `${survey.id}:${cells.number}`,
       corners: cells.corners,
-      bring: () => this.source.surveyCells(survey.id, cells.number),
+      fetch: () => this.source.surveyCells(survey.id, cells.number),
     };
   }
 }

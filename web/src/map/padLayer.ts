@@ -2,7 +2,7 @@ import { type Map as MapLibre, Marker } from "maplibre-gl";
 import type { PadView, StationState } from "../protocol";
 import type { Layer, Scene } from "./scene";
 
-/** The landing pads: an H in a square, and whose it is when it is one vehicle's own. */
+/** Landing pads: an H in a square, with the name of the vehicle it is reserved for, if any. */
 export class PadLayer implements Layer {
   private map: MapLibre | null = null;
   private markers: Marker[] = [];
@@ -31,11 +31,11 @@ export class PadLayer implements Layer {
   recolour(): void {}
 }
 
-/** What a pad is called, and whose it is: by name once its vehicle was heard. */
+/** A pad's name and the vehicle it is reserved for, by name once that vehicle has connected. */
 export function padText(pad: PadView, state: StationState): string {
-  if (pad.serial === null) return `${pad.name}: for any vehicle`;
+  if (pad.serial === null) return `${pad.name}: any vehicle`;
   const owner = state.vehicles.find((vehicle) => vehicle.serial === pad.serial);
-  return `${pad.name}: for ${owner?.name ?? pad.serial}`;
+  return `${pad.name}: reserved for ${owner?.name ?? pad.serial}`;
 }
 
 function padElement(text: string): HTMLElement {

@@ -3,7 +3,7 @@ import type { StationState, VehicleView } from "../protocol";
 import type { Colours } from "./colours";
 import { type Box, boxAround, type LonLat } from "./localGrid";
 
-/** One thing drawn on the map. `add` is called once, in the order things lie on each other. */
+/** One layer of the map. `add` is called once per layer, from bottom to top. */
 export interface Layer {
   add(map: MapLibre, colours: Colours): void;
   update(scene: Scene): void;
@@ -11,33 +11,33 @@ export interface Layer {
   recolour(colours: Colours): void;
 }
 
-/** What the map shows at one moment. Layers take it whole. */
+/** Everything the map shows at one moment; passed to every layer. */
 export interface Scene {
   readonly state: StationState;
   /** Seconds to add to the state's ages. */
   readonly behindS: number;
   readonly selected: readonly number[];
-  /** Where a vehicle would fly that nobody has confirmed yet. */
-  readonly meant: Meant | null;
+  /** The fly-here target that has not been confirmed yet. */
+  readonly plannedTarget: PlannedTarget | null;
 }
 
-/** A place that is meant, with its words; `from` is null while the vehicle's own place is not known. */
-export interface Meant {
+/** An unconfirmed target with its label; `from` is null while the vehicle's position is unknown. */
+export interface PlannedTarget {
   readonly from: LonLat | null;
   readonly at: LonLat;
   readonly text: string;
 }
 
-/** Where a vehicle was last seen; null when that is unknown. */
+/** A vehicle's last known position; null when unknown. */
 export function positionOf(vehicle: Pick<VehicleView, "position">): LonLat | null {
   const { longitude_deg: lon, latitude_deg: lat } = vehicle.position;
   return lon === null || lat === null ? null : { lon, lat };
 }
 
-/** A view is never closer than this, so that a lone vehicle has its surroundings. */
+/** Smallest extent of a view, so that a single vehicle is shown with its surroundings. */
 const LEAST_VIEW_M = 120;
 
-/** What the first view shows: every vehicle and the ground image, else the site's areas, else its place; null when nothing is placed. */
+/** Extent of the first view: vehicles and ground image, else the site's areas, else its origin; null without any position. */
 export function wholeView(state: StationState): Box | null {
   const vehicles = state.vehicles.flatMap((vehicle) => positionOf(vehicle) ?? []);
   const corners = (state.ground_image?.corners ?? []).map(([lon, lat]) => ({ lon, lat }));
@@ -56,7 +56,7 @@ function siteView(state: StationState): Box | null {
   return boxAround([{ lon, lat }], LEAST_VIEW_M * 2);
 }
 
-/** What the grid counts from: the site's origin, else the first vehicle that is placed. */
+/** Origin of the grid: the site's origin, else the position of the first vehicle. */
 export function gridOrigin(state: StationState): LonLat | null {
   const { longitude_deg: lon, latitude_deg: lat } = state.site ?? {};
   if (typeof lon === "number" && typeof lat === "number") return { lon, lat };

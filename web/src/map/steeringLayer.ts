@@ -13,7 +13,7 @@ import { TargetMarkers } from "./targetMarkers";
 const SOURCE = "steering";
 const WAY = "steering-way";
 
-/** Where vehicles are being steered: a ring at each target, and the way there. */
+/** Targets of vehicles under virtual stick control: a ring at each, and the line to it. */
 export class SteeringLayer implements Layer {
   private map: MapLibre | null = null;
   private colours: Colours | null = null;
@@ -55,13 +55,13 @@ function targetOf(vehicle: VehicleView) {
   const { steering } = vehicle;
   if (steering === null) return [];
   const height = formatQuantity(steering.height_above_takeoff_m, "m", 0);
-  const doing = steering.has_arrived ? "holds here" : "flies here";
+  const action = steering.has_arrived ? "holding here" : "flying here";
   return [
     {
       key: vehicleKey(vehicle),
       at: { lon: steering.longitude_deg, lat: steering.latitude_deg },
       colour: colourOf(vehicleKey(vehicle)),
-      text: `${vehicleLabel(vehicle)} ${doing}, ↥ ${height}`,
+      text: `${vehicleLabel(vehicle)} ${action}, ↥ ${height}`,
     },
   ];
 }

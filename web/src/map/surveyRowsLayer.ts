@@ -8,15 +8,15 @@ import { addFeatures, lineFeature, type Point, setFeatures } from "./features";
 import type { Layer, Scene } from "./scene";
 
 const SOURCE = "survey-rows";
-/** So that the rows stand out on a picture of the ground too. */
+/** Makes the rows visible on the ground image too. */
 const CASING = "survey-rows-casing";
 const PLANNED = "survey-rows-planned";
 const FLYING = "survey-rows-flying";
 const FLOWN = "survey-rows-flown";
-/** Ways are asked for this often at most (station time): they grow by some metres a second. */
-const AGAIN_NS = 2e9;
+/** Shortest interval between requests (station time). */
+const REPEAT_NS = 2e9;
 
-/** A survey's rows: planned thin and dotted, the missions flown now dashed, what is flown whole. */
+/** A survey's rows: planned ones dotted, current missions dashed, flown ones solid. */
 export class SurveyRowsLayer implements Layer {
   private map: MapLibre | null = null;
   private shown = "";
@@ -61,7 +61,7 @@ export class SurveyRowsLayer implements Layer {
     const isNew = key !== this.shown;
     if (!isNew || this.isFetching || scene.state.time_ns < this.notBefore_ns) return;
     this.isFetching = true;
-    this.notBefore_ns = scene.state.time_ns + AGAIN_NS;
+    this.notBefore_ns = scene.state.time_ns + REPEAT_NS;
     void this.source
       .surveyWays(survey.id)
       .then((outcome) => {
@@ -86,7 +86,7 @@ export class SurveyRowsLayer implements Layer {
   }
 }
 
-/** The lines of a survey's ways, each with what it is. */
+/** The lines of a survey's paths, each with its kind. */
 export function wayFeatures(ways: SurveyWays): Feature[] {
   const line = (places: readonly (readonly [number, number])[], kind: string): Feature[] =>
     places.length < 2

@@ -2,26 +2,26 @@ import { type Map as MapLibre, Marker } from "maplibre-gl";
 import type { LonLat } from "./localGrid";
 import { moveTo } from "./vehicleMarker";
 
-/** A place that a vehicle is to go to, with its words. */
+/** A target position with its label. */
 export interface Target {
   readonly key: number;
   readonly at: LonLat;
-  /** As the style sheet takes it. */
+  /** A CSS colour. */
   readonly colour: string;
   readonly text: string;
 }
 
-interface Shown {
+interface TargetMarker {
   readonly marker: Marker;
   readonly text: HTMLElement;
 }
 
-/** Rings with a cross at targets, each with its words above. */
+/** Target markers: a ring with a cross, and the label above it. */
 export class TargetMarkers {
-  private readonly shown = new Map<number, Shown>();
+  private readonly shown = new Map<number, TargetMarker>();
 
-  /** `className` is added to each: what is only meant looks otherwise than what is flown. */
-  constructor(private readonly className = "target-flown") {}
+  /** `className` distinguishes unconfirmed targets from active ones. */
+  constructor(private readonly className = "target-active") {}
 
   show(map: MapLibre, targets: readonly Target[]): void {
     for (const target of targets) {
@@ -37,7 +37,7 @@ export class TargetMarkers {
     }
   }
 
-  private shownFor(target: Target): Shown {
+  private shownFor(target: Target): TargetMarker {
     const known = this.shown.get(target.key);
     if (known !== undefined) return known;
     const element = document.createElement("div");

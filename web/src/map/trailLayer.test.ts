@@ -52,25 +52,25 @@ function show(east_m: number, changes: Partial<VehicleView> = {}): void {
   const [longitude_deg, latitude_deg] = at(east_m, 0);
   const position = { longitude_deg, latitude_deg, age_s: 0.1 };
   const one = vehicle(1, { position, track: [at(-50, 0)], ...changes });
-  layer.update({ state: station([one]), behindS: 0, selected: [], meant: null });
+  layer.update({ state: station([one]), behindS: 0, selected: [], plannedTarget: null });
 }
 
 describe("trails", () => {
-  it("are drawn to where the vehicle is", () => {
+  it("end at the vehicle's position", () => {
     show(10);
     expect(drawings).toHaveLength(1);
     const line = drawings[0]?.features[0]?.geometry as GeoJSON.LineString;
     expect(line.coordinates).toEqual([at(-50, 0), at(10, 0)]);
   });
 
-  it("are not drawn anew while the symbol hides the difference", () => {
+  it("are not redrawn while the symbol hides the difference", () => {
     for (const east_m of [0, 0, 2, 4, 5.9]) show(east_m);
     expect(drawings).toHaveLength(1);
     show(6.1);
     expect(drawings).toHaveLength(2);
   });
 
-  it("are drawn anew when zooming uncovers their end", () => {
+  it("are redrawn when zooming uncovers their end", () => {
     show(0);
     show(4);
     pixelsPerM = 10 * PIXELS_PER_M;
@@ -78,7 +78,7 @@ describe("trails", () => {
     expect(drawings).toHaveLength(2);
   });
 
-  it("are drawn anew when they turn stale, begin or change their theme", () => {
+  it("are redrawn when they become stale, start or change theme", () => {
     show(0, { track: [] });
     show(0);
     show(0, { staleness: "lost", telemetry_age_s: 4 });

@@ -11,15 +11,15 @@ const SOURCE = "trails";
 const CASING = "trails-casing";
 const REAL = "trails-real";
 const SIMULATED = "trails-simulated";
-/** A trail may end so far behind its vehicle's point: the symbol hides it, and drawing the map is dear. */
+/** Redraw only when a trail's end has moved this far: the symbol hides less, and drawing is expensive. */
 const HIDDEN_END_PX = 12;
 
-/** Where each vehicle has been: a line in its colour, dashed when it is simulated. */
+/** Each vehicle's track in its colour, dashed if simulated. */
 export class TrailLayer implements Layer {
   private map: MapLibre | null = null;
   private colours: Colours | null = null;
   private scene: Scene | null = null;
-  /** What was drawn last: which trails in which look, and where each ended. */
+  /** What was drawn last: each trail's appearance and end. */
   private drawn = { looks: "", ends: new Map<number, LonLat>() };
 
   add(map: MapLibre, colours: Colours): void {
@@ -53,12 +53,12 @@ export class TrailLayer implements Layer {
       paint: { ...paint, "line-dasharray": [2, 1.5] },
       filter: ["get", "simulated"],
     });
-    map.on("zoom", () => this.drawIfSeen());
+    map.on("zoom", () => this.drawIfVisible());
   }
 
   update(scene: Scene): void {
     this.scene = scene;
-    this.drawIfSeen();
+    this.drawIfVisible();
   }
 
   recolour(colours: Colours): void {
@@ -67,15 +67,16 @@ export class TrailLayer implements Layer {
     this.draw();
   }
 
-  /** Draws when one would see a difference. */
-  private drawIfSeen(): void {
+  /** Redraws when the difference would be visible. */
+  private drawIfVisible(): void {
     const { map, scene } = this;
     if (map === null || scene === null) return;
     const hasNewLook = looksOf(scene) !== this.drawn.looks;
-    if (hasNewLook || endsOf(scene).some(([key, end]) => this.isSeen(map, key, end))) this.draw();
+    if (hasNewLook || endsOf(scene).some(([key, end]) => this.isVisible(map, key, end)))
+      this.draw();
   }
 
-  private isSeen(map: MapLibre, key: number, end: LonLat): boolean {
+  private isVisible(map: MapLibre, key: number, end: LonLat): boolean {
     const before = this.drawn.ends.get(key);
     if (before === undefined) return true;
     const a = map.project([before.lon, before.lat]);
@@ -92,7 +93,7 @@ export class TrailLayer implements Layer {
   }
 }
 
-/** Everything that changes how trails look, other than where they end. */
+/** Everything that changes the trails' appearance except their ends. */
 function looksOf(scene: Scene): string {
   return scene.state.vehicles
     .map((vehicle) => {

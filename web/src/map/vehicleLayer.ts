@@ -4,16 +4,16 @@ import { type LabelPlace, type LabelView, placeLabels } from "./labelPlacement";
 import { type Layer, positionOf, type Scene } from "./scene";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 
-/** All vehicles whose position was ever known; the style sheet colours them. */
+/** All vehicles with a known position; CSS sets their colours. */
 export class VehicleLayer implements Layer {
   private map: MapLibre | null = null;
   private readonly markers = new Map<number, VehicleMarker>();
   private places: ReadonlyMap<number, LabelPlace> = new Map();
   private view: LabelView = { width_px: 0, height_px: 0, covered: [] };
-  /** Tells the labels' sizes after the browser laid them out; to ask for them would force it to. */
+  /** Reports label sizes after layout; reading them would force a layout. */
   private readonly sizes = new ResizeObserver((entries) => this.measure(entries));
 
-  /** `covers` are the elements over the map whose children labels keep clear of. */
+  /** `covers` are elements over the map; labels avoid their children. */
   constructor(
     private readonly press: MarkerPress,
     private readonly covers: readonly HTMLElement[],
@@ -100,7 +100,7 @@ function viewOf(map: MapLibre, covers: readonly HTMLElement[]): LabelView {
   return { width_px: frame.width, height_px: frame.height, covered };
 }
 
-/** By number; those without one have keys below zero and come last. */
+/** Sorts by number; unidentified vehicles have negative keys and come last. */
 function rank(key: number): number {
   return key > 0 ? key : Number.MAX_SAFE_INTEGER / 2 - key;
 }

@@ -1,31 +1,31 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
-import { badgeText, stalenessNow, vehicleCondition } from "../fleet/vehicleStatus";
+import { badgeText, stalenessNow, vehicleStatus } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
 import { vehicleLabel } from "../text/names";
 import { agedBy, formatAge, formatQuantity } from "../text/quantities";
 import { colourOf } from "../theme/theme";
-import { type LabelPlace, type LabelSpot, leaderOf } from "./labelPlacement";
+import { type LabelPlace, type LabelSpot, labelLine } from "./labelPlacement";
 import type { LonLat } from "./localGrid";
 
 const SVG = "http://www.w3.org/2000/svg";
-/** An arrow head that points up, and a disc for when the heading is unknown; both 40 by 40. */
+/** Arrow pointing up, and a disc for an unknown heading; both 40 x 40. */
 const ARROW = "M20 2 33 36 20 28.5 7 36Z";
 const DISC = "M20 8a12 12 0 1 0 .01 0Z";
 
-/** What a press on a vehicle means. */
+/** Actions of a press on a vehicle. */
 export interface MarkerPress {
   select(key: number): void;
   toggle(key: number): void;
 }
 
-/** One vehicle on the map: an arrow turned to its heading, and its label. */
+/** One vehicle on the map: an arrow pointing along its heading, and its label. */
 export class VehicleMarker {
-  /** On its own, under all symbols, so that no label hides another vehicle. */
+  /** A separate marker below all symbols, so that no label hides a vehicle. */
   readonly label: MarkerLabel;
   private readonly button = document.createElement("button");
   private readonly symbol = document.createElementNS(SVG, "svg");
   private readonly path = document.createElementNS(SVG, "path");
-  /** A wide edge around the path, so that it stands out on any ground. */
+  /** A wide outline, visible on any background. */
   private readonly casing = document.createElementNS(SVG, "path");
   private readonly marker: Marker;
 
@@ -47,13 +47,13 @@ export class VehicleMarker {
     this.label = new MarkerLabel(key);
   }
 
-  /** Brings the marker up to date, and onto the map when it is not there yet. */
+  /** Updates the marker and adds it to the map if needed. */
   show(map: MapLibre, vehicle: VehicleView, at: LonLat, behindS: number, isSelected: boolean) {
     const yaw_deg = vehicle.attitude.yaw_deg;
     for (const path of [this.casing, this.path]) {
       setAttribute(path, "d", yaw_deg === null ? DISC : ARROW);
     }
-    // Whole degrees: a finer turn is not seen, and would be drawn anew all the time.
+    // Whole degrees: finer changes are invisible but would redraw constantly.
     this.symbol.style.transform = `rotate(${Math.round(yaw_deg ?? 0)}deg)`;
     const classes = this.button.classList;
     classes.toggle("is-simulated", vehicle.is_simulated);
@@ -72,20 +72,20 @@ export class VehicleMarker {
   }
 }
 
-/** Touching the page costs even when nothing changes by it. */
+/** Writing to the DOM is expensive even without a change. */
 function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
 function describe(vehicle: VehicleView, behindS: number): string {
   const kind = vehicle.is_simulated ? "simulated vehicle" : "vehicle";
-  return `${kind} ${vehicleLabel(vehicle)}, ${vehicleCondition(vehicle, behindS).word}`;
+  return `${kind} ${vehicleLabel(vehicle)}, ${vehicleStatus(vehicle, behindS).activity}`;
 }
 
-/** What a label is taken to measure until the browser has laid it out. */
+/** Assumed label size until the browser has measured it. */
 const FIRST_SIZE = { width_px: 150, height_px: 34 };
 
-/** A vehicle's number, name and state beside its symbol, with a thin line to it when moved away. */
+/** A vehicle's number, name and height beside its symbol, with a thin line to it when moved. */
 export class MarkerLabel {
   readonly element = document.createElement("span");
   private readonly badge = part("badge");
@@ -93,7 +93,7 @@ export class MarkerLabel {
   private readonly simulated = part("tag tag-simulated");
   private readonly height = part("craft-height");
   private readonly age = part("craft-age");
-  private readonly leader = part("craft-leader");
+  private readonly line = part("craft-label-line");
   private readonly marker: Marker;
   private size = FIRST_SIZE;
   private at: LonLat | null = null;
@@ -104,12 +104,12 @@ export class MarkerLabel {
     this.element.setAttribute("aria-hidden", "true");
     this.element.style.setProperty("--own", colourOf(key));
     this.simulated.textContent = "SIM";
-    const { leader, badge, name, simulated, height, age } = this;
-    this.element.append(leader, badge, name, simulated, height, age);
+    const { line, badge, name, simulated, height, age } = this;
+    this.element.append(line, badge, name, simulated, height, age);
     this.marker = new Marker({ element: this.element, anchor: "top-left" });
   }
 
-  /** Brings the text up to date and moves the label along with its vehicle. */
+  /** Updates the text and moves the label with its vehicle. */
   show(map: MapLibre, vehicle: VehicleView, at: LonLat, behindS: number): void {
     const isStale = stalenessNow(vehicle, behindS) !== "live";
     this.element.classList.toggle("is-stale", isStale);
@@ -125,12 +125,12 @@ export class MarkerLabel {
     this.at = at;
   }
 
-  /** The browser measured the label. */
+  /** Sets the measured size. */
   measured(width_px: number, height_px: number): void {
     this.size = { width_px, height_px };
   }
 
-  /** Where the label's vehicle is on the screen, and how large the label is. */
+  /** The vehicle's position on the screen and the label's size. */
   spot(map: MapLibre): LabelSpot | null {
     if (this.at === null) return null;
     const { x, y } = map.project([this.at.lon, this.at.lat]);
@@ -143,26 +143,26 @@ export class MarkerLabel {
     if (placed === this.placed) return;
     this.placed = placed;
     this.marker.setOffset([place.dx_px, place.dy_px]);
-    this.drawLeader(place);
+    this.drawLine(place);
   }
 
   remove(): void {
     this.marker.remove();
   }
 
-  private drawLeader(place: LabelPlace): void {
-    const leader = leaderOf(place, this.size);
-    this.leader.hidden = leader === null;
-    if (leader === null) return;
-    const { style } = this.leader;
-    style.left = `${leader.x_px}px`;
-    style.top = `${leader.y_px}px`;
-    style.width = `${leader.length_px}px`;
-    style.transform = `rotate(${leader.angle_rad}rad)`;
+  private drawLine(place: LabelPlace): void {
+    const line = labelLine(place, this.size);
+    this.line.hidden = line === null;
+    if (line === null) return;
+    const { style } = this.line;
+    style.left = `${line.x_px}px`;
+    style.top = `${line.y_px}px`;
+    style.width = `${line.length_px}px`;
+    style.transform = `rotate(${line.angle_rad}rad)`;
   }
 }
 
-/** Moves a marker, and puts it onto the map when it is not there yet. */
+/** Moves a marker and adds it to the map if needed. */
 export function moveTo(marker: Marker, map: MapLibre, at: LonLat): void {
   const isOnMap = marker.getElement().isConnected;
   const before = isOnMap ? marker.getLngLat() : null;
@@ -177,7 +177,7 @@ function heightText(vehicle: VehicleView): string {
   return `↥ ${formatQuantity(vehicle.height_above_takeoff_m.value, "m", 0)}`;
 }
 
-/** Touching the page costs even when nothing changes by it. */
+/** Writing to the DOM is expensive even without a change. */
 function setText(element: HTMLElement, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }

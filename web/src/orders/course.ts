@@ -1,16 +1,16 @@
 import { type LonLat, metresPerDegree } from "../map/localGrid";
 import { formatAge, formatHeading, formatQuantity } from "../text/quantities";
 
-/** The straight way from one place to another. */
+/** The straight line from one position to another. */
 export interface Course {
   readonly distance_m: number;
   /** Clockwise from north. */
   readonly bearing_deg: number;
-  /** At the speed asked for, without setting off and stopping. */
+  /** At the given speed, without acceleration and braking. */
   readonly time_s: number;
 }
 
-/** The course over a climb (or descent) of so many metres at so many metres per second. */
+/** The course with a climb (negative: descent) of `climb_m` at `speed_mps`. */
 export function courseOf(from: LonLat, to: LonLat, climb_m: number, speed_mps: number): Course {
   const per = metresPerDegree((from.lat + to.lat) / 2);
   const east_m = (to.lon - from.lon) * per.lon;
@@ -20,8 +20,8 @@ export function courseOf(from: LonLat, to: LonLat, climb_m: number, speed_mps: n
   return { distance_m, bearing_deg, time_s: Math.hypot(distance_m, climb_m) / speed_mps };
 }
 
-/** `120 m towards 045°, about 24 s`. */
+/** `120 m, bearing 045°, about 24 s`. */
 export function courseText({ distance_m, bearing_deg, time_s }: Course): string {
-  const far = formatQuantity(distance_m, "m", distance_m < 10 ? 1 : 0);
-  return `${far} towards ${formatHeading(bearing_deg)}, about ${formatAge(Math.ceil(time_s))}`;
+  const distance = formatQuantity(distance_m, "m", distance_m < 10 ? 1 : 0);
+  return `${distance}, bearing ${formatHeading(bearing_deg)}, about ${formatAge(Math.ceil(time_s))}`;
 }

@@ -7,33 +7,33 @@ import type { Clock } from "../source/clock";
 import type { StationSource } from "../source/stationSource";
 import { vehicleLabel } from "../text/names";
 import { type Course, courseOf } from "./course";
-import type { Desk } from "./orderApi";
-import { createJudgement, type Judgement } from "./orderCheck";
+import type { OrderApi } from "./orderApi";
+import { createOrderCheck, type OrderCheck } from "./orderCheck";
 
-/** The way one flies when nothing else is said: brisk, and stopped within a few metres. */
+/** Default speed: the vehicle stops within a few metres. */
 const SPEED_MPS = 5;
-/** Of a nudge, which is for inching. */
+/** Speed of a nudge. */
 const NUDGE_MPS = 2;
 
-/** By how much a nudge moves; what is left out stays. */
+/** How far a nudge moves; omitted axes do not move. */
 export type NudgeBy = Partial<Record<"north_m" | "east_m" | "up_m" | "turn_deg", number>>;
 
-/** The mode in which a press on the map says where the one selected vehicle is to fly. */
+/** Fly-here mode: a press on the map sets the target of the one selected vehicle. */
 export interface FlyHere {
   readonly isOn: Accessor<boolean>;
-  /** Whom it is about; null while not exactly one vehicle that is known is selected. */
+  /** The selected vehicle; null unless exactly one identified vehicle is selected. */
   readonly vehicle: Accessor<VehicleView | null>;
   readonly target: Accessor<LonLat | null>;
-  /** As typed, metres above takeoff and metres per second. */
+  /** As typed: metres above takeoff, and metres per second. */
   readonly height: Accessor<string>;
   readonly speed: Accessor<string>;
   readonly course: Accessor<Course | null>;
-  /** What the gate says to it now. */
-  readonly judgement: Accessor<Judgement>;
-  /** Changes with everything that would be ordered; empty while the gate does not allow it. */
+  /** The safety gate's current result. */
+  readonly check: Accessor<OrderCheck>;
+  /** Changes with every part of the order; empty while the gate does not allow it. */
   readonly subject: Accessor<string>;
   toggle(): void;
-  /** Takes one step back: the target first, then the mode. False when there was nothing to take back. */
+  /** Clears the target, else leaves the mode. Returns false when neither was set. */
   clear(): boolean;
   aim(at: LonLat): void;
   setHeight(text: string): void;
@@ -45,7 +45,7 @@ export interface FlyHere {
 export function createFlyHere(
   vehicle: Accessor<VehicleView | null>,
   source: Pick<StationSource, "check">,
-  desk: Pick<Desk, "order">,
+  orderApi: Pick<OrderApi, "order">,
   clock: Clock,
 ): FlyHere {
   const [isOn, setOn] = createSignal(false);
@@ -53,25 +53,27 @@ export function createFlyHere(
   const [height, setHeight] = createSignal("");
   const [speed, setSpeed] = createSignal(String(SPEED_MPS));
   const key = createMemo(() => {
-    const one = vehicle();
-    return one === null ? null : vehicleKey(one);
+    const selected = vehicle();
+    return selected === null ? null : vehicleKey(selected);
   });
   const order = createMemo(() => gotoOrder(target(), height(), speed()));
   const serial = createMemo(() => vehicle()?.serial ?? null);
   const named = createMemo(() => {
-    const [to, what] = [serial(), order()];
-    return !isOn() || to === null || what === null ? null : { serials: [to], order: what };
+    const [target_serial, body] = [serial(), order()];
+    return !isOn() || target_serial === null || body === null
+      ? null
+      : { serials: [target_serial], order: body };
   });
-  const judgement = createJudgement(source, clock, named);
+  const check = createOrderCheck(source, clock, named);
   const labels = () => {
-    const one = vehicle();
-    return one === null ? [] : [vehicleLabel(one)];
+    const selected = vehicle();
+    return selected === null ? [] : [vehicleLabel(selected)];
   };
   const leave = () => {
     setTarget(null);
     setOn(false);
   };
-  // What was meant for one vehicle must not go to another.
+  // A target set for one vehicle must not be sent to another.
   createEffect(on(key, leave, { defer: true }));
   onCleanup(leave);
   return {
@@ -81,13 +83,13 @@ export function createFlyHere(
     height,
     speed,
     course: createMemo(() => courseTo(vehicle(), target(), order())),
-    judgement,
-    subject: createMemo(() => (judgement().kind === "allowed" ? JSON.stringify(named()) : "")),
+    check,
+    subject: createMemo(() => (check().kind === "allowed" ? JSON.stringify(named()) : "")),
     toggle: () => {
-      const one = vehicle();
+      const selected = vehicle();
       if (isOn()) leave();
-      else if (one !== null) {
-        setHeight(heightNow(one));
+      else if (selected !== null) {
+        setHeight(currentHeight(selected));
         setOn(true);
       }
     },
@@ -101,25 +103,25 @@ export function createFlyHere(
     setHeight,
     setSpeed,
     confirm: () => {
-      const given = named();
-      if (given === null) return;
-      void desk.order(given, labels());
+      const ready = named();
+      if (ready === null) return;
+      void orderApi.order(ready, labels());
       setTarget(null);
     },
     nudge: (by) => {
       const to = serial();
       if (to === null) return;
-      void desk.order({ serials: [to], order: nudgeOrder(by) }, labels());
+      void orderApi.order({ serials: [to], order: nudgeOrder(by) }, labels());
     },
   };
 }
 
-function heightNow(vehicle: VehicleView): string {
+function currentHeight(vehicle: VehicleView): string {
   const { value } = vehicle.height_above_takeoff_m;
   return value === null ? "" : String(Math.round(value));
 }
 
-/** The order as it stands; null while a part of it is missing or is no number. */
+/** The order from the form; null while a part is missing or not a number. */
 function gotoOrder(target: LonLat | null, height: string, speed: string) {
   const [height_m, speed_mps] = [numberIn(height), numberIn(speed)];
   if (target === null || height_m === null || speed_mps === null || speed_mps <= 0) return null;
@@ -132,7 +134,7 @@ function gotoOrder(target: LonLat | null, height: string, speed: string) {
   } as const satisfies Order;
 }
 
-/** The number in a field, with a point or a comma; null when it holds none. */
+/** The number in a field, with a decimal point or comma; null when it is not a number. */
 export function numberIn(text: string): number | null {
   const plain = text.trim().replace(",", ".");
   const value = Number(plain);

@@ -7,7 +7,7 @@ import {
   type HoldEvent,
   holdProgress,
   IDLE,
-  MOST_COUNTED_MS,
+  MAX_TICK_MS,
   stepHold,
 } from "./holdToConfirm";
 
@@ -26,45 +26,45 @@ function ticks(from_ms: number, to_ms: number): [number, HoldEvent][] {
 }
 
 describe("hold to confirm", () => {
-  it("confirms after the whole time and not before", () => {
+  it("confirms after the full time and not before", () => {
     expect(run([[0, PRESS], ...ticks(50, 1450)]).kind).toBe("holding");
     expect(run([[0, PRESS], ...ticks(50, 1500)]).kind).toBe("done");
   });
 
-  it("gives no order when it is let go of before", () => {
+  it("sends no order when released early", () => {
     const released = run([[0, PRESS], ...ticks(50, 1400), [1410, { kind: "release" }]]);
     expect(released).toEqual(IDLE);
     expect(stepHold(released, TICK, 1600)).toEqual(IDLE);
   });
 
-  it("gives no order when the vehicles change meanwhile", () => {
+  it("sends no order when the vehicles change", () => {
     const other: HoldEvent = { kind: "tick", targets: '["A","B"]' };
     expect(run([[0, PRESS], ...ticks(50, 500), [550, other], ...ticks(600, 3000)])).toEqual(IDLE);
   });
 
-  it("does not count time in which the page stood still, for a release may wait unseen", () => {
+  it("does not count time in which the page hung, since a release may be queued", () => {
     const stalled = run([[0, PRESS], ...ticks(50, 1000), [9000, TICK]]);
-    expect(stalled).toMatchObject({ kind: "holding", held_ms: 1000 + MOST_COUNTED_MS });
+    expect(stalled).toMatchObject({ kind: "holding", held_ms: 1000 + MAX_TICK_MS });
     expect(stepHold(stalled, { kind: "release" }, 9001)).toEqual(IDLE);
   });
 
-  it("starts with nobody named: not at all", () => {
+  it("does not start without vehicles", () => {
     expect(run([[0, { kind: "press", duration_ms: 400, targets: "" }]])).toEqual(IDLE);
   });
 
-  it("confirms once, however long it is held and pressed on", () => {
+  it("confirms once, however long it is held", () => {
     const done = run([[0, PRESS], ...ticks(50, 1500)]);
     expect(stepHold(done, TICK, 5000)).toBe(done);
     expect(stepHold(done, PRESS, 5000)).toBe(done);
     expect(stepHold(done, { kind: "release" }, 5000)).toEqual(IDLE);
   });
 
-  it("does not start over when it is pressed twice", () => {
+  it("does not restart on a second press", () => {
     const hold = run([[0, PRESS], ...ticks(50, 1000), [1020, PRESS], ...ticks(1050, 1500)]);
     expect(hold.kind).toBe("done");
   });
 
-  it("tells how much is through", () => {
+  it("reports its progress", () => {
     expect(holdProgress(IDLE)).toBe(0);
     expect(holdProgress(run([[0, PRESS], ...ticks(50, 750)]))).toBeCloseTo(0.5);
     expect(holdProgress({ kind: "done" })).toBe(1);
@@ -86,7 +86,7 @@ function setUp(duration_ms: number) {
 }
 
 describe("the hold timer", () => {
-  it("confirms once when its time is through", () => {
+  it("confirms once when its time is over", () => {
     const { clock, confirm, timer } = setUp(1500);
     timer.press();
     clock.advance(1499);
@@ -106,7 +106,7 @@ describe("the hold timer", () => {
     expect(timer.progress()).toBe(0);
   });
 
-  it("hears a release that waited while the page hung", () => {
+  it("processes a release that was queued while the page hung", () => {
     const { clock, confirm, timer } = setUp(1500);
     timer.press();
     clock.advance(1000);
@@ -117,7 +117,7 @@ describe("the hold timer", () => {
     expect(confirm).not.toHaveBeenCalled();
   });
 
-  it("stops at a release, a cancel and another selection", () => {
+  it("stops at a release, a cancel and a changed selection", () => {
     for (const stop of [
       (set: ReturnType<typeof setUp>) => set.timer.release(),
       (set: ReturnType<typeof setUp>) => set.timer.cancel(),
@@ -133,7 +133,7 @@ describe("the hold timer", () => {
     }
   });
 
-  it("leaves no timer behind", () => {
+  it("leaves no timer running", () => {
     const { clock, timer, dispose } = setUp(1500);
     timer.press();
     dispose();

@@ -2,30 +2,34 @@ import { type Accessor, createSignal, onCleanup } from "solid-js";
 import type { Clock } from "../source/clock";
 
 /**
- * Hold to confirm: a pure machine. An order goes out only when the button was held, without a break,
- * for its whole time, on the same vehicles as when it was pressed.
+ * Hold to confirm, as a pure state machine.
+ *
+ *   idle --press--> holding --held for duration_ms--> done
+ *   holding, done --release or cancel--> idle
+ *   holding --the target vehicles changed--> idle
+ *
+ * The order is sent on entering `done`, once. A press is ignored outside `idle`, so key repeats and
+ * double presses change nothing. Time is counted in ticks of at most `MAX_TICK_MS`: when the page
+ * stalls, a release may be waiting in the event queue, and the stalled time must not confirm the order.
  */
 
-/**
- * The most that one look at the button counts for. While a busy page stands still, a release may wait
- * unseen; that time does not count, and the release is heard before the rest of the hold is through.
- */
-export const MOST_COUNTED_MS = 100;
+/** Longest time one tick may add to a hold, milliseconds. */
+export const MAX_TICK_MS = 100;
 
 export type Hold =
   | { readonly kind: "idle" }
   | {
       readonly kind: "holding";
-      /** Time that was seen to be held. */
+      /** Time held so far. */
       readonly held_ms: number;
-      readonly seen_ms: number;
+      readonly last_tick_ms: number;
       readonly duration_ms: number;
       readonly targets: string;
     }
   | { readonly kind: "done" };
 
 export type HoldEvent =
-  /** `targets` names the vehicles in any way that changes when they do. */
+  /** `targets` identifies the target vehicles; it changes when they do and is empty without any. */
   | { readonly kind: "press"; readonly duration_ms: number; readonly targets: string }
   | { readonly kind: "release" }
   | { readonly kind: "cancel" }
@@ -33,7 +37,7 @@ export type HoldEvent =
 
 export const IDLE: Hold = { kind: "idle" };
 
-/** One step. The order is given exactly when the kind becomes `done`; after that only a release starts over. */
+/** Returns the state after `event`; the caller sends the order when it becomes `done`. */
 export function stepHold(hold: Hold, event: HoldEvent, now_ms: number): Hold {
   switch (event.kind) {
     case "press":
@@ -41,7 +45,7 @@ export function stepHold(hold: Hold, event: HoldEvent, now_ms: number): Hold {
       return {
         kind: "holding",
         held_ms: 0,
-        seen_ms: now_ms,
+        last_tick_ms: now_ms,
         duration_ms: event.duration_ms,
         targets: event.targets,
       };
@@ -49,27 +53,27 @@ export function stepHold(hold: Hold, event: HoldEvent, now_ms: number): Hold {
     case "cancel":
       return IDLE;
     case "tick":
-      return hold.kind === "holding" ? heldOn(hold, event.targets, now_ms) : hold;
+      return hold.kind === "holding" ? addHeldTime(hold, event.targets, now_ms) : hold;
   }
 }
 
-function heldOn(hold: Hold & { kind: "holding" }, targets: string, now_ms: number): Hold {
+function addHeldTime(hold: Hold & { kind: "holding" }, targets: string, now_ms: number): Hold {
   if (targets !== hold.targets) return IDLE;
-  const held_ms = hold.held_ms + Math.min(MOST_COUNTED_MS, now_ms - hold.seen_ms);
+  const held_ms = hold.held_ms + Math.min(MAX_TICK_MS, now_ms - hold.last_tick_ms);
   if (held_ms >= hold.duration_ms) return { kind: "done" };
-  return { ...hold, held_ms, seen_ms: now_ms };
+  return { ...hold, held_ms, last_tick_ms: now_ms };
 }
 
-/** How much of the time is through, 0 to 1. */
+/** The held share of the duration, 0 to 1. */
 export function holdProgress(hold: Hold): number {
   if (hold.kind === "idle") return 0;
   return hold.kind === "done" ? 1 : Math.min(1, hold.held_ms / hold.duration_ms);
 }
 
-/** How often a held button is looked at; also how smoothly its bar grows. */
+/** Tick interval while a button is held; also the update rate of its progress bar. */
 const TICK_MS = 50;
 
-/** Drives the hold machine with a clock. */
+/** The hold state machine driven by a clock. */
 export interface HoldTimer {
   readonly kind: Accessor<Hold["kind"]>;
   /** 0 to 1. */
@@ -80,7 +84,7 @@ export interface HoldTimer {
 }
 
 /**
- * Makes a timer that calls `confirm` once when the hold is through. `targets` is read at the press and
+ * Creates a timer that calls `confirm` once when the hold completes. `targets` is read at the press and
  * at every tick.
  */
 export function createHoldTimer(

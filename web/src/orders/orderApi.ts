@@ -4,65 +4,65 @@ import type { Clock } from "../source/clock";
 import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
 import { commandName } from "../text/names";
 
-/** What was asked last and what the station said to it. */
-export interface Answer {
-  readonly what: string;
-  /** The vehicles named; `all` for all stop. */
+/** The last order sent and the station's answer. */
+export interface OrderAnswer {
+  readonly order: string;
+  /** Labels of the vehicles addressed. */
   readonly labels: readonly string[];
   readonly outcome: Outcome<readonly OrderResult[]> | { readonly kind: "waiting" };
 }
 
-/** Gives orders through the source and keeps the last answer for the screen. */
-export interface Desk {
-  readonly last: Accessor<Answer | null>;
+/** Sends orders through the source and keeps the last answer for display. */
+export interface OrderApi {
+  readonly lastAnswer: Accessor<OrderAnswer | null>;
   order(order: NamedOrder, labels: readonly string[]): Promise<void>;
   allStop(): Promise<void>;
-  /** Calls vehicles home in layers; null: every one in reach. */
+  /** Starts a return in layers; null means every vehicle in reach. */
   fleetReturn(serials: readonly string[] | null, labels: readonly string[]): Promise<void>;
   dismiss(): void;
 }
 
-/** An answer without a refusal goes by itself after this; the commands' list tells on. */
-export const ALL_WELL_FOR_MS = 10_000;
+/** An answer without refusals disappears after this time; the command list keeps the result. */
+export const ACCEPTED_SHOWN_MS = 10_000;
 
-type Asks = Pick<StationSource, "order" | "allStop" | "fleetReturn">;
+type OrderSource = Pick<StationSource, "order" | "allStop" | "fleetReturn">;
 
-export function createDesk(source: Asks, clock: Clock): Desk {
-  const [last, setLast] = createSignal<Answer | null>(null);
+export function createOrderApi(source: OrderSource, clock: Clock): OrderApi {
+  const [lastAnswer, setLastAnswer] = createSignal<OrderAnswer | null>(null);
   let newest = 0;
 
   async function run(
-    what: string,
+    order: string,
     labels: readonly string[],
-    ask: () => Promise<Outcome<readonly OrderResult[]>>,
+    send: () => Promise<Outcome<readonly OrderResult[]>>,
   ): Promise<void> {
     newest += 1;
-    const own = newest;
-    setLast({ what, labels, outcome: { kind: "waiting" } });
-    const outcome = await ask();
-    // A slow answer must not stand under a newer order.
-    if (own !== newest) return;
-    setLast({ what, labels, outcome });
-    if (isAllWell(outcome)) {
-      clock.after(ALL_WELL_FOR_MS, () => {
-        if (own === newest) setLast(null);
+    const ownNumber = newest;
+    setLastAnswer({ order, labels, outcome: { kind: "waiting" } });
+    const outcome = await send();
+    // A late answer must not replace the answer to a newer order.
+    if (ownNumber !== newest) return;
+    setLastAnswer({ order, labels, outcome });
+    if (isAllAccepted(outcome)) {
+      clock.after(ACCEPTED_SHOWN_MS, () => {
+        if (ownNumber === newest) setLastAnswer(null);
       });
     }
   }
 
   return {
-    last,
+    lastAnswer,
     order: async (order, labels) => {
       if (order.serials.length === 0) return;
       await run(commandName(order.order.kind), labels, () => source.order(order));
     },
     allStop: () => run("All stop", ["all flying vehicles"], () => source.allStop()),
     fleetReturn: (serials, labels) =>
-      run("Return in layers, first hold", labels, () => source.fleetReturn(serials)),
-    dismiss: () => setLast(null),
+      run("Return in layers (hold first)", labels, () => source.fleetReturn(serials)),
+    dismiss: () => setLastAnswer(null),
   };
 }
 
-function isAllWell(outcome: Outcome<readonly OrderResult[]>): boolean {
+function isAllAccepted(outcome: Outcome<readonly OrderResult[]>): boolean {
   return outcome.kind === "answered" && outcome.value.every((result) => result.accepted);
 }

@@ -4,53 +4,53 @@ import type { Clock } from "../source/clock";
 import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
 import { refusalText } from "../text/names";
 
-/** What the gate says to an order that is not given yet. */
-export type Judgement =
-  | { readonly kind: "nothing" }
-  | { readonly kind: "asking" }
+/** The safety gate's result for an order that has not been sent. */
+export type OrderCheck =
+  | { readonly kind: "none" }
+  | { readonly kind: "pending" }
   | { readonly kind: "allowed" }
   | { readonly kind: "refused"; readonly text: string };
 
-/** Numbers are typed digit by digit: the gate is asked when they stand still. */
-const SETTLED_MS = 250;
-/** What is allowed now may not be so soon: vehicles move, batteries drain. */
-const AGAIN_MS = 1000;
+/** Wait this long after the last change: numbers are typed digit by digit. */
+const DEBOUNCE_MS = 250;
+/** Repeat interval: vehicles move and batteries drain, so a result ages. */
+const REPEAT_MS = 1000;
 
-/** Asks the gate about an order for as long as there is one, anew whenever it changes. */
-export function createJudgement(
+/** Checks an order with the safety gate when it changes and then once a second; null stops checking. */
+export function createOrderCheck(
   source: Pick<StationSource, "check">,
   clock: Clock,
   order: Accessor<NamedOrder | null>,
-): Accessor<Judgement> {
-  const [judgement, setJudgement] = createSignal<Judgement>({ kind: "nothing" });
-  const written = createMemo(() => (order() === null ? "" : JSON.stringify(order())));
+): Accessor<OrderCheck> {
+  const [check, setJudgement] = createSignal<OrderCheck>({ kind: "none" });
+  const serialized = createMemo(() => (order() === null ? "" : JSON.stringify(order())));
   createEffect(() => {
-    const now = written();
-    setJudgement({ kind: now === "" ? "nothing" : "asking" });
-    if (now === "") return;
-    const asked = JSON.parse(now) as NamedOrder;
-    let isOver = false;
-    let cancel = clock.after(SETTLED_MS, () => void ask());
-    const ask = async () => {
-      const outcome = await source.check(asked);
-      if (isOver) return;
-      setJudgement(judgementOf(outcome));
-      cancel = clock.after(AGAIN_MS, () => void ask());
+    const current = serialized();
+    setJudgement({ kind: current === "" ? "none" : "pending" });
+    if (current === "") return;
+    const order = JSON.parse(current) as NamedOrder;
+    let isCancelled = false;
+    let cancel = clock.after(DEBOUNCE_MS, () => void send());
+    const send = async () => {
+      const outcome = await source.check(order);
+      if (isCancelled) return;
+      setJudgement(checkOf(outcome));
+      cancel = clock.after(REPEAT_MS, () => void send());
     };
     onCleanup(() => {
-      isOver = true;
+      isCancelled = true;
       cancel();
     });
   });
-  return judgement;
+  return check;
 }
 
-function judgementOf(outcome: Outcome<readonly OrderResult[]>): Judgement {
+function checkOf(outcome: Outcome<readonly OrderResult[]>): OrderCheck {
   if (outcome.kind === "failed") return { kind: "refused", text: outcome.problem };
   const refused = outcome.value.find((result) => !result.accepted);
   if (refused !== undefined) {
-    return { kind: "refused", text: refusalText(refused.rule, refused.reason) };
+    return { kind: "refused", text: refusalText(refused.reason) };
   }
   if (outcome.value.length > 0) return { kind: "allowed" };
-  return { kind: "refused", text: "The station judged nothing. Try again." };
+  return { kind: "refused", text: "No check result from the station. Try again." };
 }

@@ -1,40 +1,39 @@
 import type { VehicleView } from "../protocol";
 import { vehicleLabel } from "../text/names";
 
-/** The orders with buttons of their own, and how each is confirmed. */
+/** An order with its own button, and how it is confirmed. */
 export interface OrderKind {
   readonly kind: "hover" | "land" | "return_home";
   readonly label: string;
   /** Completes "Keep holding to ...", before the vehicles' names. */
   readonly verb: string;
-  /** What one must know of it before. */
+  /** Explanation shown with the button. */
   readonly note: string;
-  /** How long the button is held. */
+  /** How long the button must be held, milliseconds. */
   readonly hold_ms: number;
-  /** With Shift, held as long as the button. */
+  /** Key to hold together with Shift, for as long as the button. */
   readonly key: string;
 }
 
 /**
- * All three are confirmed by the same gesture, so that no hurry has to remember which is which. Hover
- * is the safe one and asks for 0.4 s: longer than a brush of the hand or a double press, shorter
- * than a thought. A second press instead could be a double press by mistake. Landing and return
- * ask for 1.5 s.
+ * All three use the same gesture, so that an operator in a hurry need not remember which is which.
+ * Hover is safe and takes 0.4 s: longer than an accidental touch or a double press. A second press as
+ * confirmation could be an accidental double press. Landing and return take 1.5 s.
  */
 export const ORDER_KINDS: readonly OrderKind[] = [
   {
     kind: "hover",
     label: "Hover",
     verb: "hover",
-    note: "Stops and holds its position.",
+    note: "Stop and hold position.",
     hold_ms: 400,
     key: "H",
   },
   {
     kind: "return_home",
     label: "Return home",
-    verb: "climb to the aircraft's own go-home height and return home",
-    note: "First climbs to the aircraft's own go-home height.",
+    verb: "climb to the go-home height and return home",
+    note: "Climbs to the aircraft's go-home height first.",
     hold_ms: 1500,
     key: "R",
   },
@@ -42,18 +41,18 @@ export const ORDER_KINDS: readonly OrderKind[] = [
     kind: "land",
     label: "Land",
     verb: "land",
-    note: "Lands where it is.",
+    note: "Land at the current position.",
     hold_ms: 1500,
     key: "L",
   },
 ];
 
-/** The vehicles an order would go to, and the selected ones it cannot go to. */
+/** The selected vehicles an order can be sent to, and those it cannot. */
 export interface Targets {
   readonly serials: readonly string[];
-  /** What the order names, in the same order as `serials`. */
+  /** Vehicle labels, in the order of `serials`. */
   readonly labels: readonly string[];
-  /** Selected vehicles whose app has not said which aircraft it is. */
+  /** Labels of selected vehicles whose serial number is not known yet. */
   readonly unreachable: readonly string[];
 }
 
@@ -66,7 +65,7 @@ export function targetsOf(selected: readonly VehicleView[]): Targets {
   };
 }
 
-/** Changes whenever the order would go to other vehicles; empty when it would go to none. */
+/** A key that changes with the target vehicles; empty without any. */
 export function targetsKey(targets: Targets): string {
   return targets.serials.length === 0 ? "" : JSON.stringify(targets.serials);
 }

@@ -3,10 +3,10 @@ import "./panel.css";
 import { useConsole } from "../console";
 import { SeverityMark } from "./SeverityMark";
 
-/** A titled section of the page's sides. */
+/** A titled section beside the map. */
 export function Panel(props: {
   title: string;
-  /** How many things are listed; left out when counting means nothing. */
+  /** Number of listed items; omitted where a count is meaningless. */
   count?: number;
   actions?: JSX.Element;
   children: JSX.Element;
@@ -27,19 +27,19 @@ export function Panel(props: {
   );
 }
 
-/** What stands in an empty list. Before the first news nothing is known, not even that there is nothing. */
+/** Text of an empty list; before the first state the list is unknown, not empty. */
 export function Empty(props: { children: JSX.Element }) {
   const { fleet } = useConsole();
   return (
     <p class="panel-empty">
-      <Show when={fleet.hasState} fallback="Not known: the station has not been heard yet.">
+      <Show when={fleet.hasState} fallback="No data from the station yet.">
         {props.children}
       </Show>
     </p>
   );
 }
 
-/** Why something was not done, where it was asked for; nothing while there is nothing to say. */
+/** Why a request failed, shown beside its control; nothing without a problem. */
 export function Problem(props: { text: string | null }) {
   return (
     <Show when={props.text}>

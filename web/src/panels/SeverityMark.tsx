@@ -2,10 +2,10 @@ import { Match, Switch } from "solid-js";
 import type { Severity } from "../protocol";
 import { SEVERITY_NAMES } from "../text/names";
 
-/** A severity as a shape of its own: octagon, diamond, triangle, disc; a tick for none. */
+/** A severity as a shape: octagon, diamond, triangle, disc; a tick for none. */
 export function SeverityMark(props: { severity: Severity | null; size?: number }) {
   const size = () => props.size ?? 22;
-  const name = () => (props.severity === null ? "All well" : SEVERITY_NAMES[props.severity]);
+  const name = () => (props.severity === null ? "OK" : SEVERITY_NAMES[props.severity]);
   return (
     <svg
       class="mark"

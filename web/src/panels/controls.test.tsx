@@ -49,7 +49,7 @@ function list(changes: Partial<PreflightView> = {}): PreflightView {
   };
 }
 
-describe("who leads a vehicle", () => {
+describe("control authority", () => {
   const authority = (holder: AuthorityHolder) => ({
     holder,
     holder_name: "survey 3",
@@ -59,42 +59,42 @@ describe("who leads a vehicle", () => {
   const heldBy = (holder: AuthorityHolder) =>
     station([vehicle(1, { authority: authority(holder) })]);
 
-  it("is told with the holder_name, the time and the reason", () => {
+  it("is shown with the holder's name, the time and the reason", () => {
     const root = show(VehicleDetail, heldBy("guidance"));
     page.shared.selection.only(1);
-    expect(find(root, "[aria-label='Who leads it']").textContent).toContain(
-      "Controlled by guidance (survey 3) for 20 s: the survey began",
+    expect(find(root, "[aria-label='Control authority']").textContent).toContain(
+      "Guidance control (survey 3) for 20 s: the survey began",
     );
   });
 
-  it("changes by a press that is held, and by no brush of the hand", async () => {
+  it("changes by a held button, not by a short press", async () => {
     show(VehicleDetail, heldBy("guidance"));
     page.shared.selection.only(1);
     await hold("Take over 1 Alder", 300);
     button("Take over").dispatchEvent(new PointerEvent("pointerup", { bubbles: true }));
-    await hold("Give 1 Alder", 450);
-    expect(page.said).toEqual([{ authority: "pilot", serial: "SN-001" }]);
+    await hold("Hand over 1 Alder", 450);
+    expect(page.requests).toEqual([{ authority: "pilot", serial: "SN-001" }]);
   });
 
-  it("has no button for whom it has already, and tells a refusal with its rule", async () => {
+  it("has no button for the current holder, and shows a refusal", async () => {
     page = renderPage(VehicleDetail, heldBy("guidance"));
-    page.answerWordsWith({ accepted: false, rule: "link_age", reason: "it is not heard" });
+    page.answerRequestsWith({ accepted: false, rule: "link_age", reason: "no telemetry for 5 s" });
     page.shared.selection.only(1);
     await hold("Take over", 450);
-    expect(page.root.textContent).toContain("Refused (link age): it is not heard");
-    page.say(heldBy("operator"));
+    expect(page.root.textContent).toContain("Refused: no telemetry for 5 s");
+    page.receive(heldBy("operator"));
     expect(page.root.querySelector("[aria-label^='Take over']")).toBeNull();
   });
 
-  it("gives nothing when somebody else takes it while the button is held", async () => {
+  it("does not change when the holder changes while the button is held", async () => {
     show(VehicleDetail, heldBy("guidance"));
     page.shared.selection.only(1);
     press("Take over");
     page.clock.advance(300);
-    page.say(heldBy("pilot"));
+    page.receive(heldBy("pilot"));
     page.clock.advance(2000);
     await settled();
-    expect(page.said).toEqual([]);
+    expect(page.requests).toEqual([]);
   });
 });
 
@@ -107,16 +107,16 @@ describe("the checklist", () => {
     return find(page.root, "[aria-label='Preflight checklist']");
   };
 
-  it("says what is not in order before all that is, and what to do", async () => {
+  it("lists items that are not OK first, with instructions", async () => {
     const section = await open(list());
     const lines = [...section.querySelectorAll("li")].map((line) => line.textContent);
-    expect(lines[0]).toContain("The attention point, attention: as it is");
+    expect(lines[0]).toContain("The attention point: as it is");
     expect(lines[0]).toContain("→ Do something about it.");
-    expect(lines.at(-1)).toContain("The ok point, in order");
-    expect(section.textContent).toContain("1 point holds missions back");
+    expect(lines.at(-1)).toContain("The ok point: as it is");
+    expect(section.textContent).toContain("1 item blocks missions");
   });
 
-  it("is asked anew every two seconds, and says so when no answer comes", async () => {
+  it("is refreshed every two seconds, and marked when not updated", async () => {
     const section = await open(list());
     page.showPreflight(list({ is_passed: true, points: [point("ok")] }));
     page.clock.advance(2000);
@@ -126,24 +126,24 @@ describe("the checklist", () => {
     page.failPreflight("The station cannot be reached.");
     page.clock.advance(2000);
     await settled();
-    expect(section.textContent).toContain("This list is old: The station cannot be reached.");
+    expect(section.textContent).toContain("Checklist not updated: The station cannot be reached.");
   });
 
-  it("is overridden with a typed reason only, and held", async () => {
+  it("is overridden with a typed reason and a held button only", async () => {
     const section = await open(list());
     await hold("Override", 2000);
-    expect(page.said).toEqual([]);
+    expect(page.requests).toEqual([]);
     const field = find<HTMLInputElement>(section, "input");
     field.value = "  short test hop ";
     field.dispatchEvent(new InputEvent("input", { bubbles: true }));
     await hold("Override the checklist of 1 Alder: hold for 1.5 seconds", 1400);
-    expect(page.said).toEqual([]);
+    expect(page.requests).toEqual([]);
     page.clock.advance(200);
     await settled();
-    expect(page.said).toEqual([{ override: "short test hop", serial: "SN-001" }]);
+    expect(page.requests).toEqual([{ override: "short test hop", serial: "SN-001" }]);
   });
 
-  it("tells who has overridden it and why", async () => {
+  it("shows the operator and the reason of an override", async () => {
     const section = await open(list({ override: { by: "ann", reason: "short hop", age_s: 5 } }));
     expect(section.textContent).toContain("Overridden by ann, 5.0 s ago: short hop");
     expect(section.querySelector("input")).toBeNull();
@@ -151,42 +151,42 @@ describe("the checklist", () => {
 });
 
 describe("a hazard area", () => {
-  it("is dismissed by a long press, under the name the station gave it", async () => {
+  it("is cleared by a long press, under the station's name for it", async () => {
     const one = vehicle(3, { hazard: hazard([0, 0], { dismissed_as: "link-7" }) });
     const root = show(VehicleDetail, station([one]));
     page.shared.selection.only(3);
-    expect(root.textContent).toContain("anywhere within 50\u00a0m of where it was last seen");
-    await hold("Dismiss the hazard of 3 Cedar", 1000);
-    expect(page.said).toEqual([]);
+    expect(root.textContent).toContain("anywhere within 50\u00a0m of its last position");
+    await hold("Clear the hazard area of 3 Cedar", 1000);
+    expect(page.requests).toEqual([]);
     page.clock.advance(600);
     await settled();
-    expect(page.said).toEqual([{ dismissed: "link-7" }]);
+    expect(page.requests).toEqual([{ clearedHazard: "link-7" }]);
   });
 });
 
-describe("separation holds", () => {
+describe("separation hold", () => {
   const withHold = (separation_hold_on: boolean) => {
     const state = station([]);
     return { ...state, station: { ...state.station, separation_hold_on } };
   };
 
-  it("are told for as long as they are off, with a switch beside that takes one press", async () => {
+  it("shows a banner while off, with a switch that takes one press", async () => {
     const root = show(SeparationBanner, withHold(true));
     expect(root.textContent).toBe("");
-    page.say(withHold(false));
-    expect(root.textContent).toContain("Separation holds are OFF.");
+    page.receive(withHold(false));
+    expect(root.textContent).toContain("Separation hold is OFF.");
     find(root, "button").click();
     await settled();
-    expect(page.said).toEqual([{ separationHold: true }]);
+    expect(page.requests).toEqual([{ separationHold: true }]);
   });
 
-  it("are switched off by a long press only", async () => {
+  it("is switched off by a long press only", async () => {
     show(SeparationSwitch, withHold(true));
     button("Switch").click();
-    await hold("Switch separation holds off", 1400);
-    expect(page.said).toEqual([]);
+    await hold("Switch separation hold off", 1400);
+    expect(page.requests).toEqual([]);
     page.clock.advance(200);
     await settled();
-    expect(page.said).toEqual([{ separationHold: false }]);
+    expect(page.requests).toEqual([{ separationHold: false }]);
   });
 });

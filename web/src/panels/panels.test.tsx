@@ -3,8 +3,8 @@ import type { StationState } from "../protocol";
 import { alarm, command, link, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
 import { AlarmList } from "./alarms/AlarmList";
-import { LostBanner } from "./bar/ConnectionBanner";
-import { StateWord } from "./bar/StatusButton";
+import { ConnectionBanner } from "./bar/ConnectionBanner";
+import { StatusButton } from "./bar/StatusButton";
 import { TopBar } from "./bar/TopBar";
 import { CommandList } from "./commands/CommandList";
 import { factsOf } from "./detail/facts";
@@ -23,8 +23,8 @@ const show = (part: Parameters<typeof renderPage>[0], state: StationState | null
 
 afterEach(() => page.dispose());
 
-describe("text from the wire", () => {
-  it("is shown as text in every panel", () => {
+describe("received text", () => {
+  it("is displayed as text in every panel", () => {
     const one = vehicle(1, { serial: HOSTILE, name: HOSTILE, model: HOSTILE });
     const state = station([one], {
       alarms: [alarm(1, { text: HOSTILE, vehicle_name: HOSTILE })],
@@ -51,13 +51,13 @@ describe("text from the wire", () => {
 });
 
 describe("the vehicle list", () => {
-  it("marks simulated vehicles with a word", () => {
+  it("marks simulated vehicles with a tag", () => {
     const root = show(VehicleList, station([vehicle(1), vehicle(2, { is_simulated: true })]));
     const tags = [...root.querySelectorAll("li")].map((row) => row.textContent?.includes("SIM"));
     expect(tags).toEqual([false, true]);
   });
 
-  it("greys a vehicle as its telemetry grows old, and counts its age", () => {
+  it("greys a vehicle with old telemetry and shows the age", () => {
     const root = show(VehicleList, station([vehicle(1, { telemetry_age_s: 0.2 })]));
     expect(find(root, ".vehicle").classList.contains("is-stale")).toBe(false);
     page.age(4);
@@ -66,7 +66,7 @@ describe("the vehicle list", () => {
     expect(root.textContent).toContain("No contact");
   });
 
-  it("shows what is unknown as a dash and never as a zero", () => {
+  it("shows unknown values as a dash, never as zero", () => {
     const unknown = { value: null, age_s: null };
     const velocity = { north_mps: null, east_mps: null, down_mps: null, age_s: null };
     const one = vehicle(1, {
@@ -78,7 +78,7 @@ describe("the vehicle list", () => {
     expect(find(root, ".vehicle-figures").textContent).toMatch(/^↥ ——▮ —/);
   });
 
-  it("selects one by its row and more by their boxes", () => {
+  it("selects one by its row and more by their checkboxes", () => {
     const root = show(VehicleList, station([vehicle(1), vehicle(2), vehicle(3)]));
     const rows = [...root.querySelectorAll<HTMLElement>(".vehicle-body")];
     rows[1]?.click();
@@ -89,13 +89,13 @@ describe("the vehicle list", () => {
     expect(page.shared.selection.keys()).toEqual([1]);
   });
 
-  it("says where apps connect while there are none", () => {
+  it("shows the app address while no app is connected", () => {
     expect(show(VehicleList, station([])).textContent).toContain("127.0.0.1:3001");
   });
 });
 
-describe("before the first news", () => {
-  it("claims nothing, not even that there is nothing", () => {
+describe("before the first state", () => {
+  it("lists are unknown, not empty", () => {
     const lists = () => (
       <>
         <VehicleList />
@@ -106,13 +106,13 @@ describe("before the first news", () => {
     );
     const empty = [...show(lists, null).querySelectorAll(".panel-empty")];
     expect(empty.map((note) => note.textContent)).toEqual(
-      Array(4).fill("Not known: the station has not been heard yet."),
+      Array(4).fill("No data from the station yet."),
     );
   });
 });
 
 describe("the facts of a vehicle", () => {
-  it("name each height's datum and say why a value is unknown", () => {
+  it("state each height's datum and why a value is unknown", () => {
     page = renderPage(() => null, station([]));
     const facts = factsOf(
       vehicle(1, {
@@ -123,15 +123,15 @@ describe("the facts of a vehicle", () => {
     );
     const of = (name: string) => facts.find((fact) => fact.name === name);
     expect(of("Height above takeoff")?.text).toBe("45.0\u00a0m");
-    expect(of("Altitude, WGS84, app's own")?.text).toBe("331.4\u00a0m");
-    expect(of("Wind level")).toMatchObject({ text: "—", why: "the app sends no usable value" });
+    expect(of("Altitude (WGS84, as reported)")?.text).toBe("331.4\u00a0m");
+    expect(of("Wind level")).toMatchObject({ text: "—", why: "no valid value in telemetry" });
     expect(of("Mission")).toMatchObject({ text: "—", why: "not received yet" });
-    expect(of("Waypoints are sent")?.why).toContain("missions are refused");
+    expect(of("Waypoint altitude")?.why).toContain("missions are refused");
   });
 });
 
 describe("alarms", () => {
-  it("name the vehicle, come worst first and can be acknowledged", () => {
+  it("name the vehicle, are sorted worst first and can be acknowledged", () => {
     const alarms = [
       alarm(1),
       alarm(7, { severity: "critical", vehicle_name: "Cedar", text: "Lost." }),
@@ -145,13 +145,15 @@ describe("alarms", () => {
 });
 
 describe("commands", () => {
-  it("show their life with the newest first, and the reason of a refusal", () => {
+  it("are listed newest first with their phases and the reason of a refusal", () => {
     const refused = command(9, { phase: "refused_by_station", note: "flying: on the ground" });
     const root = show(CommandList, station([], { commands: [refused, command(8)] }));
     const rows = [...root.querySelectorAll("[data-testid^=command-]")];
     expect(rows.map((row) => row.getAttribute("data-testid"))).toEqual(["command-9", "command-8"]);
     expect(rows[0]?.textContent).toContain("flying: on the ground");
-    const life = [...(rows[1]?.querySelectorAll(".life li") ?? [])].map((item) => item.textContent);
+    const life = [...(rows[1]?.querySelectorAll(".command-history li") ?? [])].map(
+      (item) => item.textContent,
+    );
     expect(life).toEqual([
       "queued +0.0 s",
       "sent +0.0 s",
@@ -160,22 +162,24 @@ describe("commands", () => {
     ]);
   });
 
-  it("stand in the station's order, and its own have negative numbers", () => {
+  it("keep the station's order and hide internal numbers", () => {
     const own = command(-5, { kind: "stick", issued_by: "station" });
-    const given = { commands: [own, command(8), command(-4)] };
-    const root = show(CommandList, station([], given));
+    const received = { commands: [own, command(8), command(-4)] };
+    const root = show(CommandList, station([], received));
     const rows = [...root.querySelectorAll("[data-testid^=command-]")];
     expect(rows.map((row) => row.getAttribute("data-testid"))).toEqual([
       "command--5",
       "command-8",
       "command--4",
     ]);
-    expect(rows[0]?.textContent).toContain("#-5 by station");
-    page.say(station([], { commands: [command(9), ...given.commands] }));
+    expect(rows[0]?.textContent).toContain("Station, 9.0 s ago");
+    expect(rows[1]?.textContent).toContain("Operator at 127.0.0.1, 9.0 s ago");
+    expect(root.textContent).not.toContain("-5");
+    page.receive(station([], { commands: [command(9), ...received.commands] }));
     expect(root.querySelector("li")?.getAttribute("data-testid")).toBe("command-9");
   });
 
-  it("tell the note of each step beside it, and none twice", () => {
+  it("show each phase's note once", () => {
     const history = [
       { phase: "sent", age_s: 40, note: "" },
       { phase: "confirmed", age_s: 39.6, note: "by telemetry: descending" },
@@ -184,7 +188,7 @@ describe("commands", () => {
     const note = "by telemetry: on the ground";
     const landed = command(3, { kind: "land", age_s: 40, history: [...history], note });
     const root = show(CommandList, station([], { commands: [landed] }));
-    const life = [...root.querySelectorAll(".life li")].map((item) => item.textContent);
+    const life = [...root.querySelectorAll(".command-history li")].map((item) => item.textContent);
     expect(life).toEqual([
       "sent +0.0 s",
       "confirmed +0.4 s (by telemetry: descending)",
@@ -195,7 +199,7 @@ describe("commands", () => {
 });
 
 describe("links", () => {
-  it("put conflicts and unidentified ones first and tell what was wrong", () => {
+  it("list conflicts and unidentified ones first, with protocol errors", () => {
     const links = [
       link(1),
       link(2, { status: "unidentified", claimed_serial: null }),
@@ -207,31 +211,31 @@ describe("links", () => {
       "Link 2",
       "Link 1",
     ]);
-    expect(rows[0]?.textContent).toContain("2 bad hash, 40 bytes skipped");
+    expect(rows[0]?.textContent).toContain("2 bad checksum, 40 bytes skipped");
   });
 
-  it("count the answers that were not believed, once there is one", () => {
+  it("show the number of ignored answers if there are any", () => {
     const root = show(LinkList, station([], { links: [link(1)] }));
-    expect(root.textContent).not.toContain("not believed");
-    page.say(station([], { links: [link(1, { answers_not_believed: 2 })] }));
-    expect(root.textContent).toContain("2 answers not believed");
+    expect(root.textContent).not.toContain("ignored");
+    page.receive(station([], { links: [link(1, { answers_not_believed: 2 })] }));
+    expect(root.textContent).toContain("2 answers ignored");
   });
 
-  it("are one line each until they are opened, and stay open through new states", () => {
+  it("are collapsed at first and stay open through new states", () => {
     const root = show(LinkList, station([], { links: [link(1), link(2, { bad_size: 1 })] }));
     const open = () => [...root.querySelectorAll("details")].map((details) => details.open);
     const lines = [...root.querySelectorAll("summary")].map((line) => line.textContent);
     expect(lines).toEqual(["Link 2SN-002faultsIdentified", "Link 1SN-001Identified"]);
     expect(open()).toEqual([false, false]);
     find<HTMLDetailsElement>(root, "details").open = true;
-    page.say(station([], { links: [link(1), link(2, { bad_size: 2 })] }));
+    page.receive(station([], { links: [link(1), link(2, { bad_size: 2 })] }));
     expect(open()).toEqual([true, false]);
     expect(find(root, "details").textContent).toContain("2 bad size");
   });
 });
 
 describe("a command", () => {
-  it("tells its mission's part and what was repaired in it", () => {
+  it("shows its mission part and adjustments", () => {
     const repairs = ["waypoint 3 is 0.40 m from waypoint 2 and was merged into it"];
     const one = command(1, { kind: "mission", part: "part 2 of 3", repairs });
     const root = show(CommandList, station([], { commands: [one, command(2)] }));
@@ -254,51 +258,55 @@ describe("a command", () => {
 });
 
 describe("the station", () => {
-  it("tells of refused connections and a capture with holes, once there are any", () => {
+  it("shows refused connections and lost capture data if there are any", () => {
     const state = station([]);
     const root = show(StationPanel, state);
-    expect(root.textContent).not.toMatch(/refused|Missing/);
+    expect(root.textContent).not.toMatch(/refused|Lost/);
     const lossy = { ...state.station, connections_refused: 3, capture_dropped_bytes: 2_500 };
-    page.say(station([], { station: lossy }));
+    page.receive(station([], { station: lossy }));
     expect(root.textContent).toContain("Connections refused3");
-    expect(root.textContent).toContain("Missing from the capture2.5 kB");
+    expect(root.textContent).toContain("Lost from raw capture2.5 kB");
   });
 
-  it("says whether the ground's heights are known, and how far and high one may fly", () => {
+  it("shows the terrain source and the flight limits", () => {
     const state = station([]);
     const root = show(StationPanel, state);
-    expect(root.textContent).toContain("Terrainflat assumed");
-    expect(root.textContent).toContain("Highest above ground120");
-    expect(root.textContent).toContain("Farthest from home1000");
+    expect(root.textContent).toContain("Terrainassumed flat");
+    expect(root.textContent).toContain("Max. height above ground120");
+    expect(root.textContent).toContain("Max. distance from home1000");
     const site = state.site && { ...state.site, terrain: "model" as const };
-    page.say(station([], { site }));
+    page.receive(station([], { site }));
     expect(root.textContent).toContain("Terrainelevation model");
   });
 });
 
-describe("the top", () => {
-  it("says the state in a word, and why when it is pressed", () => {
-    const root = show(StateWord, station([vehicle(1)], { alarms: [alarm(1)] }));
-    expect(find(root, "[data-testid=state-word]").textContent).toBe("Flying");
-    expect(root.querySelector(".state-reasons")).toBeNull();
-    find(root, ".state-word").click();
-    expect(find(root, ".state-reasons").textContent).toContain("Dogwood: The aircraft warns");
+describe("the top bar", () => {
+  it("shows the readiness label, and the reasons when pressed", () => {
+    const root = show(StatusButton, station([vehicle(1)], { alarms: [alarm(1)] }));
+    expect(find(root, "[data-testid=status-label]").textContent).toBe("Flying");
+    expect(root.querySelector(".status-reasons")).toBeNull();
+    find(root, ".status-button").click();
+    expect(find(root, ".status-reasons").textContent).toContain(
+      "Dogwood: Aircraft battery warning",
+    );
   });
 
-  it("tells a simulation, and a mixture even more", () => {
+  it("marks a simulation, and a mix with real vehicles", () => {
     const simulated = vehicle(1, { is_simulated: true });
     const root = show(() => <TopBar onHelp={() => {}} />, station([simulated]));
     expect(find(root, ".tag-simulated").textContent).toBe("SIMULATION");
-    page.say(station([simulated, vehicle(2)]));
-    expect(find(root, ".tag-simulated").textContent).toBe("REAL AND SIMULATED TOGETHER");
+    page.receive(station([simulated, vehicle(2)]));
+    expect(find(root, ".tag-simulated").textContent).toBe("REAL AND SIMULATED MIXED");
   });
 
-  it("keeps a banner for as long as the stream is lost", () => {
-    const root = show(LostBanner, station([vehicle(1)]));
+  it("shows a banner while the connection is lost", () => {
+    const root = show(ConnectionBanner, station([vehicle(1)]));
     expect(root.querySelector(".banner")).toBeNull();
-    page.connect({ kind: "lost", reason: "The station says nothing.", attempt: 3 });
+    page.connect({ kind: "lost", reason: "No data from the station", attempt: 3 });
     page.age(12);
-    expect(find(root, ".banner").textContent).toContain("Everything below is 12 s old.");
+    expect(find(root, ".banner").textContent).toContain(
+      "All data below is 12 s old. No data from the station; reconnecting (attempt 3).",
+    );
     page.connect({ kind: "live" });
     expect(root.querySelector(".banner")).toBeNull();
   });

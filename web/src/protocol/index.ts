@@ -1,6 +1,6 @@
 /**
- * The station's words under short names. `schema.d.ts` is generated from `openapi.json`
- * (`npm run generate`); nothing here is written twice.
+ * API types under short names. `schema.d.ts` is generated from `openapi.json`
+ * (`npm run generate`).
  */
 import type { components } from "./schema";
 

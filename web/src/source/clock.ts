@@ -1,10 +1,10 @@
-/** Time as the console knows it. Everything that waits or measures takes a `Clock`, so tests bring their own. */
+/** The console's time source. Everything that waits or measures takes a `Clock`; tests pass a fake. */
 
-/** One moment on both local clocks, in milliseconds. Only differences mean something. */
+/** One moment on both local clocks, in milliseconds. Only differences are meaningful. */
 export interface Instant {
-  /** Never jumps, but may stand still while the computer sleeps. */
+  /** Never jumps, but may stop while the computer sleeps. */
   readonly monotonicMs: number;
-  /** Goes on while the computer sleeps, but may be set. */
+  /** Runs while the computer sleeps, but may be set. */
   readonly wallMs: number;
 }
 

@@ -8,14 +8,14 @@ type Answer = (request: Request) => Response | Promise<Response>;
 
 function setUp(answer: Answer, token: string | null = null) {
   const clock = new FakeClock();
-  let drawn = 1;
+  let next = 1;
   const sockets: FakeSocket[] = [];
   const requests: Request[] = [];
   const source = new LiveSource({
     origin: "http://127.0.0.1:8080",
     token,
     clock,
-    random: (bytes) => bytes.fill(drawn++),
+    random: (bytes) => bytes.fill(next++),
     openSocket: (url, protocols) => {
       const socket = new FakeSocket(url, protocols);
       sockets.push(socket);
@@ -32,17 +32,17 @@ function setUp(answer: Answer, token: string | null = null) {
 const json = (value: unknown, status = 200) => Response.json(value, { status });
 
 describe("the live source", () => {
-  it("shows the newest state and how far it is behind", () => {
+  it("shows the newest state and its lag", () => {
     const { source, sockets, clock } = setUp(() => json({}));
     expect(source.state()).toBeNull();
-    sockets[0]?.say(station([vehicle(1)]));
+    sockets[0]?.deliver(station([vehicle(1)]));
     clock.advance(400);
     expect(source.state()?.vehicles).toHaveLength(1);
     expect(source.behindS(clock.now())).toBeCloseTo(0.4);
     expect(source.connection().kind).toBe("live");
   });
 
-  it("brings the token as a header and as a subprotocol, never in an address", async () => {
+  it("sends the token as a header and as a subprotocol, never in a URL", async () => {
     const { source, sockets, requests } = setUp(() => new Response("png"), "s3cret-token");
     await source.groundImage(7);
     expect(sockets[0]?.protocols).toEqual(["recon.v1", "recon.token.s3cret-token"]);
@@ -50,26 +50,26 @@ describe("the live source", () => {
     expect(`${sockets[0]?.url} ${requests[0]?.url}`).not.toContain("s3cret");
   });
 
-  it("opens the stream of the address the page came from", () => {
+  it("opens the stream at the page's origin", () => {
     const { sockets } = setUp(() => json({}));
     expect(sockets[0]?.url).toBe(`ws://127.0.0.1:8080/api/stream?owner=${"01".repeat(16)}`);
     expect(sockets[0]?.protocols).toEqual(["recon.v1"]);
   });
 
-  it("gives the station's reason when it turns the page away", async () => {
+  it("reports the station's reason when access is denied", async () => {
     const { source, sockets, requests } = setUp(() => json({ error: "a token is needed" }, 401));
     sockets[0]?.fail();
-    expect(source.connection()).toMatchObject({ reason: "The station cannot be reached." });
+    expect(source.connection()).toMatchObject({ reason: "Station unreachable" });
     await expect
       .poll(() => source.connection())
       .toMatchObject({
         kind: "lost",
-        reason: "The station refuses this page. Open it with its token.",
+        reason: "Access denied. Open the console with its token.",
       });
     expect(requests.map(({ url }) => new URL(url).pathname)).toEqual(["/api/state"]);
   });
 
-  it("names its newest stream as the owner of steered orders, and of no others", async () => {
+  it("sends its newest stream as the owner of steered orders only", async () => {
     const { source, sockets, requests, clock } = setUp(() => json({ results: [] }));
     sockets[0]?.fail();
     clock.advance(1000);
@@ -89,12 +89,12 @@ describe("the live source", () => {
     expect(bodies.map(({ owner }) => owner)).toEqual(["02".repeat(16), "02".repeat(16), undefined]);
   });
 
-  it("brings words about one vehicle to the vehicle named, however it is called", async () => {
-    const word = { accepted: false, rule: "stale", reason: "it is not heard" };
-    const { source, requests } = setUp(() => json(word));
-    expect(await source.takeAuthority("a/b", "operator")).toEqual({
+  it("encodes the serial in requests about one vehicle", async () => {
+    const response = { accepted: false, rule: "stale", reason: "no telemetry" };
+    const { source, requests } = setUp(() => json(response));
+    expect(await source.setAuthority("a/b", "operator")).toEqual({
       kind: "answered",
-      value: word,
+      value: response,
     });
     await source.overridePreflight("a/b", "test flight");
     const paths = requests.map(({ url }) => new URL(url).pathname);
@@ -105,12 +105,15 @@ describe("the live source", () => {
     expect(await requests[1]?.json()).toEqual({ reason: "test flight" });
   });
 
-  it("tells why a hazard area was not dismissed", async () => {
-    const { source } = setUp(() => json({ error: "'A' is heard" }, 404));
-    expect(await source.dismissHazard("A")).toEqual({ kind: "failed", problem: "'A' is heard" });
+  it("reports why a hazard area was not cleared", async () => {
+    const { source } = setUp(() => json({ error: "'A' is connected" }, 404));
+    expect(await source.dismissHazard("A")).toEqual({
+      kind: "failed",
+      problem: "'A' is connected",
+    });
   });
 
-  it("gives orders to the vehicles named and never allows a takeoff", async () => {
+  it("sends orders to the named vehicles and never allows takeoff", async () => {
     const { source, requests } = setUp(() => json({ results: [] }));
     await source.order({ serials: ["A", "B"], order: { kind: "land" } });
     const [request] = requests;
@@ -122,7 +125,7 @@ describe("the live source", () => {
     });
   });
 
-  it("hands on the results, vehicle by vehicle", async () => {
+  it("returns the results per vehicle", async () => {
     const result = {
       serial: "A",
       link_id: 1,
@@ -130,18 +133,18 @@ describe("the live source", () => {
       accepted: false,
       command_id: 3,
       rule: "flying",
-      reason: "it is on the ground",
+      reason: "on the ground",
     };
     const { source } = setUp(() => json({ results: [result] }));
     expect(await source.allStop()).toEqual({ kind: "answered", value: [result] });
   });
 
-  it("says the station's own sentence when it refuses", async () => {
-    const { source } = setUp(() => json({ error: "there is no alarm 9" }, 404));
-    expect(await source.acknowledge(9)).toEqual({ kind: "failed", problem: "there is no alarm 9" });
+  it("returns the station's error text", async () => {
+    const { source } = setUp(() => json({ error: "no alarm 9" }, 404));
+    expect(await source.acknowledge(9)).toEqual({ kind: "failed", problem: "no alarm 9" });
   });
 
-  it("says what to do when the station is not there", async () => {
+  it("tells the operator what to do when the station is unreachable", async () => {
     const { source } = setUp(() => Promise.reject(new TypeError("fetch failed")));
     const outcome = await source.order({ serials: ["A"], order: { kind: "hover" } });
     expect(outcome).toMatchObject({
@@ -150,20 +153,20 @@ describe("the live source", () => {
     });
   });
 
-  it("says that a late order may have been heard", async () => {
+  it("reports that an unanswered order may have arrived", async () => {
     const late = new DOMException("signal timed out", "TimeoutError");
     const { source } = setUp(() => Promise.reject(late));
     expect(await source.allStop()).toMatchObject({
-      problem: expect.stringContaining("may still have heard"),
+      problem: expect.stringContaining("may still have arrived"),
     });
   });
 
-  it("asks for the token when it is refused", async () => {
+  it("asks for the token when access is denied", async () => {
     const { source } = setUp(() => json({ error: "a token is needed" }, 401));
     expect(await source.allStop()).toMatchObject({ problem: expect.stringContaining("token") });
   });
 
-  it("tells which frame a picture really is", async () => {
+  it("returns the actual frame number of a picture", async () => {
     const { source, requests } = setUp(
       () => new Response("png", { headers: { "X-Frame-Id": "8" } }),
     );

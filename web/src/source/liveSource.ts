@@ -3,26 +3,26 @@ import type { AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { Requests } from "./requests";
 import type { Connection, NamedOrder, NewSurvey, StationSource } from "./stationSource";
-import { newOwner, type Socket, Stream } from "./stream";
+import { newStreamOwner, type Socket, Stream } from "./stream";
 import { StreamLag } from "./streamLag";
 
-/** What a live source needs from its surroundings; tests bring false ones. */
-export interface Surroundings {
-  /** Where the station is, such as `http://127.0.0.1:8080`. */
+/** Dependencies of a live source; tests pass fakes. */
+export interface LiveSourceOptions {
+  /** The station's address, such as `http://127.0.0.1:8080`. */
   readonly origin: string;
-  /** The token this page was opened with, if the station wants one. */
+  /** The token this page was opened with; null without one. */
   readonly token: string | null;
   readonly clock: Clock;
-  /** Fills bytes with what nobody can guess. */
+  /** Fills the array with cryptographically random bytes. */
   random(bytes: Uint8Array): Uint8Array;
   openSocket(url: string, protocols: string[]): Socket;
   fetch(request: Request): Promise<Response>;
 }
 
-/** The subprotocol the stream speaks. */
+/** WebSocket subprotocol of the stream. */
 export const STREAM_PROTOCOL = "recon.v1";
 
-/** A source that listens to a running station. */
+/** A source connected to a running station. */
 export class LiveSource implements StationSource {
   readonly state;
   readonly connection;
@@ -31,18 +31,18 @@ export class LiveSource implements StationSource {
   private readonly requests: Requests;
   private owner = "";
 
-  constructor(surroundings: Surroundings) {
-    const { clock, origin, token } = surroundings;
+  constructor(options: LiveSourceOptions) {
+    const { clock, origin, token } = options;
     const [state, setState] = createSignal<StationState | null>(null, { equals: false });
     const [connection, setConnection] = createSignal<Connection>({ kind: "connecting" });
     this.state = state;
     this.connection = connection;
-    this.requests = new Requests(origin, token, (request) => surroundings.fetch(request));
+    this.requests = new Requests(origin, token, (request) => options.fetch(request));
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
     const open = () => {
-      // Nothing that an earlier connection held comes back to life.
-      this.owner = newOwner((bytes) => surroundings.random(bytes));
-      return surroundings.openSocket(`${url}?owner=${this.owner}`, streamProtocols(token));
+      // A new owner: orders held by an earlier connection stay stopped.
+      this.owner = newStreamOwner((bytes) => options.random(bytes));
+      return options.openSocket(`${url}?owner=${this.owner}`, streamProtocols(token));
     };
     this.stream = new Stream(open, clock, {
       onConnection: (next) => {
@@ -51,19 +51,19 @@ export class LiveSource implements StationSource {
       },
       onState: (newest, isFirst) => {
         if (isFirst) this.lag.restart(newest.time_ns, clock.now());
-        else this.lag.hear(newest.time_ns, clock.now());
+        else this.lag.record(newest.time_ns, clock.now());
         setState(newest);
       },
     });
     this.stream.open();
   }
 
-  /** Puts the station's own reason for turning the page away in the place of a guess. */
+  /** Replaces the assumed reason of a lost connection with the station's own, if it gives one. */
   private async explain(
     lost: Connection & { kind: "lost" },
     setConnection: (connection: Connection) => void,
   ): Promise<void> {
-    const reason = await this.requests.whyRefused();
+    const reason = await this.requests.refusalReason();
     if (reason !== null && this.connection() === lost) setConnection({ ...lost, reason });
   }
 
@@ -83,8 +83,8 @@ export class LiveSource implements StationSource {
     return this.requests.fleetReturn(serials);
   }
 
-  takeAuthority(serial: string, holder: AuthorityHolder) {
-    return this.requests.takeAuthority(serial, holder);
+  setAuthority(serial: string, holder: AuthorityHolder) {
+    return this.requests.setAuthority(serial, holder);
   }
 
   preflight(serial: string) {
@@ -99,8 +99,8 @@ export class LiveSource implements StationSource {
     return this.requests.dismissHazard(name);
   }
 
-  switchSeparationHold(isOn: boolean) {
-    return this.requests.switchSeparationHold(isOn);
+  setSeparationHold(isOn: boolean) {
+    return this.requests.setSeparationHold(isOn);
   }
 
   allStop() {
@@ -125,12 +125,12 @@ export class LiveSource implements StationSource {
     return this.requests.picture("/api/ground-image.tif");
   }
 
-  askSurvey(survey: NewSurvey) {
-    return this.requests.askSurvey(survey);
+  planSurvey(survey: NewSurvey) {
+    return this.requests.planSurvey(survey);
   }
 
-  startSurvey(id: number, serials: readonly string[], mayTakeOff: boolean) {
-    return this.requests.startSurvey(id, serials, mayTakeOff);
+  startSurvey(id: number, serials: readonly string[], allowTakeoff: boolean) {
+    return this.requests.startSurvey(id, serials, allowTakeoff);
   }
 
   stopSurvey(id: number, word: "pause" | "abort") {

@@ -11,13 +11,13 @@ import type {
 import type { paths } from "../protocol/schema";
 import type { NamedOrder, NewSurvey, Outcome, Picture } from "./stationSource";
 
-/** A request older than this is given up: an order must not arrive when nobody thinks of it any more. */
+/** Request timeout: an order must not arrive long after the operator sent it. */
 export const REQUEST_MS = 3_000;
 
-/** Rows are worked out behind the pictures that the station reads just then; nothing flies by it. */
-const PLANNED_MS = 12_000;
+/** Timeout for planning a survey: it waits for image processing and moves nothing. */
+const PLANNING_MS = 12_000;
 
-/** What the page asks of the station over HTTP. Failures are values with a sentence for the operator. */
+/** HTTP requests to the station. Failures are values with a sentence for the operator. */
 export class Requests {
   private readonly client;
   private readonly headers: Record<string, string>;
@@ -31,11 +31,11 @@ export class Requests {
     this.client = createClient<paths>({ baseUrl: origin, headers: this.headers, fetch });
   }
 
-  /** `owner` names the stream whose end ends a steered order; left out of all others. */
+  /** `owner` is the stream a steered order depends on; other orders carry none. */
   order(named: NamedOrder, owner: string): Promise<Outcome<readonly OrderResult[]>> {
     const body = orderBody(named, owner);
     return answered(
-      () => this.client.POST("/api/orders", { body, signal: soon() }),
+      () => this.client.POST("/api/orders", { body, signal: timeout() }),
       (data) => data.results,
     );
   }
@@ -43,7 +43,7 @@ export class Requests {
   check(named: NamedOrder, owner: string): Promise<Outcome<readonly OrderResult[]>> {
     const body = orderBody(named, owner);
     return answered(
-      () => this.client.POST("/api/orders/check", { body, signal: soon() }),
+      () => this.client.POST("/api/orders/check", { body, signal: timeout() }),
       (data) => data.results,
     );
   }
@@ -51,33 +51,33 @@ export class Requests {
   fleetReturn(named: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>> {
     const body = { serials: named === null ? null : [...named] };
     return answered(
-      () => this.client.POST("/api/fleet-return", { body, signal: soon() }),
+      () => this.client.POST("/api/fleet-return", { body, signal: timeout() }),
       (data) => data.results,
     );
   }
 
-  takeAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>> {
-    const options = { params: { path: { serial } }, body: { holder }, signal: soon() };
-    return answered(() => this.client.POST("/api/vehicles/{serial}/authority", options), same);
+  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>> {
+    const options = { params: { path: { serial } }, body: { holder }, signal: timeout() };
+    return answered(() => this.client.POST("/api/vehicles/{serial}/authority", options), identity);
   }
 
   preflight(serial: string): Promise<Outcome<PreflightView>> {
-    const options = { params: { path: { serial } }, signal: soon() };
-    return answered(() => this.client.GET("/api/vehicles/{serial}/preflight", options), same);
+    const options = { params: { path: { serial } }, signal: timeout() };
+    return answered(() => this.client.GET("/api/vehicles/{serial}/preflight", options), identity);
   }
 
   overridePreflight(serial: string, reason: string): Promise<Outcome<WordResponse>> {
-    const options = { params: { path: { serial } }, body: { reason }, signal: soon() };
+    const options = { params: { path: { serial } }, body: { reason }, signal: timeout() };
     return answered(
       () => this.client.POST("/api/vehicles/{serial}/preflight/override", options),
-      same,
+      identity,
     );
   }
 
-  askSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>> {
-    // What is left out has its default at the station; the generated type cannot say so.
-    const options = { body: survey as SurveyRequest, signal: AbortSignal.timeout(PLANNED_MS) };
-    return answered(() => this.client.POST("/api/surveys", options), asSurvey);
+  planSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>> {
+    // Omitted fields have defaults at the station; the generated type cannot express that.
+    const options = { body: survey as SurveyRequest, signal: AbortSignal.timeout(PLANNING_MS) };
+    return answered(() => this.client.POST("/api/surveys", options), asSurveyResponse);
   }
 
   startSurvey(
@@ -86,17 +86,23 @@ export class Requests {
     takeoff: boolean,
   ): Promise<Outcome<SurveyResponse>> {
     const body = { serials: [...serials], takeoff };
-    const options = { params: { path: { survey_id } }, body, signal: soon() };
-    return answered(() => this.client.POST("/api/surveys/{survey_id}/start", options), asSurvey);
+    const options = { params: { path: { survey_id } }, body, signal: timeout() };
+    return answered(
+      () => this.client.POST("/api/surveys/{survey_id}/start", options),
+      asSurveyResponse,
+    );
   }
 
   stopSurvey(survey_id: number, word: "pause" | "abort"): Promise<Outcome<SurveyResponse>> {
-    const options = { params: { path: { survey_id, word } }, signal: soon() };
-    return answered(() => this.client.POST("/api/surveys/{survey_id}/{word}", options), asSurvey);
+    const options = { params: { path: { survey_id, word } }, signal: timeout() };
+    return answered(
+      () => this.client.POST("/api/surveys/{survey_id}/{word}", options),
+      asSurveyResponse,
+    );
   }
 
   surveyWays(survey_id: number): Promise<Outcome<SurveyWays>> {
-    const options = { params: { path: { survey_id } }, signal: soon() };
+    const options = { params: { path: { survey_id } }, signal: timeout() };
     return answered(
       () => this.client.GET("/api/surveys/{survey_id}/ways", options),
       (data) => data as SurveyWays,
@@ -104,35 +110,35 @@ export class Requests {
   }
 
   dismissHazard(serial: string): Promise<Outcome<null>> {
-    const options = { params: { path: { serial } }, signal: soon() };
-    return taken(() => this.client.POST("/api/vehicles/{serial}/hazard/dismiss", options));
+    const options = { params: { path: { serial } }, signal: timeout() };
+    return withoutBody(() => this.client.POST("/api/vehicles/{serial}/hazard/dismiss", options));
   }
 
-  switchSeparationHold(isOn: boolean): Promise<Outcome<null>> {
+  setSeparationHold(isOn: boolean): Promise<Outcome<null>> {
     const path: { switch: "on" | "off" } = { switch: isOn ? "on" : "off" };
-    const options = { params: { path }, signal: soon() };
-    return taken(() => this.client.POST("/api/separation-hold/{switch}", options));
+    const options = { params: { path }, signal: timeout() };
+    return withoutBody(() => this.client.POST("/api/separation-hold/{switch}", options));
   }
 
   allStop(): Promise<Outcome<readonly OrderResult[]>> {
     return answered(
-      () => this.client.POST("/api/all-stop", { signal: soon() }),
+      () => this.client.POST("/api/all-stop", { signal: timeout() }),
       (data) => data.results,
     );
   }
 
   acknowledge(alarm_id: number): Promise<Outcome<null>> {
-    const options = { params: { path: { alarm_id } }, signal: soon() };
-    return taken(() => this.client.POST("/api/alarms/{alarm_id}/acknowledge", options));
+    const options = { params: { path: { alarm_id } }, signal: timeout() };
+    return withoutBody(() => this.client.POST("/api/alarms/{alarm_id}/acknowledge", options));
   }
 
-  /** Why the station turns this page away, when it answers at all; a browser does not tell for a stream. */
-  async whyRefused(): Promise<string | null> {
-    const asked = await attempt(async () => {
-      const answer = await this.client.GET("/api/state", { signal: soon() });
+  /** Why the station rejects this page, or null: a browser reports no reason for a WebSocket. */
+  async refusalReason(): Promise<string | null> {
+    const outcome = await attempt(async () => {
+      const answer = await this.client.GET("/api/state", { signal: timeout() });
       return done(answer.response.ok ? null : refusal(answer.response, answer.error));
     });
-    return asked.kind === "answered" ? asked.value : null;
+    return outcome.kind === "answered" ? outcome.value : null;
   }
 
   /** Fetches a picture or file; always with the token's header, which an `<img>` could not send. */
@@ -154,7 +160,7 @@ function frameIdOf(response: Response): number | null {
   return text !== null && /^\d+$/.test(text) ? Number(text) : null;
 }
 
-/** Orders that the station steers by sticks for as long as the page's stream lasts. */
+/** Orders executed by virtual stick for as long as the page's stream lasts. */
 const STEERED: readonly string[] = ["goto", "nudge", "hold_position"];
 
 function orderBody({ serials, order }: NamedOrder, owner: string) {
@@ -162,34 +168,37 @@ function orderBody({ serials, order }: NamedOrder, owner: string) {
   return STEERED.includes(order.kind) ? { ...body, owner } : body;
 }
 
-function soon(): AbortSignal {
+function timeout(): AbortSignal {
   return AbortSignal.timeout(REQUEST_MS);
 }
 
-/** The request library widens pairs to lists; the station's are pairs. */
-function asSurvey(data: unknown): SurveyResponse {
+/** openapi-fetch widens pairs to lists; the station sends pairs. */
+function asSurveyResponse(data: unknown): SurveyResponse {
   return data as SurveyResponse;
 }
 
-function same<T>(value: T): T {
+function identity<T>(value: T): T {
   return value;
 }
 
-interface Answer<D> {
+interface ApiResponse<D> {
   readonly data?: D;
   readonly error?: unknown;
   readonly response: Response;
 }
 
-function answered<D, T>(ask: () => Promise<Answer<D>>, read: (data: D) => T): Promise<Outcome<T>> {
+function answered<D, T>(
+  ask: () => Promise<ApiResponse<D>>,
+  read: (data: D) => T,
+): Promise<Outcome<T>> {
   return attempt(async () => {
     const { data, error, response } = await ask();
     return data === undefined ? failed(refusal(response, error)) : done(read(data));
   });
 }
 
-/** For what is answered with nothing but that it was taken. */
-function taken(ask: () => Promise<Answer<unknown>>): Promise<Outcome<null>> {
+/** For requests whose answer has no body. */
+function withoutBody(ask: () => Promise<ApiResponse<unknown>>): Promise<Outcome<null>> {
   return attempt(async () => {
     const { error, response } = await ask();
     return response.ok ? done(null) : failed(refusal(response, error));
@@ -215,19 +224,19 @@ function failed<T>(problem: string): Outcome<T> {
 function unreached(error: unknown): string {
   const isLate = error instanceof DOMException && error.name === "TimeoutError";
   if (isLate) {
-    return `The station did not answer within ${REQUEST_MS / 1000} s. It may still have heard: look at the commands.`;
+    return `The station did not answer within ${REQUEST_MS / 1000} s. The order may still have arrived: check the command list.`;
   }
-  return "The station cannot be reached. Use the remote controllers.";
+  return "Station unreachable. Use the remote controllers.";
 }
 
 const UNAUTHORISED = 401;
 
 function refusal(response: Response, body: unknown): string {
   if (response.status === UNAUTHORISED) {
-    return "The station refuses this page. Open it with its token.";
+    return "Access denied. Open the console with its token.";
   }
-  const said =
+  const message =
     typeof body === "object" && body !== null ? (body as { error?: unknown }).error : null;
-  if (typeof said === "string") return said;
-  return `The station answered ${response.status} ${response.statusText}`.trim();
+  if (typeof message === "string") return message;
+  return `Station error ${response.status} ${response.statusText}`.trim();
 }

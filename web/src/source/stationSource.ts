@@ -12,65 +12,65 @@ import type {
 } from "../protocol";
 import type { Instant } from "./clock";
 
-/** How the stream of states is doing. */
+/** State of the connection to the station; `reason` is a clause without a full stop. */
 export type Connection =
   | { readonly kind: "connecting" }
   | { readonly kind: "live" }
   | { readonly kind: "lost"; readonly reason: string; readonly attempt: number };
 
-/** What became of something the station was asked. A failure says what to do. */
+/** The result of a request. `problem` is a sentence for the operator that states what to do. */
 export type Outcome<T> =
   | { readonly kind: "answered"; readonly value: T }
   | { readonly kind: "failed"; readonly problem: string };
 
-/** A picture or file, and which frame it really is: the station gives its newest, not the one asked for. */
+/** A picture or file with its actual frame number: the station returns its newest, not the one requested. */
 export interface Picture {
   readonly blob: Blob;
   readonly frameId: number | null;
 }
 
-/** An order and the vehicles it names. */
+/** An order and the vehicles it is for. */
 export interface NamedOrder {
   readonly serials: readonly string[];
   readonly order: Order;
 }
 
-/** A survey to plan; what is left out is as the station has it. */
+/** A survey to plan; omitted fields use the station's defaults. */
 export type NewSurvey = Pick<SurveyRequest, "height_above_takeoff_m" | "speed_mps"> &
   Partial<SurveyRequest>;
 
-/** Where the screens get their states from and bring their orders to: live now, a recording later. */
+/** Where the page gets states from and sends orders to: a running station or a recording. */
 export interface StationSource {
-  /** The newest whole state; null before the first. */
+  /** The newest complete state; null before the first. */
   readonly state: Accessor<StationState | null>;
   readonly connection: Accessor<Connection>;
   /** Seconds to add at `now` to every age in `state`; null before the first state. */
   behindS(now: Instant): number | null;
-  /** Gives an order. Never with takeoff: the console's buttons keep vehicles on the ground there. */
+  /** Sends an order, always without takeoff: no console button may lift a vehicle off the ground. */
   order(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
-  /** Makes every flying vehicle hold its position; motors stay on. */
+  /** Makes every flying vehicle hold position; motors stay on. */
   allStop(): Promise<Outcome<readonly OrderResult[]>>;
-  /** What the gate would say to an order now; nothing is given. */
+  /** Checks an order with the safety gate without sending it. */
   check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
-  /** Calls vehicles home as landing missions at heights of their own; null: all that fly or may. */
+  /** Returns vehicles home with landing missions at separate heights; null means all in reach. */
   fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
-  takeAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>>;
+  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>>;
   preflight(serial: string): Promise<Outcome<PreflightView>>;
   overridePreflight(serial: string, reason: string): Promise<Outcome<WordResponse>>;
-  /** Says that somebody knows where a vehicle is that is not heard. */
+  /** Clears a lost vehicle's hazard area. */
   dismissHazard(name: string): Promise<Outcome<null>>;
-  switchSeparationHold(isOn: boolean): Promise<Outcome<null>>;
+  setSeparationHold(isOn: boolean): Promise<Outcome<null>>;
   acknowledge(alarmId: number): Promise<Outcome<null>>;
   vehicleFrame(serial: string, frameId: number): Promise<Outcome<Picture>>;
   groundImage(frameId: number): Promise<Outcome<Picture>>;
   groundImageFile(): Promise<Outcome<Picture>>;
-  /** Plans a survey; nothing flies by it. */
-  askSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>>;
-  /** Flies a survey with these vehicles: they are given to the station's guidance by it. */
+  /** Plans a survey; nothing moves. */
+  planSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>>;
+  /** Starts a survey with these vehicles and gives guidance control of them. */
   startSurvey(
     id: number,
     serials: readonly string[],
-    mayTakeOff: boolean,
+    allowTakeoff: boolean,
   ): Promise<Outcome<SurveyResponse>>;
   stopSurvey(id: number, word: "pause" | "abort"): Promise<Outcome<SurveyResponse>>;
   surveyWays(id: number): Promise<Outcome<SurveyWays>>;

@@ -33,21 +33,21 @@ describe("the stream", () => {
     const { stream, newest, states, connections, clock } = setUp();
     stream.open();
     newest().accept();
-    newest().say(station([]));
-    newest().say(station([]));
+    newest().deliver(station([]));
+    newest().deliver(station([]));
     newest().fail();
     clock.advance(RECONNECT_DELAYS_MS[0]);
-    newest().say(station([]));
+    newest().deliver(station([]));
     expect(states.map(({ isFirst }) => isFirst)).toEqual([true, false, true]);
     expect(connections.map(({ kind }) => kind)).toEqual(["connecting", "live", "lost", "live"]);
   });
 
-  it("says that the page lives as it shows states, and no longer when none come", () => {
+  it("sends keepalives while it receives states, and none without", () => {
     const { stream, newest, clock } = setUp();
     stream.open();
     newest().accept();
     for (let message = 0; message < 20; message += 1) {
-      newest().say(station([]));
+      newest().deliver(station([]));
       clock.advance(100);
     }
     expect(newest().sent).toHaveLength(5);
@@ -55,7 +55,7 @@ describe("the stream", () => {
     expect(newest().sent).toHaveLength(5);
   });
 
-  it("waits longer after each failure, up to a limit, and soon again after a success", () => {
+  it("waits longer after each failure, up to a limit, and starts over after a success", () => {
     const { stream, newest, sockets, clock } = setUp();
     stream.open();
     for (const delay_ms of [...RECONNECT_DELAYS_MS, RECONNECT_DELAYS_MS.at(-1) ?? 0]) {
@@ -66,18 +66,18 @@ describe("the stream", () => {
       clock.advance(1);
       expect(sockets.length).toBe(before + 1);
     }
-    newest().say(station([]));
+    newest().deliver(station([]));
     const before = sockets.length;
     newest().fail();
     clock.advance(RECONNECT_DELAYS_MS[0]);
     expect(sockets.length).toBe(before + 1);
   });
 
-  it("takes silence for a loss, though the socket looks alive", () => {
+  it("treats silence as a lost connection although the socket is open", () => {
     const { stream, newest, sockets, connections, clock } = setUp();
     stream.open();
     newest().accept();
-    newest().say(station([]));
+    newest().deliver(station([]));
     clock.advance(SILENCE_MS - 1);
     expect(connections.at(-1)?.kind).toBe("live");
     clock.advance(1);
@@ -85,7 +85,7 @@ describe("the stream", () => {
     expect(sockets[0]?.isClosed).toBe(true);
   });
 
-  it("gives up an attempt that neither opens nor fails", () => {
+  it("ends an attempt that neither opens nor fails", () => {
     const { stream, sockets, clock } = setUp();
     stream.open();
     clock.advance(OPENING_MS + RECONNECT_DELAYS_MS[0]);
@@ -93,36 +93,36 @@ describe("the stream", () => {
     expect(sockets[0]?.isClosed).toBe(true);
   });
 
-  it("does not hear a socket it has let go of", () => {
+  it("ignores a socket it has closed", () => {
     const { stream, newest, states, clock } = setUp();
     stream.open();
     const old = newest();
     clock.advance(OPENING_MS);
-    old.say(station([]));
+    old.deliver(station([]));
     expect(states).toHaveLength(0);
   });
 
-  it("says the station's own reason, or what to do", () => {
+  it("reports the station's reason", () => {
     const { stream, newest, connections } = setUp();
     stream.open();
     newest().fail(1013, "32 readers are connected already");
     expect(connections.at(-1)).toMatchObject({
-      reason: "The station closed the stream: 32 readers are connected already",
+      reason: "Stream closed by the station: 32 readers are connected already",
     });
   });
 
-  it("counts something unreadable as a loss", () => {
+  it("treats unreadable data as a lost connection", () => {
     const { stream, newest, connections } = setUp();
     stream.open();
-    newest().sayText("<html>");
+    newest().deliverText("<html>");
     expect(connections.at(-1)).toMatchObject({ kind: "lost", attempt: 1 });
   });
 
-  it("says so when a socket cannot even be made", () => {
+  it("reports a socket that cannot be created", () => {
     const clock = new FakeClock();
     const connections: Connection[] = [];
     const open = () => {
-      throw new DOMException("a subprotocol has a blank", "SyntaxError");
+      throw new DOMException("invalid subprotocol", "SyntaxError");
     };
     const listener = { onState: () => {}, onConnection: (c: Connection) => connections.push(c) };
     new Stream(open, clock, listener).open();
@@ -130,7 +130,7 @@ describe("the stream", () => {
     expect(clock.pending).toBe(1);
   });
 
-  it("leaves nothing behind when it is closed", () => {
+  it("leaves no timer running after close", () => {
     const { stream, newest, clock } = setUp();
     stream.open();
     newest().accept();
@@ -148,7 +148,7 @@ describe("reading a state", () => {
 
   it("refuses bytes", () => expect(readState(new ArrayBuffer(4))).toBeNull());
 
-  it("takes a whole state", () => {
+  it("accepts a complete state", () => {
     expect(readState(JSON.stringify(station([])))?.vehicles).toEqual([]);
   });
 });

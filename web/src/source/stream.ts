@@ -2,28 +2,29 @@ import type { StationState } from "../protocol";
 import type { Clock } from "./clock";
 import type { Connection } from "./stationSource";
 
-/** The name under which this page holds steered orders: one for each connection, never used again. */
+/** Length of an owner name; random, so that no page can guess another's. */
+const OWNER_BYTES = 16;
 
-/** Random bytes in a name: nobody guesses another page's. */
-const BYTES = 16;
+/** Shortest interval between keepalives; the station stops steered orders after 2 s without one. */
+export const KEEPALIVE_MS = 400;
 
-/** The page says that it lives at most so often; the station gives up after 2 s of silence. */
-export const BEAT_MS = 400;
-
-/** A new name, 32 hexadecimal digits. */
-export function newOwner(random: (bytes: Uint8Array) => Uint8Array): string {
-  const bytes = random(new Uint8Array(BYTES));
+/**
+ * A new owner name, 32 hexadecimal digits. The page owns its steered orders under this name: one for each
+ * connection, never reused.
+ */
+export function newStreamOwner(random: (bytes: Uint8Array) => Uint8Array): string {
+  const bytes = random(new Uint8Array(OWNER_BYTES));
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-/** Waits between attempts: soon at first, since most losses are short, then calm. */
+/** Waits between reconnection attempts: short at first, since most losses are short. */
 export const RECONNECT_DELAYS_MS = [250, 500, 1000, 2000, 4000] as const;
-/** A station that speaks 10 times a second and says nothing for so long is taken for lost. */
+/** The station sends 10 states a second; after this long without one the connection counts as lost. */
 export const SILENCE_MS = 2_000;
-/** An attempt that neither opens nor fails is given up after this. */
+/** Timeout of one connection attempt. */
 export const OPENING_MS = 4_000;
 
-/** The part of `WebSocket` that is used. */
+/** The part of `WebSocket` used here. */
 export interface Socket {
   onopen: ((event: Event) => void) | null;
   onmessage: ((event: MessageEvent) => void) | null;
@@ -33,17 +34,26 @@ export interface Socket {
 }
 
 export interface StreamListener {
-  /** A whole state; `isFirst` marks the first one of a connection. */
+  /** A complete state; `isFirst` marks the first one of a connection. */
   onState(state: StationState, isFirst: boolean): void;
   onConnection(connection: Connection): void;
 }
 
-/** Keeps one stream open: notices silence, reconnects with growing pauses, hands out whole states. */
+/**
+ * Keeps one WebSocket to the station open and hands out complete states.
+ *
+ *   connecting --first state--> live --closed, unreadable or silent for SILENCE_MS--> lost
+ *   lost --next wait of RECONNECT_DELAYS_MS--> a new attempt --first state--> live
+ *
+ * An attempt that neither opens nor fails ends after OPENING_MS. The wait grows with each failed attempt
+ * and starts over after a received state. Each received state also sends a keepalive, at most one per
+ * KEEPALIVE_MS: a page that hangs receives nothing, sends nothing, and its steered orders stop.
+ */
 export class Stream {
   private socket: Socket | null = null;
   private attempt = 0;
   private isFirst = true;
-  private beatAtMs = Number.NEGATIVE_INFINITY;
+  private keepaliveAtMs = Number.NEGATIVE_INFINITY;
   private cancelTimer: () => void = () => {};
 
   constructor(
@@ -59,64 +69,63 @@ export class Stream {
 
   close(): void {
     this.cancelTimer();
-    this.drop();
+    this.closeSocket();
   }
 
   private connect(): void {
-    const socket = this.tryToOpen();
+    const socket = this.openOrFail();
     if (socket === null) return;
     this.socket = socket;
     this.isFirst = true;
-    this.beatAtMs = Number.NEGATIVE_INFINITY;
-    this.expectNewsWithin(OPENING_MS, "The station did not answer.");
-    socket.onopen = () => this.expectNewsWithin(SILENCE_MS, "The station says nothing.");
-    socket.onmessage = (event) => this.take(event.data);
-    socket.onclose = (event) => this.lose(closingReason(event.code, event.reason));
+    this.keepaliveAtMs = Number.NEGATIVE_INFINITY;
+    this.expectMessageWithin(OPENING_MS, "No answer from the station");
+    socket.onopen = () => this.expectMessageWithin(SILENCE_MS, "No data from the station");
+    socket.onmessage = (event) => this.receive(event.data);
+    socket.onclose = (event) => this.loseConnection(closingReason(event.code, event.reason));
   }
 
-  /** A browser throws at once for a token that cannot be a subprotocol. */
-  private tryToOpen(): Socket | null {
+  /** A browser throws for a token that is not a valid subprotocol. */
+  private openOrFail(): Socket | null {
     try {
       return this.openSocket();
     } catch (error) {
-      this.lose(`The stream cannot be opened: ${error instanceof Error ? error.message : error}.`);
+      this.loseConnection(
+        `Cannot open the stream: ${error instanceof Error ? error.message : error}`,
+      );
       return null;
     }
   }
 
-  private take(data: unknown): void {
+  private receive(data: unknown): void {
     const state = readState(data);
     if (state === null) {
-      this.lose("The station sent something this page cannot read. Reload the page.");
+      this.loseConnection("Unreadable data from the station: reload the page");
       return;
     }
     this.attempt = 0;
-    this.expectNewsWithin(SILENCE_MS, "The station says nothing.");
+    this.expectMessageWithin(SILENCE_MS, "No data from the station");
     const isFirst = this.isFirst;
     this.isFirst = false;
     if (isFirst) this.listener.onConnection({ kind: "live" });
     this.listener.onState(state, isFirst);
-    this.beat();
+    this.sendKeepalive();
   }
 
-  /**
-   * Says that the page lives. Only what has just read and shown a state says it: a page that hangs, or
-   * shows nothing new, holds no steered order any more.
-   */
-  private beat(): void {
+  /** Sent only after a state was received and shown, so that a hanging page loses its steered orders. */
+  private sendKeepalive(): void {
     const nowMs = this.clock.now().monotonicMs;
-    if (this.socket === null || nowMs - this.beatAtMs < BEAT_MS) return;
-    this.beatAtMs = nowMs;
+    if (this.socket === null || nowMs - this.keepaliveAtMs < KEEPALIVE_MS) return;
+    this.keepaliveAtMs = nowMs;
     this.socket.send("");
   }
 
-  private expectNewsWithin(delayMs: number, otherwise: string): void {
+  private expectMessageWithin(delayMs: number, otherwise: string): void {
     this.cancelTimer();
-    this.cancelTimer = this.clock.after(delayMs, () => this.lose(otherwise));
+    this.cancelTimer = this.clock.after(delayMs, () => this.loseConnection(otherwise));
   }
 
-  private lose(reason: string): void {
-    this.drop();
+  private loseConnection(reason: string): void {
+    this.closeSocket();
     this.cancelTimer();
     const last = RECONNECT_DELAYS_MS.length - 1;
     const delayMs = RECONNECT_DELAYS_MS[Math.min(this.attempt, last)] ?? 0;
@@ -125,8 +134,8 @@ export class Stream {
     this.cancelTimer = this.clock.after(delayMs, () => this.connect());
   }
 
-  /** Lets go of the socket, deaf to whatever it may still say. */
-  private drop(): void {
+  /** Closes the socket and ignores any further events from it. */
+  private closeSocket(): void {
     const socket = this.socket;
     this.socket = null;
     if (socket === null) return;
@@ -138,16 +147,19 @@ export class Stream {
 }
 
 const POLICY_VIOLATION = 1008;
+/** The station received no keepalive from this page in time. */
+const OWNER_SILENT = 4008;
 
 function closingReason(code: number, reason: string): string {
-  if (reason !== "") return `The station closed the stream: ${reason}`;
-  if (code === POLICY_VIOLATION) return "The station refuses this page. Open it with its token.";
-  return "The station cannot be reached.";
+  if (code === OWNER_SILENT) return "This page stopped responding";
+  if (reason !== "") return `Stream closed by the station: ${reason}`;
+  if (code === POLICY_VIOLATION) return "Access denied: open the console with its token";
+  return "Station unreachable";
 }
 
 const LISTS = ["vehicles", "links", "commands", "alarms"] as const;
 
-/** The state in a message, or null when it is none. */
+/** The state in a message; null when it is not one. */
 export function readState(data: unknown): StationState | null {
   if (typeof data !== "string") return null;
   let value: unknown;

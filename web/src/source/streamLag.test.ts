@@ -17,17 +17,17 @@ describe("the stream's lag", () => {
     expect(lag.behindS(clock.now())).toBeCloseTo(0.7);
   });
 
-  it("counts what a message was held up on the way", () => {
+  it("includes a message's delay on the network", () => {
     const clock = new FakeClock();
     const lag = new StreamLag();
     lag.restart(5 * SECOND_NS, clock.now());
     clock.advance(3000);
-    // Made 0.1 s after the first, but received 3 s after it.
-    lag.hear(5.1 * SECOND_NS, clock.now());
+    // Created 0.1 s after the first, but received 3 s after it.
+    lag.record(5.1 * SECOND_NS, clock.now());
     expect(lag.behindS(clock.now())).toBeCloseTo(2.9);
   });
 
-  it("goes on while the computer sleeps and its first clock stands still", () => {
+  it("grows while the computer sleeps and its monotonic clock stops", () => {
     const clock = new FakeClock();
     const lag = new StreamLag();
     lag.restart(0, clock.now());
@@ -35,7 +35,7 @@ describe("the stream's lag", () => {
     expect(lag.behindS(clock.now())).toBeCloseTo(60);
   });
 
-  it("starts over with a station that was started again", () => {
+  it("resets when the station restarts", () => {
     const clock = new FakeClock();
     const lag = new StreamLag();
     lag.restart(9000 * SECOND_NS, clock.now());
@@ -51,7 +51,7 @@ describe("the stream's lag", () => {
     // A local clock 0.1 % too fast, for ten minutes at one message a second.
     for (let second = 1; second <= 600; second += 1) {
       clock.advance(1001);
-      lag.hear(second * SECOND_NS, clock.now());
+      lag.record(second * SECOND_NS, clock.now());
     }
     expect(lag.behindS(clock.now())).toBeLessThan(0.07);
   });

@@ -1,61 +1,61 @@
 import type { Instant } from "./clock";
 
-/** The smallest transit time is looked for in so much of the past: longer would let clock drift pile up. */
+/** Window for the smallest clock offset; a longer one would accumulate clock drift. */
 const WINDOW_MS = 60_000;
-/** The window moves in steps of this, so that memory stays small at any message rate. */
+/** The window moves in steps of this, so memory is bounded at any message rate. */
 const BUCKET_MS = 5_000;
 
 interface Bucket {
   readonly startMs: number;
-  readonly least: number;
+  readonly leastOffsetMs: number;
 }
 
 /**
- * How far the newest message is behind the station's present.
+ * How far the newest message lags behind the station's present time.
  *
- * Two things make it late: the time since it came in, and the time it was held up on the way. The
- * second shows as a larger difference between local and station time than the least one seen.
+ * The lag is the time since the message arrived, or its delay on the network if that is larger. The
+ * delay is the offset between local and station time above the smallest offset in the window.
  */
 export class StreamLag {
-  private newest: { readonly stationMs: number; readonly heard: Instant } | null = null;
+  private newest: { readonly stationMs: number; readonly receivedAt: Instant } | null = null;
   private buckets: Bucket[] = [];
 
-  /** Takes note of a message made at `stationTimeNs` and received at `heard`. */
-  hear(stationTimeNs: number, heard: Instant): void {
+  /** Records a message created at `stationTimeNs` and received at `receivedAt`. */
+  record(stationTimeNs: number, receivedAt: Instant): void {
     const stationMs = stationTimeNs / 1e6;
-    this.newest = { stationMs, heard };
-    this.note(heard.monotonicMs - stationMs, heard.monotonicMs);
+    this.newest = { stationMs, receivedAt };
+    this.updateWindow(receivedAt.monotonicMs - stationMs, receivedAt.monotonicMs);
   }
 
   /** Seconds to add to every age of the newest message; null before the first one. */
   behindS(now: Instant): number | null {
     if (this.newest === null) return null;
-    const { stationMs, heard } = this.newest;
-    const least = Math.min(...this.buckets.map((bucket) => bucket.least));
-    const sinceHeardMs = Math.max(
-      now.monotonicMs - heard.monotonicMs,
-      // A computer that slept stops the first clock, not this one.
-      now.wallMs - heard.wallMs,
+    const { stationMs, receivedAt } = this.newest;
+    const leastOffsetMs = Math.min(...this.buckets.map((bucket) => bucket.leastOffsetMs));
+    const sinceReceivedMs = Math.max(
+      now.monotonicMs - receivedAt.monotonicMs,
+      // The monotonic clock may stop while the computer sleeps.
+      now.wallMs - receivedAt.wallMs,
     );
-    const sinceMadeMs = now.monotonicMs - stationMs - least;
-    return Math.max(0, sinceHeardMs, sinceMadeMs) / 1000;
+    const sinceCreatedMs = now.monotonicMs - stationMs - leastOffsetMs;
+    return Math.max(0, sinceReceivedMs, sinceCreatedMs) / 1000;
   }
 
-  /** Starts over with the first message of a new connection: the station may have been restarted. */
-  restart(stationTimeNs: number, heard: Instant): void {
+  /** Resets with the first message of a new connection: the station may have restarted. */
+  restart(stationTimeNs: number, receivedAt: Instant): void {
     this.buckets = [];
-    this.hear(stationTimeNs, heard);
+    this.record(stationTimeNs, receivedAt);
   }
 
-  private note(difference: number, nowMs: number): void {
+  private updateWindow(offsetMs: number, nowMs: number): void {
     const last = this.buckets.at(-1);
     if (last !== undefined && nowMs - last.startMs < BUCKET_MS) {
       this.buckets[this.buckets.length - 1] = {
         startMs: last.startMs,
-        least: Math.min(last.least, difference),
+        leastOffsetMs: Math.min(last.leastOffsetMs, offsetMs),
       };
     } else {
-      this.buckets.push({ startMs: nowMs, least: difference });
+      this.buckets.push({ startMs: nowMs, leastOffsetMs: offsetMs });
     }
     this.buckets = this.buckets.filter((bucket) => nowMs - bucket.startMs < WINDOW_MS);
   }

@@ -1,15 +1,15 @@
 import type { Clock, Instant } from "../source/clock";
 
-interface Waiting {
+interface Timer {
   readonly at_ms: number;
   readonly action: () => void;
 }
 
-/** A clock that stands still until a test moves it. */
+/** A clock that advances only when the test moves it. */
 export class FakeClock implements Clock {
   private monotonicMs = 1000;
   private wallMs = 1_700_000_000_000;
-  private waiting: Waiting[] = [];
+  private timers: Timer[] = [];
 
   now(): Instant {
     return { monotonicMs: this.monotonicMs, wallMs: this.wallMs };
@@ -17,39 +17,39 @@ export class FakeClock implements Clock {
 
   after(delayMs: number, action: () => void): () => void {
     const entry = { at_ms: this.monotonicMs + delayMs, action };
-    this.waiting.push(entry);
+    this.timers.push(entry);
     return () => {
-      this.waiting = this.waiting.filter((other) => other !== entry);
+      this.timers = this.timers.filter((other) => other !== entry);
     };
   }
 
-  /** Lets time pass, running what falls due on the way, in order. */
+  /** Advances time and runs due timers in order. */
   advance(ms: number): void {
     const end_ms = this.monotonicMs + ms;
     for (;;) {
-      const due = this.waiting
+      const due = this.timers
         .filter((entry) => entry.at_ms <= end_ms)
         .sort((a, b) => a.at_ms - b.at_ms)[0];
       if (due === undefined) break;
-      this.waiting = this.waiting.filter((entry) => entry !== due);
+      this.timers = this.timers.filter((entry) => entry !== due);
       this.move(Math.max(0, due.at_ms - this.monotonicMs));
       due.action();
     }
     this.move(Math.max(0, end_ms - this.monotonicMs));
   }
 
-  /** The computer sleeps: only the wall clock goes on. */
+  /** The computer sleeps: only the wall clock advances. */
   sleep(ms: number): void {
     this.wallMs += ms;
   }
 
-  /** The page hangs: time passes and nothing runs until it is through. */
+  /** The page hangs: time advances without running timers. */
   stall(ms: number): void {
     this.move(ms);
   }
 
   get pending(): number {
-    return this.waiting.length;
+    return this.timers.length;
   }
 
   private move(ms: number): void {

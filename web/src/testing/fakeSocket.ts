@@ -1,7 +1,7 @@
 import type { StationState } from "../protocol";
 import type { Socket } from "../source/stream";
 
-/** A socket whose other end is the test. */
+/** A socket whose remote end is controlled by the test. */
 export class FakeSocket implements Socket {
   onopen: Socket["onopen"] = null;
   onmessage: Socket["onmessage"] = null;
@@ -26,11 +26,11 @@ export class FakeSocket implements Socket {
     this.onopen?.(new Event("open"));
   }
 
-  say(state: StationState): void {
-    this.sayText(JSON.stringify(state));
+  deliver(state: StationState): void {
+    this.deliverText(JSON.stringify(state));
   }
 
-  sayText(text: string): void {
+  deliverText(text: string): void {
     this.onmessage?.(new MessageEvent("message", { data: text }));
   }
 

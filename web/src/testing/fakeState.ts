@@ -11,13 +11,13 @@ import type {
   VehicleView,
 } from "../protocol";
 
-/** The field the false vehicles fly over. */
+/** Position of the field. */
 export const FIELD = { lat: 44.7, lon: -93.07 };
 
 const M_PER_LAT = 111_132;
 const M_PER_LON = 79_300;
 
-/** A point so many metres east and north of the field's middle. */
+/** A point `east_m` and `north_m` from the field's centre, as longitude and latitude. */
 export function at(east_m: number, north_m: number): [number, number] {
   return [FIELD.lon + east_m / M_PER_LON, FIELD.lat + north_m / M_PER_LAT];
 }
@@ -26,7 +26,7 @@ function aged<T>(value: T | null, age_s: number | null = 0.1) {
   return { value, age_s };
 }
 
-/** A vehicle that flies and lacks nothing, with `changes` made to it. */
+/** A flying vehicle without problems, with `changes` applied. */
 export function vehicle(number: number, changes: Partial<VehicleView> = {}): VehicleView {
   const [longitude_deg, latitude_deg] = at(60 * number - 150, 30 * number - 60);
   return {
@@ -103,7 +103,7 @@ export function alarm(id: number, changes: Partial<AlarmView> = {}): AlarmView {
     serial: "SN-004",
     link_id: 4,
     vehicle_name: "Dogwood",
-    text: "The aircraft warns of its battery: low, 28 % left.",
+    text: "Aircraft battery warning: low, 28 % left.",
     raised_age_s: 14,
     is_active: true,
     is_acknowledged: false,
@@ -139,7 +139,7 @@ export function command(id: number, changes: Partial<CommandView> = {}): Command
   };
 }
 
-/** The station's answer to an order it accepted. */
+/** The result of an accepted order, with `changes` applied. */
 export function orderResult(changes: Partial<OrderResult> = {}): OrderResult {
   return {
     serial: "SN-001",
@@ -156,7 +156,7 @@ export function orderResult(changes: Partial<OrderResult> = {}): OrderResult {
   };
 }
 
-/** A whole state of these vehicles, with `changes` made to it. */
+/** A complete state with these vehicles, with `changes` applied. */
 export function station(
   vehicles: VehicleView[],
   changes: Partial<StationState> = {},
@@ -167,7 +167,7 @@ export function station(
     station: {
       version: "0.1.0",
       link_addresses: ["127.0.0.1:3001"],
-      // One station that runs on, whatever moment is asked for.
+      // The start time is the same for every `time_ns`.
       uptime_s: 840 + time_ns / 1e9,
       frames_dropped: 0,
       capture_folder: null,
@@ -212,7 +212,7 @@ export function station(
   };
 }
 
-/** A square area around a place of the field, `half_m` to each side. */
+/** A square area around a point of the field, `half_m` to each side. */
 export function area(
   kind: AreaView["kind"],
   [east_m, north_m]: readonly [number, number],
@@ -238,7 +238,7 @@ export function area(
   };
 }
 
-/** A hazard area at a place of the field that grows 10 m in a second. */
+/** A hazard area at a point of the field, growing by 10 m/s. */
 export function hazard(
   [east_m, north_m]: readonly [number, number],
   changes: Partial<HazardView> = {},
@@ -258,7 +258,7 @@ export function hazard(
   };
 }
 
-/** A survey of two hectares that one vehicle flies, with `changes` made to it. */
+/** A survey of two hectares with one vehicle flying rows, with `changes` applied. */
 export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyView {
   return {
     id,
@@ -289,7 +289,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         serial: "SN-002",
         vehicle_name: "Birch",
         is_flying_rows: false,
-        waits_for: "its battery does not last",
+        waits_for: "battery too low",
         refused: null,
         mission_command_id: null,
         has_come_home: false,
@@ -312,7 +312,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
   };
 }
 
-/** A line from frames to forecasts at work, with `changes` made to it. */
+/** Shade detection and forecast running, with `changes` applied. */
 export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
   return {
     detection: "brightness_ratio",

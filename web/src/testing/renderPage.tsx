@@ -18,41 +18,41 @@ import type {
 import type { ThemeSwitch } from "../theme/theme";
 import { FakeClock } from "./fakeClock";
 
-/** A part of the page with a source, a clock and a hand on both. */
+/** A rendered component with a fake source and clock that the test controls. */
 export interface RenderedPage {
   readonly root: HTMLElement;
   readonly shared: Console;
   readonly clock: FakeClock;
   readonly orders: NamedOrder[];
-  /** Orders whose judgement was asked for. */
+  /** Orders that were checked. */
   readonly checks: NamedOrder[];
   readonly acknowledged: number[];
-  /** Words that are no orders, as they were said. */
-  readonly said: Said[];
+  /** Requests other than orders. */
+  readonly requests: PageRequest[];
   readonly allStops: () => number;
-  /** From now on every order is answered with this. */
+  /** Sets the answer to every further order. */
   answerWith(results: readonly OrderResult[]): void;
-  /** From now on every word that is no order, and every checklist, is answered with these. */
-  answerWordsWith(word: WordResponse): void;
+  /** Sets the answer to every further request other than orders. */
+  answerRequestsWith(response: WordResponse): void;
   showPreflight(preflight: PreflightView): void;
   failPreflight(problem: string): void;
-  /** From now on a vehicle's picture is brought by this. */
-  bringFrames(fetch: StationSource["vehicleFrame"]): void;
-  say(state: StationState): void;
+  /** Sets how vehicle pictures are fetched. */
+  fetchFramesWith(fetch: StationSource["vehicleFrame"]): void;
+  receive(state: StationState): void;
   connect(connection: Connection): void;
-  /** How old the newest state is from now on. */
+  /** Sets the age of the newest state, seconds. */
   age(behindS: number): void;
   dispose(): void;
 }
 
-/** Something said to the station that is no order of a vehicle. */
-export type Said =
+/** A request other than a vehicle order. */
+export type PageRequest =
   | { readonly authority: AuthorityHolder; readonly serial: string }
   | { readonly override: string; readonly serial: string }
-  | { readonly dismissed: string }
+  | { readonly clearedHazard: string }
   | { readonly separationHold: boolean }
   | { readonly fleetReturn: readonly string[] | null }
-  | { readonly askedSurvey: NewSurvey }
+  | { readonly plannedSurvey: NewSurvey }
   | {
       readonly startedSurvey: number;
       readonly serials: readonly string[];
@@ -60,74 +60,77 @@ export type Said =
     }
   | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" };
 
-/** What the page asked for, and what every order is answered with. */
-interface Asked {
+/** Recorded requests, and the answers to give. */
+interface Recorded {
   orders: NamedOrder[];
   checks: NamedOrder[];
   acknowledged: number[];
-  said: Said[];
-  word: WordResponse;
+  requests: PageRequest[];
+  response: WordResponse;
   preflight: Outcome<PreflightView>;
   allStops: number;
   answer: readonly OrderResult[];
-  bringFrame: StationSource["vehicleFrame"];
+  fetchFrame: StationSource["vehicleFrame"];
 }
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
 
 const PLAIN_THEME: ThemeSwitch = { theme: () => "auto", changes: () => 0, toggle: () => {} };
 
-/** Renders a part of the page over a source that says `first`. */
-export function renderPage(part: () => JSX.Element, first: StationState | null): RenderedPage {
+/** Renders a component over a source whose state is `first`. */
+export function renderPage(component: () => JSX.Element, first: StationState | null): RenderedPage {
   const clock = new FakeClock();
   const [state, setState] = createSignal<StationState | null>(first, { equals: false });
   const [connection, setConnection] = createSignal<Connection>({ kind: "live" });
   const [now, setNow] = createSignal(clock.now());
-  const asked: Asked = {
+  const recorded: Recorded = {
     orders: [],
     checks: [],
     acknowledged: [],
-    said: [],
-    word: { accepted: true, rule: null, reason: null },
+    requests: [],
+    response: { accepted: true, rule: null, reason: null },
     preflight: { kind: "failed", problem: "no checklist in this test" },
     allStops: 0,
     answer: [],
-    bringFrame: noPicture,
+    fetchFrame: noPicture,
   };
   let behindS = 0;
-  const source = fakeSource(state, connection, () => behindS, asked);
+  const source = fakeSource(state, connection, () => behindS, recorded);
   const { shared, disposeShared } = createRoot((disposeShared) => ({
     shared: createConsole(source, PLAIN_THEME, clock, now),
     disposeShared,
   }));
   const root = document.createElement("div");
   document.body.append(root);
-  const unmount = render(() => <ConsoleProvider value={shared}>{part()}</ConsoleProvider>, root);
+  const unmount = render(
+    () => <ConsoleProvider value={shared}>{component()}</ConsoleProvider>,
+    root,
+  );
   return {
     root,
     shared,
     clock,
-    orders: asked.orders,
-    checks: asked.checks,
-    acknowledged: asked.acknowledged,
-    said: asked.said,
-    allStops: () => asked.allStops,
+    orders: recorded.orders,
+    checks: recorded.checks,
+    acknowledged: recorded.acknowledged,
+    requests: recorded.requests,
+    allStops: () => recorded.allStops,
     answerWith: (results) => {
-      asked.answer = results;
+      recorded.answer = results;
     },
-    answerWordsWith: (word) => {
-      asked.word = word;
+    answerRequestsWith: (response) => {
+      recorded.response = response;
     },
     showPreflight: (value) => {
-      asked.preflight = { kind: "answered", value };
+      recorded.preflight = { kind: "answered", value };
     },
     failPreflight: (problem) => {
-      asked.preflight = { kind: "failed", problem };
+      recorded.preflight = { kind: "failed", problem };
     },
-    bringFrames: (fetch) => {
-      asked.bringFrame = fetch;
+    fetchFramesWith: (fetch) => {
+      recorded.fetchFrame = fetch;
     },
-    say: setState,
+    receive: setState,
     connect: setConnection,
     age: (seconds) => {
       behindS = seconds;
@@ -146,63 +149,63 @@ function fakeSource(
   state: StationSource["state"],
   connection: StationSource["connection"],
   behindS: () => number,
-  asked: Asked,
+  recorded: Recorded,
 ): StationSource {
   return {
     state,
     connection,
     behindS,
     order: async (order) => {
-      asked.orders.push(order);
-      return { kind: "answered", value: asked.answer };
+      recorded.orders.push(order);
+      return { kind: "answered", value: recorded.answer };
     },
     allStop: async () => {
-      asked.allStops += 1;
+      recorded.allStops += 1;
       return { kind: "answered", value: [] };
     },
     check: async (order) => {
-      asked.checks.push(order);
-      return { kind: "answered", value: asked.answer };
+      recorded.checks.push(order);
+      return { kind: "answered", value: recorded.answer };
     },
     fleetReturn: async (serials) => {
-      asked.said.push({ fleetReturn: serials });
-      return { kind: "answered", value: asked.answer };
+      recorded.requests.push({ fleetReturn: serials });
+      return { kind: "answered", value: recorded.answer };
     },
-    takeAuthority: async (serial, authority) => {
-      asked.said.push({ authority, serial });
-      return { kind: "answered", value: asked.word };
+    setAuthority: async (serial, authority) => {
+      recorded.requests.push({ authority, serial });
+      return { kind: "answered", value: recorded.response };
     },
-    preflight: async () => asked.preflight,
+    preflight: async () => recorded.preflight,
     overridePreflight: async (serial, override) => {
-      asked.said.push({ override, serial });
-      return { kind: "answered", value: asked.word };
+      recorded.requests.push({ override, serial });
+      return { kind: "answered", value: recorded.response };
     },
-    dismissHazard: async (dismissed) => {
-      asked.said.push({ dismissed });
+    dismissHazard: async (clearedHazard) => {
+      recorded.requests.push({ clearedHazard });
       return { kind: "answered", value: null };
     },
-    switchSeparationHold: async (separationHold) => {
-      asked.said.push({ separationHold });
+    setSeparationHold: async (separationHold) => {
+      recorded.requests.push({ separationHold });
       return { kind: "answered", value: null };
     },
     acknowledge: async (id) => {
-      asked.acknowledged.push(id);
+      recorded.acknowledged.push(id);
       return { kind: "answered", value: null };
     },
-    vehicleFrame: (serial, frameId) => asked.bringFrame(serial, frameId),
+    vehicleFrame: (serial, frameId) => recorded.fetchFrame(serial, frameId),
     groundImage: noPicture,
     groundImageFile: noPicture,
-    askSurvey: async (askedSurvey) => {
-      asked.said.push({ askedSurvey });
-      return { kind: "answered", value: { ...asked.word, survey: null } };
+    planSurvey: async (plannedSurvey) => {
+      recorded.requests.push({ plannedSurvey });
+      return { kind: "answered", value: { ...recorded.response, survey: null } };
     },
     startSurvey: async (startedSurvey, serials, takeoff) => {
-      asked.said.push({ startedSurvey, serials, takeoff });
-      return { kind: "answered", value: { ...asked.word, survey: null } };
+      recorded.requests.push({ startedSurvey, serials, takeoff });
+      return { kind: "answered", value: { ...recorded.response, survey: null } };
     },
     stopSurvey: async (stoppedSurvey, word) => {
-      asked.said.push({ stoppedSurvey, word });
-      return { kind: "answered", value: { ...asked.word, survey: null } };
+      recorded.requests.push({ stoppedSurvey, word });
+      return { kind: "answered", value: { ...recorded.response, survey: null } };
     },
     surveyWays: noPicture,
     surveyCells: noPicture,
@@ -212,9 +215,9 @@ function fakeSource(
   };
 }
 
-/** The element a test is about; a missing one ends the test with the selector in its message. */
+/** The first element matching `selector`; throws without a match. */
 export function find<E extends Element = HTMLElement>(root: ParentNode, selector: string): E {
   const element = root.querySelector<E>(selector);
-  if (element === null) throw new Error(`Nothing on the page matches ${selector}.`);
+  if (element === null) throw new Error(`No element matches ${selector}.`);
   return element;
 }

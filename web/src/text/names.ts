@@ -21,9 +21,14 @@ const COMMANDS: Readonly<Record<string, string>> = {
   hold_position: "Hold position",
 };
 
-/** A command's kind in plain words; an unknown kind stands as the station said it. */
+/** A command kind for display; an unknown kind is shown as received. */
 export function commandName(kind: string): string {
   return COMMANDS[kind] ?? plainWords(kind);
+}
+
+/** An issuer for display: the station calls clients of its API `api <address>`. */
+export function issuerName(issuer: string): string {
+  return issuer.replace(/^api /, "operator at ");
 }
 
 export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
@@ -34,9 +39,9 @@ export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
   started: "Started",
   done: "Done",
   refused_by_station: "Refused by station",
-  refused_by_app: "Refused by app",
+  refused_by_app: "Rejected by app",
   timed_out: "Timed out",
-  superseded: "Superseded",
+  superseded: "Replaced",
   expired: "Expired",
   failed: "Failed",
 };
@@ -66,7 +71,7 @@ const TONES: Readonly<Record<Phase, Tone>> = {
   failed: "bad",
 };
 
-/** Whether a command went well, badly, is over without either, or is still under way. */
+/** How a phase is coloured: good, bad, over (ended without success or failure) or underway. */
 export function phaseTone(command: Pick<CommandView, "phase">): Tone {
   return TONES[command.phase] ?? "underway";
 }
@@ -78,38 +83,42 @@ export const SEVERITY_NAMES: Readonly<Record<Severity, string>> = {
   info: "Note",
 };
 
-/** An enumeration's word (`AUTO_LANDING`, `auto_landing`) in plain ones (`auto landing`). */
+/** An enum value (`AUTO_LANDING`, `auto_landing`) as text (`auto landing`). */
 export function plainWords(word: string): string {
   return word.toLowerCase().replaceAll("_", " ");
 }
 
-/** A vehicle as every order and alarm names it: its number, then its name. */
+/** A vehicle's label in orders and alarms: its number, then its name. */
 export function vehicleLabel(vehicle: Pick<VehicleView, "number" | "name">): string {
   return vehicle.number > 0 ? `${vehicle.number} ${vehicle.name}` : `? ${vehicle.name}`;
 }
 
-/** Names joined for a sentence: `a`, `a and b`, `a, b and c`. */
+/** The text with its first letter in upper case. */
+export function capitalised(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** Names as a list in a sentence: `a`, `a and b`, `a, b and c`. */
 export function listNames(names: readonly string[]): string {
   if (names.length <= 1) return names.join("");
   return `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
 }
 
-/** An alarm's text without the vehicle's name before it: where it is shown the name stands already. */
+/** An alarm's text without the leading vehicle name, which is shown separately. */
 export function alarmText(alarm: Pick<AlarmView, "text" | "vehicle_name">): string {
   const name = `${alarm.vehicle_name}: `;
   const text = alarm.text.startsWith(name) ? alarm.text.slice(name.length) : alarm.text;
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  return capitalised(text);
 }
 
-/** A refusal as it is read everywhere: the rule by name, then its sentence. */
-export function refusalText(rule: string | null, reason: string | null): string {
-  const name = rule === null || rule === "" ? "no rule given" : plainWords(rule);
-  return `Refused (${name}): ${reason ?? "no reason given"}`;
+/** A refusal as text. */
+export function refusalText(reason: string | null): string {
+  return `Refused: ${reason ?? "no reason given"}`;
 }
 
-/** Why a word to the station was not taken; null when it was. */
-export function wordProblem(outcome: Outcome<WordResponse | null>): string | null {
+/** Why a request failed or was refused; null when the station accepted it. */
+export function responseProblem(outcome: Outcome<WordResponse | null>): string | null {
   if (outcome.kind === "failed") return outcome.problem;
-  const word = outcome.value;
-  return word === null || word.accepted ? null : refusalText(word.rule, word.reason);
+  const response = outcome.value;
+  return response === null || response.accepted ? null : refusalText(response.reason);
 }

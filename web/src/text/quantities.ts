@@ -1,7 +1,7 @@
-/** What stands where nothing is known; never a zero. */
+/** Shown for an unknown value; never a zero. */
 export const UNKNOWN = "—";
 
-/** An age as people say it: `0.2 s`, `12 s`, `3 min 20 s`, `2 h 5 min`. */
+/** An age in seconds as text: `0.2 s`, `12 s`, `3 min 20 s`, `2 h 5 min`. */
 export function formatAge(seconds: number | null): string {
   if (seconds === null || !Number.isFinite(seconds)) return UNKNOWN;
   const age = Math.max(0, seconds);
@@ -13,7 +13,7 @@ export function formatAge(seconds: number | null): string {
   return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-/** An age in the station's message, brought to the present. */
+/** An age in the station's message plus the time since that message, seconds. */
 export function agedBy(ageS: number | null, behindS: number): number | null {
   return ageS === null ? null : ageS + behindS;
 }
@@ -29,7 +29,7 @@ export function formatQuantity(value: number | null, unit: string, digits = 1): 
   return unit === "" ? shown : `${shown}\u00a0${unit}`;
 }
 
-/** A fraction as whole per cent, rounded down: a battery is never shown fuller than it is. */
+/** A fraction as whole per cent, rounded down so that a battery never reads too full. */
 export function formatFraction(fraction: number | null): string {
   if (fraction === null || !Number.isFinite(fraction)) return UNKNOWN;
   // The small addition keeps 0.29 x 100 = 28.999... at 29.
@@ -48,12 +48,12 @@ export function groundSpeedMps(north: number | null, east: number | null): numbe
   return north === null || east === null ? null : Math.hypot(north, east);
 }
 
-/** Why a value is unknown, given the age of the message it should have been in. */
-export function whyUnknown(ageS: number | null): string {
-  return ageS === null ? "not received yet" : "the app sends no usable value";
+/** Why a value is unknown, given the age in seconds of the message that carries it. */
+export function unknownReason(ageS: number | null): string {
+  return ageS === null ? "not received yet" : "no valid value in telemetry";
 }
 
-/** A count of bytes in round units. */
+/** A byte count in B, kB, MB or GB. */
 export function formatBytes(count: number): string {
   if (count < 1000) return `${count} B`;
   if (count < 1e6) return `${(count / 1e3).toFixed(1)} kB`;

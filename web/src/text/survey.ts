@@ -1,18 +1,24 @@
 import type { SurveyView } from "../protocol";
 import { formatQuantity } from "./quantities";
 
-/** A phase as it is read after the survey's name. */
-export const PHASES: Readonly<Record<SurveyView["phase"], string>> = {
-  planning: "is being planned",
-  refused: "cannot be flown",
-  created: "is planned, and waits to be started",
-  running: "is being flown",
-  paused: "is paused",
-  aborted: "is aborted",
-  done: "is done",
+/** Survey phases for display. */
+const PHASE_LABELS: Readonly<Record<SurveyView["phase"], string>> = {
+  planning: "Planning",
+  refused: "Not feasible",
+  created: "Planned, not started",
+  running: "Running",
+  paused: "Paused",
+  aborted: "Aborted",
+  done: "Complete",
 };
 
-/** The survey that the map shows: one that flies, else one that may, else the newest with rows. */
+/** A survey's status as text. */
+export function surveyStatus({ phase, vehicles }: SurveyView): string {
+  const isStopped = phase === "running" && !vehicles.some((vehicle) => vehicle.is_flying_rows);
+  return isStopped ? "Stopped: no drone is flying rows" : PHASE_LABELS[phase];
+}
+
+/** The survey shown on the map: a running one, else paused, else planned, else the newest with rows. */
 export function shownSurvey(surveys: readonly SurveyView[]): SurveyView | null {
   const withRows = surveys.filter(({ cells }) => cells !== null);
   const inPhase = (phase: SurveyView["phase"]) => withRows.find((survey) => survey.phase === phase);
@@ -25,7 +31,7 @@ export function formatArea(area_m2: number): string {
   return formatQuantity(area_m2 / HECTARE_M2, "ha", 2);
 }
 
-/** A share of the region in whole per cent, rounded down: nothing is shown as more than it is. */
+/** A share of the region in whole per cent, rounded down so that coverage never reads too high. */
 export function sharePercent(area_m2: number, region_m2: number): number {
   return region_m2 > 0 ? Math.floor((100 * area_m2) / region_m2 + 1e-6) : 0;
 }

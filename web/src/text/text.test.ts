@@ -9,7 +9,7 @@ import {
   formatQuantity,
   groundSpeedMps,
   UNKNOWN,
-  whyUnknown,
+  unknownReason,
 } from "./quantities";
 
 describe("ages", () => {
@@ -28,7 +28,7 @@ describe("ages", () => {
     [Number.NaN, UNKNOWN],
   ])("%s s is %s", (seconds, text) => expect(formatAge(seconds)).toBe(text));
 
-  it("stay unknown when they are brought to the present", () => {
+  it("stay unknown when time is added", () => {
     expect(agedBy(null, 5)).toBeNull();
     expect(agedBy(0.5, 5)).toBe(5.5);
   });
@@ -46,7 +46,7 @@ describe("quantities", () => {
     expect(formatQuantity(value, unit, digits)).toBe(text);
   });
 
-  it("never show a battery fuller than it is", () => {
+  it("round battery fractions down", () => {
     expect(formatFraction(0.299)).toBe("29\u00a0%");
     expect(formatFraction(0.29)).toBe("29\u00a0%");
     expect(formatFraction(1)).toBe("100\u00a0%");
@@ -61,13 +61,13 @@ describe("quantities", () => {
     [null, UNKNOWN],
   ])("a heading of %s is %s", (degrees, text) => expect(formatHeading(degrees)).toBe(text));
 
-  it("have no speed when a part of it is unknown", () => {
+  it("have no speed when a component is unknown", () => {
     expect(groundSpeedMps(3, 4)).toBe(5);
     expect(groundSpeedMps(null, 4)).toBeNull();
   });
 
-  it("tell why they are unknown", () => {
-    expect(whyUnknown(null)).not.toBe(whyUnknown(0.2));
+  it("have different reasons for being unknown", () => {
+    expect(unknownReason(null)).not.toBe(unknownReason(0.2));
   });
 
   it.each([
@@ -79,16 +79,17 @@ describe("quantities", () => {
 });
 
 describe("names", () => {
-  it("join as in a sentence", () => {
+  it("are joined as a list in a sentence", () => {
     expect(listNames([])).toBe("");
     expect(listNames(["a"])).toBe("a");
     expect(listNames(["a", "b"])).toBe("a and b");
     expect(listNames(["a", "b", "c"])).toBe("a, b and c");
   });
 
-  it("are plain words", () => expect(plainWords("AUTO_LANDING")).toBe("auto landing"));
+  it("of enum values are plain text", () =>
+    expect(plainWords("AUTO_LANDING")).toBe("auto landing"));
 
-  it("call only a confirmed command good", () => {
+  it("show only a confirmed command as good", () => {
     expect(phaseTone({ phase: "confirmed" })).toBe("good");
     expect(phaseTone({ phase: "acknowledged" })).toBe("underway");
     expect(phaseTone({ phase: "timed_out" })).toBe("bad");

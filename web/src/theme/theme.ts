@@ -1,18 +1,18 @@
 import { type Accessor, createSignal } from "solid-js";
 
-/** The look the operator chose: as the computer says (light or dark), or made for bright sun. */
+/** The selected theme: `auto` follows the computer (light or dark), `sun` has high contrast for bright sun. */
 export type Theme = "auto" | "sun";
 
 const STORED_AS = "recon.theme";
 
 export interface ThemeSwitch {
   readonly theme: Accessor<Theme>;
-  /** Grows whenever colours changed, by the operator or by the computer. */
+  /** Incremented whenever colours change, by the operator or by the computer. */
   readonly changes: Accessor<number>;
   toggle(): void;
 }
 
-/** Keeps the page's theme in `<html data-theme>` and remembers it in this browser. */
+/** Sets the page's theme in `<html data-theme>` and stores it in this browser. */
 export function createThemeSwitch(page: Document, storage: Storage): ThemeSwitch {
   const stored = storage.getItem(STORED_AS) === "sun" ? "sun" : "auto";
   const [theme, setTheme] = createSignal<Theme>(stored);
@@ -37,16 +37,16 @@ export function createThemeSwitch(page: Document, storage: Storage): ThemeSwitch
   };
 }
 
-/** How many colours there are; the number beside each tells vehicles of one colour apart. */
+/** Number of vehicle colours; vehicles that share one differ by the number beside it. */
 export const VEHICLE_COLOURS = 8;
 
-/** The CSS variable with a vehicle's colour: always the same for the same number, grey without one. */
+/** CSS variable with a vehicle's colour, fixed by its number; grey without a number. */
 export function colourVariable(number: number): string {
   if (number <= 0) return "--stale";
   return `--vehicle-${((number - 1) % VEHICLE_COLOURS) + 1}`;
 }
 
-/** The same as a CSS value. */
+/** A vehicle's colour as a CSS value. */
 export function colourOf(number: number): string {
   return `var(${colourVariable(number)})`;
 }

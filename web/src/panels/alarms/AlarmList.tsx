@@ -8,7 +8,7 @@ import { Empty, Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./alarms.css";
 
-/** The alarms of all vehicles, worst first; each stays while its cause does. */
+/** The alarms of station and vehicles, worst first. */
 export function AlarmList() {
   const { fleet } = useConsole();
   const sorted = createMemo(() => sortAlarms(fleet.alarms));
@@ -31,7 +31,7 @@ function AlarmRow(props: { alarm: AlarmView }) {
     setProblem(outcome.kind === "failed" ? outcome.problem : null);
   };
   const text = () => alarmText(props.alarm);
-  const about = () => props.alarm.vehicle_name || "Station";
+  const subject = () => props.alarm.vehicle_name || "Station";
   return (
     <li
       class={`row alarm alarm-${props.alarm.severity}`}
@@ -42,20 +42,20 @@ function AlarmRow(props: { alarm: AlarmView }) {
       </span>
       <div class="alarm-text wire-text">
         <p>
-          <strong>{about()}</strong> {text()}
+          <strong>{subject()}</strong> {text()}
         </p>
         <p class="muted" aria-live="off">
           {formatAge(props.alarm.raised_age_s + behindS())} ago
           {props.alarm.is_active ? "" : ", ended"}
           {props.alarm.is_acknowledged ? ", acknowledged" : ""}
         </p>
-        <Show when={problem()}>{(why) => <p class="tone-error">{why()}</p>}</Show>
+        <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
       </div>
       <Show when={!props.alarm.is_acknowledged}>
         <button
           type="button"
           class="button"
-          aria-label={`Acknowledge: ${about()} ${text()}`}
+          aria-label={`Acknowledge: ${subject()} ${text()}`}
           onClick={() => void acknowledge()}
         >
           Ack

@@ -1,19 +1,19 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { AuthorityHolder, AuthorityView } from "../../protocol";
-import { wordProblem } from "../../text/names";
+import { issuerName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { BRIEF_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 import "./authority.css";
 
 const HOLDERS: Readonly<Record<AuthorityHolder, string>> = {
-  pilot: "pilot",
-  operator: "operator",
-  guidance: "guidance",
+  pilot: "Pilot",
+  operator: "Operator",
+  guidance: "Guidance",
 };
 
-/** Who leads a vehicle, since when and why; taking it over, and giving it to its pilot. */
+/** Who controls a vehicle, since when and why; take over, or hand over to the pilot. */
 export function AuthoritySection(props: {
   serial: string;
   name: string;
@@ -21,12 +21,12 @@ export function AuthoritySection(props: {
 }) {
   const { source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
-  const give = async (holder: AuthorityHolder) => {
-    setProblem(wordProblem(await source.takeAuthority(props.serial, holder)));
+  const transfer = async (holder: AuthorityHolder) => {
+    setProblem(responseProblem(await source.setAuthority(props.serial, holder)));
   };
   const subject = () => JSON.stringify([props.serial, props.authority.holder]);
   return (
-    <section class="section" aria-label="Who leads it">
+    <section class="section" aria-label="Control authority">
       <AuthorityText authority={props.authority} />
       <div class="section-buttons">
         <Show when={props.authority.holder !== "operator"}>
@@ -35,16 +35,16 @@ export function AuthoritySection(props: {
             name={`Take over ${props.name}`}
             hold_ms={BRIEF_MS}
             subject={subject()}
-            onConfirm={() => void give("operator")}
+            onConfirm={() => void transfer("operator")}
           />
         </Show>
         <Show when={props.authority.holder !== "pilot"}>
           <GuardButton
-            label="Give to pilot"
-            name={`Give ${props.name} to its pilot`}
+            label="Hand over to pilot"
+            name={`Hand over ${props.name} to its pilot`}
             hold_ms={BRIEF_MS}
             subject={subject()}
-            onConfirm={() => void give("pilot")}
+            onConfirm={() => void transfer("pilot")}
           />
         </Show>
       </div>
@@ -57,15 +57,17 @@ function AuthorityText(props: { authority: AuthorityView }) {
   const { behindS } = useConsole();
   const since = () => {
     const { age_s } = props.authority;
-    return age_s === null ? "since the station began" : `for ${formatAge(age_s + behindS())}`;
+    return age_s === null ? "since station start" : `for ${formatAge(age_s + behindS())}`;
   };
   return (
     <p class="wire-text">
-      Controlled by{" "}
       <strong class={`authority authority-${props.authority.holder}`}>
-        {HOLDERS[props.authority.holder]}
+        {HOLDERS[props.authority.holder]} control
       </strong>
-      <Show when={props.authority.holder_name !== ""}> ({props.authority.holder_name})</Show>{" "}
+      <Show when={props.authority.holder_name !== ""}>
+        {" "}
+        ({issuerName(props.authority.holder_name)})
+      </Show>{" "}
       <span class="muted">
         {since()}
         <Show when={props.authority.reason !== ""}>: {props.authority.reason}</Show>

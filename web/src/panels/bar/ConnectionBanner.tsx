@@ -2,8 +2,8 @@ import { Show } from "solid-js";
 import { useConsole } from "../../console";
 import { formatAge } from "../../text/quantities";
 
-/** Stands as long as the stream is lost, and says how old everything on the page is. */
-export function LostBanner() {
+/** Shown while the connection is lost, with the age of the displayed data. */
+export function ConnectionBanner() {
   const { source, fleet, behindS } = useConsole();
   const lost = () => {
     const connection = source.connection();
@@ -13,11 +13,11 @@ export function LostBanner() {
     <Show when={lost()}>
       {(connection) => (
         <div class="banner" role="alert">
-          <strong>No contact with the station.</strong>{" "}
-          <Show when={fleet.hasState} fallback="Nothing was received yet.">
-            Everything below is <span aria-hidden="true">{formatAge(behindS())}</span> old.
+          <strong>No connection to the station.</strong>{" "}
+          <Show when={fleet.hasState} fallback="No data received yet.">
+            All data below is <span aria-hidden="true">{formatAge(behindS())}</span> old.
           </Show>{" "}
-          {connection().reason} Trying again (attempt {connection().attempt}). Watch the aircraft
+          {connection().reason}; reconnecting (attempt {connection().attempt}). Watch the aircraft
           and use the remote controllers.
         </div>
       )}

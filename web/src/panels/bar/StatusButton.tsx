@@ -3,8 +3,8 @@ import { useConsole } from "../../console";
 import { type Readiness, readiness } from "../../fleet/readiness";
 import { SeverityMark } from "../SeverityMark";
 
-/** The station's state in one word; a press tells everything that stands behind it. */
-export function StateWord() {
+/** Readiness of station and fleet as a label; a press shows all reasons. */
+export function StatusButton() {
   const { source, behindS } = useConsole();
   const [isOpen, setOpen] = createSignal(false);
   const panel = createUniqueId();
@@ -18,17 +18,17 @@ export function StateWord() {
     <div class="state">
       <button
         type="button"
-        class={`state-word tone-ground-${now().severity ?? "good"}`}
+        class={`status-button tone-ground-${now().severity ?? "good"}`}
         aria-expanded={isOpen()}
         onKeyDown={closeOnEscape}
         aria-controls={panel}
         onClick={() => setOpen(!isOpen())}
       >
         <SeverityMark severity={now().severity} size={26} />
-        <span class="state-text" data-testid="state-word">
-          {now().word}
+        <span class="status-text" data-testid="status-label">
+          {now().label}
         </span>
-        <span class="state-count">{count(now())}</span>
+        <span class="status-count">{count(now())}</span>
       </button>
       <Show when={isOpen()}>
         <Reasons id={panel} readiness={now()} />
@@ -39,16 +39,16 @@ export function StateWord() {
 
 function count(readiness: Readiness): string {
   const total = readiness.reasons.length;
-  if (total === 0) return "why?";
+  if (total === 0) return "details";
   return total === 1 ? "1 reason" : `${total} reasons`;
 }
 
 function Reasons(props: { id: string; readiness: Readiness }) {
   return (
-    <section id={props.id} class="state-reasons" aria-label="Why">
+    <section id={props.id} class="status-reasons" aria-label="Reasons">
       <Show
         when={props.readiness.reasons.length > 0}
-        fallback={<p>Every vehicle is heard and nothing is wrong.</p>}
+        fallback={<p>All vehicles connected, no problems</p>}
       >
         <ul>
           <For each={props.readiness.reasons}>

@@ -1,10 +1,10 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { simulation } from "../../fleet/vehicleStatus";
-import { StateWord } from "./StatusButton";
+import { StatusButton } from "./StatusButton";
 import "./bar.css";
 
-/** The top of the page: the state word, what flies, and all stop, which keeps the right corner to itself. */
+/** The top bar: readiness, number of flying vehicles, and all stop alone in the right corner. */
 export function TopBar(props: { onHelp: () => void }) {
   const { fleet, theme } = useConsole();
   const flying = () => fleet.vehicles.filter((vehicle) => vehicle.is_flying.value === true).length;
@@ -12,7 +12,7 @@ export function TopBar(props: { onHelp: () => void }) {
     <header class="bar">
       <div class="bar-rest">
         <h1 class="bar-title">Recon</h1>
-        <StateWord />
+        <StatusButton />
         <p class="bar-count">
           <strong>{flying()}</strong> of {fleet.vehicles.length} flying
         </p>
@@ -36,30 +36,30 @@ export function TopBar(props: { onHelp: () => void }) {
   );
 }
 
-/** Says when nothing real is flown, and loudly when both are. */
+/** Marks a simulation, and a dangerous mix of real and simulated vehicles. */
 function SimulationTag() {
   const { fleet } = useConsole();
   const kind = createMemo(() => simulation(fleet.vehicles));
   return (
     <Show when={kind() !== "none"}>
       <span class="tag tag-simulated">
-        {kind() === "all" ? "SIMULATION" : "REAL AND SIMULATED TOGETHER"}
+        {kind() === "all" ? "SIMULATION" : "REAL AND SIMULATED MIXED"}
       </span>
     </Show>
   );
 }
 
-/** Makes everything that flies hold its position: one press, no question, in reach at any time. */
+/** Makes all flying vehicles hold position: one press, no confirmation, always in reach. */
 export function AllStop() {
-  const { desk } = useConsole();
+  const { orderApi } = useConsole();
   return (
     <button
       type="button"
       class="all-stop"
-      aria-label="All stop: every flying vehicle holds its position"
+      aria-label="All stop: all flying vehicles hold position"
       aria-keyshortcuts="Shift+S"
-      title="Every flying vehicle holds its position. Motors stay on. (Shift+S)"
-      onClick={() => void desk.allStop()}
+      title="All flying vehicles hold position. Motors stay on. (Shift+S)"
+      onClick={() => void orderApi.allStop()}
     >
       <strong>ALL STOP</strong>
       <span>hold position</span>

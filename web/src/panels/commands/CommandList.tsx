@@ -1,14 +1,21 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { CommandView } from "../../protocol";
-import { commandName, noteText, PHASE_NAMES, phaseTone } from "../../text/names";
+import {
+  capitalised,
+  commandName,
+  issuerName,
+  noteText,
+  PHASE_NAMES,
+  phaseTone,
+} from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { Empty, Panel } from "../Panel";
 import "./commands.css";
 
 /**
- * Commands and what became of them, the newest first, as the station sorts them. Their ids do not tell
- * the order: those that the station gives by itself are negative.
+ * Commands and their phases, newest first as sorted by the station. Ids do not give the order: the
+ * station's own commands have negative ids.
  */
 export function CommandList() {
   const { fleet } = useConsole();
@@ -35,13 +42,13 @@ function CommandRow(props: { command: CommandView }) {
           {PHASE_NAMES[props.command.phase]}
         </span>
       </div>
-      <Life command={props.command} />
+      <PhaseHistory command={props.command} />
       <p class="muted wire-text">
-        #{props.command.id} by {props.command.issued_by},{" "}
+        {capitalised(issuerName(props.command.issued_by))},{" "}
         {formatAge(props.command.age_s + behindS())} ago
         <Show when={props.command.times_sent > 1}>, sent {props.command.times_sent} times</Show>
-        <Show when={props.command.takeoff}>, takeoff allowed</Show>
-        <Show when={props.command.sent_altitudes}>{(text) => <>, altitudes {text()}</>}</Show>
+        <Show when={props.command.takeoff}>; takeoff allowed</Show>
+        <Show when={props.command.sent_altitudes}>{(text) => <>; altitudes {text()}</>}</Show>
       </p>
       <Show when={props.command.part}>
         {(part) => (
@@ -53,19 +60,19 @@ function CommandRow(props: { command: CommandView }) {
       <Show when={props.command.repairs.length > 0}>
         <Repairs repairs={props.command.repairs} />
       </Show>
-      <Show when={!isNotedInLife(props.command)}>
+      <Show when={!isNoteInHistory(props.command)}>
         <p class="wire-text">{noteText(props.command.phase, props.command.note)}</p>
       </Show>
     </li>
   );
 }
 
-/** What the station changed in a mission so that the aircraft takes it. */
+/** Changes the station made to a mission so that the aircraft accepts it. */
 function Repairs(props: { repairs: readonly string[] }) {
   return (
     <details class="repairs wire-text">
       <summary>
-        Repaired before sending: {props.repairs.length}{" "}
+        Adjusted before sending: {props.repairs.length}{" "}
         {props.repairs.length === 1 ? "change" : "changes"}
       </summary>
       <ul>
@@ -75,15 +82,15 @@ function Repairs(props: { repairs: readonly string[] }) {
   );
 }
 
-/** Whether the command's own note stands beside one of its phases already. */
-function isNotedInLife(command: CommandView): boolean {
+/** Whether the command's note is already shown with one of its phases. */
+function isNoteInHistory(command: CommandView): boolean {
   return command.note === "" || command.history.some((phase) => phase.note === command.note);
 }
 
-/** The phases a command went through, each with how long after the order it came and its note. */
-function Life(props: { command: CommandView }) {
+/** A command's phases, each with its time since the order and its note. */
+function PhaseHistory(props: { command: CommandView }) {
   return (
-    <ol class="life wire-text" aria-label="Its life so far">
+    <ol class="command-history wire-text" aria-label="Command history">
       <For each={props.command.history}>
         {(phase) => (
           <li>

@@ -1,24 +1,24 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { Desk } from "../../orders/orderApi";
+import type { OrderApi } from "../../orders/orderApi";
 import { PHASE_NAMES } from "../../text/names";
-import { AnswerBody } from "../orders/OrderAnswer";
+import { AnswerResults } from "../orders/AnswerNotice";
 
-/** Pictures per second that can be asked for. */
+/** Selectable frame rates. */
 const RATES_HZ = [1, 2, 5] as const;
 
 /**
- * Starts and stops one vehicle's pictures. A routine order: one press, and kept away from the orders that
- * move a vehicle. The answers go to `desk`, which outlives this part of the page.
+ * Starts and stops one vehicle's camera. A routine order: one press, kept away from the orders that move a
+ * vehicle. Answers go to `orderApi`, which outlives this component.
  */
-export function CameraControl(props: { desk: Desk }) {
+export function CameraControl(props: { orderApi: OrderApi }) {
   const { targets, selection } = useConsole();
   const [fps_hz, setFps_hz] = createSignal<number>(RATES_HZ[0]);
   const isOne = () => selection.keys().length === 1 && targets().serials.length === 1;
   const order = (order: { kind: "camera_start"; fps_hz: number } | { kind: "camera_stop" }) => {
     if (!isOne()) return;
     const { serials, labels } = targets();
-    void props.desk.order({ serials, order }, labels);
+    void props.orderApi.order({ serials, order }, labels);
   };
   return (
     <section class="camera-control" aria-label="Camera">
@@ -58,37 +58,37 @@ export function CameraControl(props: { desk: Desk }) {
         </button>
       </div>
       <Show when={!isOne()}>
-        <p class="muted">{whyNot(selection.keys().length)}</p>
+        <p class="muted">{disabledReason(selection.keys().length)}</p>
       </Show>
-      <CameraAnswer desk={props.desk} />
+      <CameraAnswer orderApi={props.orderApi} />
     </section>
   );
 }
 
-function whyNot(selected: number): string {
+function disabledReason(selected: number): string {
   if (selected === 0) return "Camera: select a vehicle first.";
-  if (selected > 1) return "Camera: select one vehicle alone.";
-  return "Camera: its app has not said which aircraft it is.";
+  if (selected > 1) return "Camera: select only one vehicle.";
+  return "Camera: waiting for serial number.";
 }
 
-/** What the station said, and how far the command has come since. */
-function CameraAnswer(props: { desk: Desk }) {
+/** The station's answer and the command's current phase. */
+function CameraAnswer(props: { orderApi: OrderApi }) {
   const { fleet } = useConsole();
   const phase = () => {
-    const outcome = props.desk.last()?.outcome;
+    const outcome = props.orderApi.lastAnswer()?.outcome;
     const id = outcome?.kind === "answered" ? outcome.value[0]?.command_id : null;
     return fleet.commands.find((command) => command.id === id)?.phase ?? null;
   };
   return (
-    <Show when={props.desk.last()}>
+    <Show when={props.orderApi.lastAnswer()}>
       {(answer) => (
         <div class="camera-answer wire-text" role="status">
           <strong>
-            {answer().what} {answer().labels.join()}
+            {answer().order} {answer().labels.join()}
           </strong>
-          <Show when={answer().outcome.kind === "waiting"}>: asking the station</Show>
-          <Show when={phase()}>{(known) => <>: {PHASE_NAMES[known()].toLowerCase()}</>}</Show>
-          <AnswerBody answer={answer()} />
+          <Show when={answer().outcome.kind === "waiting"}>: waiting for the station</Show>
+          <Show when={phase()}>{(current) => <>: {PHASE_NAMES[current()].toLowerCase()}</>}</Show>
+          <AnswerResults answer={answer()} />
         </div>
       )}
     </Show>

@@ -1,21 +1,22 @@
 import { createEffect, createSignal, on, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { createFrameOnScreen, frameCaption, lacksNewer } from "../../fleet/displayedFrame";
+import { createDisplayedFrame, frameCaption, isSuperseded } from "../../fleet/displayedFrame";
 import type { VehicleView } from "../../protocol";
+import { capitalised } from "../../text/names";
 import { LatestPicture, type ShownPicture } from "./latestPicture";
 
-/** After a picture that did not come, wait so long before asking again. */
+/** Wait this long before requesting a failed picture again. */
 const RETRY_MS = 2_000;
 
-/** The newest picture of one vehicle's camera that came, as it came. The caption is that picture's own. */
+/** The newest camera picture of one vehicle that has loaded, with its own caption. */
 export function CameraFrame(props: { serial: string; vehicle: VehicleView }) {
   const { source, clock } = useConsole();
   const [shown, setShown] = createSignal<ShownPicture | null>(null);
-  const onScreen = createFrameOnScreen(
+  const displayed = createDisplayedFrame(
     source,
     (state) => state.vehicles.find(({ serial }) => serial === props.serial)?.frame ?? null,
   );
-  const picture = new LatestPicture({
+  const latest = new LatestPicture({
     fetch: (key) => source.vehicleFrame(key.serial, key.frameId),
     addresses: {
       create: (blob) => URL.createObjectURL(blob),
@@ -23,43 +24,39 @@ export function CameraFrame(props: { serial: string; vehicle: VehicleView }) {
     },
     show: (newest) => {
       setShown(newest);
-      if (newest === null) onScreen.clear();
-      else onScreen.show(newest.frameId);
+      if (newest === null) displayed.clear();
+      else displayed.show(newest.frameId);
     },
     later: (action) => clock.after(RETRY_MS, action),
   });
   createEffect(
-    on([() => props.serial, () => props.vehicle.frame?.id ?? null, onScreen.run], ([serial, id]) =>
-      picture.want(id === null ? null : { serial, frameId: id }),
+    on([() => props.serial, () => props.vehicle.frame?.id ?? null, displayed.run], ([serial, id]) =>
+      latest.request(id === null ? null : { serial, frameId: id }),
     ),
   );
-  onCleanup(() => picture.close());
+  onCleanup(() => latest.close());
   return (
     <figure class="camera">
-      <Show when={shown()} fallback={<p class="camera-empty">Picture on its way</p>}>
-        {(known) => <img src={known().url} alt={`Camera of ${props.vehicle.name}`} />}
+      <Show when={shown()} fallback={<p class="camera-empty">Loading picture</p>}>
+        {(picture) => <img src={picture().url} alt={`Camera of ${props.vehicle.name}`} />}
       </Show>
-      <Caption of={onScreen.facts()} />
+      <Caption of={displayed.info()} />
     </figure>
   );
 }
 
-function Caption(props: { of: ReturnType<ReturnType<typeof createFrameOnScreen>["facts"]> }) {
+function Caption(props: { of: ReturnType<ReturnType<typeof createDisplayedFrame>["info"]> }) {
   const { behindS } = useConsole();
   return (
     <Show when={props.of}>
       {(frame) => (
         <figcaption class="muted">
           {capitalised(frameCaption(frame(), behindS()))}
-          <Show when={lacksNewer(frame(), behindS())}>
-            <span class="tone-warning">, newer not loaded</span>
+          <Show when={isSuperseded(frame(), behindS())}>
+            <span class="tone-warning">; a newer frame exists</span>
           </Show>
         </figcaption>
       )}
     </Show>
   );
-}
-
-function capitalised(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -1,7 +1,7 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { badgeText, vehicleKey } from "../../fleet/vehicleStatus";
-import { createDesk } from "../../orders/orderApi";
+import { createOrderApi } from "../../orders/orderApi";
 import type { VehicleView } from "../../protocol";
 import { vehicleLabel } from "../../text/names";
 import { agedBy, formatAge } from "../../text/quantities";
@@ -15,10 +15,10 @@ import { CameraFrame } from "./CameraFrame";
 import { type Fact, factsOf } from "./facts";
 import "./detail.css";
 
-/** Everything known of the vehicle that was selected last, each value with its age. */
+/** Telemetry of the vehicle selected last, each value with its age. */
 export function VehicleDetail() {
   const { fleet, selection, source, clock } = useConsole();
-  const cameraDesk = createDesk(source, clock);
+  const cameraOrders = createOrderApi(source, clock);
   const shown = () => {
     const key = selection.keys().at(-1);
     return fleet.vehicles.find((vehicle) => vehicleKey(vehicle) === key);
@@ -29,8 +29,8 @@ export function VehicleDetail() {
       keyed={false}
       fallback={
         <Panel title="Vehicle">
-          <p class="panel-empty">Select a vehicle to see everything it says.</p>
-          <CameraControl desk={cameraDesk} />
+          <p class="panel-empty">Select a vehicle to see its telemetry.</p>
+          <CameraControl orderApi={cameraOrders} />
         </Panel>
       }
     >
@@ -48,12 +48,12 @@ export function VehicleDetail() {
             {(hazard) => <HazardSection hazard={hazard()} name={vehicleLabel(vehicle())} />}
           </Show>
           <Show when={vehicle().serial} keyed>
-            {(serial) => <Words serial={serial} vehicle={vehicle()} />}
+            {(serial) => <ControlSections serial={serial} vehicle={vehicle()} />}
           </Show>
           <Show when={vehicle().frame === null ? null : vehicle().serial} keyed>
             {(serial) => <CameraFrame serial={serial} vehicle={vehicle()} />}
           </Show>
-          <CameraControl desk={cameraDesk} />
+          <CameraControl orderApi={cameraOrders} />
           <dl class="facts">
             <For each={factsOf(vehicle())}>{(fact) => <FactRow fact={fact} />}</For>
           </dl>
@@ -63,8 +63,8 @@ export function VehicleDetail() {
   );
 }
 
-/** Who leads it and whether it is ready: made anew for another vehicle, so that no answer stays. */
-function Words(props: { serial: string; vehicle: VehicleView }) {
+/** Authority and checklist; recreated per vehicle, so that no answer of another vehicle remains. */
+function ControlSections(props: { serial: string; vehicle: VehicleView }) {
   const label = () => vehicleLabel(props.vehicle);
   return (
     <>
@@ -82,14 +82,14 @@ function Identity(props: { vehicle: VehicleView }) {
         {props.vehicle.model}
         {" · "}
         {props.vehicle.serial === null
-          ? "serial not received yet: only ALL STOP reaches it"
+          ? "waiting for serial number: only ALL STOP reaches this vehicle"
           : `serial ${props.vehicle.serial}`}
         <Show when={props.vehicle.is_simulated}> · simulated</Show>
       </p>
       <Show when={conflicts().length > 0}>
         <p class="tone-error">
-          In conflict: link {conflicts().join(", ")} claims the same serial. Hover, land and return
-          go to every link that does.
+          Serial conflict: link {conflicts().join(", ")} reports the same serial number. Hover, land
+          and return are sent to all of these links.
         </p>
       </Show>
     </div>

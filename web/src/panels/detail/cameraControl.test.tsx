@@ -21,14 +21,14 @@ function press(name: string): void {
   button.click();
 }
 
-/** Lets the source's answer come in. */
+/** Waits for the source's answer. */
 async function answered(): Promise<void> {
   await Promise.resolve();
   await Promise.resolve();
 }
 
-describe("the camera's control", () => {
-  it("starts at the chosen rate, and stops, for the one selected vehicle", () => {
+describe("camera control", () => {
+  it("starts at the selected rate, and stops, for the selected vehicle", () => {
     page.shared.selection.only(2);
     press("Start camera");
     press("5");
@@ -43,30 +43,30 @@ describe("the camera's control", () => {
 
   it.each([
     ["nothing", [], "select a vehicle first"],
-    ["two", [1, 2], "select one vehicle alone"],
-    ["one that has not said who it is", [-3], "has not said which aircraft"],
-    ["one of those and another", [1, -3], "select one vehicle alone"],
-  ])("gives no order while %s is selected, and says why", (_who, keys, why) => {
+    ["two", [1, 2], "select only one vehicle"],
+    ["an unidentified one", [-3], "waiting for serial number"],
+    ["an unidentified one and another", [1, -3], "select only one vehicle"],
+  ])("sends no order while %s is selected, with the reason", (_selected, keys, reason) => {
     page.shared.selection.all(keys);
     expect(buttons().map((button) => button.disabled)).toEqual(Array(5).fill(true));
     for (const button of buttons()) button.click();
     expect(page.orders).toEqual([]);
-    expect(control().textContent).toContain(why);
+    expect(control().textContent).toContain(reason);
   });
 
-  it("shows the answer and follows the command", async () => {
+  it("shows the answer and the command's phase", async () => {
     page.answerWith([orderResult()]);
     page.shared.selection.only(1);
     press("Start camera");
-    expect(control().textContent).toContain("Camera on 1 Alder: asking the station");
+    expect(control().textContent).toContain("Camera on 1 Alder: waiting for the station");
     await answered();
-    expect(control().textContent).toContain("Accepted: Alder (command 41)");
+    expect(control().textContent).toContain("Accepted: Alder");
     const commands = [command(41, { kind: "camera_start", phase: "timed_out" })];
-    page.say(station(VEHICLES, { commands }));
+    page.receive(station(VEHICLES, { commands }));
     expect(control().textContent).toContain("Camera on 1 Alder: timed out");
   });
 
-  it("shows a refusal with its reason, also when another vehicle is selected by then", async () => {
+  it("shows a refusal with its reason, even after the selection has changed", async () => {
     const refused = {
       accepted: false,
       command_id: 42,
@@ -79,13 +79,13 @@ describe("the camera's control", () => {
     page.shared.selection.clear();
     await answered();
     expect(control().textContent).toContain("Camera off 1 Alder");
-    expect(control().textContent).toContain("Refused: Alder (busy): one is unanswered");
+    expect(control().textContent).toContain("Refused: Alder: one is unanswered");
   });
 
-  it("leaves the answers to the safety orders alone", async () => {
+  it("does not replace the answers to safety orders", async () => {
     page.shared.selection.only(1);
     press("Start camera");
     await answered();
-    expect(page.shared.desk.last()).toBeNull();
+    expect(page.shared.orderApi.lastAnswer()).toBeNull();
   });
 });

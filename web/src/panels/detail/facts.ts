@@ -6,25 +6,27 @@ import {
   formatQuantity,
   groundSpeedMps,
   UNKNOWN,
-  whyUnknown,
+  unknownReason,
 } from "../../text/quantities";
 
-/** One line of what is known of a vehicle. */
+/** One line of a vehicle's telemetry. */
 export interface Fact {
   readonly name: string;
   readonly text: string;
-  /** Age in the station's message, seconds; null when it was never received or does not age. */
+  /** Age in the station's message, seconds; null if never received or without age. */
   readonly ageS: number | null;
-  /** Why the value is a dash; null when there is a value. */
+  /** Why the value is unknown; null if it is known. */
   readonly why: string | null;
 }
 
-/** Everything a vehicle says, with datum and unit. */
+/** All telemetry of a vehicle, with datum and unit. */
 export function factsOf(vehicle: VehicleView): Fact[] {
   const { position, attitude, velocity_ned: velocity } = vehicle;
   return [
     aged("Height above takeoff", vehicle.height_above_takeoff_m, (m) => formatQuantity(m, "m")),
-    aged("Altitude, WGS84, app's own", vehicle.reported_altitude_m, (m) => formatQuantity(m, "m")),
+    aged("Altitude (WGS84, as reported)", vehicle.reported_altitude_m, (m) =>
+      formatQuantity(m, "m"),
+    ),
     fact("Speed over ground", groundSpeed(vehicle), velocity.age_s),
     fact("Climb rate", climb(velocity.down_mps), velocity.age_s),
     fact("Heading", formatHeading(attitude.yaw_deg), attitude.age_s),
@@ -39,7 +41,7 @@ export function factsOf(vehicle: VehicleView): Fact[] {
     aged("Satellites", vehicle.gnss_satellite_count, String),
     aged("GNSS signal, 0 to 10", vehicle.gnss_signal_level, String),
     aged("Wind level", vehicle.wind_level, String),
-    aged("Mission", vehicle.mission_id, (id) => (id === 0 ? "none (0)" : String(id))),
+    aged("Mission", vehicle.mission_id, (id) => (id === 0 ? "none" : String(id))),
     aged("Camera", vehicle.camera_state, plainWords),
     waypointAltitude(vehicle),
   ];
@@ -55,7 +57,7 @@ function aged<T>(
 }
 
 function fact(name: string, text: string, ageS: number | null): Fact {
-  return { name, text, ageS, why: text === UNKNOWN ? whyUnknown(ageS) : null };
+  return { name, text, ageS, why: text === UNKNOWN ? unknownReason(ageS) : null };
 }
 
 function groundSpeed(vehicle: VehicleView): string {
@@ -76,9 +78,9 @@ const WAYPOINT_ALTITUDES: Readonly<Record<VehicleView["waypoint_altitude"], stri
 function waypointAltitude(vehicle: VehicleView): Fact {
   const isUnset = vehicle.waypoint_altitude === "unset";
   return {
-    name: "Waypoints are sent",
+    name: "Waypoint altitude",
     text: WAYPOINT_ALTITUDES[vehicle.waypoint_altitude],
     ageS: null,
-    why: isUnset ? "not set: missions are refused until the site's file says it" : null,
+    why: isUnset ? "not set in the site file: missions are refused" : null,
   };
 }

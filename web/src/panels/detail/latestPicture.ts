@@ -5,76 +5,76 @@ export interface PictureKey {
   readonly frameId: number;
 }
 
-/** Makes addresses of pictures and lets them go again. */
+/** Creates and revokes object URLs. */
 export interface PictureAddresses {
   create(blob: Blob): string;
   revoke(url: string): void;
 }
 
-/** A picture that can be shown, and which frame it really is, if the station said so. */
+/** A displayed picture and its frame number, if known. */
 export interface ShownPicture {
   readonly url: string;
   readonly frameId: number | null;
 }
 
-/** What a `LatestPicture` does with its surroundings. */
-export interface PictureSurroundings {
+/** Dependencies of a `LatestPicture`. */
+export interface LatestPictureOptions {
   fetch(key: PictureKey): Promise<Outcome<Picture>>;
   readonly addresses: PictureAddresses;
   show(picture: ShownPicture | null): void;
-  /** Does something after a while; returns what calls it off. */
+  /** Runs an action after the retry delay; returns a function that cancels it. */
   later(action: () => void): () => void;
 }
 
 /**
- * Keeps the newest picture wanted: fetches one at a time, passes over those that were overtaken, asks
- * again later for one that did not come, and never shows one vehicle's picture for another.
+ * Loads the newest requested picture: one request at a time, skipping superseded ones and retrying failed
+ * ones later. Never shows one vehicle's picture for another.
  */
 export class LatestPicture {
-  private wanted: PictureKey | null = null;
-  private asked: PictureKey | null = null;
+  private requested: PictureKey | null = null;
+  private pending: PictureKey | null = null;
   private shownUrl: string | null = null;
   private isClosed = false;
-  private callOff: () => void = () => {};
+  private cancelRetry: () => void = () => {};
 
-  constructor(private readonly around: PictureSurroundings) {}
+  constructor(private readonly options: LatestPictureOptions) {}
 
-  /** To be called once for every new frame; null when there is none to be shown. */
-  want(key: PictureKey | null): void {
-    if (this.wanted?.serial !== key?.serial) this.replace(null);
-    this.wanted = key;
-    if (this.asked === null) void this.fetchWanted();
+  /** Requests a frame's picture; null shows none. */
+  request(key: PictureKey | null): void {
+    if (this.requested?.serial !== key?.serial) this.replace(null);
+    this.requested = key;
+    if (this.pending === null) void this.fetchRequested();
   }
 
   close(): void {
     this.isClosed = true;
-    this.callOff();
+    this.cancelRetry();
     this.replace(null);
   }
 
-  private async fetchWanted(): Promise<void> {
-    const key = this.wanted;
-    this.callOff();
+  private async fetchRequested(): Promise<void> {
+    const key = this.requested;
+    this.cancelRetry();
     if (key === null) return;
-    this.asked = key;
-    const outcome = await this.around.fetch(key);
-    this.asked = null;
+    this.pending = key;
+    const outcome = await this.options.fetch(key);
+    this.pending = null;
     if (this.isClosed) return;
-    const isOfWanted = this.wanted?.serial === key.serial;
-    if (outcome.kind === "answered" && isOfWanted) this.replace(outcome.value);
-    if (this.wanted !== key) void this.fetchWanted();
+    const isRequestedVehicle = this.requested?.serial === key.serial;
+    if (outcome.kind === "answered" && isRequestedVehicle) this.replace(outcome.value);
+    if (this.requested !== key) void this.fetchRequested();
     else if (outcome.kind === "failed") this.retryLater();
   }
 
   private retryLater(): void {
-    this.callOff = this.around.later(() => void this.fetchWanted());
+    this.cancelRetry = this.options.later(() => void this.fetchRequested());
   }
 
   private replace(picture: Picture | null): void {
     if (picture === null && this.shownUrl === null) return;
-    if (this.shownUrl !== null) this.around.addresses.revoke(this.shownUrl);
-    this.shownUrl = picture === null ? null : this.around.addresses.create(picture.blob);
-    this.around.show(
+    if (this.shownUrl !== null) this.options.addresses.revoke(this.shownUrl);
+    this.shownUrl = picture === null ? null : this.options.addresses.create(picture.blob);
+    this.options.show(
       picture === null || this.shownUrl === null
         ? null
         : { url: this.shownUrl, frameId: picture.frameId },

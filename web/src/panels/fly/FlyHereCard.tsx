@@ -7,7 +7,7 @@ import { SeverityMark } from "../SeverityMark";
 import { NudgePad } from "./NudgePad";
 import "./fly.css";
 
-/** Fly here: where to, how high, how fast, what the gate says to it, and the button to be held. */
+/** Fly here: target, height, speed, the safety gate's result, and the button to confirm. */
 export function FlyHereCard() {
   const { flyHere } = useConsole();
   const name = () => {
@@ -35,7 +35,7 @@ export function FlyHereCard() {
         </header>
         <Show when={flyHere.target()} fallback={<Aim />}>
           <p class="fly-course">
-            <Show when={flyHere.course()} fallback="Distance not known">
+            <Show when={flyHere.course()} fallback="Distance unknown">
               {(course) => <strong>{courseText(course())}</strong>}
             </Show>
           </p>
@@ -62,7 +62,7 @@ export function FlyHereCard() {
             />
           </label>
         </div>
-        <Verdict />
+        <CheckResult />
         <GuardButton
           label="Fly there and hold"
           name={`Fly ${name()} there and hold`}
@@ -78,26 +78,26 @@ export function FlyHereCard() {
 }
 
 function Aim() {
-  const { aimAtMiddle } = useConsole();
+  const { aimAtCentre } = useConsole();
   return (
     <div class="fly-aim">
-      <p>Press on the map where it is to fly.</p>
-      <button type="button" class="button" onClick={() => aimAtMiddle()}>
-        Aim at the map's middle
+      <p>Press the target position on the map.</p>
+      <button type="button" class="button" onClick={() => aimAtCentre()}>
+        Use map centre
       </button>
     </div>
   );
 }
 
-/** What the gate says, before anything is confirmed. */
-function Verdict() {
+/** The safety gate's result before the order is confirmed. */
+function CheckResult() {
   const { flyHere } = useConsole();
   const refusal = () => {
-    const judgement = flyHere.judgement();
-    return judgement.kind === "refused" ? judgement.text : null;
+    const check = flyHere.check();
+    return check.kind === "refused" ? check.text : null;
   };
   return (
-    <div class="fly-verdict wire-text" role="status">
+    <div class="fly-check wire-text" role="status">
       <Switch>
         <Match when={refusal()}>
           {(text) => (
@@ -109,19 +109,19 @@ function Verdict() {
             </p>
           )}
         </Match>
-        <Match when={flyHere.judgement().kind === "allowed"}>
+        <Match when={flyHere.check().kind === "allowed"}>
           <p class="check">
             <span class="tone-good">
               <SeverityMark severity={null} />
             </span>
-            <span>The safety gate allows it as of now.</span>
+            <span>Allowed by the safety gate.</span>
           </p>
         </Match>
-        <Match when={flyHere.judgement().kind === "asking"}>
-          <p class="muted">Asking the safety gate</p>
+        <Match when={flyHere.check().kind === "pending"}>
+          <p class="muted">Checking with the safety gate</p>
         </Match>
         <Match when={flyHere.target() !== null}>
-          <p class="muted">Height and speed must be numbers, the speed above 0.</p>
+          <p class="muted">Height and speed must be numbers; speed above 0.</p>
         </Match>
       </Switch>
     </div>

@@ -7,32 +7,32 @@ const STEPS_M = [1, 2, 5] as const;
 const TURN_DEG = 15;
 
 interface Nudge {
-  readonly sign: string;
+  readonly icon: string;
   readonly name: string;
   by(step_m: number): NudgeBy;
 }
 
-/** In the order they stand: north above, its opposites around the middle. */
+/** In display order: north on top, opposites around the centre. */
 const NUDGES: readonly Nudge[] = [
-  { sign: "↺", name: `turn left by ${TURN_DEG}°`, by: () => ({ turn_deg: -TURN_DEG }) },
-  { sign: "N", name: "north", by: (north_m) => ({ north_m }) },
-  { sign: "↻", name: `turn right by ${TURN_DEG}°`, by: () => ({ turn_deg: TURN_DEG }) },
-  { sign: "↥", name: "up", by: (up_m) => ({ up_m }) },
-  { sign: "W", name: "west", by: (step_m) => ({ east_m: -step_m }) },
-  { sign: "S", name: "south", by: (step_m) => ({ north_m: -step_m }) },
-  { sign: "E", name: "east", by: (east_m) => ({ east_m }) },
-  { sign: "↧", name: "down", by: (step_m) => ({ up_m: -step_m }) },
+  { icon: "↺", name: `turn left by ${TURN_DEG}°`, by: () => ({ turn_deg: -TURN_DEG }) },
+  { icon: "N", name: "north", by: (north_m) => ({ north_m }) },
+  { icon: "↻", name: `turn right by ${TURN_DEG}°`, by: () => ({ turn_deg: TURN_DEG }) },
+  { icon: "↥", name: "up", by: (up_m) => ({ up_m }) },
+  { icon: "W", name: "west", by: (step_m) => ({ east_m: -step_m }) },
+  { icon: "S", name: "south", by: (step_m) => ({ north_m: -step_m }) },
+  { icon: "E", name: "east", by: (east_m) => ({ east_m }) },
+  { icon: "↧", name: "down", by: (step_m) => ({ up_m: -step_m }) },
 ];
 
-/** Small steps from where the vehicle is: each button is held briefly. */
+/** Small steps from the current position; each button must be held briefly. */
 export function NudgePad(props: { name: string }) {
   const { flyHere } = useConsole();
   const [step_m, setStep_m] = createSignal<number>(STEPS_M[0]);
   const subject = () => JSON.stringify([flyHere.vehicle()?.serial, step_m()]);
   return (
     <details class="nudges">
-      <summary>Nudge by small steps</summary>
-      <fieldset class="nudge-steps" aria-label="Metres in a step">
+      <summary>Nudge in small steps</summary>
+      <fieldset class="nudge-steps" aria-label="Step size">
         <For each={STEPS_M}>
           {(metres) => (
             <button
@@ -50,7 +50,7 @@ export function NudgePad(props: { name: string }) {
         <For each={NUDGES}>
           {(nudge) => (
             <GuardButton
-              label={nudge.sign}
+              label={nudge.icon}
               name={`Nudge ${props.name} ${nudge.name}`}
               class="guard-small"
               hold_ms={BRIEF_MS}

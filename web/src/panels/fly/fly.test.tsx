@@ -25,14 +25,14 @@ describe("the course", () => {
     expect(course.distance_m / 100).toBeCloseTo(1, 2);
   });
 
-  it("takes the climb's time too, and no time for granted", () => {
+  it("includes the time to climb", () => {
     const here = lonLat(0, 0);
     expect(courseOf(here, here, 30, 5)).toMatchObject({ distance_m: 0, time_s: 6 });
   });
 
-  it("reads as a sentence", () => {
+  it("is formatted as text", () => {
     const course = { distance_m: 120.4, bearing_deg: 44.6, time_s: 24.1 };
-    expect(courseText(course)).toBe("120\u00a0m towards 045°, about 25 s");
+    expect(courseText(course)).toBe("120\u00a0m, bearing 045°, about 25 s");
   });
 });
 
@@ -68,7 +68,7 @@ describe("fly here", () => {
     page.clock.advance(ms);
   };
 
-  it("needs exactly one vehicle that is known", () => {
+  it("needs exactly one identified vehicle", () => {
     fly().toggle();
     expect(fly().isOn()).toBe(false);
     page.shared.selection.all([1, 2]);
@@ -79,7 +79,7 @@ describe("fly here", () => {
     expect(fly().isOn()).toBe(true);
   });
 
-  it("asks the gate first and shows distance, bearing and time", async () => {
+  it("checks with the gate first and shows distance, bearing and time", async () => {
     await begin();
     expect(page.checks).toHaveLength(1);
     expect(page.checks[0]?.order).toMatchObject({
@@ -87,12 +87,12 @@ describe("fly here", () => {
       height_above_takeoff_m: 45,
       speed_mps: 5,
     });
-    expect(find(page.root, ".fly-course").textContent).toMatch(/m towards \d{3}°, about \d+ s/);
-    expect(find(page.root, ".fly-verdict").textContent).toContain("The safety gate allows it");
+    expect(find(page.root, ".fly-course").textContent).toMatch(/m, bearing \d{3}°, about \d+ s/);
+    expect(find(page.root, ".fly-check").textContent).toContain("Allowed by the safety gate");
     expect(page.orders).toEqual([]);
   });
 
-  it("orders what was judged when the button was held, and once", async () => {
+  it("sends the checked order once after the button was held", async () => {
     await begin();
     hold(1400);
     expect(page.orders).toEqual([]);
@@ -102,25 +102,25 @@ describe("fly here", () => {
     expect(fly().target()).toBeNull();
   });
 
-  it("says in words what the gate refuses, and orders nothing", async () => {
-    const reason = "the way leads through the keep-out zone Barn";
+  it("shows why the gate refuses, and sends nothing", async () => {
+    const reason = "path crosses keep-out zone Barn";
     page.answerWith([orderResult({ accepted: false, rule: "keep_out", reason })]);
     await begin();
-    expect(find(page.root, ".fly-verdict").textContent).toContain(`Refused (keep out): ${reason}`);
+    expect(find(page.root, ".fly-check").textContent).toContain(`Refused: ${reason}`);
     hold(3000);
     expect(go().getAttribute("aria-disabled")).toBe("true");
     expect(page.orders).toEqual([]);
   });
 
-  it("asks again each second, for the air changes", async () => {
+  it("repeats the check every second", async () => {
     await begin();
     page.answerWith([orderResult({ accepted: false, rule: "separation", reason: "too close" })]);
     page.clock.advance(1000);
     await settled();
-    expect(find(page.root, ".fly-verdict").textContent).toContain("too close");
+    expect(find(page.root, ".fly-check").textContent).toContain("too close");
   });
 
-  it("gives no order for a target that was moved while the button was held", async () => {
+  it("sends no order for a target moved while the button was held", async () => {
     await begin();
     hold(1000);
     fly().aim(lonLat(50, 0));
@@ -129,7 +129,7 @@ describe("fly here", () => {
     expect(page.orders).toEqual([]);
   });
 
-  it("asks nothing while a field holds no number", async () => {
+  it("checks nothing while a field is not a number", async () => {
     await begin();
     const [height] = page.root.querySelectorAll("input");
     if (height === undefined) throw new Error("no field for the height");
@@ -138,11 +138,11 @@ describe("fly here", () => {
     page.clock.advance(3000);
     await settled();
     expect(page.checks).toHaveLength(1);
-    expect(find(page.root, ".fly-verdict").textContent).toContain("must be numbers");
+    expect(find(page.root, ".fly-check").textContent).toContain("must be numbers");
     expect(go().getAttribute("aria-disabled")).toBe("true");
   });
 
-  it("takes back the target, then the mode; another selection takes back both", async () => {
+  it("clears the target, then the mode; another selection clears both", async () => {
     await begin();
     expect([fly().clear(), fly().target(), fly().isOn()]).toEqual([true, null, true]);
     expect([fly().clear(), fly().isOn(), fly().clear()]).toEqual([true, false, false]);
@@ -151,7 +151,7 @@ describe("fly here", () => {
     expect([fly().target(), fly().isOn()]).toEqual([null, false]);
   });
 
-  it("nudges by the step chosen, when a button was held briefly", async () => {
+  it("nudges by the selected step after a brief hold", async () => {
     await begin();
     const west = find(page.root, "[aria-label^='Nudge 1 Alder west']");
     west.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));

@@ -3,18 +3,18 @@ import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
 import "./guard.css";
 
-/** How long a button is held for what cannot be taken back at once. */
+/** Hold time for actions that cannot be reversed at once. */
 export const GUARD_MS = 1500;
-/** How long for what can: longer than a brush of the hand, shorter than a thought. */
+/** Hold time for reversible actions: longer than an accidental touch. */
 export const BRIEF_MS = 400;
 
-/** A button that acts when it was held for its time on one and the same subject. */
+/** A button that acts after being held for its time while its subject stays the same. */
 export function GuardButton(props: {
   label: string;
-  /** Read in place of the label, such as with the vehicle's name; how long to hold is added. */
+  /** Accessible name in place of the label, such as with the vehicle's name; the hold time is appended. */
   name?: string;
   hold_ms: number;
-  /** Changes whenever the button would do something else; empty when it can do nothing now. */
+  /** Changes whenever the button's action changes; empty disables it. */
   subject: string;
   class?: string;
   onConfirm: () => void;
@@ -22,7 +22,7 @@ export function GuardButton(props: {
   const { clock } = useConsole();
   const timer = createHoldTimer(
     clock,
-    // A button's time is fixed where it is written; it never changes while it stands.
+    // The hold time never changes during the button's life.
     (() => props.hold_ms)(),
     () => props.subject,
     () => props.onConfirm(),
@@ -50,7 +50,7 @@ export function GuardButton(props: {
 
 const HOLD_KEYS = [" ", "Enter"];
 
-/** What makes a button act only when it is held, by pointer or keyboard; sliding off or Esc ends it. */
+/** Event handlers for hold to confirm, by pointer or keyboard; sliding off or Esc cancels. */
 export function holdHandlers(timer: HoldTimer, isDisabled: () => boolean) {
   return {
     onPointerDown: (event: PointerEvent) => {

@@ -1,36 +1,36 @@
 import { createSignal } from "solid-js";
 import { useConsole } from "../../console";
 import type { HazardView } from "../../protocol";
-import { wordProblem } from "../../text/names";
+import { responseProblem } from "../../text/names";
 import { formatAge, formatQuantity } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 
-/** That a vehicle may be anywhere in its circle, and the word of somebody who knows better. */
+/** A lost vehicle's hazard area, and the button to clear it. */
 export function HazardSection(props: { hazard: HazardView; name: string }) {
   const { source, behindS } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
-  const dismiss = async () => {
-    setProblem(wordProblem(await source.dismissHazard(props.hazard.dismissed_as)));
+  const clear = async () => {
+    setProblem(responseProblem(await source.dismissHazard(props.hazard.dismissed_as)));
   };
   return (
-    <section class="section" aria-label="Where it may be">
+    <section class="section" aria-label="Hazard area">
       <p>
         <strong class="tone-critical">
-          Not heard for {formatAge(props.hazard.age_s + behindS())}.
+          No telemetry for {formatAge(props.hazard.age_s + behindS())}.
         </strong>{" "}
-        It may be anywhere within {formatQuantity(props.hazard.radius_m, "m", 0)} of where it was
-        last seen, or on its way home. Others keep away from there until it is heard again.
+        The vehicle may be anywhere within {formatQuantity(props.hazard.radius_m, "m", 0)} of its
+        last position, or on its way home. Other vehicles keep clear until telemetry returns.
       </p>
       <GuardButton
-        label="I know where it is: dismiss the hazard"
-        name={`Dismiss the hazard of ${props.name}`}
+        label="Clear hazard area"
+        name={`Clear the hazard area of ${props.name}`}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={props.hazard.dismissed_as}
-        onConfirm={() => void dismiss()}
+        onConfirm={() => void clear()}
       />
-      <p class="muted">Only when somebody has seen the aircraft down, or holds it by its sticks.</p>
+      <p class="muted">Only if the aircraft is confirmed on the ground or under manual control.</p>
       <Problem text={problem()} />
     </section>
   );

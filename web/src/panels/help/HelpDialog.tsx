@@ -2,7 +2,7 @@ import { createEffect, For } from "solid-js";
 import { SHORTCUTS } from "../../keys";
 import "./help.css";
 
-/** What the keys do and how orders are confirmed. Not modal: all stop stays in reach. */
+/** Keyboard shortcuts and how orders are confirmed. Not modal: all stop stays in reach. */
 export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
   let dialog!: HTMLDialogElement;
   createEffect(() => {
@@ -14,30 +14,30 @@ export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
       <h2>Keys</h2>
       <dl class="help-keys">
         <For each={SHORTCUTS}>
-          {({ keys, does }) => (
+          {({ keys, action }) => (
             <div>
               <dt>
                 <kbd>{keys}</kbd>
               </dt>
-              <dd>{does}</dd>
+              <dd>{action}</dd>
             </div>
           )}
         </For>
       </dl>
       <h2>Orders</h2>
       <p>
-        Hover, return home and land go to the selected vehicles and to no others. Hold the button
-        until its bar is full; letting go before, sliding off it, or changing the selection gives no
-        order. None of them makes a vehicle take off.
+        Hover, return home and land are sent to the selected vehicles only. Hold the button until
+        its bar is full. Releasing it early, sliding off it or changing the selection cancels the
+        order. None of these orders makes a vehicle take off.
       </p>
       <p>
-        Return home first climbs to the aircraft's own go-home height. Return in layers flies each
-        vehicle home at a height of its own. Fly here shows what the safety gate says before it is
-        confirmed; the target is held for as long as this page is open.
+        Return home climbs to the aircraft's go-home height first. Return in layers flies each
+        vehicle home at a separate height. Fly here shows the safety gate's result before you
+        confirm; the vehicle holds the target while this page stays open and stops if it closes.
       </p>
       <p>
-        ALL STOP needs one press. Everything that flies holds its position; motors stay on. The
-        pilot with the sticks always wins.
+        ALL STOP takes one press. All flying vehicles hold position; motors stay on. The pilot's
+        sticks always override the station.
       </p>
       <button type="button" class="button" onClick={() => props.onClose()}>
         Close

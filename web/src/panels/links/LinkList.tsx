@@ -15,7 +15,7 @@ const STATUS: Readonly<
   closed: { word: "Closed", severity: null, rank: 3 },
 };
 
-/** The connections of companion apps: conflicts and unidentified ones first. */
+/** Connections of companion apps; conflicts and unidentified ones first. */
 export function LinkList() {
   const { fleet } = useConsole();
   const sorted = createMemo(() =>
@@ -23,7 +23,7 @@ export function LinkList() {
   );
   return (
     <Panel title="Links" count={sorted().length}>
-      <Show when={sorted().length > 0} fallback={<Empty>No app has connected.</Empty>}>
+      <Show when={sorted().length > 0} fallback={<Empty>No app connected.</Empty>}>
         <ul>
           <For each={sorted()}>{(link) => <LinkRow link={link} />}</For>
         </ul>
@@ -32,18 +32,18 @@ export function LinkList() {
   );
 }
 
-/** One line, with everything else a press away. */
+/** One line per link, with expandable details. */
 function LinkRow(props: { link: LinkView }) {
   const { behindS } = useConsole();
   const status = () => STATUS[props.link.status];
-  const claim = () => props.link.claimed_serial ?? "no serial yet";
+  const serial = () => props.link.claimed_serial ?? "no serial number yet";
   const lastAge = () => formatAge(agedBy(props.link.last_packet_age_s, behindS()));
   return (
     <li class="row link">
       <details>
         <summary class="row-line">
           <strong>Link {props.link.id}</strong>
-          <span class="muted link-claim">{claim()}</span>
+          <span class="muted link-claim">{serial()}</span>
           <span class={`severity push tone-${status().severity ?? "info"}`}>
             <Show when={status().severity}>
               {(severity) => <SeverityMark severity={severity()} />}
@@ -54,7 +54,7 @@ function LinkRow(props: { link: LinkView }) {
             {status().word}
           </span>
         </summary>
-        <p class="wire-text">Claims {claim()}</p>
+        <p class="wire-text">Serial number: {serial()}</p>
         <p class="muted wire-text">
           {props.link.remote_address}, {props.link.packets_received} packets,{" "}
           {formatBytes(props.link.bytes_received)}, last {lastAge()} ago
@@ -62,7 +62,7 @@ function LinkRow(props: { link: LinkView }) {
         <Show when={faults(props.link)}>{(text) => <p class="tone-warning">{text()}</p>}</Show>
         <Show when={props.link.answers_not_believed > 0}>
           <p class="tone-warning">
-            {props.link.answers_not_believed} answers not believed: they may answer another command
+            {props.link.answers_not_believed} answers ignored: they may belong to another command
           </p>
         </Show>
         <Show when={props.link.closed_reason}>
@@ -73,13 +73,13 @@ function LinkRow(props: { link: LinkView }) {
   );
 }
 
-/** What was wrong with a link's bytes; empty when nothing was. */
+/** Protocol errors of a link as text; empty without any. */
 export function faults(link: LinkView): string {
   const counts: readonly (readonly [number, string])[] = [
-    [link.bad_hash, "bad hash"],
+    [link.bad_hash, "bad checksum"],
     [link.bad_size, "bad size"],
-    [link.unknown_pid, "unknown packet"],
-    [link.meaningless, "without meaning"],
+    [link.unknown_pid, "unknown packet type"],
+    [link.meaningless, "invalid content"],
     [link.bytes_skipped, "bytes skipped"],
   ];
   return counts

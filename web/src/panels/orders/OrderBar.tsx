@@ -3,8 +3,8 @@ import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
 import { ORDER_KINDS, type OrderKind, targetsKey } from "../../orders/targets";
 import { listNames } from "../../text/names";
-import { LastAnswer } from "./OrderAnswer";
-import { HoldButton } from "./OrderButton";
+import { AnswerNotice } from "./AnswerNotice";
+import { OrderButton } from "./OrderButton";
 import { holdByKey } from "./shortcuts";
 import "./orders.css";
 
@@ -13,9 +13,9 @@ interface HeldOrder {
   readonly timer: HoldTimer;
 }
 
-/** Hover, return and land for the selected vehicles, which are named before and while one holds. */
+/** Hover, return and land for the selected vehicles, with their names shown before and during a hold. */
 export function OrderBar() {
-  const { targets, desk, clock } = useConsole();
+  const { targets, orderApi, clock } = useConsole();
   const held: HeldOrder[] = ORDER_KINDS.map((order) => ({
     order,
     timer: createHoldTimer(
@@ -24,7 +24,7 @@ export function OrderBar() {
       () => targetsKey(targets()),
       () => {
         const { serials, labels } = targets();
-        void desk.order({ serials, order: { kind: order.kind } }, labels);
+        void orderApi.order({ serials, order: { kind: order.kind } }, labels);
       },
     ),
   }));
@@ -38,30 +38,28 @@ export function OrderBar() {
   });
   return (
     <section class="orders" aria-label="Orders to the selected vehicles">
-      <LastAnswer />
+      <AnswerNotice />
       <p class="orders-to wire-text" aria-live="polite">
-        <ToWhom holding={holding()} />
+        <Recipients holding={holding()} />
       </p>
       <div class="orders-buttons">
         <For each={held}>
           {({ order, timer }) => (
-            <HoldButton order={order} timer={timer} labels={targets().labels} />
+            <OrderButton order={order} timer={timer} labels={targets().labels} />
           )}
         </For>
       </div>
-      <p class="muted orders-note">
-        Return home first climbs to the aircraft's own go-home height.
-      </p>
+      <p class="muted orders-note">Return home climbs to the aircraft's go-home height first.</p>
     </section>
   );
 }
 
-function ToWhom(props: { holding: OrderKind | null }) {
+function Recipients(props: { holding: OrderKind | null }) {
   const { targets } = useConsole();
   const names = () => listNames(targets().labels);
   return (
     <>
-      <Switch fallback={<>Select one or more vehicles to give them an order.</>}>
+      <Switch fallback={<>Select one or more vehicles to command.</>}>
         <Match when={props.holding !== null && targets().labels.length > 0}>
           Keep holding to <strong>{props.holding?.verb}</strong>: <strong>{names()}</strong>
         </Match>
@@ -72,7 +70,7 @@ function ToWhom(props: { holding: OrderKind | null }) {
       <Show when={targets().unreachable.length > 0}>
         <span class="tone-warning">
           {" "}
-          Not to {listNames(targets().unreachable)}: unidentified, only ALL STOP reaches it.
+          Not sent to {listNames(targets().unreachable)}: unidentified, ALL STOP only.
         </span>
       </Show>
     </>

@@ -4,8 +4,8 @@ import type { OrderKind } from "../../orders/targets";
 import { listNames } from "../../text/names";
 import { holdHandlers } from "../guard/GuardButton";
 
-/** A button that acts only when it is held, by pointer or keyboard, until its bar is full. */
-export function HoldButton(props: {
+/** An order button that acts when held, by pointer or keyboard, until its bar is full. */
+export function OrderButton(props: {
   order: OrderKind;
   timer: HoldTimer;
   labels: readonly string[];
@@ -43,7 +43,7 @@ function accessibleName(order: OrderKind, labels: readonly string[]): string {
   return `${order.label} ${listNames(labels)}: hold for ${order.hold_ms / 1000} seconds`;
 }
 
-/** A sign for each order, so that none is told by its colour or place alone. */
+/** An icon for each order, so that orders differ by more than colour and position. */
 export function OrderIcon(props: { kind: OrderKind["kind"] }) {
   return (
     <svg class="order-icon" viewBox="0 0 24 24" width="28" height="28" aria-hidden="true">

@@ -27,8 +27,8 @@ const pointer = (type: string) =>
 const key = (type: string, init: KeyboardEventInit, target: EventTarget = land()) =>
   target.dispatchEvent(new KeyboardEvent(type, { bubbles: true, ...init }));
 
-describe("an order's button", () => {
-  it("orders exactly the selected vehicles once it was held for its time", () => {
+describe("an order button", () => {
+  it("commands exactly the selected vehicles after its hold time", () => {
     page.shared.selection.all([1, 2]);
     pointer("pointerdown");
     page.clock.advance(1450);
@@ -44,11 +44,11 @@ describe("an order's button", () => {
     expect(find(page.root, ".orders-to").textContent).toBe("Orders go to 1 Alder and 2 Birch");
     expect(land().getAttribute("aria-label")).toContain("1 Alder and 2 Birch");
     pointer("pointerdown");
-    const said = find(page.root, ".orders-to").textContent;
-    expect(said).toBe("Keep holding to land: 1 Alder and 2 Birch");
+    const text = find(page.root, ".orders-to").textContent;
+    expect(text).toBe("Keep holding to land: 1 Alder and 2 Birch");
   });
 
-  it("does nothing while nobody is selected", () => {
+  it("does nothing without a selection", () => {
     pointer("pointerdown");
     key("keydown", { key: " " });
     page.clock.advance(5000);
@@ -56,7 +56,7 @@ describe("an order's button", () => {
     expect(land().getAttribute("aria-disabled")).toBe("true");
   });
 
-  it.each(["pointerup", "pointerleave", "pointercancel", "blur"])("gives up at %s", (type) => {
+  it.each(["pointerup", "pointerleave", "pointercancel", "blur"])("cancels at %s", (type) => {
     page.shared.selection.only(1);
     pointer("pointerdown");
     page.clock.advance(1000);
@@ -65,7 +65,7 @@ describe("an order's button", () => {
     expect(page.orders).toEqual([]);
   });
 
-  it("gives up when the selection changes or the vehicle goes", () => {
+  it("cancels when the selection changes or the vehicle disappears", () => {
     page.shared.selection.only(1);
     pointer("pointerdown");
     page.clock.advance(1000);
@@ -74,24 +74,24 @@ describe("an order's button", () => {
     pointer("pointerup");
     pointer("pointerdown");
     page.clock.advance(1000);
-    page.say(station([]));
+    page.receive(station([]));
     page.clock.advance(5000);
     expect(page.orders).toEqual([]);
   });
 
-  it("goes on through new states, which come ten times a second", () => {
+  it("continues through new states, which arrive ten times a second", () => {
     page.shared.selection.only(1);
     pointer("pointerdown");
     const before = land();
     for (let message = 0; message < 16; message += 1) {
-      page.say(station([vehicle(1), vehicle(2)], { time_ns: message * 1e8 }));
+      page.receive(station([vehicle(1), vehicle(2)], { time_ns: message * 1e8 }));
       page.clock.advance(100);
     }
     expect(land()).toBe(before);
     expect(page.orders).toHaveLength(1);
   });
 
-  it("works from the keyboard, whose repeats mean nothing", () => {
+  it("works from the keyboard and ignores key repeats", () => {
     page.shared.selection.only(2);
     key("keydown", { key: "Enter" });
     page.clock.advance(800);
@@ -101,7 +101,7 @@ describe("an order's button", () => {
     expect(page.orders).toEqual([{ serials: ["SN-002"], order: { kind: "land" } }]);
   });
 
-  it("works with Shift and its letter, and not without Shift to the end", () => {
+  it("works with Shift and its letter, both held to the end", () => {
     page.shared.selection.only(1);
     key("keydown", { code: "KeyL", key: "L", shiftKey: true }, window);
     page.clock.advance(1000);
@@ -113,15 +113,15 @@ describe("an order's button", () => {
     expect(page.orders).toEqual([{ serials: ["SN-001"], order: { kind: "return_home" } }]);
   });
 
-  it("does not order a vehicle that has not said who it is", () => {
+  it("does not command an unidentified vehicle", () => {
     page.shared.selection.all([1, -3]);
-    expect(find(page.root, ".orders-to").textContent).toContain("Not to ? Cedar");
+    expect(find(page.root, ".orders-to").textContent).toContain("Not sent to ? Cedar");
     pointer("pointerdown");
     page.clock.advance(2000);
     expect(page.orders.map(({ serials }) => serials)).toEqual([["SN-001"]]);
   });
 
-  it("asks less of hover, the safe one", () => {
+  it("needs a shorter hold for hover", () => {
     page.shared.selection.only(1);
     const hover = find(page.root, ".order-hover");
     hover.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
@@ -131,7 +131,7 @@ describe("an order's button", () => {
 });
 
 describe("all stop", () => {
-  it("needs one press, whoever is selected and whether the station is heard or not", () => {
+  it("needs one press, whatever the selection or the connection", () => {
     page.connect({ kind: "lost", reason: "gone", attempt: 1 });
     find(page.root, ".all-stop").click();
     expect(page.allStops()).toBe(1);
@@ -145,8 +145,8 @@ describe("the station's answer", () => {
     for (let turn = 0; turn < 3; turn += 1) await Promise.resolve();
   };
 
-  it("marks simulated vehicles and tells what an accepted order waits for", async () => {
-    const reason = "waits for telemetry: none has come yet";
+  it("marks simulated vehicles and shows what an accepted order waits for", async () => {
+    const reason = "waiting for telemetry";
     page.answerWith([
       orderResult({ is_simulated: true, reason }),
       orderResult({ serial: "SN-002", vehicle_name: "Birch", command_id: 42 }),
@@ -159,19 +159,19 @@ describe("the station's answer", () => {
       }),
     ]);
     const order = { serials: ["SN-001"], order: { kind: "land" } } as const;
-    await page.shared.desk.order(order, ["1 Alder"]);
+    await page.shared.orderApi.order(order, ["1 Alder"]);
     const lines = [...answer().querySelectorAll(".answer-line > span:last-child")];
     expect(lines.map((line) => line.textContent)).toEqual([
-      "Accepted: Alder SIM (command 41) and Birch (command 42)",
+      "Accepted: Alder SIM and Birch",
       `Alder SIM: ${reason}`,
-      "Refused: Cedar SIM (busy): one is unanswered",
+      "Refused: Cedar SIM: one is unanswered",
     ]);
     expect(answer().querySelectorAll(".tag-simulated")).toHaveLength(3);
   });
 
-  it("to an all stop that found nobody claims no more than is known", async () => {
+  it("to an all stop reports that nothing is flying", async () => {
     find(page.root, ".all-stop").click();
     await settled();
-    expect(answer().textContent).toContain("Nothing connected says that it flies.");
+    expect(answer().textContent).toContain("No connected vehicle reports that it is flying.");
   });
 });

@@ -1,14 +1,14 @@
 import type { HoldTimer } from "../../orders/holdToConfirm";
 
-/** A letter that, held together with Shift, holds an order's button. */
+/** A key that, held with Shift, holds an order's button. */
 export interface HeldKey {
   readonly key: string;
   readonly timer: Pick<HoldTimer, "press" | "release" | "cancel">;
 }
 
 /**
- * Lets Shift and a letter be held like the button itself. Letting go of either, or leaving the page,
- * ends it. Returns a function that stops listening.
+ * Makes Shift and a key act like holding the button; releasing either or leaving the page cancels.
+ * Returns a function that removes the listeners.
  */
 export function holdByKey(page: Window, keys: readonly HeldKey[]): () => void {
   const onDown = (event: KeyboardEvent) => {
@@ -35,7 +35,7 @@ export function holdByKey(page: Window, keys: readonly HeldKey[]): () => void {
   };
 }
 
-/** Whether a key belongs to a text field. */
+/** Whether the event is input to a text field. */
 export function isTyping(event: KeyboardEvent): boolean {
   const target = event.target;
   if (!(target instanceof HTMLElement)) return false;

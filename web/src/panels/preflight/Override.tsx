@@ -1,30 +1,30 @@
 import { createSignal, createUniqueId, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { wordProblem } from "../../text/names";
+import { responseProblem } from "../../text/names";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 
-/** A reason shorter than this tells nobody anything afterwards. */
-const LEAST_REASON = 8;
+/** Shortest accepted reason: anything shorter is useless in the audit log. */
+const MIN_REASON_LENGTH = 8;
 
-/** Lets a vehicle fly missions although its checklist is not passed: with a typed reason, and held. */
-export function Override(props: { serial: string; name: string; onTaken: () => void }) {
+/** Overrides a failed checklist, with a typed reason and a held button. */
+export function Override(props: { serial: string; name: string; onAccepted: () => void }) {
   const { source } = useConsole();
   const [reason, setReason] = createSignal("");
   const [problem, setProblem] = createSignal<string | null>(null);
   const field = createUniqueId();
   const typed = () => reason().trim();
-  const isEnough = () => typed().length >= LEAST_REASON;
-  // Not in the JSX: what is chosen there is a computation, and a held button reads it outside all owners.
+  const isEnough = () => typed().length >= MIN_REASON_LENGTH;
+  // Not inline in the JSX, where it would be a computation that a held button reads outside any owner.
   const subject = () => (isEnough() ? JSON.stringify([props.serial, typed()]) : "");
   const override = async () => {
     const outcome = await source.overridePreflight(props.serial, typed());
-    setProblem(wordProblem(outcome));
-    if (wordProblem(outcome) === null) props.onTaken();
+    setProblem(responseProblem(outcome));
+    if (responseProblem(outcome) === null) props.onAccepted();
   };
   return (
     <div class="override">
-      <label for={field}>Fly missions all the same, because</label>
+      <label for={field}>Reason for flying missions anyway</label>
       <input
         id={field}
         class="field"
@@ -43,7 +43,10 @@ export function Override(props: { serial: string; name: string; onTaken: () => v
         onConfirm={() => void override()}
       />
       <Show when={!isEnough()}>
-        <p class="muted">Type a reason first. It is kept in the audit.</p>
+        <p class="muted">
+          Enter a reason of at least {MIN_REASON_LENGTH} characters. It is recorded in the audit
+          log.
+        </p>
       </Show>
       <Problem text={problem()} />
     </div>

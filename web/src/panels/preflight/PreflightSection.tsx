@@ -10,6 +10,7 @@ import {
 } from "solid-js";
 import { useConsole } from "../../console";
 import type { CheckView, PreflightView, Severity } from "../../protocol";
+import { issuerName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { SeverityMark } from "../SeverityMark";
 import { Override } from "./Override";
@@ -17,10 +18,10 @@ import "./preflight.css";
 import type { Clock } from "../../source/clock";
 import type { Outcome, StationSource } from "../../source/stationSource";
 
-/** What must be in order before a mission, point by point, and what to do where it is not. */
+/** The preflight checklist of a vehicle, with instructions for failed items. */
 export function PreflightSection(props: { serial: string; name: string }) {
   const { source, clock } = useConsole();
-  // The section is made anew for another vehicle (`keyed`), so this never changes.
+  // The section is recreated per vehicle (`keyed`), so the serial never changes.
   const preflight = createPreflight(source, clock, (() => props.serial)());
   const shown = createMemo<PreflightView | null>((before) => {
     const answer = preflight.answer();
@@ -32,15 +33,19 @@ export function PreflightSection(props: { serial: string; name: string }) {
   };
   return (
     <section class="section" aria-label="Preflight checklist">
-      <Show when={shown()} fallback={<p class="muted">Preflight: {problem() ?? "asking"}</p>}>
+      <Show when={shown()} fallback={<p class="muted">Preflight: {problem() ?? "loading"}</p>}>
         {(list) => (
           <div classList={{ "is-old-list": problem() !== null }}>
             <Show when={problem()}>
-              {(why) => <p class="tone-error">This list is old: {why()}</p>}
+              {(text) => <p class="tone-error">Checklist not updated: {text()}</p>}
             </Show>
             <Checklist list={list()} />
             <Show when={!list().is_passed}>
-              <OverrideState list={list()} name={props.name} onTaken={() => void preflight.ask()} />
+              <OverrideState
+                list={list()}
+                name={props.name}
+                onAccepted={() => void preflight.refresh()}
+              />
             </Show>
           </div>
         )}
@@ -49,20 +54,24 @@ export function PreflightSection(props: { serial: string; name: string }) {
   );
 }
 
-function OverrideState(props: { list: PreflightView; name: string; onTaken: () => void }) {
+function OverrideState(props: { list: PreflightView; name: string; onAccepted: () => void }) {
   return (
     <Show
       when={props.list.override}
       fallback={
-        <Override serial={props.list.serial} name={props.name} onTaken={() => props.onTaken()} />
+        <Override
+          serial={props.list.serial}
+          name={props.name}
+          onAccepted={() => props.onAccepted()}
+        />
       }
     >
       {(override) => (
         <p class="check tone-warning">
           <SeverityMark severity="warning" />
           <span class="wire-text">
-            <strong>Overridden</strong> by {override().by}, {formatAge(override().age_s)} ago:{" "}
-            {override().reason}. It ends with the landing.
+            <strong>Overridden</strong> by {issuerName(override().by)},{" "}
+            {formatAge(override().age_s)} ago: {override().reason}. Ends at landing.
           </span>
         </p>
       )}
@@ -71,8 +80,8 @@ function OverrideState(props: { list: PreflightView; name: string; onTaken: () =
 }
 
 function Checklist(props: { list: PreflightView }) {
-  const open = () => props.list.points.filter((point) => point.state !== "ok");
-  const fine = () => props.list.points.filter((point) => point.state === "ok");
+  const notPassed = () => props.list.points.filter((point) => point.state !== "ok");
+  const passed = () => props.list.points.filter((point) => point.state === "ok");
   return (
     <>
       <p class="check">
@@ -82,13 +91,13 @@ function Checklist(props: { list: PreflightView }) {
         <strong>{summary(props.list)}</strong>
       </p>
       <ul>
-        <For each={open()}>{(point) => <Point point={point} />}</For>
+        <For each={notPassed()}>{(point) => <ChecklistItem point={point} />}</For>
       </ul>
-      <Show when={fine().length > 0}>
+      <Show when={passed().length > 0}>
         <details>
-          <summary class="check-fine">{fine().length} in order</summary>
+          <summary class="check-fine">{passed().length} OK</summary>
           <ul>
-            <For each={fine()}>{(point) => <Point point={point} />}</For>
+            <For each={passed()}>{(point) => <ChecklistItem point={point} />}</For>
           </ul>
         </details>
       </Show>
@@ -99,7 +108,7 @@ function Checklist(props: { list: PreflightView }) {
 function summary(list: PreflightView): string {
   if (list.is_passed) return "Preflight: passed";
   const count = list.points.filter((point) => point.holds_back).length;
-  return `Preflight: ${count} ${count === 1 ? "point holds" : "points hold"} missions back`;
+  return `Preflight: ${count} ${count === 1 ? "item blocks" : "items block"} missions`;
 }
 
 const SEVERITIES: Readonly<Record<CheckView["state"], Severity | null>> = {
@@ -109,14 +118,7 @@ const SEVERITIES: Readonly<Record<CheckView["state"], Severity | null>> = {
   fails: "error",
 };
 
-const STATES: Readonly<Record<CheckView["state"], string>> = {
-  ok: "in order",
-  attention: "attention",
-  unknown: "not known",
-  fails: "fails",
-};
-
-function Point(props: { point: CheckView }) {
+function ChecklistItem(props: { point: CheckView }) {
   const severity = () => SEVERITIES[props.point.state];
   return (
     <li class="check">
@@ -124,7 +126,7 @@ function Point(props: { point: CheckView }) {
         <SeverityMark severity={severity()} />
       </span>
       <span class="wire-text">
-        <strong>{props.point.name}</strong>, {STATES[props.point.state]}: {props.point.text}
+        <strong>{props.point.name}</strong>: {props.point.text}
         <Switch>
           <Match when={props.point.to_do !== ""}>
             <span class="check-to-do">→ {props.point.to_do}</span>
@@ -135,14 +137,14 @@ function Point(props: { point: CheckView }) {
   );
 }
 
-/** The checklist is worked out anew by the station each time it is asked. */
-const ASK_EVERY_MS = 2000;
+/** Refresh interval; the station evaluates the checklist per request. */
+const REFRESH_MS = 2000;
 
-/** A vehicle's checklist, kept fresh for as long as it is looked at. */
+/** A vehicle's checklist, refreshed while it is displayed. */
 export interface Preflight {
   /** The newest answer; null before the first. */
   readonly answer: Accessor<Outcome<PreflightView> | null>;
-  ask(): Promise<void>;
+  refresh(): Promise<void>;
 }
 
 export function createPreflight(
@@ -152,21 +154,21 @@ export function createPreflight(
 ): Preflight {
   const [answer, setAnswer] = createSignal<Outcome<PreflightView> | null>(null);
   let newest = 0;
-  let isGone = false;
+  let isDisposed = false;
   let cancel = () => {};
-  const ask = async () => {
+  const refresh = async () => {
     newest += 1;
-    const own = newest;
+    const ownNumber = newest;
     const outcome = await source.preflight(serial);
-    if (isGone || own !== newest) return;
+    if (isDisposed || ownNumber !== newest) return;
     setAnswer(outcome);
     cancel();
-    cancel = clock.after(ASK_EVERY_MS, () => void ask());
+    cancel = clock.after(REFRESH_MS, () => void refresh());
   };
-  void ask();
+  void refresh();
   onCleanup(() => {
-    isGone = true;
+    isDisposed = true;
     cancel();
   });
-  return { answer, ask };
+  return { answer, refresh };
 }

@@ -2,7 +2,7 @@ import { afterEach, describe, expect, it } from "vitest";
 import type { FleetReturnView, ReturningView } from "../../protocol";
 import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { FleetReturn, stagesInTurn } from "./FleetReturn";
+import { FleetReturn, groupByWave } from "./FleetReturn";
 
 function returning(serial: string, changes: Partial<ReturningView> = {}): ReturningView {
   return {
@@ -27,20 +27,20 @@ const VIEW: FleetReturnView = {
   is_over: false,
   vehicles: [
     returning("A", { stage: "landed" }),
-    returning("B", { wave: 2, stage: "waiting", reason: "its pad is in use by A" }),
-    returning("C", { wave: null, stage: "left_out", reason: "its height is not known" }),
+    returning("B", { wave: 2, stage: "waiting", reason: "pad in use by A" }),
+    returning("C", { wave: null, stage: "left_out", reason: "height unknown" }),
     returning("D"),
   ],
 };
 
-describe("the order of a return", () => {
-  it("goes in waves, with those left out before all", () => {
-    const groups = stagesInTurn(VIEW).map(({ title, vehicles }) => [
+describe("the groups of a return", () => {
+  it("are waves, after the vehicles not included", () => {
+    const groups = groupByWave(VIEW).map(({ title, vehicles }) => [
       title,
       vehicles.map(({ serial }) => serial).join(),
     ]);
     expect(groups).toEqual([
-      ["Left out: see to these", "C"],
+      ["Not included: operator action needed", "C"],
       ["Wave 1", "A,D"],
       ["Wave 2", "B"],
     ]);
@@ -51,18 +51,16 @@ describe("the return in layers", () => {
   let page: RenderedPage;
   afterEach(() => page.dispose());
 
-  it("tells who waits and why, and how many have landed", () => {
+  it("shows which vehicles wait and why, and how many have landed", () => {
     page = renderPage(FleetReturn, station([vehicle(1)], { fleet_return: VIEW }));
-    expect(page.root.textContent).toContain("Under way: 1 of 4 landed");
-    expect(find(page.root, "[data-testid=returning-B]").textContent).toContain(
-      "its pad is in use by A",
-    );
+    expect(page.root.textContent).toContain("In progress: 1 of 4 landed");
+    expect(find(page.root, "[data-testid=returning-B]").textContent).toContain("pad in use by A");
     expect(find(page.root, "[data-testid=returning-D]").textContent).toContain(
-      "D flies home for 4.0 s, at 48\u00a0m above takeoff, to P1",
+      "D flying home for 4.0 s, 48\u00a0m above takeoff, pad P1",
     );
   });
 
-  it("is called by a long press, for all or for those selected", () => {
+  it("is started by a long press, for all or for the selected vehicles", () => {
     page = renderPage(FleetReturn, station([vehicle(1), vehicle(2)]));
     const hold = (name: string, ms: number) => {
       const button = find(page.root, `[aria-label^='${name}']`);
@@ -71,14 +69,14 @@ describe("the return in layers", () => {
       button.dispatchEvent(new PointerEvent("pointerup", { bubbles: true, button: 0 }));
     };
     hold("Return all vehicles", 1400);
-    expect(page.said).toEqual([]);
+    expect(page.requests).toEqual([]);
     hold("Return all vehicles", 1600);
     page.shared.selection.only(2);
     hold("Return 2 Birch", 1600);
-    expect(page.said).toEqual([{ fleetReturn: null }, { fleetReturn: ["SN-002"] }]);
+    expect(page.requests).toEqual([{ fleetReturn: null }, { fleetReturn: ["SN-002"] }]);
   });
 
-  it("cannot be called where there is nobody", () => {
+  it("is disabled without vehicles", () => {
     page = renderPage(FleetReturn, station([]));
     expect(find(page.root, ".guard").getAttribute("aria-disabled")).toBe("true");
   });

@@ -5,7 +5,7 @@ import "./separation.css";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 
-/** Stands for as long as the station would let vehicles fly into each other with no more than an alarm. */
+/** Shown while the separation hold is off and close vehicles only raise an alarm. */
 export function SeparationBanner() {
   const { fleet } = useConsole();
   return (
@@ -13,8 +13,8 @@ export function SeparationBanner() {
       <div class="separation-off" role="alert">
         <SeverityMark severity="warning" size={26} />
         <p>
-          <strong>Separation holds are OFF.</strong> Vehicles that come too close raise an alarm,
-          and nobody stops them.
+          <strong>Separation hold is OFF.</strong> Vehicles that come too close raise an alarm but
+          are not stopped.
         </p>
         <SeparationSwitch />
       </div>
@@ -22,13 +22,13 @@ export function SeparationBanner() {
   );
 }
 
-/** On with one press, off only when it is held: the safe way is the easy one. */
+/** On with one press, off only with a held button. */
 export function SeparationSwitch() {
   const { source, fleet } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const isOn = () => fleet.station?.separation_hold_on ?? true;
   const turn = async (on: boolean) => {
-    const outcome = await source.switchSeparationHold(on);
+    const outcome = await source.setSeparationHold(on);
     setProblem(outcome.kind === "failed" ? outcome.problem : null);
   };
   return (
@@ -37,12 +37,12 @@ export function SeparationSwitch() {
         when={isOn()}
         fallback={
           <button type="button" class="button" onClick={() => void turn(true)}>
-            Switch separation holds on
+            Switch separation hold on
           </button>
         }
       >
         <GuardButton
-          label="Switch separation holds off"
+          label="Switch separation hold off"
           class="guard-grave"
           hold_ms={GUARD_MS}
           subject="off"

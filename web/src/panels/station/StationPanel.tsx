@@ -5,19 +5,19 @@ import { formatAge, formatBytes, formatQuantity, UNKNOWN } from "../../text/quan
 import { Panel } from "../Panel";
 import { SeparationSwitch } from "../separation/SeparationHold";
 
-/** The station itself and the site it stands at. */
+/** The station and its site. */
 export function StationPanel() {
   const { fleet } = useConsole();
   return (
     <Panel title="Station">
-      <Show when={fleet.station} fallback={<p class="panel-empty">Not heard yet.</p>}>
+      <Show when={fleet.station} fallback={<p class="panel-empty">No data yet.</p>}>
         {(station) => <StationFacts station={station()} />}
       </Show>
       <Show when={fleet.station}>
         {(station) => (
-          <section class="section" aria-label="Separation holds">
+          <section class="section" aria-label="Separation hold">
             <p>
-              Separation holds: <strong>{station().separation_hold_on ? "on" : "OFF"}</strong>
+              Separation hold: <strong>{station().separation_hold_on ? "on" : "OFF"}</strong>
             </p>
             <SeparationSwitch />
           </section>
@@ -52,24 +52,24 @@ function StationFacts(props: { station: StationView }) {
     <Facts
       facts={[
         ["Version", props.station.version],
-        ["Up for", formatAge(props.station.uptime_s + behindS())],
-        ["Apps connect to", props.station.link_addresses.join(", ") || UNKNOWN],
+        ["Uptime", formatAge(props.station.uptime_s + behindS())],
+        ["App address", props.station.link_addresses.join(", ") || UNKNOWN],
         ["Frames dropped", String(props.station.frames_dropped)],
-        ["Capture", props.station.capture_folder ?? "off"],
+        ["Raw capture", props.station.capture_folder ?? "off"],
         ...losses(props.station),
       ]}
     />
   );
 }
 
-/** What the station had to turn away or could not keep; empty while there is nothing of it. */
+/** Refused connections and lost capture data; empty without any. */
 function losses(station: StationView): (readonly [string, string])[] {
   const facts: (readonly [string, string])[] = [];
   if (station.connections_refused > 0) {
     facts.push(["Connections refused", String(station.connections_refused)]);
   }
   if (station.capture_dropped_bytes > 0) {
-    facts.push(["Missing from the capture", formatBytes(station.capture_dropped_bytes)]);
+    facts.push(["Lost from raw capture", formatBytes(station.capture_dropped_bytes)]);
   }
   return facts;
 }
@@ -80,12 +80,18 @@ function SiteFacts(props: { site: SiteView }) {
       facts={[
         ["Site", props.site.name],
         ["Ground altitude, WGS84", formatQuantity(props.site.ground_altitude_m, "m")],
-        ["Terrain", props.site.terrain === "model" ? "elevation model" : "flat assumed"],
-        ["Highest above ground", formatQuantity(props.site.limits.max_height_above_ground_m, "m")],
-        ["Farthest from home", formatQuantity(props.site.limits.max_distance_from_home_m, "m")],
-        ["Imaging vehicle", props.site.imager_serial ?? UNKNOWN],
-        ["Marked pose, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
-        ["Marked pose, height", formatQuantity(props.site.pose_height_m, "m")],
+        ["Terrain", props.site.terrain === "model" ? "elevation model" : "assumed flat"],
+        [
+          "Max. height above ground",
+          formatQuantity(props.site.limits.max_height_above_ground_m, "m"),
+        ],
+        [
+          "Max. distance from home",
+          formatQuantity(props.site.limits.max_distance_from_home_m, "m"),
+        ],
+        ["Imaging drone", props.site.imager_serial ?? UNKNOWN],
+        ["Camera pose error, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
+        ["Camera pose height", formatQuantity(props.site.pose_height_m, "m")],
       ]}
     />
   );

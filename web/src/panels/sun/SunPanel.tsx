@@ -8,21 +8,21 @@ import { SeverityMark } from "../SeverityMark";
 import "./sun.css";
 
 const OVERLAYS: readonly (readonly [OverlayKind, string])[] = [
-  ["none", "nothing"],
-  ["shade", "shade now"],
-  ["forecast", "sun to come"],
-  ["cells", "survey's cells"],
+  ["none", "No overlay"],
+  ["shade", "Shade now"],
+  ["forecast", "Sun forecast"],
+  ["cells", "Coverage"],
 ];
 
-/** What lies over the ground on the map, and how old and how sure it is. */
+/** Map overlay selection, and age and coverage of shade map and forecast. */
 export function SunPanel() {
   const { fleet, overlay } = useConsole();
   return (
     <Panel title="Sun and shade">
       <fieldset class="section sun-choice">
-        <legend>On the map</legend>
+        <legend>Map overlay</legend>
         <For each={OVERLAYS}>
-          {([kind, words]) => (
+          {([kind, label]) => (
             <label>
               <input
                 type="radio"
@@ -30,34 +30,34 @@ export function SunPanel() {
                 checked={overlay.kind() === kind}
                 onChange={() => overlay.show(kind)}
               />
-              {words}
+              {label}
             </label>
           )}
         </For>
       </fieldset>
-      <Show when={fleet.shade} fallback={<p class="panel-empty">This site has no eye.</p>}>
-        {(line) => <Line line={line()} />}
+      <Show when={fleet.shade} fallback={<p class="panel-empty">No imaging drone at this site.</p>}>
+        {(line) => <ShadeStatus line={line()} />}
       </Show>
     </Panel>
   );
 }
 
-function Line(props: { line: ShadeLineView }) {
+function ShadeStatus(props: { line: ShadeLineView }) {
   const { behindS } = useConsole();
-  const trouble = () => props.line.rejected ?? props.line.error;
+  const problem = () => props.line.rejected ?? props.line.error;
   return (
     <div class="section">
-      <Show when={props.line.map} fallback={<p class="muted">No shade has been read yet.</p>}>
+      <Show when={props.line.map} fallback={<p class="muted">No shade map yet.</p>}>
         {(map) => (
           <p>
-            In sun: {formatFraction(map().sunlit_share)} of what is known (
-            {formatFraction(map().known_share)} of the view), seen{" "}
-            {formatAge(map().captured_age_s + behindS())} ago, by {props.line.detection}
+            In sun: {formatFraction(map().sunlit_share)} of the measured area (
+            {formatFraction(map().known_share)} of the view),{" "}
+            {formatAge(map().captured_age_s + behindS())} ago
           </p>
         )}
       </Show>
-      <Show when={props.line.forecast}>{(forecast) => <Ahead forecast={forecast()} />}</Show>
-      <Show when={trouble()}>
+      <Show when={props.line.forecast}>{(forecast) => <ForecastLead forecast={forecast()} />}</Show>
+      <Show when={problem()}>
         {(text) => (
           <p class="problem wire-text">
             <span class="tone-warning">
@@ -71,8 +71,8 @@ function Line(props: { line: ShadeLineView }) {
   );
 }
 
-/** The slider goes by the forecast's own leads: between them nothing else is known. */
-function Ahead(props: { forecast: ForecastView }) {
+/** Slider over the leads the forecast provides. */
+function ForecastLead(props: { forecast: ForecastView }) {
   const { overlay } = useConsole();
   const index = () => {
     const at = props.forecast.lead_s.indexOf(overlay.lead_s());
@@ -80,12 +80,11 @@ function Ahead(props: { forecast: ForecastView }) {
   };
   const lead_s = () => props.forecast.lead_s[index()] ?? 0;
   const when = () => (lead_s() === 0 ? "Sun now" : `Sun in ${formatAge(lead_s())}`);
-  const foreseen = () => props.forecast.foreseen_share[index()] ?? 0;
+  const covered = () => props.forecast.foreseen_share[index()] ?? 0;
   return (
     <label class="sun-lead">
       <span>
-        <strong>{when()}</strong>: {formatFraction(foreseen())} of the view foreseen, by{" "}
-        {props.forecast.method}
+        <strong>{when()}</strong>: forecast covers {formatFraction(covered())} of the view
       </span>
       <input
         type="range"
@@ -95,7 +94,7 @@ function Ahead(props: { forecast: ForecastView }) {
         value={index()}
         aria-valuetext={when()}
         onInput={(event) => {
-          overlay.lookAhead(props.forecast.lead_s[Number(event.currentTarget.value)] ?? 0);
+          overlay.setLead(props.forecast.lead_s[Number(event.currentTarget.value)] ?? 0);
           overlay.show("forecast");
         }}
       />

@@ -11,22 +11,22 @@ function show(changes: Parameters<typeof shadeLine>[0] = {}) {
 }
 
 describe("sun and shade", () => {
-  it("tells how much of what is known lies in sun, and how old that is", () => {
+  it("shows the share of the measured area in sun, and its age", () => {
     show();
     expect(page.root.textContent).toContain(
-      "In sun: 62\u00a0% of what is known (90\u00a0% of the view), seen 1.5 s ago",
+      "In sun: 62\u00a0% of the measured area (90\u00a0% of the view), 1.5 s ago",
     );
     page.age(4);
-    expect(page.root.textContent).toContain("seen 5.5 s ago");
+    expect(page.root.textContent).toContain("5.5 s ago");
   });
 
-  it("shows on the map what is chosen", () => {
+  it("shows the selected overlay on the map", () => {
     show();
     find<HTMLInputElement>(page.root, "input[type=radio][name=overlay]:not(:checked)").click();
     expect(page.shared.overlay.kind()).toBe("shade");
   });
 
-  it("shows a flown survey's cells until something else is chosen", () => {
+  it("shows an active survey's coverage until another overlay is selected", () => {
     page = renderPage(
       SunPanel,
       station([vehicle(1)], { surveys: [survey(1, { phase: "running" })] }),
@@ -36,7 +36,7 @@ describe("sun and shade", () => {
     expect(page.shared.overlay.kind()).toBe("none");
   });
 
-  it("looks ahead by the forecast's own leads", () => {
+  it("selects among the forecast's leads", () => {
     show();
     expect(page.root.textContent).toContain("Sun now: ");
     const slider = find<HTMLInputElement>(page.root, "input[type=range]");
@@ -45,17 +45,17 @@ describe("sun and shade", () => {
     expect(page.shared.overlay.lead_s()).toBe(60);
     expect(page.root.textContent).toContain("Sun in 1 min 0 s: ");
     expect(page.shared.overlay.kind()).toBe("forecast");
-    expect(page.root.textContent).toContain("20\u00a0% of the view foreseen");
+    expect(page.root.textContent).toContain("forecast covers 20\u00a0% of the view");
   });
 
-  it("says why no shade is read", () => {
+  it("shows why there is no shade map", () => {
     show({ rejected: "expected a picture, got black", map: null, forecast: null });
     expect(page.root.textContent).toContain("expected a picture, got black");
-    expect(page.root.textContent).toContain("No shade has been read yet");
+    expect(page.root.textContent).toContain("No shade map yet");
   });
 
-  it("says that a site without an eye has none", () => {
+  it("reports a site without an imaging drone", () => {
     page = renderPage(SunPanel, station([vehicle(1)]));
-    expect(page.root.textContent).toContain("This site has no eye");
+    expect(page.root.textContent).toContain("No imaging drone at this site");
   });
 });

@@ -4,38 +4,38 @@ import type { SurveyResponse } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 
 const PLANNERS = [
-  ["lawnmower_once", "all rows once"],
-  ["lawnmower_again", "until all is in sun"],
+  ["lawnmower_once", "All rows once"],
+  ["lawnmower_again", "Repeat until all is in sun"],
 ] as const;
 
 const WHEN_DONE = [
-  ["return_home", "they fly home"],
-  ["hover", "they hover"],
+  ["return_home", "Return home"],
+  ["hover", "Hover"],
 ] as const;
 
 /**
- * A survey of one of the site's regions. Nothing flies by it, so a plain press asks for it. Where there is
- * one already, those that fly matter more: then it is asked for behind a press.
+ * Form to plan a survey of a site region. Planning moves nothing, so a plain press suffices. Collapsed once
+ * there is a survey, since running surveys matter more.
  */
 export function NewSurvey(props: {
   isFirst: boolean;
-  onAnswer: (outcome: Outcome<SurveyResponse>) => void;
+  onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
   const { source, fleet } = useConsole();
-  const [isAsking, setAsking] = createSignal(false);
+  const [isPlanning, setPlanning] = createSignal(false);
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
-  const ask = async (form: HTMLFormElement) => {
-    const said = new FormData(form);
-    setAsking(true);
-    const outcome = await source.askSurvey({
-      region: String(said.get("region")),
-      height_above_takeoff_m: Number(said.get("height")),
-      speed_mps: Number(said.get("speed")),
-      planner: String(said.get("planner")),
-      when_done: said.get("when_done") === "hover" ? "hover" : "return_home",
+  const plan = async (form: HTMLFormElement) => {
+    const data = new FormData(form);
+    setPlanning(true);
+    const outcome = await source.planSurvey({
+      region: String(data.get("region")),
+      height_above_takeoff_m: Number(data.get("height")),
+      speed_mps: Number(data.get("speed")),
+      planner: String(data.get("planner")),
+      when_done: data.get("when_done") === "hover" ? "hover" : "return_home",
     });
-    setAsking(false);
-    props.onAnswer(outcome);
+    setPlanning(false);
+    props.onResult(outcome);
   };
   return (
     <Show
@@ -49,7 +49,7 @@ export function NewSurvey(props: {
           aria-label="New survey"
           onSubmit={(event) => {
             event.preventDefault();
-            void ask(event.currentTarget);
+            void plan(event.currentTarget);
           }}
         >
           <label class="survey-wide">
@@ -67,19 +67,19 @@ export function NewSurvey(props: {
             <input name="speed" type="number" min={1} max={15} step={0.5} value={5} required />
           </label>
           <label class="survey-wide">
-            Flies
+            Rows
             <select name="planner">
-              <For each={PLANNERS}>{([name, words]) => <option value={name}>{words}</option>}</For>
+              <For each={PLANNERS}>{([name, label]) => <option value={name}>{label}</option>}</For>
             </select>
           </label>
           <label class="survey-wide">
-            When nothing is left to fly
+            When complete
             <select name="when_done">
-              <For each={WHEN_DONE}>{([name, words]) => <option value={name}>{words}</option>}</For>
+              <For each={WHEN_DONE}>{([name, label]) => <option value={name}>{label}</option>}</For>
             </select>
           </label>
-          <button type="submit" class="button" disabled={isAsking()}>
-            Plan rows
+          <button type="submit" class="button" disabled={isPlanning()}>
+            Plan survey
           </button>
         </form>
       </details>

@@ -4,67 +4,69 @@ import { targetsKey } from "../../orders/targets";
 import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { listNames } from "../../text/names";
-import { formatArea, PHASES, sharePercent } from "../../text/survey";
+import { formatArea, sharePercent, surveyStatus } from "../../text/survey";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
 import { NewSurvey } from "./NewSurvey";
 import "./survey.css";
 
-/** Surveys: planned here, started with the selected vehicles, paused, aborted; and their figures. */
+/** Surveys: plan, start with the selected vehicles, pause, abort; and their coverage. */
 export function SurveyPanel() {
   const { fleet } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
-  const said = (outcome: Outcome<SurveyResponse>) => setProblem(problemOf(outcome));
+  const showProblem = (outcome: Outcome<SurveyResponse>) => setProblem(problemOf(outcome));
   return (
     <Panel title="Surveys" count={fleet.surveys.length}>
-      <For each={fleet.surveys}>{(survey) => <One survey={survey} onAnswer={said} />}</For>
+      <For each={fleet.surveys}>
+        {(survey) => <SurveySection survey={survey} onResult={showProblem} />}
+      </For>
       <Problem text={problem()} />
-      <NewSurvey isFirst={fleet.surveys.length === 0} onAnswer={said} />
+      <NewSurvey isFirst={fleet.surveys.length === 0} onResult={showProblem} />
     </Panel>
   );
 }
 
-/** Why a word on a survey came to nothing; null when it was taken. */
+/** Why a survey request failed; null if it was accepted. */
 export function problemOf(outcome: Outcome<SurveyResponse>): string | null {
   if (outcome.kind === "failed") return outcome.problem;
-  return outcome.value.accepted ? null : (outcome.value.reason ?? "refused without a reason");
+  return outcome.value.accepted ? null : (outcome.value.reason ?? "Refused without a reason.");
 }
 
-interface Part {
+interface SurveyProps {
   survey: SurveyView;
-  onAnswer: (outcome: Outcome<SurveyResponse>) => void;
+  onResult: (outcome: Outcome<SurveyResponse>) => void;
 }
 
-function One(props: Part) {
+function SurveySection(props: SurveyProps) {
   const is = (...phases: SurveyView["phase"][]) => phases.includes(props.survey.phase);
-  /** Of a survey that is done, those still on their way home. */
-  const busy = () =>
+  /** Vehicles to list; of a finished survey only those still on their way home. */
+  const active = () =>
     props.survey.vehicles.filter(({ waits_for }) => !is("done", "aborted") || waits_for !== null);
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
       <p class="wire-text">
         <strong>
           {props.survey.id} {props.survey.name}
-        </strong>{" "}
-        {PHASES[props.survey.phase]}
+        </strong>
+        : {surveyStatus(props.survey)}
         <span class="muted survey-reason">{props.survey.reason}</span>
       </p>
       <Figures survey={props.survey} />
-      <For each={busy()}>
-        {(vehicle) => <Surveying vehicle={vehicle} isDone={props.survey.phase === "done"} />}
+      <For each={active()}>
+        {(vehicle) => <SurveyVehicle vehicle={vehicle} isDone={props.survey.phase === "done"} />}
       </For>
       <Show when={is("created", "paused", "running")}>
-        <Start survey={props.survey} onAnswer={props.onAnswer} />
+        <Start survey={props.survey} onResult={props.onResult} />
       </Show>
       <div class="section-buttons">
         <Show when={is("running")}>
-          <Stop survey={props.survey} onAnswer={props.onAnswer} word="pause" />
+          <Stop survey={props.survey} onResult={props.onResult} word="pause" />
         </Show>
         <Show when={is("created", "running", "paused")}>
-          <Stop survey={props.survey} onAnswer={props.onAnswer} word="abort" />
+          <Stop survey={props.survey} onResult={props.onResult} word="abort" />
         </Show>
-        <Show when={is("done") && busy().length > 0}>
-          <Stop survey={props.survey} onAnswer={props.onAnswer} word="hold" />
+        <Show when={is("done") && active().length > 0}>
+          <Stop survey={props.survey} onResult={props.onResult} word="hold" />
         </Show>
       </div>
     </section>
@@ -77,8 +79,8 @@ function Figures(props: { survey: SurveyView }) {
       {(figures) => {
         const percent = (area_m2: number) => sharePercent(area_m2, figures().region_m2);
         const text = () =>
-          `in sun ${percent(figures().in_sun_m2)} %, in shade ${percent(figures().in_shade_m2)} %, ` +
-          `not yet ${formatArea(figures().not_yet_m2)} of ${formatArea(figures().region_m2)}`;
+          `In sun ${percent(figures().in_sun_m2)} %, in shade ${percent(figures().in_shade_m2)} %, ` +
+          `remaining ${formatArea(figures().not_yet_m2)} of ${formatArea(figures().region_m2)}`;
         return (
           <>
             <div class="survey-bar" role="img" aria-label={text()}>
@@ -87,9 +89,7 @@ function Figures(props: { survey: SurveyView }) {
             </div>
             <p>{text()}</p>
             <Show when={figures().sun_unknown_m2 > 0}>
-              <p class="muted">
-                in light that nobody knows: {formatArea(figures().sun_unknown_m2)}
-              </p>
+              <p class="muted">light unknown: {formatArea(figures().sun_unknown_m2)}</p>
             </Show>
           </>
         );
@@ -98,12 +98,12 @@ function Figures(props: { survey: SurveyView }) {
   );
 }
 
-function Surveying(props: { vehicle: SurveyingView; isDone: boolean }) {
-  const waits = () => (props.isDone ? "is on its way home" : "flies no row now");
-  const does = () => (props.vehicle.is_flying_rows ? "flies rows" : waits());
+function SurveyVehicle(props: { vehicle: SurveyingView; isDone: boolean }) {
+  const idleText = () => (props.isDone ? "returning home" : "not flying rows");
+  const activity = () => (props.vehicle.is_flying_rows ? "flying rows" : idleText());
   return (
     <p class="wire-text">
-      <strong>{props.vehicle.vehicle_name}</strong> {does()}
+      <strong>{props.vehicle.vehicle_name}</strong> {activity()}
       <Show when={props.vehicle.waits_for ?? props.vehicle.refused}>
         {(why) => <span class="muted survey-reason">{why()}</span>}
       </Show>
@@ -111,28 +111,32 @@ function Surveying(props: { vehicle: SurveyingView; isDone: boolean }) {
   );
 }
 
-/** Held for as long as whatever sets aircraft in motion; whom it names is on it. */
-function Start(props: Part) {
+const START_LABELS: Partial<Record<SurveyView["phase"], string>> = {
+  running: "Add selected drones",
+  paused: "Resume with selected",
+};
+
+/** Starts a survey with the selected vehicles, or adds them to it. */
+function Start(props: SurveyProps) {
   const { source, targets } = useConsole();
-  const [mayTakeOff, setMayTakeOff] = createSignal(false);
-  const isAgain = () => props.survey.phase === "running";
-  const label = () => (isAgain() ? "Let selected join" : "Start with selected");
+  const [allowTakeoff, setAllowTakeoff] = createSignal(false);
+  const label = () => START_LABELS[props.survey.phase] ?? "Start with selected";
   const start = async () => {
     const { serials } = targets();
-    props.onAnswer(await source.startSurvey(props.survey.id, serials, mayTakeOff()));
-    setMayTakeOff(false);
+    props.onResult(await source.startSurvey(props.survey.id, serials, allowTakeoff()));
+    setAllowTakeoff(false);
   };
   const subject = () =>
-    targets().serials.length === 0 ? "" : `${targetsKey(targets())} ${mayTakeOff()}`;
+    targets().serials.length === 0 ? "" : `${targetsKey(targets())} ${allowTakeoff()}`;
   return (
     <>
       <label class="survey-takeoff">
         <input
           type="checkbox"
-          checked={mayTakeOff()}
-          onChange={(event) => setMayTakeOff(event.currentTarget.checked)}
+          checked={allowTakeoff()}
+          onChange={(event) => setAllowTakeoff(event.currentTarget.checked)}
         />
-        they may take off, once
+        Allow takeoff for this start
       </label>
       <GuardButton
         label={label()}
@@ -145,20 +149,20 @@ function Start(props: Part) {
   );
 }
 
-const STOPS = { pause: "Pause", abort: "Abort", hold: "Hold those going home" } as const;
+const STOPS = { pause: "Pause", abort: "Abort", hold: "Hold returning drones" } as const;
 
-/** A survey that is done stays so: then the word to abort holds its vehicles on their way home. */
-function Stop(props: Part & { word: keyof typeof STOPS }) {
+/** Pauses or aborts; aborting a finished survey holds its vehicles on their way home. */
+function Stop(props: SurveyProps & { word: keyof typeof STOPS }) {
   const { source } = useConsole();
   const word = () => (props.word === "hold" ? "abort" : props.word);
-  const stop = async () => props.onAnswer(await source.stopSurvey(props.survey.id, word()));
+  const stop = async () => props.onResult(await source.stopSurvey(props.survey.id, word()));
   const label = () => STOPS[props.word];
   return (
     <GuardButton
       label={label()}
       name={`${label()} survey ${props.survey.name}`}
       class={props.word === "abort" ? "guard-grave" : ""}
-      // A pause holds, which is safe; what is aborted never flies again.
+      // A pause is safe and reversible; an abort is final.
       hold_ms={props.word === "abort" ? GUARD_MS : BRIEF_MS}
       subject={`${props.survey.id}`}
       onConfirm={() => void stop()}

@@ -20,26 +20,26 @@ function hold(name: string, ms: number) {
 }
 
 describe("a survey in the list", () => {
-  it("tells how much is imaged in sun, in shade and not yet", () => {
+  it("shows the area photographed in sun, in shade and remaining", () => {
     show(survey(7));
     const text = find(page.root, "[data-testid=survey-7]").textContent;
-    expect(text).toContain("south field is being flown");
-    expect(text).toContain("in sun 40 %, in shade 10 %, not yet 1.00\u00a0ha of 2.00\u00a0ha");
-    expect(text).toContain("Alder flies rows");
-    expect(text).toContain("its battery does not last");
+    expect(text).toContain("7 south field: Running");
+    expect(text).toContain("In sun 40 %, in shade 10 %, remaining 1.00\u00a0ha of 2.00\u00a0ha");
+    expect(text).toContain("Alder flying rows");
+    expect(text).toContain("battery too low");
   });
 
-  it("is started by a long press with those selected, and takes off only when that is said", () => {
+  it("is started by a long press with the selected vehicles, and takes off only if allowed", () => {
     show(survey(7, { phase: "created", vehicles: [] }));
     hold("Start with selected", 2000);
-    expect(page.said).toEqual([]);
+    expect(page.requests).toEqual([]);
     page.shared.selection.only(2);
     hold("Start with selected: 2 Birch", 1400);
-    expect(page.said).toEqual([]);
+    expect(page.requests).toEqual([]);
     hold("Start with selected: 2 Birch", 1600);
     find<HTMLInputElement>(page.root, "input[type=checkbox]").click();
     hold("Start with selected: 2 Birch", 1600);
-    expect(page.said).toEqual([
+    expect(page.requests).toEqual([
       { startedSurvey: 7, serials: ["SN-002"], takeoff: false },
       { startedSurvey: 7, serials: ["SN-002"], takeoff: true },
     ]);
@@ -49,24 +49,24 @@ describe("a survey in the list", () => {
     show(survey(7));
     hold("Pause survey south field", 500);
     hold("Abort survey south field", 500);
-    expect(page.said).toEqual([{ stoppedSurvey: 7, word: "pause" }]);
+    expect(page.requests).toEqual([{ stoppedSurvey: 7, word: "pause" }]);
     hold("Abort survey south field", 1600);
-    expect(page.said[1]).toEqual({ stoppedSurvey: 7, word: "abort" });
+    expect(page.requests[1]).toEqual({ stoppedSurvey: 7, word: "abort" });
   });
 
-  it("says why a word was refused", async () => {
+  it("shows why a request was refused", async () => {
     show(survey(7));
-    page.answerWordsWith({ accepted: false, rule: "survey", reason: "it has ended already" });
+    page.answerRequestsWith({ accepted: false, rule: "survey", reason: "survey 7 has ended" });
     hold("Pause survey south field", 500);
     await Promise.resolve();
     await Promise.resolve();
-    expect(page.root.textContent).toContain("it has ended already");
+    expect(page.root.textContent).toContain("survey 7 has ended");
   });
 
-  it("that is done holds its vehicles that are on their way home, by a short press", () => {
+  it("that is complete holds its returning vehicles by a short press", () => {
     show(survey(7, { phase: "done" }));
-    hold("Hold those going home survey south field", 500);
-    expect(page.said).toEqual([{ stoppedSurvey: 7, word: "abort" }]);
+    hold("Hold returning drones survey south field", 500);
+    expect(page.requests).toEqual([{ stoppedSurvey: 7, word: "abort" }]);
   });
 
   it("that is over has no buttons", () => {
@@ -78,7 +78,7 @@ describe("a survey in the list", () => {
 });
 
 describe("a new survey", () => {
-  it("is asked for with the region and the numbers of the form", () => {
+  it("is planned with the region and numbers of the form", () => {
     const regions = [area("survey", [0, 0], 50, { name: "south field" })];
     const base = station([vehicle(1)]);
     const site = base.site === null ? null : { ...base.site, areas: regions };
@@ -86,9 +86,9 @@ describe("a new survey", () => {
     find<HTMLFormElement>(page.root, "form").dispatchEvent(
       new SubmitEvent("submit", { bubbles: true, cancelable: true }),
     );
-    expect(page.said).toEqual([
+    expect(page.requests).toEqual([
       {
-        askedSurvey: {
+        plannedSurvey: {
           region: "south field",
           height_above_takeoff_m: 50,
           speed_mps: 5,
@@ -99,14 +99,14 @@ describe("a new survey", () => {
     ]);
   });
 
-  it("cannot be asked for where the site has no regions", () => {
+  it("is not available without survey regions", () => {
     show();
     expect(page.root.textContent).toContain("The site has no survey regions");
   });
 });
 
 describe("the survey on the map", () => {
-  it("is one that flies, before one that may, before the newest", () => {
+  it("is a running one, else a paused one, else the newest", () => {
     const done = survey(9, { phase: "done" });
     const paused = survey(8, { phase: "paused" });
     const running = survey(7);
@@ -116,7 +116,7 @@ describe("the survey on the map", () => {
     expect(shownSurvey([survey(3, { phase: "refused", cells: null })])).toBeNull();
   });
 
-  it("is never shown as more than it is", () => {
+  it("rounds coverage down", () => {
     expect(sharePercent(99.9, 100)).toBe(99);
     expect(sharePercent(0, 0)).toBe(0);
   });

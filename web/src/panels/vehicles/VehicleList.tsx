@@ -5,7 +5,7 @@ import { Empty, Panel } from "../Panel";
 import { VehicleRow } from "./VehicleRow";
 import "./vehicles.css";
 
-/** Every vehicle that ever connected, in the order of their numbers. */
+/** All vehicles that have connected, by number. */
 export function VehicleList() {
   const { fleet, selection } = useConsole();
   const all = () => fleet.vehicles.map(vehicleKey);
@@ -21,7 +21,7 @@ export function VehicleList() {
           disabled={fleet.vehicles.length === 0}
           onClick={() => (isAll() ? selection.clear() : selection.all(all()))}
         >
-          {isAll() ? "Select none" : "Select all"}
+          {isAll() ? "Clear selection" : "Select all"}
         </button>
       }
     >
@@ -39,10 +39,10 @@ function NoVehicles() {
   const addresses = () => fleet.station?.link_addresses ?? [];
   return (
     <Empty>
-      No companion app has connected.
+      No companion app connected.
       <Show when={addresses().length > 0}>
         {" "}
-        The station listens on <span class="wire-text">{addresses().join(", ")}</span>.
+        App address: <span class="wire-text">{addresses().join(", ")}</span>
       </Show>
     </Empty>
   );

@@ -1,7 +1,7 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { hasBatteryWarning } from "../../fleet/readiness";
-import { badgeText, stalenessNow, vehicleCondition, vehicleKey } from "../../fleet/vehicleStatus";
+import { badgeText, stalenessNow, vehicleKey, vehicleStatus } from "../../fleet/vehicleStatus";
 import type { VehicleView } from "../../protocol";
 import { vehicleLabel } from "../../text/names";
 import {
@@ -14,12 +14,12 @@ import {
 import { colourOf } from "../../theme/theme";
 import { SeverityMark } from "../SeverityMark";
 
-/** One vehicle: a box to add it to the selection, and a body that selects it alone. */
+/** One vehicle: a checkbox that adds it to the selection, and a body that selects only it. */
 export function VehicleRow(props: { vehicle: VehicleView }) {
   const { selection, behindS } = useConsole();
   const vehicle = () => props.vehicle;
   const key = () => vehicleKey(vehicle());
-  const condition = createMemo(() => vehicleCondition(vehicle(), behindS()));
+  const status = createMemo(() => vehicleStatus(vehicle(), behindS()));
   const isStale = () => stalenessNow(vehicle(), behindS()) !== "live";
   const isSelected = () => selection.has(key());
   return (
@@ -32,7 +32,7 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
         <input
           type="checkbox"
           checked={isSelected()}
-          aria-label={`Select ${vehicleLabel(vehicle())} too`}
+          aria-label={`Add ${vehicleLabel(vehicle())} to the selection`}
           onChange={() => selection.toggle(key())}
         />
       </label>
@@ -49,20 +49,20 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
             <span class="tag tag-simulated">SIM</span>
           </Show>
           <Show when={vehicle().is_imager}>
-            <span class="tag vehicle-imager" title="The imaging vehicle">
+            <span class="tag vehicle-imager" title="Imaging drone">
               IMAGER
             </span>
           </Show>
-          <span class={`severity push tone-${condition().severity ?? "good"}`}>
-            <Show when={condition().severity}>
+          <span class={`severity push tone-${status().severity ?? "good"}`}>
+            <Show when={status().severity}>
               {(severity) => <SeverityMark severity={severity()} />}
             </Show>
-            {condition().word}
+            {status().activity}
           </span>
         </span>
         <span class="row-line vehicle-figures">
           <Figures vehicle={vehicle()} />
-          <span class="push vehicle-age" title="Age of its telemetry">
+          <span class="push vehicle-age" title="Telemetry age">
             {formatAge(agedBy(vehicle().telemetry_age_s, behindS()))}
           </span>
         </span>

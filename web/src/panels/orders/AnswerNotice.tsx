@@ -1,30 +1,30 @@
 import { For, Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
-import type { Answer } from "../../orders/orderApi";
+import type { OrderAnswer } from "../../orders/orderApi";
 import type { OrderResult } from "../../protocol";
-import { listNames, plainWords } from "../../text/names";
+import { listNames } from "../../text/names";
 import { SeverityMark } from "../SeverityMark";
 
-/** What the station said to the last order, vehicle by vehicle, until it is put away. */
-export function LastAnswer() {
-  const { desk } = useConsole();
+/** The station's answer to the last order, per vehicle, until dismissed. */
+export function AnswerNotice() {
+  const { orderApi } = useConsole();
   return (
-    <Show when={desk.last()}>
+    <Show when={orderApi.lastAnswer()}>
       {(answer) => (
         <div class="answer" role="status">
           <div class="answer-text wire-text">
-            <strong>{answer().what}</strong>
+            <strong>{answer().order}</strong>
             <Show when={answer().outcome.kind === "waiting"}>
               {" "}
-              to {listNames(answer().labels)}: asking the station
+              to {listNames(answer().labels)}: waiting for the station
             </Show>
-            <AnswerBody answer={answer()} />
+            <AnswerResults answer={answer()} />
           </div>
           <button
             type="button"
             class="button"
-            aria-label="Put this answer away"
-            onClick={() => desk.dismiss()}
+            aria-label="Dismiss"
+            onClick={() => orderApi.dismiss()}
           >
             ✕
           </button>
@@ -34,8 +34,8 @@ export function LastAnswer() {
   );
 }
 
-/** The station's answer: what was accepted, what was refused and why, or that nothing was given. */
-export function AnswerBody(props: { answer: Answer }) {
+/** The results of an order: accepted, refused with reasons, or failed. */
+export function AnswerResults(props: { answer: OrderAnswer }) {
   const problem = () => {
     const { outcome } = props.answer;
     return outcome.kind === "failed" ? outcome.problem : null;
@@ -51,7 +51,7 @@ export function AnswerBody(props: { answer: Answer }) {
           <p class="answer-line tone-critical">
             <SeverityMark severity="critical" />
             <span>
-              {listNames(props.answer.labels)}: not given. {text()}
+              {listNames(props.answer.labels)}: not confirmed. {text()}
             </span>
           </p>
         )}
@@ -60,7 +60,7 @@ export function AnswerBody(props: { answer: Answer }) {
         {(list) => (
           <Show
             when={list().length > 0}
-            fallback={<p class="answer-line">Nothing connected says that it flies.</p>}
+            fallback={<p class="answer-line">No connected vehicle reports that it is flying.</p>}
           >
             <AcceptedLine accepted={list().filter((result) => result.accepted)} />
             <ul>
@@ -82,7 +82,7 @@ function nameOf(result: OrderResult): string {
   return result.vehicle_name || `link ${result.link_id ?? "unknown"}`;
 }
 
-/** A vehicle's name, with the mark of a simulated one outside it, where no name can imitate it. */
+/** A vehicle's name, with the SIM tag outside it, where no name can imitate the tag. */
 function Name(props: { result: OrderResult }) {
   return (
     <>
@@ -107,8 +107,8 @@ function AcceptedLine(props: { accepted: readonly OrderResult[] }) {
           <For each={props.accepted}>
             {(result, index) => (
               <>
-                {joint(index(), props.accepted.length)}
-                <Name result={result} /> (command {result.command_id})
+                {separator(index(), props.accepted.length)}
+                <Name result={result} />
               </>
             )}
           </For>
@@ -118,13 +118,13 @@ function AcceptedLine(props: { accepted: readonly OrderResult[] }) {
   );
 }
 
-/** What stands before one of so many names in a sentence. */
-function joint(index: number, count: number): string {
+/** Separator before the name at `index` in a list of `count` names. */
+function separator(index: number, count: number): string {
   if (index === 0) return "";
   return index === count - 1 ? " and " : ", ";
 }
 
-/** What the station adds to an order that it accepted, such as what it waits for. */
+/** A remark on an accepted order, such as what it waits for. */
 function RemarkLine(props: { result: OrderResult }) {
   return (
     <li class="answer-line">
@@ -142,8 +142,7 @@ function RefusedLine(props: { result: OrderResult }) {
         <SeverityMark severity="error" />
       </span>
       <span>
-        Refused: <Name result={props.result} /> ({plainWords(props.result.rule ?? "no rule given")}
-        ): {props.result.reason}
+        Refused: <Name result={props.result} />: {props.result.reason}
       </span>
     </li>
   );
