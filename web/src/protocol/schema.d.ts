@@ -868,11 +868,6 @@ export interface components {
                 number,
                 number
             ][];
-            /**
-             * Foreseen Share
-             * @description of all cells, by lead: those foreseen from something seen
-             */
-            foreseen_share: number[];
             /** Issued Age S */
             issued_age_s: number;
             /** Lead S */
@@ -887,6 +882,11 @@ export interface components {
              * @description that of the shade map it is made from
              */
             number: number;
+            /**
+             * Predicted Share
+             * @description of all cells, by lead: those foreseen from something seen
+             */
+            predicted_share: number[];
             /**
              * Prior Sunlit
              * @description what is said where nothing better is known

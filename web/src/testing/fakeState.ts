@@ -334,7 +334,7 @@ export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
       issued_age_s: 1.5,
       method: "global_shift",
       lead_s: [0, 30, 60],
-      foreseen_share: [0.9, 0.5, 0.2],
+      predicted_share: [0.9, 0.5, 0.2],
       prior_sunlit: 0.6,
       shadows_east_mps: 5,
       shadows_north_mps: 1,

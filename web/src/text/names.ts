@@ -46,7 +46,7 @@ export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
   failed: "Failed",
 };
 
-/** A note beside a phase. A refusal by the station begins with its rule's name, said here in plain words. */
+/** A phase's note; a refusal by the station starts with its rule's name. */
 export function noteText(phase: Phase, note: string): string {
   const match = /^([a-z0-9_]+): (.*)$/s.exec(note);
   if (phase !== "refused_by_station" || match === null) return note;

@@ -26,7 +26,7 @@ class ForecastView(Message):
     issued_age_s: float
     method: str = Field(description="what made it: the fallback, where the chosen one fell back")
     lead_s: list[float]
-    foreseen_share: list[float] = Field(
+    predicted_share: list[float] = Field(
         description="of all cells, by lead: those foreseen from something seen"
     )
     prior_sunlit: float = Field(description="what is said where nothing better is known")

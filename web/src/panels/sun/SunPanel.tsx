@@ -80,7 +80,7 @@ function ForecastLead(props: { forecast: ForecastView }) {
   };
   const lead_s = () => props.forecast.lead_s[index()] ?? 0;
   const when = () => (lead_s() === 0 ? "Sun now" : `Sun in ${formatAge(lead_s())}`);
-  const covered = () => props.forecast.foreseen_share[index()] ?? 0;
+  const covered = () => props.forecast.predicted_share[index()] ?? 0;
   return (
     <label class="sun-lead">
       <span>
