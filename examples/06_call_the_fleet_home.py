@@ -21,8 +21,9 @@ from recon.sim.app.app import SimulatedApp
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.site import Site
 from recon.site.site import Layers
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
+from recon.station.kernel.worker import JobRunner
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 FRAME = LocalFrame(HOME)
@@ -78,7 +79,7 @@ def main(picture: Path | None) -> None:
     places = [point_from_enu(FRAME, (*pad, 0.0)) for pad in PADS_M]
     pads = dict(zip(SERIALS, places, strict=True))
     site = site_with(pads)
-    driver = VirtualDriver(first_state(site), tasks=worker_tasks(site))
+    driver = VirtualDriver(first_state(site), jobs=JobRunner(site))
     config = SimulationConfig(home=HOME, vehicle_count=6, airborne=Airborne.ALL, pads=pads)
     apps = build_fleet(config, start_ns=driver.now_ns)
     for app, place, pad in zip(apps, FIELD_M, PADS_M, strict=True):

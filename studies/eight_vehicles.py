@@ -24,8 +24,9 @@ from recon.sim.camera.settings import CameraSettings
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import FakeLink, VirtualDriver
+from recon.station.kernel.worker import JobRunner
 
 VEHICLES = 8
 OWNER = "the study"
@@ -158,7 +159,7 @@ def eight_vehicles(
     """Return the scene: with `steers` each drone is also led by sticks for a fifth of the time;
     with `sees` the eye sends rendered pictures, which the station reads."""
     site = load_site(demo_site_folder())
-    driver = VirtualDriver(first_state(site), tasks=worker_tasks(site), keeps_log=keeps_log)
+    driver = VirtualDriver(first_state(site), jobs=JobRunner(site), keeps_log=keeps_log)
     fleet = build_fleet(_config(site, seed, sees, faults), driver.now_ns)
     return EightVehicles(ConnectedApps(driver, fleet, make_link), site, steers)
 

@@ -45,8 +45,9 @@ from recon.sim.flight.mission import MissionFlight
 from recon.sim.world import Wind, WindSettings
 from recon.site import Site
 from recon.site.site import Layers
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
+from recon.station.kernel.worker import JobRunner
 from studies.survey_gears import LANDED, by_events, by_the_station, drawn_survey
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
@@ -203,7 +204,7 @@ class SimulatedFlight:
     def __init__(self, flight: Flight) -> None:
         self._flight = flight
         place = site()
-        self._driver = VirtualDriver(first_state(place), tasks=worker_tasks(place), keeps_log=False)
+        self._driver = VirtualDriver(first_state(place), jobs=JobRunner(place), keeps_log=False)
         app = _app(flight)
         app.connected(0)
         self._aircraft = app.aircraft

@@ -30,16 +30,16 @@ from recon.camera.motion import TelemetryReference
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.command import GoTo
-from recon.model.event import DeadlineMissed, Event, OperatorOrder
+from recon.model.event import Event, OperatorOrder
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.imagery import Frame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.imaging.frames import LAY_FRAME, LayFrame
+from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
-from recon.station.kernel.worker import ThreadWorker
-from recon.station.state.imaging import LAY_FRAME, LayFrame
-from recon.station.state.outputs import StartWork
+from recon.station.kernel.worker import JobRunner, ThreadWorker
+from recon.station.state.jobs import Job, JobDropped
 
 LIMIT_MS = 20.0
 SETTLING_S = 2.0
@@ -137,15 +137,15 @@ def _busy_worker(laid: list[int]) -> ThreadWorker:
     pixels = rng.integers(0, 256, (camera.rows, camera.cols, 3), dtype=np.uint8)
     frame = Frame(1, site.imager.serial, 0, 0, 0.0, rgb=pixels)
     at = TelemetryReference(LATITUDE_DEG, LONGITUDE_DEG, 120.0, 10.0)
-    work = StartWork(1, LAY_FRAME, LayFrame(frame, at, at))
+    work = Job(1, LAY_FRAME, LayFrame(frame, at, at))
 
     def again(event: Event) -> None:
-        if not isinstance(event, DeadlineMissed):
+        if not isinstance(event, JobDropped):
             laid[0] += 1
             worker.submit(work)
 
     deliver: Callable[[Event], None] = again
-    worker = ThreadWorker(worker_tasks(site), deliver)
+    worker = ThreadWorker(JobRunner(site), deliver)
     worker.start()
     worker.submit(work)
     return worker

@@ -1,6 +1,5 @@
 """A station that the API can be put around, and its application under test."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -27,23 +26,22 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
 from recon.site import Site, default_site
 from recon.station.api_views.service import Service
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
-from recon.station.kernel.worker import Task, do_work
-from recon.station.state.outputs import StartWork
+from recon.station.kernel.worker import AnyJob, JobRunner
 
 TOKEN = "a-token-of-enough-letters"
 
 
 @dataclass
 class WorkerAtOnce:
-    """Does work where it is asked for."""
+    """Runs each job at once, on the caller's thread."""
 
-    tasks: Mapping[str, Task]
+    jobs: JobRunner
     driver: AsyncioDriver
 
-    def submit(self, work: StartWork) -> None:
-        self.driver.handle(do_work(self.tasks, work))
+    def submit(self, job: AnyJob) -> None:
+        self.driver.handle(self.jobs.run(job))
 
 
 @dataclass
@@ -58,7 +56,7 @@ class FakeStation:
 
     def __post_init__(self) -> None:
         self.driver = AsyncioDriver(first_state(self.site), lambda: 1_000_000_000)
-        self.driver.worker = WorkerAtOnce(worker_tasks(self.site), self.driver)
+        self.driver.worker = WorkerAtOnce(JobRunner(self.site), self.driver)
         self.service = Service.around(self.driver, self.site, None)
 
     def state(self) -> StationState:

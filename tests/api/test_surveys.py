@@ -14,11 +14,10 @@ from recon.detection import DetectionState, RejectedFrame
 from recon.forecast import ForecastSettings, ForecastState
 from recon.forecast.persistence import persisting
 from recon.geo import geo_from_enu
-from recon.model.event import WorkerResult
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
-from recon.station.imaging.shade_reading import take_image
-from recon.station.imaging.shade_work import READ_SHADE, ShadeRead
+from recon.station.imaging.shade import READ_SHADE, ShadeRead, on_ground_image
+from recon.station.state.jobs import JobDone
 
 FRAME = LocalFrame(HOME)
 
@@ -229,19 +228,19 @@ def put(station: FakeStation, shade: ShadeMap, sun: SunForecast) -> None:
     """As if the worker had read them from a frame."""
     driver = station.driver
     driver.worker = None
-    driver.station, _ = take_image(driver.station, ground_image(1))
+    driver.station, _ = on_ground_image(driver.station, ground_image(1))
     job = driver.station.shade.job_id
     assert job is not None
     read = ShadeRead(DetectionState(), ForecastState(), (shade, sun))
-    driver.handle(WorkerResult(job, READ_SHADE, read))
+    driver.handle(JobDone(job, READ_SHADE, read))
 
 
 def test_a_rejected_frame_is_no_map(client: Client, station: FakeStation) -> None:
     driver = station.driver
     driver.worker = None
-    driver.station, _ = take_image(driver.station, ground_image(1))
+    driver.station, _ = on_ground_image(driver.station, ground_image(1))
     rejected = RejectedFrame(1, FrameFault.BLACK, "expected a picture, got black")
     read = ShadeRead(DetectionState(), ForecastState(), rejected)
-    driver.handle(WorkerResult(driver.station.shade.job_id or 0, READ_SHADE, read))
+    driver.handle(JobDone(driver.station.shade.job_id or 0, READ_SHADE, read))
     assert client.get("/api/shade.png").status_code == 404
     assert driver.station.shade.frames_rejected == 1

@@ -21,9 +21,9 @@ from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.site import Site
 from recon.station.api_views.service import Service
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock
-from recon.station.kernel.worker import ThreadWorker
+from recon.station.kernel.worker import JobRunner, ThreadWorker
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 SERIALS = ("SIM-1", "SIM-2")
@@ -85,7 +85,7 @@ async def running_station(
     async with AsyncExitStack() as stack:
         await links.start("127.0.0.1", 0)
         stack.push_async_callback(links.stop)
-        driver.worker = worker = ThreadWorker(worker_tasks(site), driver.handle_from_thread)
+        driver.worker = worker = ThreadWorker(JobRunner(site), driver.handle_from_thread)
         worker.start()
         stack.callback(worker.stop)
         await stack.enter_async_context(beside(driver.run()))

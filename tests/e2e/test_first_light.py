@@ -13,8 +13,9 @@ from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.camera.replay import load_replay
 from recon.sim.fleet import IMAGER_SERIAL, ImagerSetup, SimulationConfig, build_fleet
 from recon.site import Site, load_site
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
+from recon.station.kernel.worker import JobRunner
 
 PLACES = {
     "becker-1": (45.3455, -93.8590, 288.0, 3.62),
@@ -77,7 +78,7 @@ def _ground_image(folder: Path, site: Site, image_format: ImageFormat) -> Ground
     feed = FeedSettings(image_format=image_format)
     imager = ImagerSetup(still, feed, rig)
     config = SimulationConfig(home=rig.frame.origin, vehicle_count=1, imager=imager)
-    driver = VirtualDriver(first_state(site), tasks=worker_tasks(site))
+    driver = VirtualDriver(first_state(site), jobs=JobRunner(site))
     (app,) = build_fleet(config, start_ns=driver.now_ns)
     app.connected(driver.now_ns)
     driver.connect(app)

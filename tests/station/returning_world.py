@@ -19,8 +19,9 @@ from recon.safety import PreparedAirspace
 from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.flight.flight_modes import Grounded
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
+from recon.station.kernel.worker import JobRunner
 from recon.station.state.fleet_return_record import Member, Stage
 
 FRAME = LocalFrame(HOME)
@@ -188,8 +189,8 @@ def returning_world(
     site = ready_site(HOME, profiles)
     station = first_state(site)
     station = replace(station, airspace=PreparedAirspace(airspace))
-    tasks = worker_tasks(site) if plans else {}
-    driver = VirtualDriver(station, tasks=tasks, work_takes_s=plan_takes_s, keeps_log=False)
+    jobs = JobRunner(site) if plans else None
+    driver = VirtualDriver(station, jobs=jobs, work_takes_s=plan_takes_s, keeps_log=False)
     world = World(driver)
     for app in apps:
         world.connect(app)

@@ -209,22 +209,10 @@ class AlarmAcknowledged:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WorkerResult:
-    """A job finished: a result of the room that ran it, or the text of its error."""
+class JobEnded:
+    """A job of the worker ended; the station's `state/jobs.py` has a subclass for each way."""
 
     job_id: int
-    kind: str
-    result: object | None
-    error: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class DeadlineMissed:
-    """A job missed its deadline, or was dropped for a newer one."""
-
-    job_id: int
-    kind: str
-    reason: str
 
 
 Event = (
@@ -251,6 +239,5 @@ Event = (
     | AlarmAcknowledged
     | AuditTroubled
     | StationFaulted
-    | WorkerResult
-    | DeadlineMissed
+    | JobEnded
 )

@@ -11,12 +11,14 @@ from tests.safety.cases import mission, waypoint
 from recon import wire
 from recon.api.schema import StationState
 from recon.model.command import Hover, LandNow
+from recon.model.errors import ReconError
 from recon.model.event import LinkClosed, LinkOpened, PacketReceived
 from recon.model.geo import GeoPoint
 from recon.model.units import NS_PER_S
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.api_views.service import Service
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.imaging.frames import LAY_FRAME
+from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
 from recon.vehicles.reports import to_report
 
@@ -196,15 +198,11 @@ class TestView:
         assert all(a.is_acknowledged for a in bench.state().alarms)
 
 
-WITHOUT_IMAGER = {"plan_fleet_return", "read_shade", "plan_survey", "step_survey"}
-
-
 class TestBuild:
     def test_the_demonstration_site_becomes_a_station(self) -> None:
         site = load_site(demo_site_folder())
         station = first_state(site)
         assert station.imaging.imager_serial == "SIM-IMAGER"
-        assert set(worker_tasks(site)) == {"lay_frame", *WITHOUT_IMAGER}
         pixels = station.settings.detection.pixels_per_radian
         assert site.imager is not None
         at_axis = -site.imager.camera.direct[0]
@@ -214,5 +212,6 @@ class TestBuild:
         assert site_view is not None
         assert site_view.pose_rms_px is not None
 
-    def test_without_an_imager_nobody_lays_frames(self) -> None:
-        assert set(worker_tasks(Site(name="bare"))) == WITHOUT_IMAGER
+    def test_without_an_imaging_drone_no_frame_is_projected(self) -> None:
+        with pytest.raises(ReconError, match="no imaging drone"):
+            LAY_FRAME.prepare(Site(name="bare"))

@@ -11,14 +11,22 @@ from tests.station.steered_world import steered
 
 from recon import wire
 from recon.model.command import Hover, Phase
-from recon.model.event import AlarmAcknowledged, Event, LinkOpened, StationFaulted, Tick
+from recon.model.event import (
+    AlarmAcknowledged,
+    Event,
+    LinkOpened,
+    OperatorOrder,
+    StationFaulted,
+    Tick,
+)
 from recon.model.units import NS_PER_S
 from recon.safety.rules import RULES
 from recon.safety.watchdogs import WATCHDOGS, Finding, Picture
+from recon.station.alarms.conditions import raise_alarms
 from recon.station.control import order_gateway
 from recon.station.control.order_gateway import Stepped
 from recon.station.kernel import fault_isolation, step
-from recon.station.kernel.fault_isolation import after_fault, contained
+from recon.station.kernel.fault_isolation import TickPart, after_fault, isolated
 from recon.station.state.alarm_book import Alarm, Severity
 from recon.station.state.orders import OrderRecord
 from recon.station.state.outputs import CloseLink, Output, SendCommand
@@ -33,22 +41,26 @@ def failing(*_: object, **__: object) -> None:
 
 
 def fault_alarms(station: Station) -> list[Alarm]:
-    """As the next tick tells them."""
-    station, _ = step.raise_alarms(station, NS_PER_S)
+    """The alarms after the next tick."""
+    station, _ = raise_alarms(station, NS_PER_S)
     return [a for a in station.alarms.alarms.values() if a.condition.rule == "station_fault"]
 
 
-def contained_step(station: Station, event: Event, now_ns: int) -> Stepped:
-    """As the driver of a real run steps."""
+def isolated_step(station: Station, event: Event, now_ns: int) -> Stepped:
+    """Step as the driver of a real run does."""
     try:
         return step.step(station, event, now_ns)
     except Exception as fault:
-        return after_fault(station, event, fault, now_ns)
+        return after_fault(step.TICK_PARTS, station, event, fault, now_ns)
+
+
+def faulted_tick(scene: CommandedStation) -> Stepped:
+    return after_fault(step.TICK_PARTS, scene.station, Tick(), FAULT, scene.now_ns)
 
 
 @pytest.fixture
 def bench(monkeypatch: pytest.MonkeyPatch) -> Bench:
-    """A driver with one vehicle in the air, whose faults are contained as in a real run."""
+    """A driver with one vehicle in the air, whose faults are isolated as in a real run."""
     monkeypatch.setattr("recon.station.kernel.driver.after_fault", after_fault)
     made = Bench()
     made.open(1, extended(b"A"), core())
@@ -56,10 +68,8 @@ def bench(monkeypatch: pytest.MonkeyPatch) -> Bench:
 
 
 class TestATick:
-    @pytest.mark.parametrize("broken", step.TICK_PARTS)
-    def test_one_part_that_fails_leaves_the_others_their_work(
-        self, broken: str, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    @pytest.mark.parametrize("broken", [part.name for part in step.TICK_PARTS])
+    def test_one_part_that_fails_leaves_the_others_running(self, broken: str) -> None:
         called: list[str] = []
 
         def part(name: str) -> Callable[[Station, int], tuple[Station, tuple[Output, ...]]]:
@@ -71,10 +81,9 @@ class TestATick:
 
             return run
 
-        parts = {name: part(name) for name in step.TICK_PARTS}
-        monkeypatch.setattr(fault_isolation, "TICK_PARTS", parts)
-        station, outputs = after_fault(Station(), Tick(), FAULT, 0)
-        assert called == [name for name in parts if name != broken]
+        parts = [TickPart(each.name, part(each.name)) for each in step.TICK_PARTS]
+        station, outputs = after_fault(parts, Station(), Tick(), FAULT, 0)
+        assert called == [each.name for each in parts if each.name != broken]
         assert len(outputs) == len(parts) - 1
         (alarm,) = fault_alarms(station)
         assert broken in alarm.condition.text
@@ -83,31 +92,33 @@ class TestATick:
             "ZeroDivisionError: division by zero (test_fault_isolation.py:" in alarm.condition.text
         )
 
-    def test_a_blind_watchdog_is_an_alarm_and_the_others_look_on(
+    def test_a_watchdog_that_fails_is_an_alarm_and_the_others_run(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """The vehicle falls silent: the watch on links still tells it."""
+        """The vehicle falls silent: the link watchdog still finds it."""
         scene = flying()
-        watchdogs = (contained(failing), *(contained(dog) for dog in WATCHDOGS))  # type: ignore[arg-type]
-        monkeypatch.setattr(fault_isolation, "CONTAINED", watchdogs)
+        watchdogs = (isolated(failing), *(isolated(dog) for dog in WATCHDOGS))  # type: ignore[arg-type]
+        monkeypatch.setattr(fault_isolation, "ISOLATED_WATCHDOGS", watchdogs)
         for _ in range(45):
             scene.now_ns += NS_PER_S // 10
-            scene.station, _ = after_fault(scene.station, Tick(), FAULT, scene.now_ns)
+            scene.station, _ = after_fault(
+                step.TICK_PARTS, scene.station, Tick(), FAULT, scene.now_ns
+            )
         rules = scene.alarms()
         assert {"station_fault", "link_lost"} <= rules
-        (blind,) = fault_alarms(scene.station)
-        assert "the watchdog failing sees nothing" in blind.condition.text
+        (failed,) = fault_alarms(scene.station)
+        assert "the watchdog failing has failed" in failed.condition.text
 
-    def test_a_watchdog_that_sees_is_left_as_it_is(self) -> None:
+    def test_a_watchdog_without_a_fault_is_unchanged(self) -> None:
         finding = Finding("k", "r", Severity.INFO, "A", "text")
 
-        def sees(_picture: Picture) -> Iterable[Finding]:
+        def finds(_picture: Picture) -> Iterable[Finding]:
             yield finding
 
         picture: Picture = None  # type: ignore[assignment]
-        assert tuple(contained(sees)(picture)) == (finding,)
+        assert tuple(isolated(finds)(picture)) == (finding,)
 
-    def test_alarms_that_cannot_be_worked_out_stay_and_the_fault_is_one(
+    def test_if_raising_alarms_fails_those_that_stand_stay(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         scene = flying()
@@ -115,14 +126,14 @@ class TestATick:
         scene.passes(4.0)
         before = scene.alarms()
         assert "link_lost" in before
-        monkeypatch.setattr("recon.station.kernel.step.conditions", failing)
-        scene.station, _ = after_fault(scene.station, Tick(), FAULT, scene.now_ns)
+        monkeypatch.setattr("recon.station.alarms.conditions.conditions", failing)
+        scene.station, _ = faulted_tick(scene)
         assert scene.alarms() == {*before, "station_fault"}
 
-    def test_orders_of_one_vehicle_that_fail_leave_the_others_watched(
+    def test_a_fault_in_one_vehicles_orders_leaves_the_others_followed(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """The hold of B is repeated, though what has become of A's cannot be worked out."""
+        """The hold of B is repeated, though following A's order fails."""
         scene = flying("A")
         reports = (core(), extended(b"B"))
         scene.opens(2, *(to_report(wire.decode(packet)) for packet in reports))
@@ -138,25 +149,27 @@ class TestATick:
 
         monkeypatch.setattr(order_gateway, "_watch_order", watch)
         scene.now_ns += NS_PER_S
-        scene.station, outputs = after_fault(scene.station, Tick(), FAULT, scene.now_ns)
+        scene.station, outputs = after_fault(
+            step.TICK_PARTS, scene.station, Tick(), FAULT, scene.now_ns
+        )
         assert len(scene.handed) == sent
         serials = [o.approved.command.serial for o in outputs if isinstance(o, SendCommand)]
         assert serials == ["B"]
         (alarm,) = fault_alarms(scene.station)
-        assert "watching the orders of A" in alarm.condition.text
+        assert "following the orders of A" in alarm.condition.text
 
 
 class TestAStream:
     """One vehicle's steering fails at every beat."""
 
-    def test_its_vehicle_is_stopped_and_the_beat_goes_on(
+    def test_its_vehicle_is_stopped_and_the_others_are_steered(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         s = steered()
         order = s.goto(200.0)
         s.run_for(4.0)
         monkeypatch.setattr("recon.station.steering.setpoint_streams.steer", failing)
-        monkeypatch.setattr("recon.station.kernel.virtual.step", contained_step)
+        monkeypatch.setattr("recon.station.kernel.virtual.step", isolated_step)
         failed_s = s.now_s
         s.run_for(5.0)
         assert s.phase(order) is Phase.FAILED
@@ -166,13 +179,13 @@ class TestAStream:
         assert s.aircraft.motion.ground_speed_mps < 0.5
         assert "steering SIM-1" in fault_alarms(s.w.driver.station)[0].condition.text
 
-    def test_without_even_a_zero_it_is_held(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_without_a_neutral_setpoint_it_is_held(self, monkeypatch: pytest.MonkeyPatch) -> None:
         s = steered()
         s.goto(200.0)
         s.run_for(4.0)
         monkeypatch.setattr("recon.station.steering.setpoint_streams.steer", failing)
         monkeypatch.setattr("recon.station.steering.stream_ends.halted", failing)
-        monkeypatch.setattr("recon.station.kernel.virtual.step", contained_step)
+        monkeypatch.setattr("recon.station.kernel.virtual.step", isolated_step)
         failed_s = s.now_s
         s.run_for(5.0)
         assert s.sticks(failed_s + 0.15) == []
@@ -192,11 +205,11 @@ class TestAnEvent:
         station = bench.driver.station
         assert replace(station, faults={}) == before
         (alarm,) = fault_alarms(station)
-        assert "taking in LinkOpened" in alarm.condition.text
+        assert "handling LinkOpened" in alarm.condition.text
         bench.driver.handle(LinkOpened(3, "10.0.0.3:5"))
         assert set(bench.driver.station.fleet.links) == {1, 3}
 
-    def test_it_is_an_alarm_while_it_comes_again_and_until_somebody_has_seen_it(self) -> None:
+    def test_it_is_an_alarm_while_it_comes_again_and_until_acknowledged(self) -> None:
         scene = CommandedStation()
         for _ in range(30):
             scene.happens(StationFaulted("thinking", "a fault")).passes(0.5)
@@ -208,7 +221,7 @@ class TestAnEvent:
         assert scene.alarms() == set()
         assert scene.station.alarms.alarms == {}
 
-    def test_no_more_different_ones_are_kept_than_a_person_reads(self) -> None:
+    def test_only_so_many_different_faults_are_kept(self) -> None:
         scene = CommandedStation()
         for number in range(100):
             scene.happens(StationFaulted(f"thinking {number}", "a fault"))
@@ -217,7 +230,7 @@ class TestAnEvent:
     def test_an_order_that_was_never_judged_is_answered_as_refused(
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("recon.station.kernel.step.order_gateway.place", failing)
+        monkeypatch.setitem(step.HANDLERS, OperatorOrder, failing)  # type: ignore[arg-type]
         (result,) = bench.service.all_stop("test").results
         assert (result.accepted, result.rule, result.serial) == (False, "station_fault", "A")
         assert fault_alarms(bench.driver.station)
@@ -240,7 +253,7 @@ class TestTheDriver:
 
         bench.driver.links = Links()  # type: ignore[assignment]
         with monkeypatch.context() as patched:
-            patched.setattr("recon.station.kernel.step._tick", both)
+            patched.setitem(step.HANDLERS, Tick, both)  # type: ignore[arg-type]
             bench.driver.handle(Tick())
         assert closed == [2]
         (alarm,) = fault_alarms(bench.driver.station)
@@ -249,7 +262,7 @@ class TestTheDriver:
     def test_an_audit_that_fails_at_everything_ends_in_one_alarm(
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """Telling of its fault fails too: that must not go round for ever."""
+        """Auditing that fault fails too: it must not go round in circles."""
         monkeypatch.setattr(bench.driver, "_observe", failing)
         bench.driver.handle(Tick())
         bench.driver.handle(Tick())

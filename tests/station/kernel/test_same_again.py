@@ -8,7 +8,8 @@ from studies.eight_vehicles import eight_vehicles
 from studies.run_digest import RunDigest, parts_of
 from studies.same_again import FAULTS, HASH_SEEDS, in_another_process
 
-from recon.model.event import CommandAnswered, CommandSent, Event, LinkClosed, WorkerResult
+from recon.model.event import CommandAnswered, CommandSent, Event, LinkClosed
+from recon.station.state.jobs import JobDone
 from recon.station.state.station import Station
 
 SECONDS = 20.0
@@ -27,7 +28,7 @@ def test_the_scenes_have_in_them_what_they_are_to_show() -> None:
     scene.driver.observe = lambda _before, _after, event: seen.append(event)
     scene.run_for(13.0)
     kinds = {type(event) for event in seen}
-    assert {CommandSent, CommandAnswered, LinkClosed, WorkerResult} <= kinds
+    assert {CommandSent, CommandAnswered, LinkClosed, JobDone} <= kinds
     assert scene.driver.station.shade.number >= 2
     assert len(scene.driver.station.fleet.vehicles) == 8
 

@@ -6,12 +6,12 @@ import numpy as np
 from tests.fleet.said import core, extended
 from tests.station.commanded import CommandedStation
 
-from recon.model.event import DeadlineMissed, WorkerResult
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.report import ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
-from recon.station.state.imaging import LAY_FRAME
+from recon.station.imaging.frames import LAY_FRAME
+from recon.station.state.jobs import JobDone, JobDropped, JobFailed
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
 
@@ -37,7 +37,7 @@ def test_the_newest_frame_of_each_vehicle_is_kept_with_its_capture_time() -> Non
     assert frame.captured_sigma_s == 0.25
 
 
-def test_frames_of_ever_new_serials_fill_no_memory() -> None:
+def test_only_so_many_frames_are_kept() -> None:
     scene = CommandedStation()
     scene.station = Station(settings=StationSettings(frames_kept=3))
     scene.opens(1)
@@ -46,34 +46,34 @@ def test_frames_of_ever_new_serials_fill_no_memory() -> None:
     assert list(scene.station.frames) == ["S7", "S8", "S9"]
 
 
-def test_a_frame_of_a_link_without_identity_is_nobodys() -> None:
+def test_a_frame_of_a_link_without_a_serial_is_not_kept() -> None:
     assert CommandedStation().opens(1, core(), IMAGE).station.frames == {}
 
 
 def test_an_older_ground_image_never_replaces_a_newer_one() -> None:
     scene = CommandedStation()
     for captured_at_ns in (5, 9, 7):
-        scene.happens(WorkerResult(1, LAY_FRAME, ground_image(captured_at_ns)))
+        scene.happens(JobDone(1, LAY_FRAME, ground_image(captured_at_ns)))
     image = scene.station.imaging.ground_image
     assert image is not None
     assert image.captured_at_ns == 9
 
 
 def test_failed_work_is_an_alarm_until_work_succeeds() -> None:
-    scene = CommandedStation().happens(WorkerResult(1, LAY_FRAME, None, "no pose")).passes(0.1)
+    scene = CommandedStation().happens(JobFailed(1, LAY_FRAME, "no pose")).passes(0.1)
     assert scene.alarms() == set()
     scene.passes(scene.station.settings.imaging_trouble_after_s)
     assert scene.alarms() == {"imaging"}
-    scene.happens(WorkerResult(2, LAY_FRAME, ground_image(1))).passes(0.1)
+    scene.happens(JobDone(2, LAY_FRAME, ground_image(1))).passes(0.1)
     assert scene.alarms() == set()
 
 
-def test_a_missed_deadline_is_counted() -> None:
-    scene = CommandedStation().happens(DeadlineMissed(1, LAY_FRAME, "late"))
+def test_a_dropped_frame_is_counted() -> None:
+    scene = CommandedStation().happens(JobDropped(1, LAY_FRAME))
     assert scene.station.imaging.frames_dropped == 1
 
 
-def test_the_eyes_telemetry_is_kept_for_its_frames() -> None:
+def test_the_imaging_drones_telemetry_is_kept_for_its_frames() -> None:
     scene = CommandedStation()
     imaging = replace(scene.station.imaging, imager_serial="A")
     scene.station = replace(scene.station, imaging=imaging)
@@ -81,12 +81,12 @@ def test_the_eyes_telemetry_is_kept_for_its_frames() -> None:
     assert len(scene.station.imaging.samples) == 1
 
 
-class TestWhatMustNotGoUnseen:
+class TestLostVehicles:
     def test_a_vehicle_without_a_serial_that_flew_when_its_link_ended_is_an_alarm(self) -> None:
         scene = CommandedStation().opens(1, core()).passes(0.5).closes(1).passes(1.0)
         assert "unidentified_lost" in scene.alarms()
 
-    def test_one_that_stood_on_the_ground_is_none(self) -> None:
+    def test_one_that_stood_on_the_ground_raises_no_alarm(self) -> None:
         scene = CommandedStation().opens(1, core(flying=False)).passes(0.5).closes(1).passes(1.0)
         assert scene.alarms(active=False) == set()
 

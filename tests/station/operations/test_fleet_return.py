@@ -14,7 +14,7 @@ from tests.station.station_world import square_mission
 from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
 from recon.model.event import AuthorityTaken, SeparationHoldSwitched
-from recon.station.operations.fleet_return.told import view
+from recon.station.api_views.fleet_return_view import fleet_return_view
 from recon.station.state.fleet_return_record import Stage
 
 FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
@@ -360,7 +360,7 @@ class TestCalling:
         world.call(*SIX)
         world.runs(20.0)
         driver = world.world.driver
-        shown = view(driver.station, driver.now_ns)
+        shown = fleet_return_view(driver.station, driver.now_ns)
         assert shown is not None
         assert not shown.is_over
         assert [v.wave for v in shown.vehicles] == [1, 1, 1, 2, 2, 2]

@@ -13,7 +13,7 @@ from recon.fleet.state import Fleet
 from recon.geo import point_from_enu
 from recon.model.airspace import Airspace
 from recon.model.command import FlyMission, Hover, Phase
-from recon.model.event import DeadlineMissed, FleetReturnOrdered, OperatorOrder, WorkerResult
+from recon.model.event import FleetReturnOrdered, OperatorOrder
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.model.zone import LandingPad
@@ -21,6 +21,7 @@ from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.station.operations.fleet_return import places
 from recon.station.operations.fleet_return.planning import PLAN_RETURN
 from recon.station.state.fleet_return_record import Stage
+from recon.station.state.jobs import JobDropped, JobFailed
 from recon.station.state.station import Station
 
 ONE = [(0, 100, 30)]
@@ -122,7 +123,7 @@ class TestThePlan:
         world = returning_world(ONE, [(0, 0)], plans=False)
         world.call("SIM-1")
         world.runs(5.0)
-        assert "could not be planned: nobody does" in reason(world, "SIM-1")
+        assert "could not be planned: this driver runs no jobs" in reason(world, "SIM-1")
 
     def test_a_worker_that_takes_too_long(self) -> None:
         world = returning_world(ONE, [(0, 0)], plan_takes_s=30.0)
@@ -140,9 +141,9 @@ class TestThePlan:
         assert running is not None
         asked_ns = running.planning_since_ns
         assert asked_ns is not None
-        world.world.driver.handle(DeadlineMissed(asked_ns + 1, PLAN_RETURN, "of somebody else"))
+        world.world.driver.handle(JobDropped(asked_ns + 1, PLAN_RETURN))
         assert world.world.driver.station.fleet_return == running
-        world.world.driver.handle(DeadlineMissed(asked_ns, PLAN_RETURN, "newer work came"))
+        world.world.driver.handle(JobDropped(asked_ns, PLAN_RETURN))
         world.runs(1.0)
         again = world.world.driver.station.fleet_return
         assert again is not None
@@ -161,7 +162,7 @@ class TestThePlan:
 
     def test_a_result_nobody_asked_for_is_left_alone(self) -> None:
         scene = CommandedStation()
-        scene.happens(WorkerResult(5, PLAN_RETURN, None))
+        scene.happens(JobFailed(5, PLAN_RETURN, "late"))
         assert scene.station.fleet_return is None
 
 

@@ -7,11 +7,12 @@ from tests.station.station_world import HOME
 from tests.station.surveyed_world import SurveyedWorld, asked, surveyed_world
 
 from recon.guidance.survey.state import SurveyState
-from recon.model.event import WorkerResult
+from recon.model.event import Event
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.survey import CellState, SurveyBudget, SurveyPhase
-from recon.station.state.imaging import LAY_FRAME
+from recon.station.imaging.frames import LAY_FRAME
+from recon.station.state.jobs import JobDone
 
 GRID = GroundGrid(LocalFrame(HOME), -40.0, 100.0, 1.0, 140, 200)
 POSE = CameraPose(np.eye(3), np.array([60.0, 30.0, 120.0]))
@@ -53,9 +54,9 @@ def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
     return world
 
 
-def seen(world: SurveyedWorld, number: int, is_shaded: bool) -> WorkerResult:
+def seen(world: SurveyedWorld, number: int, is_shaded: bool) -> Event:
     image = ground_image(number, world.driver.now_ns, is_shaded)
-    return WorkerResult(number, LAY_FRAME, image)
+    return JobDone(number, LAY_FRAME, image)
 
 
 def states(state: SurveyState, is_west: bool) -> np.ndarray:

@@ -19,10 +19,9 @@ from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.camera.frames import CameraView
 from recon.sim.fleet import IMAGER_SERIAL, SimulationConfig
 from recon.sim.world import Sky
-from recon.station.imaging.shade_work import READ_SHADE, ReadShade, ShadeRead
-from recon.station.kernel.build import worker_tasks
-from recon.station.kernel.worker import Task
-from recon.station.state.imaging import LAY_FRAME, LayFrame
+from recon.station.imaging.frames import LAY_FRAME, LayFrame
+from recon.station.imaging.shade import READ_SHADE, ReadShade, ShadeRead
+from recon.station.kernel.worker import JobRunner
 from recon.station.state.settings import StationSettings
 
 PLACEHOLDER_PX = 8
@@ -62,29 +61,29 @@ def settings_of(scenario: Scenario) -> StationSettings:
     return settings
 
 
-def tasks_of(scenario: Scenario, sky: Sky, grid: GroundGrid, footprint: MaskMap) -> dict[str, Task]:
-    """Return what the station's worker does; with ideal detection it tells the truth of `sky`."""
-    tasks = worker_tasks(scenario.site)
+def jobs_of(scenario: Scenario, sky: Sky, grid: GroundGrid, footprint: MaskMap) -> JobRunner:
+    """Return what runs the station's jobs; with ideal detection it reads the truth of `sky`."""
+    jobs = JobRunner(scenario.site)
     if scenario.methods.detection != IDEAL:
-        return tasks
+        return jobs
 
-    def lay(payload: object) -> GroundImage:
-        assert isinstance(payload, LayFrame)
+    def lay(work: LayFrame) -> GroundImage:
         nothing = np.zeros((grid.rows, grid.cols, 3), dtype=np.uint8)
         pose = CameraPose(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
-        frame = payload.frame
+        frame = work.frame
         return GroundImage(
             grid, frame.id, frame.captured_at_ns, nothing, footprint, pose, serial=IMAGER_SERIAL
         )
 
-    def read(payload: object) -> ShadeRead:
-        assert isinstance(payload, ReadShade)
-        shade = true_shade(sky, grid, footprint, payload.image.captured_at_ns)
-        method = FORECASTERS[payload.forecast_settings.method]
-        foreseen, sun = method(payload.forecast, shade, payload.forecast_settings)
-        return ShadeRead(payload.detection, foreseen, (shade, sun))
+    def read(work: ReadShade) -> ShadeRead:
+        shade = true_shade(sky, grid, footprint, work.image.captured_at_ns)
+        method = FORECASTERS[work.forecast_settings.method]
+        forecast, sun = method(work.forecast, shade, work.forecast_settings)
+        return ShadeRead(work.detection, forecast, (shade, sun))
 
-    return {**tasks, LAY_FRAME: lay, READ_SHADE: read}
+    jobs.replace(LAY_FRAME, lay)
+    jobs.replace(READ_SHADE, read)
+    return jobs
 
 
 def true_shade(sky: Sky, grid: GroundGrid, footprint: MaskMap, at_ns: int) -> ShadeMap:

@@ -16,7 +16,7 @@ from recon.score.scenario import Scenario
 from recon.score.settings import RUN
 from recon.score.simulation import sky_of
 from recon.score.whole.apps import ConnectedApps
-from recon.score.whole.imager import config_of, settings_of, tasks_of
+from recon.score.whole.imager import config_of, jobs_of, settings_of
 from recon.score.whole.scripted_operator import SURVEY_ID, People
 from recon.score.whole.sight import Sight, footprint_on
 from recon.score.whole.ways import (
@@ -58,7 +58,7 @@ class WholeRun:
         footprint = footprint_on(grid, scenario)
         self.driver = VirtualDriver(
             first_state(scenario.site, settings_of(scenario)),
-            tasks=tasks_of(scenario, self._sky, grid, footprint),
+            jobs=jobs_of(scenario, self._sky, grid, footprint),
             keeps_log=False,
         )
         self.apps = ConnectedApps(self.driver, build_fleet(config_of(scenario, seed), 0))

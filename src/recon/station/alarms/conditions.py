@@ -5,21 +5,29 @@ from collections.abc import Iterator
 from recon.fleet.settings import FleetSettings
 from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
+from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
 from recon.station.alarms import station_faults
-from recon.station.imaging import shade_told as shade
-from recon.station.operations.fleet_return import told as fleet_return
-from recon.station.operations.survey import told as survey
-from recon.station.state import orders
+from recon.station.imaging import frames
+from recon.station.operations import OPERATIONS
+from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderRecord
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 from recon.station.traffic import identity_grace, known_traffic
 
 NAMES_TOLD = 8
 """Of many vehicles an alarm names this many and counts the rest."""
+
+
+def raise_alarms(station: Station, now_ns: int) -> Stepped:
+    """Bring the alarms up to date with the conditions that hold now."""
+    kept = station.settings.alarms_kept
+    book = alarm_book.update(station.alarms, conditions(station, now_ns), now_ns, kept)
+    return replace(station, alarms=book), ()
 
 
 def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
@@ -46,11 +54,10 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _waiting(record)
         yield from _of_order(record)
     yield from station_faults.conditions(station, now_ns)
-    yield from fleet_return.conditions(station)
-    yield from survey.conditions(station)
+    for operation in OPERATIONS:
+        yield from operation.conditions(station)
     yield from _watch(station)
-    yield from _imaging(station)
-    yield from shade.conditions(station)
+    yield from frames.conditions(station)
     yield from _audit(station)
 
 
@@ -228,20 +235,6 @@ def _watch(station: Station) -> Iterator[Condition]:
         by = f" by {station.watchdog_state.switched_by}"
         key = rule = "separation_hold_off"
         yield Condition(key, Severity.WARNING, rule, "", f"{text}{by}")
-
-
-def _imaging(station: Station) -> Iterator[Condition]:
-    imaging = station.imaging
-    if imaging.latest_error is not None:
-        yield Condition(
-            key="imaging",
-            severity=Severity.WARNING,
-            rule="imaging",
-            vehicle_name=imaging.imager_serial or "",
-            text=f"the eye's frames are not laid on the ground: {imaging.latest_error}",
-            serial=imaging.imager_serial,
-            after_s=station.settings.imaging_trouble_after_s,
-        )
 
 
 def _audit(station: Station) -> Iterator[Condition]:

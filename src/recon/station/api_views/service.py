@@ -30,12 +30,12 @@ from recon.site import Site
 from recon.station.alarms.station_faults import TO_DO
 from recon.station.api_views.audit_view import audit_page
 from recon.station.api_views.readiness_view import preflight_view
+from recon.station.api_views.running_station import RunningStation
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import Surroundings, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.control import authority, preflight
 from recon.station.control.dry_run import CHECKED_ID, check
-from recon.station.kernel.driver import AsyncioDriver
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import is_hazard_unseen
@@ -45,7 +45,7 @@ from recon.station.traffic.known_traffic import is_hazard_unseen
 class Service:
     """Implements `recon.api.port.StationPort` on a driver."""
 
-    driver: AsyncioDriver
+    driver: RunningStation
     site: Site
     link_addresses: list[str]
     capture_folder: str | None
@@ -55,7 +55,7 @@ class Service:
     @classmethod
     def around(
         cls,
-        driver: AsyncioDriver,
+        driver: RunningStation,
         site: Site,
         capture_folder: str | None,
         audit_log: AuditLog | None = None,

@@ -13,12 +13,12 @@ from recon.model.stamped import Stamped
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.api_views.corners import corners_lon_lat
+from recon.station.api_views.fleet_return_view import fleet_return_view
 from recon.station.api_views.hazard_view import hazard_view
 from recon.station.api_views.readiness_view import authority_view, override_view
+from recon.station.api_views.shade_view import shade_view
 from recon.station.api_views.steering_view import steering_view
-from recon.station.imaging import shade_told as shade
-from recon.station.operations.fleet_return import told as fleet_return
-from recon.station.operations.survey import told as survey
+from recon.station.api_views.survey_view import survey_views
 from recon.station.state.alarm_book import Alarm
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
@@ -47,9 +47,9 @@ def state_view(station: Station, around: Surroundings, now_ns: int) -> schema.St
         commands=_commands(station, now_ns),
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
         ground_image=_ground_image(station, now_ns),
-        fleet_return=fleet_return.view(station, now_ns),
-        shade=shade.view(station, now_ns),
-        surveys=survey.view(station, now_ns),
+        fleet_return=fleet_return_view(station, now_ns),
+        shade=shade_view(station, now_ns),
+        surveys=survey_views(station, now_ns),
     )
 
 

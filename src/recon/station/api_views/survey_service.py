@@ -13,8 +13,8 @@ from recon.model.zone import Region
 from recon.site import Site
 from recon.site.errors import SiteError
 from recon.site.geojson import Feature, regions_of
-from recon.station.kernel.driver import AsyncioDriver
-from recon.station.operations.survey import told
+from recon.station.api_views.running_station import RunningStation
+from recon.station.api_views.survey_view import cells_number, survey_view, survey_ways
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
 
@@ -23,7 +23,7 @@ from recon.station.operations.survey.planning import NO_SITE
 class SurveyService:
     """Speaks of surveys to a driver's station."""
 
-    driver: AsyncioDriver
+    driver: RunningStation
     site: Site
     ids: Callable[[], int]
 
@@ -56,12 +56,12 @@ class SurveyService:
         """Return a survey as it stands."""
         station = self.driver.station
         record = station.surveys.records.get(survey_id)
-        return None if record is None else told.survey_view(station, record, self.driver.now_ns())
+        return None if record is None else survey_view(station, record, self.driver.now_ns())
 
     def ways(self, survey_id: int) -> schema.SurveyWays | None:
         """Return a survey's planned and flown ways, None without rows."""
         record = self.driver.station.surveys.records.get(survey_id)
-        return None if record is None else told.ways(record)
+        return None if record is None else survey_ways(record)
 
     def cells(self, survey_id: int) -> SurveyCells | None:
         """Return a survey's cells, None without rows."""
@@ -69,9 +69,7 @@ class SurveyService:
         if record is None or record.state is None:
             return None
         state = record.state
-        return SurveyCells(
-            told.cells_number(state), state.progress.state, state.plan.cells.is_inside
-        )
+        return SurveyCells(cells_number(state), state.progress.state, state.plan.cells.is_inside)
 
     def _taken(self, survey_id: int) -> schema.SurveyResponse:
         return schema.SurveyResponse(

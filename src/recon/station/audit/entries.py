@@ -11,7 +11,6 @@ from recon.model.event import (
     AuditTroubled,
     AuthorityTaken,
     Event,
-    FleetReturnOrdered,
     HazardDismissed,
     PreflightOverridden,
     SeparationHoldSwitched,
@@ -24,7 +23,7 @@ from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
 from recon.station.control import authority, preflight
-from recon.station.operations.survey.audit import survey_entries
+from recon.station.operations import OPERATIONS
 from recon.station.state.station import Station
 from recon.station.traffic import known_traffic
 
@@ -46,7 +45,8 @@ def audit(
 ) -> tuple[Auditing, tuple[AuditEntry, ...]]:
     """Return the entries of one step, in the order of cause and effect."""
     entries = list(_words(before, event, after))
-    entries += survey_entries(before, event, after, now_ns)
+    for operation in OPERATIONS:
+        entries += operation.audit(before, event, after, now_ns)
     links, new = link_entries(memory.links, before, event, after, now_ns)
     entries += new
     flights, new = flight_entries(memory.flights, before, event, after, now_ns)
@@ -85,10 +85,6 @@ def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry
             word = "on" if is_on else "off"
             text = f"the separation watchdog's holds were switched {word}"
             yield AuditEntry("separation_hold.switched", text, by, details={"is_on": is_on})
-        case FleetReturnOrdered(first_id, serials, by):
-            text = f"{len(serials)} vehicles are called home in layers"
-            details = {"first_id": first_id, "serials": list(serials)}
-            yield AuditEntry("fleet_return.ordered", text, by, details=details)
         case AuditTroubled(problem):
             text = problem or "the audit can be written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})

@@ -1,5 +1,5 @@
-"""The line from ground images to shade maps and forecasts, run live.
+"""From the imaging drone's frames to ground images, shade maps and sun forecasts.
 
-`line` is what the station knows of it, `work` what the worker does, `reading` the steps between,
-`told` what is shown and alarmed.
+`frames` keeps each vehicle's newest frame and has the imaging drone's projected on the ground;
+`shade` has each ground image read for shade and sun. The heavy parts are jobs of the worker.
 """

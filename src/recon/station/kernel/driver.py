@@ -14,9 +14,10 @@ from recon.model.event import ClockRead, Event, StationFaulted, SticksDue, Tick
 from recon.model.units import NS_PER_S
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.fault_isolation import after_fault
-from recon.station.kernel.step import step
+from recon.station.kernel.step import TICK_PARTS, step
 from recon.station.kernel.worker import Worker
-from recon.station.state.outputs import Output, SendCommand, StartWork, WithdrawMotion
+from recon.station.state.jobs import Job
+from recon.station.state.outputs import Output, SendCommand, WithdrawMotion
 from recon.station.state.station import Station
 from recon.station.steering.setpoint_streams import next_due_ns
 
@@ -108,7 +109,7 @@ class AsyncioDriver:
         try:
             self.station, outputs = step(before, event, now_ns)
         except Exception as fault:
-            self.station, outputs = after_fault(before, event, fault, now_ns)
+            self.station, outputs = after_fault(TICK_PARTS, before, event, fault, now_ns)
         with self._contained("writing the audit", event):
             if self.observe is not None:
                 self.observe(before, self.station, event)
@@ -136,6 +137,6 @@ class AsyncioDriver:
             case CloseLink(link_id, reason):
                 if self.links is not None:
                     self.links.close_link(link_id, reason)
-            case StartWork():
+            case Job():
                 if self.worker is not None:
                     self.worker.submit(output)

@@ -1,20 +1,24 @@
-"""What a fault in the station's own code costs: one event, or one vehicle's part of a tick.
+"""Fault isolation: a fault in the station's own code costs one event, or one part of a tick.
 
-The step is pure, so the state before a fault is whole: the driver goes on from it. A fault never
-ends a station that aircraft depend on, and never goes unseen.
+The step is pure, so the state before a fault is whole, and the driver continues from it. Of a tick
+whose step raised, every part is tried by itself. A part that sees to several vehicles is tried for
+each vehicle by itself, and the watchdogs one by one: only what raises is lost. A fault never stops
+a station that aircraft depend on, and is always an alarm.
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from recon.model.command import Hover
 from recon.model.errors import described
 from recon.model.event import Event, OperatorOrder, StationFaulted, SticksDue, Tick
 from recon.safety.watchdogs import WATCHDOGS, Finding, Picture, Watchdog
-from recon.station.alarms.station_faults import TO_DO, WHOSE, conditions, note
+from recon.station.alarms import station_faults
+from recon.station.alarms.conditions import raise_alarms
+from recon.station.alarms.station_faults import TO_DO, WHOSE, note
 from recon.station.control import order_gateway
-from recon.station.kernel.step import TICK_PARTS, raise_alarms
+from recon.station.kernel.watchdog_holds import run_watchdogs
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Severity
 from recon.station.state.command_ids import take_id
@@ -22,34 +26,50 @@ from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
 from recon.station.steering import setpoint_streams
-from recon.station.traffic import watchdog_runner
 
 Part = Callable[[Station, int], Stepped]
 
 ISSUER = "station: a fault in its own code"
 
 
-def after_fault(station: Station, event: Event, fault: Exception, now_ns: int) -> Stepped:
+@dataclass(frozen=True, slots=True)
+class TickPart:
+    """One part of a tick: what it does, in words for a fault's alarm, and its step.
+
+    `isolated` does the same vehicle by vehicle, for a tick in which something raised.
+    """
+
+    name: str
+    run: Part
+    isolated: Part | None = None
+
+
+def after_fault(
+    parts: Iterable[TickPart], station: Station, event: Event, fault: Exception, now_ns: int
+) -> Stepped:
     """Return the station and the outputs of an event whose step raised.
 
-    The event is lost. But time must go on for everybody else: of a tick only the parts that raise
-    are lost, and of those that see to vehicles one by one only the vehicles they raise at.
+    The event is lost, except a tick and the beat of the setpoint streams: of these only the parts
+    and the vehicles that raise are lost.
     """
     if isinstance(event, SticksDue):
-        return drive_apart(station, now_ns)
+        return drive_streams_isolated(station, now_ns)
     if not isinstance(event, Tick):
-        where = f"taking in {type(event).__name__}"
+        where = f"handling {type(event).__name__}"
         return note(station, StationFaulted(where, described(fault)), now_ns), ()
     outputs: tuple[Output, ...] = ()
-    for name, part in TICK_PARTS.items():
-        station, more = _attempt(name, _APART.get(part, part), station, now_ns)
+    for part in parts:
+        station, more = _attempt(part.name, part.isolated or part.run, station, now_ns)
         outputs += more
     return station, outputs
 
 
-def drive_apart(station: Station, now_ns: int) -> Stepped:
-    """Drive each stream by itself. One that fails is ended: its vehicle must not fly on by the last
-    stick, and what has failed at this moment may fail at every moment."""
+def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
+    """Drive each setpoint stream by itself.
+
+    One that raises is ended: its vehicle must not fly on by the last setpoint, and the fault may
+    come again at every beat.
+    """
     outputs: tuple[Output, ...] = ()
     for serial in tuple(station.streams):
         where = f"steering {serial}"
@@ -64,27 +84,51 @@ def drive_apart(station: Station, now_ns: int) -> Stepped:
     return station, outputs
 
 
-def watch_apart(station: Station, now_ns: int) -> Stepped:
-    """Watch the orders of each vehicle by itself."""
+def follow_orders_isolated(station: Station, now_ns: int) -> Stepped:
+    """Follow the orders of each vehicle by itself."""
     outputs: tuple[Output, ...] = ()
     serials = {record.command.serial for record in station.orders.tracked}
     for serial in sorted(serial for serial in serials if serial is not None):
-        part = partial(_watch_one, serial)
-        station, more = _attempt(f"watching the orders of {serial}", part, station, now_ns)
+        part = partial(_follow_orders_of, serial)
+        station, more = _attempt(f"following the orders of {serial}", part, station, now_ns)
         outputs += more
     return station, outputs
 
 
-def contained(watchdog: Watchdog) -> Watchdog:
-    """Return a watchdog whose own fault is a finding."""
+def run_watchdogs_isolated(station: Station, now_ns: int) -> Stepped:
+    """Run each watchdog by itself."""
+    return run_watchdogs(station, now_ns, ISOLATED_WATCHDOGS)
 
-    def look(picture: Picture) -> Iterable[Finding]:
+
+def raise_alarms_isolated(station: Station, now_ns: int) -> Stepped:
+    """Raise alarms; if that fails, keep those that stand and add the faults'."""
+    try:
+        return raise_alarms(station, now_ns)
+    except Exception as fault:
+        station = note(station, StationFaulted("raising alarms", described(fault)), now_ns)
+    book = station.alarms
+    standing = [alarm.condition for alarm in book.alarms.values() if alarm.is_active]
+    present = {c.key: c for c in (*standing, *station_faults.conditions(station, now_ns))}
+    book = alarm_book.update(book, present.values(), now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book), ()
+
+
+def isolated(watchdog: Watchdog) -> Watchdog:
+    """Return a watchdog that reports a fault of its own as a finding."""
+
+    def find(picture: Picture) -> Iterable[Finding]:
         try:
             return tuple(watchdog(picture))
         except Exception as fault:
-            return (_blind(watchdog, fault),)
+            name = getattr(watchdog, "__name__", "?")
+            text = f"{WHOSE}: the watchdog {name} has failed: {described(fault)}; {TO_DO}"
+            key = f"watchdog_failed:{name}"
+            return (Finding(key, "station_fault", Severity.CRITICAL, WHOSE, text),)
 
-    return look
+    return find
+
+
+ISOLATED_WATCHDOGS = tuple(isolated(watchdog) for watchdog in WATCHDOGS)
 
 
 def _attempt(name: str, part: Part, station: Station, now_ns: int) -> Stepped:
@@ -99,46 +143,11 @@ def _end_stream(serial: str, station: Station, now_ns: int) -> Stepped:
 
 
 def _hold(serial: str, station: Station, now_ns: int) -> Stepped:
-    """When not even the zero can be worked out, a hold still can."""
+    """Hold a vehicle whose stream could not even be ended by a neutral setpoint."""
     station, number = take_id(setpoint_streams.release(station, serial, now_ns))
     order = OperatorOrder(number, Hover(), ISSUER, serial=serial)
     return order_gateway.place(station, order, now_ns)
 
 
-def _watch_one(serial: str, station: Station, now_ns: int) -> Stepped:
+def _follow_orders_of(serial: str, station: Station, now_ns: int) -> Stepped:
     return order_gateway.watch(station, now_ns, (serial,))
-
-
-def _blind(watchdog: Watchdog, fault: Exception) -> Finding:
-    name = getattr(watchdog, "__name__", "?")
-    text = f"{WHOSE}: the watchdog {name} sees nothing: {described(fault)}; {TO_DO}"
-    return Finding(f"blind:{name}", "station_fault", Severity.CRITICAL, WHOSE, text)
-
-
-CONTAINED = tuple(contained(watchdog) for watchdog in WATCHDOGS)
-
-
-def _look_apart(station: Station, now_ns: int) -> Stepped:
-    return watchdog_runner.look(station, now_ns, CONTAINED)
-
-
-def raise_alarms_apart(station: Station, now_ns: int) -> Stepped:
-    """Raise alarms; when they cannot be worked out, those that stand, and the faults'."""
-    try:
-        return raise_alarms(station, now_ns)
-    except Exception as fault:
-        station = note(station, StationFaulted("raising alarms", described(fault)), now_ns)
-    book = station.alarms
-    standing = [alarm.condition for alarm in book.alarms.values() if alarm.is_active]
-    present = {c.key: c for c in (*standing, *conditions(station, now_ns))}
-    book = alarm_book.update(book, present.values(), now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book), ()
-
-
-_APART: dict[Part, Part] = {
-    order_gateway.drive_streams: drive_apart,
-    order_gateway.watch: watch_apart,
-    watchdog_runner.look: _look_apart,
-    raise_alarms: raise_alarms_apart,
-}
-"""The parts that are done vehicle by vehicle, or watchdog by watchdog, once they have failed."""

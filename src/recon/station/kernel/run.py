@@ -34,9 +34,9 @@ from recon.station.audit.start import (
     ended_entry,
     started_entry,
 )
-from recon.station.kernel.build import first_state, worker_tasks
+from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
-from recon.station.kernel.worker import ThreadWorker
+from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.recovery.restart import LastRun, restart_entries, restored
 from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
 from recon.station.state.station import Station
@@ -113,7 +113,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         capture = _start_capture(config, driver)
         if capture is not None:
             stack.callback(capture.close)
-        worker = ThreadWorker(worker_tasks(config.site), driver.handle_from_thread)
+        worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
         driver.worker = worker
         links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
         driver.links = links

@@ -1,6 +1,11 @@
-"""The station's step: one event in, the next state and what is to be done out. Pure."""
+"""The station's step: one event in, the next state and what is to be done out. Pure.
+
+Events go to their handlers by one table; a tick goes through one tuple of parts. Both take the
+operations from `OPERATIONS`: a new one changes nothing here.
+"""
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from recon.fleet import step as fleet_step
 from recon.model.event import (
@@ -11,9 +16,7 @@ from recon.model.event import (
     CommandAnswered,
     CommandDropped,
     CommandSent,
-    DeadlineMissed,
     Event,
-    FleetReturnOrdered,
     HazardDismissed,
     LinkClosed,
     LinkOpened,
@@ -25,87 +28,31 @@ from recon.model.event import (
     SeparationHoldSwitched,
     StationFaulted,
     SticksDue,
-    SurveyAsked,
-    SurveyStarted,
-    SurveyStopped,
     Tick,
-    WorkerResult,
 )
-from recon.model.imagery import Frame, GroundImage
 from recon.model.replacing import replace
-from recon.model.report import CoreReport, ImageReport, MessageReport, MessageSeverity
-from recon.model.units import seconds_to_ns
-from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.station.alarms import station_faults
-from recon.station.alarms.conditions import conditions
+from recon.model.report import CoreReport, ImageReport, MessageReport
+from recon.model.vehicle import VehicleState
+from recon.station.alarms import app_messages, station_faults
+from recon.station.alarms.conditions import raise_alarms
 from recon.station.control import authority, order_gateway, preflight
-from recon.station.imaging import shade_reading as shade_reading
-from recon.station.imaging import shade_work as shade_work
-from recon.station.operations.fleet_return import planning
-from recon.station.operations.fleet_return.advance import advance as advance_fleet_return
-from recon.station.operations.fleet_return.call import call as fleet_return_call
-from recon.station.operations.survey import commands, execution, observations
-from recon.station.operations.survey import planning as survey_planning
+from recon.station.imaging import frames
+from recon.station.kernel import fault_isolation
+from recon.station.kernel.fault_isolation import TickPart
+from recon.station.kernel.watchdog_holds import run_watchdogs
+from recon.station.operations import OPERATIONS
 from recon.station.recovery import restart
-from recon.station.state import alarm_book, imaging
-from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.outputs import Output, StartWork
+from recon.station.state import alarm_book
+from recon.station.state.jobs import JobDone, JobDropped, JobFailed
+from recon.station.state.outputs import Output
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
-from recon.station.traffic import identity_grace, known_traffic, watchdog_runner
-
-_NO_PROFILE = VehicleProfile(serial="")
+from recon.station.state.stepped import Handler, Stepped, changing, on
+from recon.station.traffic import known_traffic, watchdog_runner
 
 
 def step(station: Station, event: Event, now_ns: int) -> Stepped:
     """Return the station after an event, and the outputs; the same inputs give the same outputs."""
-    match event:
-        case OperatorOrder():
-            return order_gateway.place(station, event, now_ns)
-        case CommandSent() | CommandAnswered() | CommandDropped():
-            return order_gateway.follow(station, event, now_ns), ()
-        case LinkOpened():
-            return _fleet(station, event, now_ns)
-        case LinkClosed(link_id):
-            return _fleet(_lost_unidentified(station, link_id), event, now_ns)
-        case PacketReceived():
-            return _packet(station, event, now_ns)
-        case Tick():
-            return _tick(station, now_ns)
-        case WorkerResult():
-            return _work_done(station, event, now_ns)
-        case DeadlineMissed():
-            return _work_lost(station, event)
-        case AuthorityTaken():
-            return authority.take(station, event, now_ns), ()
-        case SticksDue():
-            return order_gateway.drive_streams(station, now_ns)
-        case OwnerConnected(owner):
-            return replace(station, owners=station.owners | {owner}), ()
-        case OwnerDisconnected(owner):
-            return order_gateway.owner_disconnected(station, owner, now_ns)
-        case HazardDismissed():
-            return known_traffic.dismiss(station, event, now_ns), ()
-        case SeparationHoldSwitched():
-            return watchdog_runner.switch_hold(station, event), ()
-        case ClockRead():
-            return preflight.read_clock(station, event, now_ns), ()
-        case PreflightOverridden():
-            return preflight.override(station, event, now_ns), ()
-        case FleetReturnOrdered():
-            return fleet_return_call(station, event, now_ns)
-        case SurveyAsked():
-            return survey_planning.ask(station, event, now_ns)
-        case SurveyStarted():
-            return commands.begin(station, event, now_ns), ()
-        case SurveyStopped():
-            return commands.stop(station, event, now_ns)
-        case StationFaulted():
-            return station_faults.note(station, event, now_ns), ()
-        case AuditTroubled(problem):
-            return replace(station, audit_problem=problem), ()
-        case AlarmAcknowledged(alarm_id, by):
-            return replace(station, alarms=alarm_book.acknowledge(station.alarms, alarm_id, by)), ()
+    return HANDLERS[type(event)](station, event, now_ns)
 
 
 def _fleet(station: Station, event: Event, now_ns: int) -> Stepped:
@@ -113,14 +60,8 @@ def _fleet(station: Station, event: Event, now_ns: int) -> Stepped:
     return replace(station, fleet=fleet), closing
 
 
-def _lost_unidentified(station: Station, link_id: int) -> Station:
-    """What flew without ever saying its serial is gone from the fleet, not from the air."""
-    link = station.fleet.links.get(link_id)
-    if link is None or link.claimed_serial is not None or not link.own_state.is_flying.value:
-        return station
-    if identity_grace.is_heard_by_serial(station, link.own_state):
-        return station
-    return known_traffic.keep_lost(station, link_id)
+def _link_closed(station: Station, event: LinkClosed, now_ns: int) -> Stepped:
+    return _fleet(known_traffic.keep_lost(station, event.link_id), event, now_ns)
 
 
 def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
@@ -130,162 +71,125 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     vehicle = station.fleet.vehicle_of_link(event.link_id)
     if vehicle is None:
         return station, outputs
-    if isinstance(event.report, CoreReport):
-        station = observations.see_vehicle(station, vehicle, now_ns)
+    take = _REPORTS.get(type(event.report))
+    if take is not None:
+        station, more = take(station, vehicle, event.report, now_ns)
+        outputs = (*outputs, *more)
     if vehicle.serial in station.restored_flights:
         station = restart.recheck(station, vehicle.serial, now_ns)
-    match event.report:
-        case CoreReport() if vehicle.serial is not None and _is_imager(station, vehicle):
-            kept = station.settings.pose_history_samples
-            seen = imaging.with_sample(station.imaging, vehicle, now_ns, kept)
-            station = replace(station, imaging=seen)
-        case ImageReport() as report if vehicle.serial is not None:
-            station, work = _frame(station, vehicle, report, now_ns)
-            return station, (*outputs, *work)
-        case MessageReport() as report:
-            station = _message(station, vehicle, report, now_ns)
-    spoken = () if vehicle.serial is None else (vehicle.serial,)
-    station, orders = order_gateway.watch(station, now_ns, spoken)
+    if isinstance(event.report, ImageReport):
+        return station, outputs  # it shows nothing of any order
+    serials = () if vehicle.serial is None else (vehicle.serial,)
+    station, orders = order_gateway.watch(station, now_ns, serials)
     return station, (*outputs, *orders)
 
 
-def _tick(station: Station, now_ns: int) -> Stepped:
+def _core(station: Station, vehicle: VehicleState, _report: CoreReport, now_ns: int) -> Stepped:
+    for take in _POSITION_TAKERS:
+        station = take(station, vehicle, now_ns)
+    return frames.on_telemetry(station, vehicle, now_ns), ()
+
+
+def _job_done(station: Station, event: JobDone[Any, Any], now_ns: int) -> Stepped:
+    number = station.shade.number
+    station, outputs = event.kind.done(station, event.job_id, event.result, now_ns)
+    shade = station.shade.shade
+    if shade is not None and station.shade.number != number:
+        for take in _SHADE_TAKERS:
+            station = take(station, shade)
+    return station, outputs
+
+
+def _job_failed(station: Station, event: JobFailed[Any, Any], now_ns: int) -> Stepped:
+    return event.kind.failed(station, event.job_id, event.error, now_ns)
+
+
+def _job_dropped(station: Station, event: JobDropped[Any, Any], now_ns: int) -> Stepped:
+    return event.kind.dropped(station, event.job_id, now_ns)
+
+
+def _sticks_due(station: Station, _event: SticksDue, now_ns: int) -> Stepped:
+    return order_gateway.drive_streams(station, now_ns)
+
+
+def _owner_connected(station: Station, event: OwnerConnected, _now_ns: int) -> Station:
+    return replace(station, owners=station.owners | {event.owner})
+
+
+def _owner_disconnected(station: Station, event: OwnerDisconnected, now_ns: int) -> Stepped:
+    return order_gateway.owner_disconnected(station, event.owner, now_ns)
+
+
+def _audit_troubled(station: Station, event: AuditTroubled, _now_ns: int) -> Station:
+    return replace(station, audit_problem=event.problem)
+
+
+def _acknowledged(station: Station, event: AlarmAcknowledged, _now_ns: int) -> Station:
+    book = alarm_book.acknowledge(station.alarms, event.alarm_id, event.by)
+    return replace(station, alarms=book)
+
+
+def _tick(station: Station, _event: Tick, now_ns: int) -> Stepped:
     outputs: tuple[Output, ...] = ()
-    for part in TICK_PARTS.values():
-        station, more = part(station, now_ns)
+    for part in TICK_PARTS:
+        station, more = part.run(station, now_ns)
         outputs += more
     return station, outputs
 
 
-def _let_time_pass(station: Station, now_ns: int) -> Stepped:
+def _pass_time(station: Station, now_ns: int) -> Stepped:
     return _fleet(station, Tick(), now_ns)
 
 
-def raise_alarms(station: Station, now_ns: int) -> Stepped:
-    """Bring the book of alarms up to date with what is the case now."""
-    kept = station.settings.alarms_kept
-    book = alarm_book.update(station.alarms, conditions(station, now_ns), now_ns, kept)
-    return replace(station, alarms=book), ()
+TICK_PARTS: tuple[TickPart, ...] = (
+    TickPart("measuring the links' silence", _pass_time),
+    TickPart(
+        "driving the setpoint streams",
+        order_gateway.drive_streams,
+        fault_isolation.drive_streams_isolated,
+    ),
+    TickPart("following the orders", order_gateway.watch, fault_isolation.follow_orders_isolated),
+    *(TickPart(f"advancing the {each.name}", each.tick) for each in OPERATIONS),
+    TickPart("running the watchdogs", run_watchdogs, fault_isolation.run_watchdogs_isolated),
+    TickPart("raising alarms", raise_alarms, fault_isolation.raise_alarms_isolated),
+)
+"""What a tick does, in this order."""
 
+HANDLERS: Mapping[type[Any], Handler] = dict(
+    (
+        on(Tick, _tick),
+        on(SticksDue, _sticks_due),
+        on(LinkOpened, _fleet),
+        on(LinkClosed, _link_closed),
+        on(PacketReceived, _packet),
+        on(JobDone, _job_done),
+        on(JobFailed, _job_failed),
+        on(JobDropped, _job_dropped),
+        on(OperatorOrder, order_gateway.place),
+        changing(CommandSent, order_gateway.follow),
+        changing(CommandAnswered, order_gateway.follow),
+        changing(CommandDropped, order_gateway.follow),
+        changing(AuthorityTaken, authority.take),
+        changing(OwnerConnected, _owner_connected),
+        on(OwnerDisconnected, _owner_disconnected),
+        changing(HazardDismissed, known_traffic.dismiss),
+        changing(SeparationHoldSwitched, watchdog_runner.switch_hold),
+        changing(ClockRead, preflight.read_clock),
+        changing(PreflightOverridden, preflight.override),
+        changing(StationFaulted, station_faults.note),
+        changing(AuditTroubled, _audit_troubled),
+        changing(AlarmAcknowledged, _acknowledged),
+        *(command for each in OPERATIONS for command in each.commands),
+    )
+)
+"""The handler of each type of event."""
 
-TICK_PARTS: Mapping[str, Callable[[Station, int], Stepped]] = {
-    "counting the links' silence": _let_time_pass,
-    "driving the streams of sticks": order_gateway.drive_streams,
-    "watching the orders": order_gateway.watch,
-    "leading the fleet home": advance_fleet_return,
-    "carrying the surveys on": execution.carry_on,
-    "looking with the watchdogs": watchdog_runner.look,
-    "raising alarms": raise_alarms,
+_REPORTS: Mapping[type[Any], Callable[[Station, VehicleState, Any, int], Stepped]] = {
+    CoreReport: _core,
+    ImageReport: frames.on_frame,
+    MessageReport: app_messages.on_message,
 }
-"""What a tick does, in this order, and each in words."""
+"""What a report means beside its part in the vehicle's state; other reports mean no more."""
 
-
-def _is_imager(station: Station, vehicle: VehicleState) -> bool:
-    return vehicle.serial == station.imaging.imager_serial
-
-
-def _frame(
-    station: Station, vehicle: VehicleState, report: ImageReport, now_ns: int
-) -> tuple[Station, tuple[Output, ...]]:
-    """Keep the newest frame of every vehicle; the eye's frames are laid on the ground."""
-    profile = vehicle.profile or _NO_PROFILE
-    serial = vehicle.serial or ""
-    frame = Frame(
-        id=station.next_frame_id,
-        serial=serial,
-        received_at_ns=now_ns,
-        captured_at_ns=now_ns - seconds_to_ns(profile.video_latency_s),
-        captured_sigma_s=profile.video_latency_sigma_s,
-        rgb=report.rgb,
-        jpeg=report.jpeg,
-    )
-    others = ((key, kept) for key, kept in station.frames.items() if key != serial)
-    frames = dict([*others, (serial, frame)][-station.settings.frames_kept :])
-    station = replace(station, frames=frames, next_frame_id=frame.id + 1)
-    if not _is_imager(station, vehicle):
-        return station, ()
-    is_flying = vehicle.is_flying.value is True
-    seen, work = imaging.take_frame(station.imaging, frame, is_flying)
-    station = replace(station, imaging=seen)
-    return station, () if work is None else (StartWork(work[0], imaging.LAY_FRAME, work[1]),)
-
-
-def _work_done(station: Station, event: WorkerResult, now_ns: int) -> Stepped:
-    """Take in what the worker brings."""
-    match event.kind:
-        case planning.PLAN_RETURN:
-            return planning.take(station, event, now_ns), ()
-        case survey_planning.PLAN_SURVEY:
-            return survey_planning.take_plan(station, event), ()
-        case survey_planning.STEP_SURVEY:
-            return execution.take_step(station, event, now_ns)
-        case shade_work.READ_SHADE:
-            return _shade_read(station, event)
-        case _:
-            return _frame_laid(station, event)
-
-
-def _work_lost(station: Station, event: DeadlineMissed) -> Stepped:
-    """Work was dropped for newer work."""
-    match event.kind:
-        case planning.PLAN_RETURN:
-            return planning.lost(station, event.job_id), ()
-        case survey_planning.PLAN_SURVEY:
-            return survey_planning.lost_plan(station, event.job_id), ()
-        case survey_planning.STEP_SURVEY:
-            return execution.lost_step(station, event.job_id), ()
-        case shade_work.READ_SHADE:
-            return shade_reading.lost(station, event.job_id)
-        case _:
-            dropped = station.imaging.frames_dropped + 1
-            return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
-
-
-def _frame_laid(station: Station, event: WorkerResult) -> Stepped:
-    """Take a ground image in, unless a newer one is already there; it is to be read for shade."""
-    seen = station.imaging
-    if not isinstance(event.result, GroundImage):
-        return replace(station, imaging=replace(seen, latest_error=event.error)), ()
-    image, latest = event.result, seen.ground_image
-    if latest is not None and latest.captured_at_ns > image.captured_at_ns:
-        return station, ()
-    station = replace(station, imaging=replace(seen, ground_image=image, latest_error=None))
-    return shade_reading.take_image(station, image)
-
-
-def _shade_read(station: Station, event: WorkerResult) -> Stepped:
-    """Take a shade map in, and let the surveys see it."""
-    before = station.shade.number
-    station, work = shade_reading.take_result(station, event)
-    shade = station.shade.shade
-    if shade is not None and station.shade.number != before:
-        station = observations.see_shade(station, shade)
-    return station, work
-
-
-def _message(
-    station: Station, vehicle: VehicleState, report: MessageReport, now_ns: int
-) -> Station:
-    """An app's own warnings and errors are shown until somebody has seen them."""
-    if report.severity not in (MessageSeverity.WARNING, MessageSeverity.ERROR):
-        return station
-    is_error = report.severity is MessageSeverity.ERROR
-    who = vehicle.serial if vehicle.serial is not None else f"link {vehicle.link_id}"
-    if _unseen_messages(station, f"app:{who}:") >= station.settings.app_messages_kept:
-        return station
-    condition = Condition(
-        key=f"app:{who}:{report.text}",
-        severity=Severity.ERROR if is_error else Severity.WARNING,
-        rule="app_message",
-        vehicle_name=vehicle.display_name,
-        text=f"{vehicle.display_name}: its app says: {report.text}",
-        serial=vehicle.serial,
-        link_id=vehicle.link_id,
-    )
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
-
-
-def _unseen_messages(station: Station, key_start: str) -> int:
-    alarms_kept = station.alarms.alarms.values()
-    return sum(alarm.condition.key.startswith(key_start) for alarm in alarms_kept)
+_POSITION_TAKERS = tuple(each.on_position for each in OPERATIONS if each.on_position is not None)
+_SHADE_TAKERS = tuple(each.on_shade for each in OPERATIONS if each.on_shade is not None)

@@ -7,7 +7,7 @@ the bit.
 
 import heapq
 import random
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -18,8 +18,9 @@ from recon.model.event import ClockRead, Event, LinkClosed, LinkOpened, SticksDu
 from recon.model.units import seconds_to_ns
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.step import step
-from recon.station.kernel.worker import Task, do_work
-from recon.station.state.outputs import Output, SendCommand, StartWork, WithdrawMotion
+from recon.station.kernel.worker import AnyJob, JobRunner
+from recon.station.state.jobs import Job, JobFailed
+from recon.station.state.outputs import Output, SendCommand, WithdrawMotion
 from recon.station.state.station import Station
 from recon.station.steering.setpoint_streams import next_due_ns
 
@@ -82,7 +83,7 @@ class VirtualDriver:
         self,
         station: Station,
         *,
-        tasks: Mapping[str, Task] | None = None,
+        jobs: JobRunner | None = None,
         link_settings: LinkSettings | None = None,
         work_takes_s: float = 0.05,
         keeps_log: bool = True,
@@ -94,7 +95,7 @@ class VirtualDriver:
         self.observe: Callable[[Station, Station, Event], None] | None = None
         """Sees every step as the asyncio driver's observer does."""
         self._keeps_log = keeps_log
-        self._tasks = dict(tasks or {})
+        self._jobs = jobs
         self._settings = link_settings or LinkSettings()
         self._work_takes_ns = seconds_to_ns(work_takes_s)
         self._wires: dict[int, _Wire] = {}
@@ -234,9 +235,14 @@ class VirtualDriver:
                         self._handle_all(wire.session.withdraw_motion(reason))
             case CloseLink(link_id, reason):
                 self.disconnect(link_id, reason)
-            case StartWork():
-                result = do_work(self._tasks, output)
-                self._at(self.now_ns + self._work_takes_ns, lambda: self.handle(result))
+            case Job():
+                ended = self._run(output)
+                self._at(self.now_ns + self._work_takes_ns, lambda: self.handle(ended))
+
+    def _run(self, job: AnyJob) -> Event:
+        if self._jobs is None:
+            return JobFailed(job.id, job.kind, "this driver runs no jobs")
+        return self._jobs.run(job)
 
     def _delay_ns(self, link: FakeLink) -> int:
         return seconds_to_ns(link.delay_s + link.jitter_s * link.rng.random())

@@ -1,80 +1,101 @@
-"""The port for heavy work, and the thread that does it beside the event loop.
+"""The worker: one thread beside the event loop that runs heavy jobs.
 
-Work of one kind waits in one place: newer work drops the older that has not begun, and says so with
-`DeadlineMissed`. Results come back as events, so that the core never waits.
+One job of each kind waits at most: a newer one drops the older that has not begun, which the
+station learns as `JobDropped`. Results come back as events, so the step never waits.
 """
 
 import threading
-from collections.abc import Callable, Mapping
-from typing import Protocol
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import cv2
 
 from recon.model.errors import ReconError
-from recon.model.event import DeadlineMissed, Event, WorkerResult
-from recon.station.state.outputs import StartWork
+from recon.model.event import Event
+from recon.site import Site
+from recon.station.state.jobs import (
+    InputT,
+    Job,
+    JobDone,
+    JobDropped,
+    JobFailed,
+    JobKind,
+    ResultT,
+)
 
-Task = Callable[[object], object]
-"""Does one kind of work: payload in, result out. What it raises is told as the result's error."""
+AnyJob = Job[Any, Any]
 
 
 class Worker(Protocol):
-    """Whatever does heavy work."""
+    """Whatever runs heavy jobs."""
 
-    def submit(self, work: StartWork) -> None:
-        """Take work; its result, or its failure, comes back as an event."""
+    def submit(self, job: AnyJob) -> None:
+        """Take a job; its end comes back as an event."""
 
 
-def do_work(tasks: Mapping[str, Task], work: StartWork) -> WorkerResult:
-    """Do one piece of work now."""
-    task = tasks.get(work.kind)
-    if task is None:
-        return WorkerResult(work.job_id, work.kind, None, f"nobody does {work.kind} here")
-    try:
-        return WorkerResult(work.job_id, work.kind, task(work.payload))
-    except (ReconError, ValueError) as problem:
-        return WorkerResult(work.job_id, work.kind, None, str(problem))
-    except Exception as problem:
-        # A fault in one frame's work must not end the thread that does all the others.
-        text = f"{type(problem).__name__}: {problem}"
-        return WorkerResult(work.job_id, work.kind, None, text)
+class JobRunner:
+    """Runs jobs for one site, one at a time."""
+
+    def __init__(self, site: Site) -> None:
+        cv2.setNumThreads(1)
+        self._site = site
+        self._prepared: dict[JobKind[Any, Any], Callable[[Any], Any]] = {}
+
+    def replace(self, kind: JobKind[InputT, ResultT], run: Callable[[InputT], ResultT]) -> None:
+        """Run jobs of a kind by another function: scores put the simulator's truth here."""
+        self._prepared[kind] = run
+
+    def run(self, job: Job[InputT, ResultT]) -> Event:
+        """Run one job now; what it raises is the error of its event."""
+        try:
+            prepared = self._prepared.get(job.kind)
+            if prepared is None:
+                prepared = self._prepared[job.kind] = job.kind.prepare(self._site)
+            return JobDone(job.id, job.kind, prepared(job.input))
+        except (ReconError, ValueError) as problem:
+            return JobFailed(job.id, job.kind, str(problem))
+        except Exception as problem:
+            # A fault in one frame's job must not end the thread that runs all the others.
+            return JobFailed(job.id, job.kind, f"{type(problem).__name__}: {problem}")
 
 
 class ThreadWorker:
-    """Does work on one thread of its own. `deliver` is called there with each event."""
+    """Runs jobs on a thread of its own. `deliver` is called on that thread with each event."""
 
-    def __init__(self, tasks: Mapping[str, Task], deliver: Callable[[Event], None]) -> None:
-        self._tasks = dict(tasks)
+    def __init__(self, runner: JobRunner, deliver: Callable[[Event], None]) -> None:
+        self._runner = runner
         self._deliver = deliver
-        self._waiting: dict[str, StartWork] = {}
+        self._waiting: dict[JobKind[Any, Any], AnyJob] = {}
         self._changed = threading.Condition()
         self._is_stopping = False
         self._thread = threading.Thread(target=self._run, name="worker", daemon=True)
 
     def start(self) -> None:
-        """Begin to work."""
+        """Start the thread."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Finish the work in hand and end."""
+        """Finish the job that is running and end the thread."""
         with self._changed:
             self._is_stopping = True
             self._changed.notify()
         if self._thread.is_alive():
             self._thread.join()
 
-    def submit(self, work: StartWork) -> None:
-        """Queue work; the same kind's older work that has not begun is dropped."""
+    def submit(self, job: AnyJob) -> None:
+        """Queue a job; an older one of its kind that has not begun is dropped."""
         with self._changed:
-            older = self._waiting.pop(work.kind, None)
-            self._waiting[work.kind] = work
+            older = self._waiting.pop(job.kind, None)
+            self._waiting[job.kind] = job
             self._changed.notify()
         if older is not None:
-            self._deliver(DeadlineMissed(older.job_id, older.kind, "newer work came"))
+            self._deliver(JobDropped(older.id, older.kind))
 
     def _run(self) -> None:
-        while (work := self._next()) is not None:
-            self._deliver(do_work(self._tasks, work))
+        while (job := self._next()) is not None:
+            self._deliver(self._runner.run(job))
 
-    def _next(self) -> StartWork | None:
+    def _next(self) -> AnyJob | None:
         with self._changed:
             while not self._waiting and not self._is_stopping:
                 self._changed.wait()

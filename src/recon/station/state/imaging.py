@@ -1,46 +1,32 @@
-"""Frames of the eye, sent to be laid on the ground with the telemetry that held at capture."""
+"""The state of the imaging pipeline: the imaging drone's telemetry, ground images, shade maps."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from recon.camera.motion import TelemetryReference
-from recon.model.imagery import Frame, GroundImage
-from recon.model.replacing import replace
-from recon.model.units import seconds_to_ns
-from recon.model.vehicle import VehicleState
+from recon.detection import DetectionState, RejectedFrame
+from recon.forecast import ForecastState
+from recon.model.imagery import GroundImage
+from recon.model.shade import ShadeMap, SunForecast
 
-LAY_FRAME = "lay_frame"
-"""The kind of work that turns a frame into a ground image."""
-
-SAMPLE_NEAR_S = 3.0
-"""Running video causes telemetry dropouts of a second or two; further from the moment of capture, a
-frame would be laid where the eye was, not where it is."""
-
-_MISSING = "no telemetry of the eye within 3 s of the frame's capture"
+WAITING_KEPT = 8
+"""Ground images that wait to be read, of 1 MB each: at one a second, the worker has this long to
+catch up. More drop the oldest, and are counted."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImagerSample:
-    """The eye's telemetry at one moment."""
+    """The imaging drone's telemetry at one moment."""
 
     at_ns: int
     telemetry: TelemetryReference
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LayFrame:
-    """The work: this frame, where the eye was then, and where it was for the marked frame."""
-
-    frame: Frame
-    telemetry: TelemetryReference
-    reference: TelemetryReference
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class Imaging:
-    """What the station knows of the eye's view of the ground.
+    """Frames and ground images of the imaging drone.
 
-    `reference` is the telemetry of the frame the control points were marked on; when the site does
-    not give it, the first frame received in flight stands for it.
+    `reference` is the telemetry of the frame the control points were marked on. If the site does
+    not give it, the first frame received in flight takes its place.
     """
 
     imager_serial: str | None = None
@@ -54,37 +40,27 @@ class Imaging:
     latest_error: str | None = None
 
 
-def with_sample(imaging: Imaging, imager: VehicleState, now_ns: int, kept: int) -> Imaging:
-    """Return the state with the eye's newest telemetry remembered, if it is complete."""
-    telemetry = TelemetryReference.from_report(
-        imager.position.value, imager.height_above_takeoff_m.value, imager.attitude.value
-    )
-    if telemetry is None:
-        return imaging
-    samples = (*imaging.samples, ImagerSample(now_ns, telemetry))
-    return replace(imaging, samples=samples[-kept:])
+@dataclass(frozen=True, slots=True, eq=False)
+class ShadePipeline:
+    """Ground images that wait to be read for shade, and the newest shade map and forecast.
 
+    The memories of the detection and forecast methods travel with each job and come back with its
+    result, so that a step depends on its arguments alone: one job at a time, every image in order.
+    `number` counts the shade maps of this run; the forecast is always of the newest map.
+    `rejected` is the newest frame if no shade could be read from it.
+    """
 
-def take_frame(
-    imaging: Imaging, frame: Frame, is_flying: bool
-) -> tuple[Imaging, tuple[int, LayFrame] | None]:
-    """Return the work for a frame of the eye, or None while its place cannot be told."""
-    sample = _sample_at(imaging.samples, frame.captured_at_ns)
-    if sample is None:
-        return replace(imaging, latest_error=_MISSING), None
-    if imaging.reference is None:
-        if not is_flying:
-            return imaging, None
-        imaging = replace(imaging, reference=sample.telemetry)
-    assert imaging.reference is not None
-    job_id = imaging.next_job_id
-    job = LayFrame(frame, sample.telemetry, imaging.reference)
-    return replace(imaging, next_job_id=job_id + 1), (job_id, job)
-
-
-def _sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | None:
-    """The sample nearest in time, unless even that one is far off."""
-    nearest = min(samples, key=lambda sample: abs(sample.at_ns - at_ns), default=None)
-    if nearest is None or abs(nearest.at_ns - at_ns) > seconds_to_ns(SAMPLE_NEAR_S):
-        return None
-    return nearest
+    detection: DetectionState = field(default_factory=DetectionState)
+    forecast: ForecastState = field(default_factory=ForecastState)
+    number: int = 0
+    shade: ShadeMap | None = None
+    sun: SunForecast | None = None
+    waiting: tuple[GroundImage, ...] = ()
+    job_id: int | None = None
+    """Of the job that runs now."""
+    next_job_id: int = 1
+    frames_rejected: int = 0
+    frames_dropped: int = 0
+    rejected: RejectedFrame | None = None
+    error: str | None = None
+    """Why the newest job failed."""

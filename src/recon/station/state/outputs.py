@@ -1,33 +1,27 @@
-"""What the station's step wants done."""
+"""What the station's step asks the driver to do."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from recon.fleet.step import CloseLink
 from recon.safety import ApprovedCommand
+from recon.station.state.jobs import Job
 
 
 @dataclass(frozen=True, slots=True)
 class SendCommand:
-    """Hand an approved command to its links."""
+    """Queue an approved command on its links."""
 
     approved: ApprovedCommand
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StartWork:
-    """Give heavy work to the worker; it comes back as a `WorkerResult`."""
-
-    job_id: int
-    kind: str
-    payload: object
-
-
 @dataclass(frozen=True, slots=True)
 class WithdrawMotion:
-    """Take orders to move that wait unsent out of these links' queues: somebody else flies now."""
+    """Remove unsent motion commands from these links' queues: another holder has control."""
 
     link_ids: tuple[int, ...]
     reason: str
 
 
-Output = SendCommand | CloseLink | StartWork | WithdrawMotion
+Output = SendCommand | CloseLink | WithdrawMotion | Job[Any, Any]
+"""A `Job` is started by the worker and comes back as an event."""

@@ -12,11 +12,10 @@ from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, Override, PreparedAirspace
 from recon.station.state.alarm_book import AlarmBook
 from recon.station.state.fleet_return_record import FleetReturn
-from recon.station.state.imaging import Imaging
+from recon.station.state.imaging import Imaging, ShadePipeline
 from recon.station.state.orders import OrderBook
 from recon.station.state.setpoint_lease import SetpointLease
 from recon.station.state.settings import StationSettings
-from recon.station.state.shade import ShadeLine
 from recon.station.state.survey_record import Surveys
 from recon.station.state.tracking import Tracking
 from recon.station.state.vehicle_snapshot import VehicleSnapshot
@@ -66,8 +65,7 @@ class Station:
     orders: OrderBook = field(default_factory=OrderBook)
     alarms: AlarmBook = field(default_factory=AlarmBook)
     imaging: Imaging = field(default_factory=Imaging)
-    shade: ShadeLine = field(default_factory=ShadeLine)
-    """What the eye's ground images say of shade and sun."""
+    shade: ShadePipeline = field(default_factory=ShadePipeline)
     surveys: Surveys = field(default_factory=Surveys)
     """Of this run; never brought back after a restart."""
     frames: Mapping[str, Frame] = field(default_factory=dict)

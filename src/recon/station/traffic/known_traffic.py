@@ -12,6 +12,7 @@ from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety.prediction import HazardArea, flyer, hazard_area_of
 from recon.safety.watchdogs import plane_of
 from recon.station.state.station import Station
+from recon.station.traffic import identity_grace
 
 _NO_INTENT = Intent()
 LOST_KEPT = 16
@@ -118,8 +119,16 @@ def _with_room(station: Station) -> Station:
 
 
 def keep_lost(station: Station, link_id: int) -> Station:
-    """Return the station that remembers what flew on a link that ends without a serial."""
-    state = station.fleet.links[link_id].own_state
+    """Return the station with the vehicle on a link that ends kept as lost.
+
+    Only one that flies, has never reported a serial, and is not connected by another link.
+    """
+    link = station.fleet.links.get(link_id)
+    if link is None or link.claimed_serial is not None or not link.own_state.is_flying.value:
+        return station
+    if identity_grace.is_heard_by_serial(station, link.own_state):
+        return station
+    state = link.own_state
     lost = with_lost(station.watchdog_state.lost, lost_name(link_id), state)
     return replace(station, watchdog_state=replace(station.watchdog_state, lost=lost))
 

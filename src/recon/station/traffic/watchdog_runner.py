@@ -5,16 +5,15 @@ repeated until telemetry shows them.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 from recon.model.authority import ControlAuthority
-from recon.model.command import Hover
-from recon.model.event import OperatorOrder, SeparationHoldSwitched
+from recon.model.event import SeparationHoldSwitched
 from recon.model.intent import Intent
 from recon.model.replacing import replace
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety.watchdogs import (
-    WATCHDOGS,
     Before,
     Finding,
     Held,
@@ -24,11 +23,7 @@ from recon.safety.watchdogs import (
     hold_words,
     take_picture,
 )
-from recon.station.control import order_gateway
-from recon.station.state.command_ids import take_id
-from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
 from recon.station.state.watchdog_state import HoldRefused, Kept, StickCount
 from recon.station.traffic import identity_grace
 from recon.station.traffic.known_traffic import in_the_air
@@ -37,8 +32,19 @@ _DEFAULT_AUTHORITY = ControlAuthority()
 _NO_INTENT = Intent()
 
 
-def look(station: Station, now_ns: int, watchdogs: Iterable[Watchdog] = WATCHDOGS) -> Stepped:
-    """Return the station after the watchdogs looked, if it is time, and the holds they want."""
+@dataclass(frozen=True, slots=True)
+class HoldRequest:
+    """A vehicle that the watchdogs want held, why, and how fast it flies now."""
+
+    serial: str
+    finding: Finding
+    speed_mps: float
+
+
+def run(
+    station: Station, now_ns: int, watchdogs: Iterable[Watchdog]
+) -> tuple[Station, tuple[HoldRequest, ...]]:
+    """Return the station with the watchdogs' findings, if it is time, and the holds they want."""
     looked_at_ns, settings = station.watchdog_state.looked_at_ns, station.settings.safety.watch
     if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
         return station, ()
@@ -64,11 +70,11 @@ def look(station: Station, now_ns: int, watchdogs: Iterable[Watchdog] = WATCHDOG
         before=_before(picture),
         held=_still_held(station),
     )
-    return _hold(replace(station, watchdog_state=watch), findings, picture, now_ns)
+    return replace(station, watchdog_state=watch), _requests(findings, picture)
 
 
-def switch_hold(station: Station, event: SeparationHoldSwitched) -> Station:
-    """Return the station after somebody switched the holds on or off."""
+def switch_hold(station: Station, event: SeparationHoldSwitched, _now_ns: int) -> Station:
+    """Return the station after an operator switched the holds on or off."""
     watch = replace(station.watchdog_state, is_hold_on=event.is_on, switched_by=event.by)
     return replace(station, watchdog_state=watch)
 
@@ -159,54 +165,32 @@ def _may_fly(vehicle: VehicleState | None) -> bool:
     return vehicle is not None and vehicle.is_flying.value is not False
 
 
-def _hold(station: Station, findings: Iterable[Finding], picture: Picture, now_ns: int) -> Stepped:
-    """Order a hold for each vehicle that a finding wants held, once.
+def after_hold(station: Station, request: HoldRequest, why_not: str | None, now_ns: int) -> Station:
+    """Record a requested hold as sent, or why it was not; its finding's text states which."""
+    serial, state = request.serial, station.watchdog_state
+    if why_not is not None:
+        refused = {**state.holds_refused, serial: HoldRefused(now_ns, why_not)}
+        state = replace(state, holds_refused=refused)
+    else:
+        state = replace(state, held={**state.held, serial: Held(now_ns, request.speed_mps)})
+    words = hold_words(state.held.get(serial), why_not or "")
+    outcome = f"; {station.fleet.vehicles[serial].display_name} {words}"
+    key = request.finding.key
+    if outcome not in request.finding.text:  # or it was held before, and is held again
+        finding = replace(request.finding, text=f"{request.finding.text}{outcome}")
+        kept = replace(state.findings[key], finding=finding)
+        state = replace(state, findings={**state.findings, key: kept})
+    return replace(station, watchdog_state=state)
 
-    One is held only when the hold went to its link: one that was refused, or waits for the vehicle
-    to be heard, holds nobody.
-    """
+
+def _requests(findings: Iterable[Finding], picture: Picture) -> tuple[HoldRequest, ...]:
+    """One hold for each vehicle that a finding wants held; the last finding gives the reason."""
     wanted = {finding.holds: finding for finding in findings if finding.holds is not None}
     speeds_mps = {
         one.state.serial: one.flyer.speed_mps for one in picture.flying if one.flyer is not None
     }
-    outputs: tuple[Output, ...] = ()
-    for serial, finding in wanted.items():
-        if serial is None:
-            continue
-        station, number = take_id(station)
-        order = OperatorOrder(number, Hover(), f"station: {finding.rule}", serial)
-        station, sent = order_gateway.place(station, order, now_ns)
-        outputs += sent
-        if any(isinstance(output, SendCommand) for output in sent):
-            held = Held(now_ns, speeds_mps.get(serial, 0.0))
-            station = _with_held(station, serial, held)
-        else:
-            refused = HoldRefused(now_ns, station.orders.records[number].note)
-            station = _with_refused(station, serial, refused)
-        station = _said(station, finding, serial)
-    return station, outputs
-
-
-def _with_held(station: Station, serial: str, held: Held) -> Station:
-    known = {**station.watchdog_state.held, serial: held}
-    return replace(station, watchdog_state=replace(station.watchdog_state, held=known))
-
-
-def _with_refused(station: Station, serial: str, refused: HoldRefused) -> Station:
-    known = {**station.watchdog_state.holds_refused, serial: refused}
-    return replace(station, watchdog_state=replace(station.watchdog_state, holds_refused=known))
-
-
-def _said(station: Station, finding: Finding, serial: str) -> Station:
-    """The finding says what became of the hold that it wanted, also when it is not made again."""
-    watch, vehicle = station.watchdog_state, station.fleet.vehicles[serial]
-    refused = watch.holds_refused.get(serial)
-    words = hold_words(watch.held.get(serial), "" if refused is None else refused.why)
-    outcome = f"; {vehicle.display_name} {words}"
-    if outcome in finding.text:
-        return station  # it was held before, and is held again
-    told = replace(finding, text=f"{finding.text}{outcome}")
-    kept = replace(watch.findings[finding.key], finding=told)
-    return replace(
-        station, watchdog_state=replace(watch, findings={**watch.findings, finding.key: kept})
+    return tuple(
+        HoldRequest(serial, finding, speeds_mps.get(serial, 0.0))
+        for serial, finding in wanted.items()
+        if serial is not None
     )

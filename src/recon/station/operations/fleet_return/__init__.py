@@ -1,5 +1,21 @@
-"""The fleet return: vehicles called home in layers, one landing mission each, in waves.
+"""The fleet return: vehicles fly home in layers, one landing mission each, in waves.
 
-`record` holds what is known of it, `call` begins it, `advance` carries it on with every tick, and
-`told` says it to consoles. It lives in memory only: a station started anew resumes nothing.
+`commands` begins it, `planning` has the worker plan it, `execution` advances it with every tick,
+and `progress` reads from telemetry and orders what became of each vehicle. Its state lives in
+memory only: after a restart no fleet return continues.
 """
+
+from recon.model.event import FleetReturnOrdered
+from recon.station.operations.fleet_return.commands import audit_entries, call_home
+from recon.station.operations.fleet_return.conditions import conditions
+from recon.station.operations.fleet_return.execution import advance
+from recon.station.operations.operation import Operation
+from recon.station.state.stepped import on
+
+FLEET_RETURN = Operation(
+    name="fleet return",
+    tick=advance,
+    conditions=conditions,
+    commands=(on(FleetReturnOrdered, call_home),),
+    audit=audit_entries,
+)

@@ -11,15 +11,14 @@ from recon.guidance.fleet_return import (
     way_home,
 )
 from recon.model.airspace import Airspace
-from recon.model.event import WorkerResult
 from recon.model.units import seconds_to_ns
-from recon.station.operations.fleet_return import places
+from recon.station.operations.fleet_return import positions
 from recon.station.operations.fleet_return.settings import ReturnSettings
 from recon.station.state.fleet_return_record import UNDER_WAY, FleetReturn, Member, Stage
-from recon.station.state.outputs import Output, StartWork
+from recon.station.state.jobs import Job, JobKind
+from recon.station.state.outputs import Output
 from recon.station.state.station import Station
-
-PLAN_RETURN = "plan_fleet_return"
+from recon.station.state.stepped import Stepped
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,20 +34,19 @@ class PlanWork:
     first_wave: int
 
 
-def plan_task(payload: object) -> ReturnPlan:
-    """Make a plan; this is what the worker does."""
-    assert isinstance(payload, PlanWork)
-    spots = [v.place_m[:2] for v in payload.vehicles]
-    spots += [v.pad.east_north_m for v in payload.vehicles]
-    settings = payload.settings.plan
-    home = way_home(payload.airspace, payload.ground_up_m, spots, settings)
+def make_plan(work: PlanWork) -> ReturnPlan:
+    """Return the plan: the worker's part."""
+    spots = [v.place_m[:2] for v in work.vehicles]
+    spots += [v.pad.east_north_m for v in work.vehicles]
+    settings = work.settings.plan
+    home = way_home(work.airspace, work.ground_up_m, spots, settings)
     return plan_return(
-        payload.vehicles,
+        work.vehicles,
         home,
-        payload.separation,
+        work.separation,
         settings,
-        payload.others,
-        payload.first_wave,
+        work.others,
+        work.first_wave,
     )
 
 
@@ -63,7 +61,7 @@ def ask(
         return _left_out(running, f"it was not planned for within {within_s:g} s", now_ns), ()
     vehicles: list[Returning] = []
     for member in running.at(Stage.WAITING):
-        found = places.returning(station, member.serial, running.frame)
+        found = positions.returning(station, member.serial, running.frame)
         if isinstance(found, str):
             running = running.put(member.at(Stage.LEFT_OUT, now_ns, found))
         else:
@@ -72,18 +70,14 @@ def ask(
         return running, ()
     work = _work(station, running, vehicles, settings)
     planning = replace(running, planning_since_ns=now_ns)
-    return planning, (StartWork(now_ns, PLAN_RETURN, work),)
+    return planning, (Job(now_ns, PLAN_RETURN, work),)
 
 
-def take(station: Station, result: WorkerResult, now_ns: int) -> Station:
-    """Take a plan in, for those that still wait for it."""
+def _planned(station: Station, job_id: int, plan: ReturnPlan, now_ns: int) -> Stepped:
+    """Give the plan's flights to the vehicles that still wait for it."""
     running = station.fleet_return
-    if running is None or running.planning_since_ns != result.job_id:
-        return station
-    plan = result.result
-    if not isinstance(plan, ReturnPlan):
-        reason = f"its way home could not be planned: {result.error}"
-        return replace(station, fleet_return=_left_out(running, reason, now_ns))
+    if running is None or running.planning_since_ns != job_id:
+        return station, ()
     running = replace(running, planning_since_ns=None, layers_up_m=plan.layers_up_m)
     for flight in plan.flights:
         member = running.members[flight.serial]
@@ -94,28 +88,42 @@ def take(station: Station, result: WorkerResult, now_ns: int) -> Station:
         if member.stage is Stage.WAITING:
             running = running.put(member.at(Stage.LEFT_OUT, now_ns, left.reason))
     turns = tuple(flight.serial for flight in plan.flights)
-    return replace(station, fleet_return=replace(running, turns=turns))
+    return replace(station, fleet_return=replace(running, turns=turns)), ()
 
 
-def lost(station: Station, job_id: int) -> Station:
-    """Return the station after the worker has dropped a plan: it is asked for anew."""
+def _not_planned(station: Station, job_id: int, error: str, now_ns: int) -> Stepped:
     running = station.fleet_return
     if running is None or running.planning_since_ns != job_id:
-        return station
-    return replace(station, fleet_return=replace(running, planning_since_ns=None))
+        return station, ()
+    reason = f"its way home could not be planned: {error}"
+    return replace(station, fleet_return=_left_out(running, reason, now_ns)), ()
+
+
+def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
+    """Request the plan again with the next tick."""
+    running = station.fleet_return
+    if running is None or running.planning_since_ns != job_id:
+        return station, ()
+    return replace(station, fleet_return=replace(running, planning_since_ns=None)), ()
+
+
+PLAN_RETURN: JobKind[PlanWork, ReturnPlan] = JobKind(
+    "plan_fleet_return", lambda _site: make_plan, _planned, _not_planned, _dropped
+)
+"""Plans layers, waves and landing missions for all vehicles that wait."""
 
 
 def _work(
     station: Station, running: FleetReturn, vehicles: list[Returning], settings: ReturnSettings
 ) -> PlanWork:
     theirs = {member.serial for member in running.at(Stage.WAITING, *UNDER_WAY)}
-    flying = places.in_the_air(station, running.frame)
+    flying = positions.in_the_air(station, running.frame)
     return PlanWork(
         tuple(vehicles),
         tuple(other for key, other in flying.items() if key not in theirs),
         station.airspace.airspace,
-        places.ground_up_m(station, vehicles),
-        places.separation(station, settings),
+        positions.ground_up_m(station, vehicles),
+        positions.separation(station, settings),
         settings,
         1 + max((_wave(member) for member in running.members.values()), default=0),
     )

@@ -1,6 +1,26 @@
-"""Surveys, live: asked for, planned by the worker, started by a person's word, carried on by ticks.
+"""Surveys: planned by the worker, started by an operator, flown under guidance.
 
-`record` is what is known, `words` what people say to a survey, `planning` how rows come about,
-`carrying` how missions come out of it, `crew` who can fly, `observing` what is seen, `told` and
-`audited` what is told. A survey lives as long as this run: after a restart nothing goes on.
+`commands` has what operators may command, `planning` the worker's jobs, `execution` the step on a
+tick, `mission_dispatch` how missions become orders, `availability` which vehicles can fly, and
+`return_to_home` their way home. Surveys live in memory only: after a restart none continues.
 """
+
+from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
+from recon.station.operations.operation import Operation
+from recon.station.operations.survey.audit import survey_entries
+from recon.station.operations.survey.commands import begin, stop
+from recon.station.operations.survey.conditions import conditions
+from recon.station.operations.survey.execution import advance
+from recon.station.operations.survey.observations import see_shade, see_vehicle
+from recon.station.operations.survey.planning import ask
+from recon.station.state.stepped import changing, on
+
+SURVEY = Operation(
+    name="survey",
+    tick=advance,
+    conditions=conditions,
+    commands=(on(SurveyAsked, ask), changing(SurveyStarted, begin), on(SurveyStopped, stop)),
+    audit=survey_entries,
+    on_position=see_vehicle,
+    on_shade=see_shade,
+)

@@ -66,6 +66,12 @@ def _homeward(station: Station, member: Member, why: str) -> str:
     return f"it has come home: {why}"
 
 
+def is_on_ground(station: Station, member: Member) -> bool:
+    """Return whether telemetry shows a vehicle on the ground."""
+    vehicle = station.fleet.vehicles.get(member.serial)
+    return vehicle is not None and vehicle.is_flying.value is False
+
+
 def is_flown(station: Station, member: Member) -> bool:
     """Return whether the vehicle's newest mission of its survey still lives."""
     order = _order(station, member)

@@ -5,14 +5,14 @@ from dataclasses import replace
 from recon.guidance.survey import refused
 from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase, Refusal
-from recon.model.event import OperatorOrder, WorkerResult
+from recon.model.event import OperatorOrder
 from recon.model.survey import MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
 from recon.safety.rules.battery import RULE as BATTERY
 from recon.station.control import authority, order_gateway
 from recon.station.operations.survey.availability import looked_at, surveyors
 from recon.station.operations.survey.mission_dispatch import order_of
-from recon.station.operations.survey.planning import STEP_SURVEY, StepSurvey, SurveyStepped
+from recon.station.operations.survey.planning import StepSurvey, SurveyStepped, step_survey
 from recon.station.operations.survey.return_to_home import (
     IS_DONE,
     NO_BATTERY,
@@ -23,13 +23,14 @@ from recon.station.operations.survey.return_to_home import (
 )
 from recon.station.operations.survey.settings import SETTINGS, SurveyCarrying
 from recon.station.state.command_ids import take_id
-from recon.station.state.outputs import Output, StartWork
+from recon.station.state.jobs import Job, JobKind
+from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
 from recon.station.state.survey_record import Look, SurveyRecord
 
 
-def carry_on(station: Station, now_ns: int, settings: SurveyCarrying = SETTINGS) -> Stepped:
+def advance(station: Station, now_ns: int, settings: SurveyCarrying = SETTINGS) -> Stepped:
     """Return the station after looking whether a survey is due, and the work for the one that is.
 
     One at a time: the survey that has waited longest.
@@ -51,42 +52,61 @@ def carry_on(station: Station, now_ns: int, settings: SurveyCarrying = SETTINGS)
     return station, (*held, *work)
 
 
-def take_step(station: Station, result: WorkerResult, now_ns: int) -> Stepped:
-    """Return the station after a look at a survey, and the missions that the gate lets fly."""
-    surveys = station.surveys
-    look = surveys.look
-    if look is None or look.job_id != result.job_id:
+def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) -> Stepped:
+    """Take the survey's new state, and order its missions as far as the gate approves them."""
+    station, record = _without_look(station, job_id)
+    if record is None:
         return station, ()
-    surveys = replace(surveys, look=None)
-    record = surveys.records.get(look.survey_id)
-    if record is None or record.state is None:
-        return replace(station, surveys=surveys), ()
-    # Counted or impossible to count: it is looked at once.
-    seen, shade = record.seen.from_number(look.seen_end), record.shade.from_number(look.shade_end)
-    record = replace(record, seen=seen, shade=shade)
-    if not isinstance(result.result, SurveyStepped):
-        record = replace(record, trouble=result.error or "no answer")
-        return replace(station, surveys=surveys.put(record)), ()
-    record = replace(record, state=result.result.state, trouble=None)
-    station = replace(station, surveys=surveys.put(record))
+    record = replace(record, state=result.state, trouble=None)
+    station = replace(station, surveys=station.surveys.put(record))
     outputs: tuple[Output, ...] = ()
-    for mission in result.result.missions:
+    for mission in result.missions:
         station, sent = _give(station, record.survey.id, mission, now_ns)
         outputs += sent
     if comes_home(record):
-        for serial in result.result.spent:
+        for serial in result.spent:
             station, sent = send_home(station, record.survey.id, serial, NO_BATTERY, now_ns)
             outputs += sent
     station, sent = _over(station, record.survey.id, now_ns)
     return station, (*outputs, *sent)
 
 
-def lost_step(station: Station, job_id: int) -> Station:
-    """Return the station after the worker has dropped a look: the next one sees what it saw."""
+def _not_stepped(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
+    station, record = _without_look(station, job_id)
+    if record is None:
+        return station, ()
+    return replace(station, surveys=station.surveys.put(replace(record, trouble=error))), ()
+
+
+def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
+    """The next step counts the same observations."""
     look = station.surveys.look
     if look is None or look.job_id != job_id:
-        return station
-    return replace(station, surveys=replace(station.surveys, look=None))
+        return station, ()
+    return replace(station, surveys=replace(station.surveys, look=None)), ()
+
+
+STEP_SURVEY: JobKind[StepSurvey, SurveyStepped] = JobKind(
+    "step_survey", lambda _site: step_survey, _stepped, _not_stepped, _dropped
+)
+"""Counts observations and decides which vehicle flies what next."""
+
+
+def _without_look(station: Station, job_id: int) -> tuple[Station, SurveyRecord | None]:
+    """End the look that a job was for: return its survey without the observations it counted.
+
+    None for a job that nothing waits for. Observations that could not be counted are dropped too.
+    """
+    surveys, look = station.surveys, station.surveys.look
+    if look is None or look.job_id != job_id:
+        return station, None
+    surveys = replace(surveys, look=None)
+    record = surveys.records.get(look.survey_id)
+    if record is None or record.state is None:
+        return replace(station, surveys=surveys), None
+    seen, shade = record.seen.from_number(look.seen_end), record.shade.from_number(look.shade_end)
+    record = replace(record, seen=seen, shade=shade)
+    return replace(station, surveys=surveys.put(record)), record
 
 
 def _is_alive(record: SurveyRecord) -> bool:
@@ -122,7 +142,7 @@ def _ask(station: Station, survey_id: int, settings: SurveyCarrying, now_ns: int
     look = Look(surveys.next_job_id, survey_id, now_ns, record.seen.end, record.shade.end)
     record = replace(record, look_at_ns=now_ns + seconds_to_ns(settings.look_every_s))
     surveys = replace(surveys.put(record), look=look, next_job_id=look.job_id + 1)
-    return replace(station, surveys=surveys), (StartWork(look.job_id, STEP_SURVEY, work),)
+    return replace(station, surveys=surveys), (Job(look.job_id, STEP_SURVEY, work),)
 
 
 def _give(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> Stepped:

@@ -18,20 +18,15 @@ from recon.guidance.survey import (
 )
 from recon.guidance.survey.plan import RULE
 from recon.model.command import Refusal
-from recon.model.event import SurveyAsked, WorkerResult
+from recon.model.event import SurveyAsked
 from recon.model.geo import LocalFrame
 from recon.model.shade import ShadeMap
 from recon.model.survey import MissionFor, Survey
 from recon.model.zone import ZoneKind
-from recon.station.state.outputs import Output, StartWork
+from recon.station.state.jobs import Job, JobKind
 from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
 from recon.station.state.survey_record import SURVEYS_KEPT, SurveyRecord
-
-PLAN_SURVEY = "plan_survey"
-"""The kind of work that makes a survey's rows; its job is numbered as the survey is."""
-
-STEP_SURVEY = "step_survey"
-"""The kind of work that counts what was seen and says who flies what next."""
 
 NO_SITE = "a survey needs a site with a place: start the station with --site FOLDER"
 TOO_MANY = f"{SURVEYS_KEPT} surveys are under way: abort one of them first"
@@ -68,25 +63,23 @@ class SurveyStepped:
     """Who waits in the air, or on the ground, with a battery that lasts for no row."""
 
 
-def plan_task(payload: object) -> SurveyPlan | Refusal:
-    """Make a survey's rows; this is what the worker does."""
-    assert isinstance(payload, PlanSurvey)
-    return plan_survey(payload.survey, payload.frame, payload.surroundings)
+def make_rows(work: PlanSurvey) -> SurveyPlan | Refusal:
+    """Return a survey's rows: the worker's part."""
+    return plan_survey(work.survey, work.frame, work.surroundings)
 
 
-def step_task(payload: object) -> SurveyStepped:
-    """Count what was seen and take a survey's step; this is what the worker does."""
-    assert isinstance(payload, StepSurvey)
-    state = payload.state
-    for shade in payload.shade:
+def step_survey(work: StepSurvey) -> SurveyStepped:
+    """Add the new observations and take a survey's step: the worker's part."""
+    state = work.state
+    for shade in work.shade:
         state = observe_shade(state, shade)
-    for serial, seen in _by_vehicle(payload.seen).items():
+    for serial, seen in _by_vehicle(work.seen).items():
         state = observe(state, serial, seen)
-    state, missions = step(state, payload.surveyors, payload.now_ns)
-    return SurveyStepped(state, missions, spent(state, payload.surveyors))
+    state, missions = step(state, work.surveyors, work.now_ns)
+    return SurveyStepped(state, missions, spent(state, work.surveyors))
 
 
-def ask(station: Station, event: SurveyAsked, now_ns: int) -> tuple[Station, tuple[Output, ...]]:
+def ask(station: Station, event: SurveyAsked, now_ns: int) -> Stepped:
     """Return the station with a survey whose rows are being worked out, or that is refused."""
     record = SurveyRecord(event.survey, event.by, now_ns)
     refusal = refusal_of(station)
@@ -95,7 +88,7 @@ def ask(station: Station, event: SurveyAsked, now_ns: int) -> tuple[Station, tup
     frame = station.airspace.airspace.frame
     assert frame is not None  # or it was refused
     work = PlanSurvey(event.survey, frame, surroundings(station))
-    return _put(station, record), (StartWork(event.survey.id, PLAN_SURVEY, work),)
+    return _put(station, record), (Job(event.survey.id, PLAN_SURVEY, work),)
 
 
 def refusal_of(station: Station) -> Refusal | None:
@@ -113,31 +106,33 @@ def surroundings(station: Station) -> Surroundings:
     return Surroundings(air.boundary, shut, air.limits.boundary_margin_m)
 
 
-def take_plan(station: Station, result: WorkerResult) -> Station:
-    """Return the station with a survey that waits to be started, or that there is no way to fly."""
-    record = station.surveys.records.get(result.job_id)
-    if record is None or record.state is not None or record.refusal is not None:
-        return station
-    plan = result.result
-    if isinstance(plan, SurveyPlan):
-        made = create(plan)
-        if isinstance(made, SurveyState):
-            return _put(station, replace(record, state=made))
-        return _put(station, replace(record, refusal=made))
-    refusal = plan if isinstance(plan, Refusal) else Refusal(RULE, _not_planned(result))
-    return _put(station, replace(record, refusal=refusal))
+def _planned(station: Station, survey_id: int, plan: SurveyPlan | Refusal, _now_ns: int) -> Stepped:
+    """The survey can be started now, or is refused."""
+    made = plan if isinstance(plan, Refusal) else create(plan)
+    return _with_plan(station, survey_id, made)
 
 
-def lost_plan(station: Station, survey_id: int) -> Station:
-    """Return the station after the worker has dropped the planning of a survey."""
+def _not_planned(station: Station, survey_id: int, error: str, _now_ns: int) -> Stepped:
+    return _with_plan(station, survey_id, Refusal(RULE, f"its rows could not be planned: {error}"))
+
+
+def _dropped(station: Station, survey_id: int, _now_ns: int) -> Stepped:
+    return _with_plan(station, survey_id, Refusal(RULE, PUSHED_OUT))
+
+
+def _with_plan(station: Station, survey_id: int, made: SurveyState | Refusal) -> Stepped:
     record = station.surveys.records.get(survey_id)
-    if record is None or record.state is not None:
-        return station
-    return _put(station, replace(record, refusal=Refusal(RULE, PUSHED_OUT)))
+    if record is None or record.state is not None or record.refusal is not None:
+        return station, ()
+    if isinstance(made, Refusal):
+        return _put(station, replace(record, refusal=made)), ()
+    return _put(station, replace(record, state=made)), ()
 
 
-def _not_planned(result: WorkerResult) -> str:
-    return f"its rows could not be worked out: {result.error}"
+PLAN_SURVEY: JobKind[PlanSurvey, SurveyPlan | Refusal] = JobKind(
+    "plan_survey", lambda _site: make_rows, _planned, _not_planned, _dropped
+)
+"""Plans a survey's rows; the job has the survey's number."""
 
 
 def _put(station: Station, record: SurveyRecord) -> Station:

@@ -12,7 +12,7 @@ from recon.model.command import Hover, Phase
 from recon.model.event import OperatorOrder
 from recon.model.survey import SurveyPhase, WhenDone
 from recon.station.control import authority
-from recon.station.operations.fleet_return import call
+from recon.station.operations.fleet_return import commands
 from recon.station.state.command_ids import take_id
 from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.station import Station
@@ -57,7 +57,7 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
         return station, ()
     if vehicle.is_flying.value is False or is_under_way(station, member):
         return station, ()
-    refusal = call.refusal(station, serial)
+    refusal = commands.refusal(station, serial)
     if refusal is not None:
         return _not_called(station, record, serial, refusal.reason, now_ns), ()
     station, number = take_id(station)
@@ -65,7 +65,7 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
     hold = OperatorOrder(
         number, Hover(), f"{by}: {why}", serial=serial, asked_as=AuthorityHolder.GUIDANCE
     )
-    station, sent = call.join(station, hold, by, now_ns)
+    station, sent = commands.join(station, hold, by, now_ns)
     placed = station.orders.records[number]
     if placed.phase is Phase.REFUSED_BY_STATION:
         return _not_called(station, record, serial, placed.note, now_ns), sent

@@ -1,10 +1,12 @@
 """Calling vehicles home: each is told to hold, so that the plan begins with vehicles that stand."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase, Refusal
-from recon.model.event import FleetReturnOrdered, OperatorOrder
+from recon.model.event import Event, FleetReturnOrdered, OperatorOrder
+from recon.record.audit import AuditEntry
 from recon.safety.datum import frame_for
 from recon.station.control import order_gateway
 from recon.station.operations.fleet_return.progress import is_still_left
@@ -16,7 +18,7 @@ from recon.station.state.stepped import Stepped
 RULE = "fleet_return"
 
 
-def call(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
+def call_home(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
     """Begin a fleet return, or let more vehicles join the one that goes on.
 
     Each serial gets one order, with a number of its own: the hold that it begins with, or a
@@ -65,6 +67,16 @@ def refusal(station: Station, serial: str) -> Refusal | None:
     if member is not None and member.stage not in ENDED:
         return Refusal(RULE, f"{name} is already on its way home or waits for its turn")
     return None
+
+
+def audit_entries(
+    _before: Station, event: Event, _after: Station, _now_ns: int
+) -> Iterator[AuditEntry]:
+    """Yield an entry for the command; what follows is orders, which have their own."""
+    if isinstance(event, FleetReturnOrdered):
+        text = f"{len(event.serials)} vehicles are called home in layers"
+        details = {"first_id": event.first_command_id, "serials": list(event.serials)}
+        yield AuditEntry("fleet_return.ordered", text, event.by, details=details)
 
 
 def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Station:

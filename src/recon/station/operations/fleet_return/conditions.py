@@ -1,10 +1,8 @@
-"""What is told of a fleet return: its alarms, and its view for consoles and programs."""
+"""The alarms of a fleet return."""
 
 from collections.abc import Iterator
 
-from recon.api import schema
-from recon.model.units import ns_to_seconds
-from recon.station.operations.fleet_return.places import is_same_pad
+from recon.station.operations.fleet_return.positions import is_same_pad
 from recon.station.operations.fleet_return.progress import is_still_left
 from recon.station.operations.fleet_return.settings import SETTINGS
 from recon.station.state.alarm_book import Condition, Severity
@@ -31,19 +29,6 @@ def conditions(station: Station) -> Iterator[Condition]:
     yield from _pads_to_clear(running)
 
 
-def view(station: Station, now_ns: int) -> schema.FleetReturnView | None:
-    """Return the newest fleet return as the API says it, None before the first."""
-    running = station.fleet_return
-    if running is None:
-        return None
-    return schema.FleetReturnView(
-        called_by=running.by,
-        age_s=ns_to_seconds(now_ns - running.called_at_ns),
-        is_over=running.is_over,
-        vehicles=[_member(member, now_ns) for member in _in_turn(running)],
-    )
-
-
 def _pads_to_clear(running: FleetReturn) -> Iterator[Condition]:
     """A vehicle that has landed where another one comes must be carried away."""
     for member in running.at(Stage.LANDED):
@@ -60,7 +45,7 @@ def _next_at_its_pad(running: FleetReturn, landed: Member) -> Member | None:
     pad = landed.flight.pad
     there = [
         member
-        for member in _in_turn(running)
+        for member in in_turn(running)
         if member.flight is not None and is_same_pad(member.flight.pad, pad, SETTINGS)
     ]
     later = (m for m in there if m.stage is Stage.LANDED and m.since_ns > landed.since_ns)
@@ -75,7 +60,7 @@ def _about(member: Member, rule: str, severity: Severity, text: str) -> Conditio
     return Condition(key, severity, rule, member.name, text, member.serial, member.link_id)
 
 
-def _in_turn(running: FleetReturn) -> list[Member]:
+def in_turn(running: FleetReturn) -> list[Member]:
     """Those with a flight by wave and height, then the others."""
 
     def turn(member: Member) -> tuple[bool, int, float]:
@@ -83,22 +68,3 @@ def _in_turn(running: FleetReturn) -> list[Member]:
         return (True, 0, 0.0) if flight is None else (False, flight.wave, flight.layer_up_m)
 
     return sorted(running.members.values(), key=turn)
-
-
-def _member(member: Member, now_ns: int) -> schema.ReturningView:
-    flight = member.flight
-    return schema.ReturningView(
-        serial=member.serial,
-        vehicle_name=member.name,
-        stage=member.stage.value,
-        since_age_s=ns_to_seconds(now_ns - member.since_ns),
-        reason=member.reason or None,
-        wave=None if flight is None else flight.wave,
-        layer_height_m=None if flight is None else flight.layer_up_m,
-        layer_height_above_takeoff_m=None
-        if flight is None
-        else flight.layer_up_m - flight.takeoff_up_m,
-        pad=None if flight is None else flight.pad.name,
-        hold_command_id=member.hold_id,
-        mission_command_id=member.mission_id,
-    )

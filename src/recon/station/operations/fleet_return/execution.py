@@ -21,8 +21,8 @@ from recon.model.units import seconds_to_ns
 from recon.safety import judge
 from recon.station.control import authority, order_gateway
 from recon.station.control.situation_builder import command_of, situation
-from recon.station.operations.fleet_return import places, planning
-from recon.station.operations.fleet_return.places import is_same_pad
+from recon.station.operations.fleet_return import planning, positions
+from recon.station.operations.fleet_return.positions import is_same_pad
 from recon.station.operations.fleet_return.progress import seen
 from recon.station.operations.fleet_return.settings import SETTINGS, ReturnSettings
 from recon.station.state.command_ids import take_id
@@ -138,8 +138,8 @@ class _Air:
 
     def __init__(self, station: Station, running: FleetReturn, settings: ReturnSettings) -> None:
         self._settings = settings
-        self._separation = places.separation(station, settings)
-        self._flying = places.in_the_air(station, running.frame)
+        self._separation = positions.separation(station, settings)
+        self._flying = positions.in_the_air(station, running.frame)
         self._moving = {member.serial for member in running.at(*UNDER_WAY)}
         self._under_way = [
             claim_left(member.flight, self._place_m(member), settings.plan)

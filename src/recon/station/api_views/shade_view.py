@@ -1,6 +1,4 @@
-"""What is told of the shade on the ground: its alarm, and its view for consoles and programs."""
-
-from collections.abc import Iterator
+"""The state of shade detection and sun forecast, as the API sends it."""
 
 import numpy as np
 
@@ -8,28 +6,11 @@ from recon.api import schema
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.station.api_views.corners import corners_lon_lat
-from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Station
 
-RULE = "shade"
-TROUBLE_AFTER_S = 5.0
-"""One torn frame is no trouble; a camera that is black or frozen for five seconds is."""
 
-
-def conditions(station: Station) -> Iterator[Condition]:
-    """Yield that no shade is read from the eye's frames, while that is so."""
-    line = station.shade
-    why = line.error if line.rejected is None else line.rejected.reason
-    if why is not None:
-        serial = station.imaging.imager_serial
-        text = f"no shade is read from the eye's frames: {why}"
-        yield Condition(
-            RULE, Severity.WARNING, RULE, serial or "", text, serial, after_s=TROUBLE_AFTER_S
-        )
-
-
-def view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
-    """Return how the line from frames to forecasts stands; None without an eye."""
+def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
+    """Return the state of shade detection and forecast; None without an imaging drone."""
     if station.imaging.imager_serial is None:
         return None
     line, settings = station.shade, station.settings

@@ -1,0 +1,137 @@
+"""Surveys as the API sends them."""
+
+from collections.abc import Iterable
+from functools import lru_cache
+
+import numpy as np
+
+from recon.api import schema
+from recon.geo import geo_from_enu
+from recon.guidance.survey import SurveyState, figures
+from recon.model.geo import LocalFrame
+from recon.model.units import ns_to_seconds
+from recon.station.api_views.corners import corners_lon_lat
+from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
+from recon.station.operations.survey.return_to_home import is_under_way
+from recon.station.state.station import Station
+from recon.station.state.survey_record import SURVEYS_KEPT, Member, Place, SurveyRecord
+
+DECIMALS = 7
+"""Of a degree: a centimetre."""
+
+
+def survey_views(station: Station, now_ns: int) -> list[schema.SurveyView]:
+    """Return every survey of this run that is remembered, the newest first."""
+    records = reversed(tuple(station.surveys.records.values()))
+    return [survey_view(station, record, now_ns) for record in records]
+
+
+def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.SurveyView:
+    """Return one survey as the API says it."""
+    state, survey = record.state, record.survey
+    phase, reason = record.phase
+    return schema.SurveyView(
+        id=survey.id,
+        name=survey.name,
+        phase=phase,
+        reason=reason,
+        asked_by=record.by,
+        age_s=ns_to_seconds(now_ns - record.asked_at_ns),
+        started_by=record.started_by or None,
+        planner=survey.planner,
+        when_done=survey.when_done.value,
+        height_above_takeoff_m=survey.height_above_takeoff_m,
+        speed_mps=survey.speed_mps,
+        round=0 if state is None else state.round,
+        missions=0 if state is None else state.missions,
+        flown_m=0.0 if state is None else state.flown_m,
+        vehicles=[_member(station, record, each, now_ns) for each in record.members.values()],
+        figures=None if state is None else _figures(state),
+        cells=None if state is None else _cells(state),
+        rows=0 if state is None else len(state.plan.pieces),
+        ways=sum(len(way) for way in record.flown.values()),
+    )
+
+
+def survey_ways(record: SurveyRecord) -> schema.SurveyWays | None:
+    """Return the planned rows, what is flown now, and what has been flown; None without rows."""
+    state = record.state
+    if state is None:
+        return None
+    frame = state.plan.frame
+    return schema.SurveyWays(
+        survey_id=record.survey.id,
+        rows=[_lon_lat(frame, row) for row in state.plan.rows_m],
+        flying=[
+            schema.SurveyWay(
+                serial=serial, number=each.number, places=_lon_lat(frame, each.corners_m)
+            )
+            for serial, each in state.flights.items()
+        ],
+        flown=[
+            schema.SurveyWay(serial=serial, number=number, places=_lon_lat(frame, way))
+            for (serial, number), way in record.flown.items()
+        ],
+    )
+
+
+def _member(
+    station: Station, record: SurveyRecord, member: Member, now_ns: int
+) -> schema.SurveyingView:
+    state = record.state
+    assert state is not None  # members come with the start
+    vehicle = station.fleet.vehicles.get(member.serial)
+    is_told = record.is_running or is_under_way(station, member)
+    waits = hindrance(station, member, now_ns) if is_told else None
+    refused = None if record.is_over else state.refusals.get(member.serial)
+    return schema.SurveyingView(
+        serial=member.serial,
+        vehicle_name=member.serial if vehicle is None else vehicle.display_name,
+        is_flying_rows=is_flown(station, member),
+        waits_for=waits,
+        refused=None if refused is None else refused.reason,
+        has_come_home=member.homeward is not None and is_on_ground(station, member),
+        mission_command_id=member.command_id,
+    )
+
+
+@lru_cache(maxsize=SURVEYS_KEPT)
+def _figures(state: SurveyState) -> schema.SurveyFiguresView:
+    """A survey changes once a second, and is told ten times."""
+    seen = figures(state)
+    return schema.SurveyFiguresView(
+        region_m2=seen.region_m2,
+        reached_m2=seen.reached_m2,
+        not_yet_m2=seen.not_yet_m2,
+        in_shade_m2=seen.in_shade_m2,
+        in_sun_m2=seen.in_sun_m2,
+        sun_unknown_m2=seen.sun_unknown_m2,
+        time_to_95_imaged_s=seen.time_to_95_imaged_s,
+        time_to_95_in_sun_s=seen.time_to_95_in_sun_s,
+    )
+
+
+def cells_number(state: SurveyState) -> int:
+    """Return a number that rises whenever a cell does: the sum of their states."""
+    return int(state.progress.state.sum(dtype="int64"))
+
+
+def _cells(state: SurveyState) -> schema.SurveyCellsView:
+    grid = state.plan.cells.grid
+    return schema.SurveyCellsView(
+        number=cells_number(state),
+        corners=corners_lon_lat(grid),
+        cell_m=grid.cell_m,
+        rows=grid.rows,
+        cols=grid.cols,
+    )
+
+
+def _lon_lat(frame: LocalFrame, places_m: Iterable[Place]) -> list[tuple[float, float]]:
+    """Return (longitude, latitude) of places in east-north metres of the frame."""
+    points_m = np.array([(*place, 0.0) for place in places_m]).reshape(-1, 3)
+    latitude_deg, longitude_deg, _ = geo_from_enu(frame, points_m)
+    return [
+        (round(float(lon), DECIMALS), round(float(lat), DECIMALS))
+        for lon, lat in zip(longitude_deg, latitude_deg, strict=True)
+    ]

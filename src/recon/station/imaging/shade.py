@@ -1,0 +1,131 @@
+"""Ground images to shade maps and sun forecasts: read one by one, in order, by the worker."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.model.imagery import GroundImage
+from recon.model.shade import ShadeMap, SunForecast
+from recon.station.state.alarm_book import Condition, Severity
+from recon.station.state.imaging import WAITING_KEPT, ShadePipeline
+from recon.station.state.jobs import Job, JobKind
+from recon.station.state.station import Station
+from recon.station.state.stepped import Stepped
+
+Method = TypeVar("Method")
+
+RULE = "shade"
+TROUBLE_AFTER_S = 5.0
+"""One torn frame is no trouble; a camera that is black or frozen for five seconds is."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadShade:
+    """The next ground image, and the methods' memories of those before it."""
+
+    image: GroundImage
+    detection: DetectionState
+    forecast: ForecastState
+    detection_settings: DetectionSettings
+    forecast_settings: ForecastSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShadeRead:
+    """A shade map with its forecast, or a rejected frame; and the methods' new memories."""
+
+    detection: DetectionState
+    forecast: ForecastState
+    found: tuple[ShadeMap, SunForecast] | RejectedFrame
+
+
+def on_ground_image(station: Station, image: GroundImage) -> Stepped:
+    """Queue a ground image; if too many wait, drop the oldest."""
+    pipeline = station.shade
+    waiting = (*pipeline.waiting, image)
+    kept = waiting[-WAITING_KEPT:]
+    dropped = pipeline.frames_dropped + len(waiting) - len(kept)
+    return _next(station, replace(pipeline, waiting=kept, frames_dropped=dropped))
+
+
+def read_shade(work: ReadShade) -> ShadeRead:
+    """Read one image by the methods named in the settings.
+
+    Raises `ValueError` for an unknown method.
+    """
+    detect = _method(DETECTORS, work.detection_settings.method, "detection")
+    predict = _method(FORECASTERS, work.forecast_settings.method, "forecast")
+    detection, shade = detect(work.detection, work.image, work.detection_settings)
+    if isinstance(shade, RejectedFrame):
+        return ShadeRead(detection, work.forecast, shade)
+    forecast, sun = predict(work.forecast, shade, work.forecast_settings)
+    return ShadeRead(detection, forecast, (shade, sun))
+
+
+def conditions(station: Station) -> Iterator[Condition]:
+    """Yield an alarm while no shade is read from the imaging drone's frames."""
+    pipeline = station.shade
+    why = pipeline.error if pipeline.rejected is None else pipeline.rejected.reason
+    if why is not None:
+        serial = station.imaging.imager_serial
+        text = f"no shade is read from the imaging drone's frames: {why}"
+        yield Condition(
+            RULE, Severity.WARNING, RULE, serial or "", text, serial, after_s=TROUBLE_AFTER_S
+        )
+
+
+def _read(station: Station, job_id: int, read: ShadeRead, _now_ns: int) -> Stepped:
+    pipeline = station.shade
+    if job_id != pipeline.job_id:
+        return station, ()
+    pipeline = replace(
+        pipeline, job_id=None, detection=read.detection, forecast=read.forecast, error=None
+    )
+    if isinstance(read.found, RejectedFrame):
+        rejected = pipeline.frames_rejected + 1
+        return _next(station, replace(pipeline, rejected=read.found, frames_rejected=rejected))
+    shade, sun = read.found
+    number = pipeline.number + 1
+    return _next(station, replace(pipeline, shade=shade, sun=sun, rejected=None, number=number))
+
+
+def _not_read(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
+    pipeline = station.shade
+    if job_id != pipeline.job_id:
+        return station, ()
+    return _next(station, replace(pipeline, job_id=None, error=error, rejected=None))
+
+
+def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
+    pipeline = station.shade
+    if job_id != pipeline.job_id:
+        return station, ()
+    dropped = pipeline.frames_dropped + 1
+    return _next(station, replace(pipeline, job_id=None, frames_dropped=dropped))
+
+
+READ_SHADE: JobKind[ReadShade, ShadeRead] = JobKind(
+    "read_shade", lambda _site: read_shade, _read, _not_read, _dropped
+)
+"""Reads one ground image for shade and forecasts the sun."""
+
+
+def _next(station: Station, pipeline: ShadePipeline) -> Stepped:
+    """Start a job for the oldest image that waits, unless one is running."""
+    if pipeline.job_id is not None or not pipeline.waiting:
+        return replace(station, shade=pipeline), ()
+    first, *rest = pipeline.waiting
+    settings, number = station.settings, pipeline.next_job_id
+    work = ReadShade(
+        first, pipeline.detection, pipeline.forecast, settings.detection, settings.forecast
+    )
+    pipeline = replace(pipeline, waiting=tuple(rest), job_id=number, next_job_id=number + 1)
+    return replace(station, shade=pipeline), (Job(number, READ_SHADE, work),)
+
+
+def _method(methods: Mapping[str, Method], name: str, what: str) -> Method:
+    if name not in methods:
+        raise ValueError(f"{what}: expected the method {' or '.join(methods)}, got {name}")
+    return methods[name]
