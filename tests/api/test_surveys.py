@@ -3,7 +3,6 @@
 import cv2
 import numpy as np
 import pytest
-from recon.detection.rejected import FrameFault
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 from tests.ready import ready_profile, ready_site
@@ -11,6 +10,7 @@ from tests.station.imaging.test_shade_line import ground_image
 from tests.station.station_world import HOME
 
 from recon.detection import DetectionState, RejectedFrame
+from recon.detection.frame_step import FrameFault
 from recon.forecast import ForecastSettings, ForecastState
 from recon.forecast.persistence import persisting
 from recon.geo import geo_from_enu

@@ -18,7 +18,7 @@ from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
-from recon.station.operations.fleet_return import places
+from recon.station.operations.fleet_return import positions
 from recon.station.operations.fleet_return.planning import PLAN_RETURN
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.jobs import JobDropped, JobFailed
@@ -192,7 +192,7 @@ def test_where_it_lands(layer: bool, profile: bool, name: str) -> None:
     )
     airspace = PreparedAirspace(Airspace(frame=frame, landing_pads=pads))
     station = Station(fleet=Fleet(vehicles={"A": state}), airspace=airspace)
-    found = places.returning(station, "A", frame)
+    found = positions.returning(station, "A", frame)
     assert not isinstance(found, str)
     wanted_m = {"north": (30.0, 0.0, 2.0), "of its own": (0.0, 40.0, 3.0)}.get(name, (0.0,) * 3)
     assert found.pad.name == name
