@@ -1,16 +1,19 @@
 """Frames and heavy work in the station's step."""
 
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 from tests.fleet.said import core, extended
 from tests.station.commanded import CommandedStation
 
+from recon.model.event import Event, JobEnded
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.report import ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.station.imaging.frames import LAY_FRAME
+from recon.station.kernel.step import HANDLERS
 from recon.station.state.jobs import JobDone, JobDropped, JobFailed
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
@@ -27,6 +30,11 @@ def ground_image(captured_at_ns: int) -> GroundImage:
         valid=np.ones((1, 1), np.bool_),
         pose=CameraPose(np.eye(3), np.zeros(3)),
     )
+
+
+def test_every_event_has_a_handler() -> None:
+    events = {*get_args(Event)} - {JobEnded} | {JobDone, JobFailed, JobDropped}
+    assert set(HANDLERS) == events
 
 
 def test_the_newest_frame_of_each_vehicle_is_kept_with_its_capture_time() -> None:
