@@ -23,8 +23,8 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
 from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import ClaimingLink, PreparedAirspace, Situation
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath, Kind
+from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.rules.boundary import boundary
 from recon.safety.rules.height_zones import height_zones
 from recon.safety.rules.home_distance import home_distance
@@ -156,8 +156,8 @@ def test_a_stick_packet(hilly: bool) -> None:
 def test_a_long_curved_mission(hilly: bool) -> None:
     asked = case("mission", survey(), hilly=hilly)
     took_ms = cost_ms(asked.judge, 3)
-    path = flown(asked.command, asked.situation)
-    assert isinstance(path, FlownPath)
+    path = path_volume(asked.command, asked.situation)
+    assert isinstance(path, PathVolume)
     begin_s = process_time()
     assert naive_room_m(path) > 5.0
     naive_ms = 1e3 * (process_time() - begin_s)
@@ -168,7 +168,7 @@ def test_a_long_curved_mission(hilly: bool) -> None:
     assert took_ms < 50.0
 
 
-def naive_room_m(path: FlownPath) -> float:
+def naive_room_m(path: PathVolume) -> float:
     """How near the path comes to the boundary: flights and ways home in steps, edge by edge."""
     edges = list(zip(L_SHAPE, [*L_SHAPE[1:], L_SHAPE[0]], strict=True))
     home_east_m, home_north_m = float(path.home_m[0]), float(path.home_m[1])

@@ -4,8 +4,8 @@ from studies.fences import RULES, compare
 
 from recon.geo import Footprints
 from recon.model.command import Command, Refusal
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 
 SEEDS = range(20_000, 20_300)
@@ -14,8 +14,8 @@ SEEDS = range(20_000, 20_300)
 
 def boundary_at_corners_only(command: Command, situation: Situation) -> Refusal | None:
     """What fences get wrong elsewhere: only the ends of the legs are looked at."""
-    fence, path = situation.airspace.boundary, flown(command, situation)
-    if fence is None or path is None or isinstance(path, Unknown):
+    fence, path = situation.airspace.boundary, path_volume(command, situation)
+    if fence is None or path is None or isinstance(path, UnknownPath):
         return None
     corners_m = path.pieces.triangles_m.reshape(-1, 1, 2).repeat(3, axis=1)
     margin_m = situation.airspace.airspace.limits.boundary_margin_m

@@ -5,14 +5,14 @@ import numpy.typing as npt
 
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import places_m
-from recon.safety.flown_path import FlownPath
+from recon.safety.path.pieces import PathVolume
 from recon.safety.situation import Situation
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
 
-def columns(path: FlownPath, situation: Situation, is_stop: bool) -> BoolArray:
+def columns(path: PathVolume, situation: Situation, is_stop: bool) -> BoolArray:
     """Return which of the path's N pieces keep to a column of takeoff or landing, (N,).
 
     So does a piece of which nothing is farther than `column_radius_m` from the home, or from one of
@@ -31,7 +31,7 @@ def columns(path: FlownPath, situation: Situation, is_stop: bool) -> BoolArray:
     return np.asarray(within | (pieces.is_entry & is_here & is_no_lower))
 
 
-def _centres_m(path: FlownPath, airspace: PreparedAirspace) -> FloatArray:
+def _centres_m(path: PathVolume, airspace: PreparedAirspace) -> FloatArray:
     """Home and the pads, (N, 2)."""
     profile = path.departure.vehicle.profile
     places = [pad.place for pad in airspace.airspace.landing_pads]

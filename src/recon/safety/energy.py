@@ -20,18 +20,24 @@ home, height above takeoff. `docs/energy-model.md` tells the same to pilots.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import hypot
+from math import atan2, cos, hypot, sin
 
 from recon.geo.distance import offset_north_east_m
+from recon.model.command import Body, FlyMission, StickFrame
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home
+from recon.safety.path.order_path import StickFlight, StraightFlight, order_path
+from recon.safety.return_missions import leads_home
 from recon.safety.settings import EnergySettings
 
 Point = tuple[float, float, float]
 """North and east of home, and above takeoff, in metres."""
+
+Way = tuple[Sequence[Point], float]
+"""The points of a way from home, the first where the vehicle is, and the speed in m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +129,60 @@ def fraction_to_get_home(
     """
     uses, here = consumption(vehicle, airspace, settings), place_of(vehicle)
     return None if uses is None or here is None else uses.home(here)
+
+
+def need_of(uses: Consumption, vehicle: VehicleState, body: Body) -> Need | None:
+    """Return what an order to move needs, the way home included; None while that is unknown."""
+    if isinstance(body, FlyMission):
+        points = mission_points(vehicle, body.mission)
+        return None if points is None else mission_need(uses, points, body.mission)
+    way = way_of(body, vehicle, uses.settings)
+    return None if way is None else path_need(uses, *way)
+
+
+def leads_away(
+    body: Body, vehicle: VehicleState, airspace: PreparedAirspace, settings: EnergySettings
+) -> bool:
+    """Return whether an order to move leads away from home; what is unknown does.
+
+    A mission leads away unless it only brings the vehicle down (`leads_home`); anything else when
+    it ends farther from home than the vehicle is now.
+    """
+    if isinstance(body, FlyMission):
+        return not leads_home(body.mission, vehicle, airspace)
+    way = way_of(body, vehicle, settings)
+    if way is None:
+        return True
+    points, _ = way
+    start_m, end_m = (hypot(point[0], point[1]) for point in (points[0], points[-1]))
+    return end_m > start_m + settings.nearer_m
+
+
+def way_of(body: Body, vehicle: VehicleState, settings: EnergySettings) -> Way | None:
+    """Return where a steered order or a stick leads; None when place or home is unknown."""
+    here, base = place_of(vehicle), home(vehicle)
+    if here is None or base is None:
+        return None
+    path = order_path(body, vehicle)
+    match path:
+        case StraightFlight(target, height_m, speed_mps):
+            north_m, east_m = offset_north_east_m(base, target)
+            assert height_m is not None, "a vehicle with a place has a height"
+            return [here, (north_m, east_m, height_m)], speed_mps
+        case StickFlight():
+            return [here, _stick_end(here, path, settings)], path.speed_mps
+        case _:
+            return [here], 0.0
+
+
+def _stick_end(here: Point, path: StickFlight, settings: EnergySettings) -> Point:
+    """The direction of a body's velocity while it turns is uncertain: it leads away from home."""
+    reach_m = path.reach_m(settings.stick)
+    angle_rad = atan2(path.east_mps, path.north_mps)
+    if path.frame is StickFrame.BODY:
+        angle_rad = atan2(here[1], here[0])
+    north_m, east_m = reach_m * cos(angle_rad), reach_m * sin(angle_rad)
+    return here[0] + north_m, here[1] + east_m, path.height_above_takeoff_m
 
 
 def path_need(uses: Consumption, points: Sequence[Point], speed_mps: float) -> Need:

@@ -7,6 +7,17 @@ from recon.model.vehicle import LATE_UNDER_S, LIVE_UNDER_S
 
 
 @dataclass(frozen=True, slots=True)
+class StickBounds:
+    """What a question about a stick adds to its timeout.
+
+    `reaction_s` is flown on at the stick's velocity; None of `braking_mps2` leaves braking out.
+    """
+
+    reaction_s: float
+    braking_mps2: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class PreflightSettings:
     """Beside what the site's limits and the gate's rules say."""
 
@@ -82,6 +93,9 @@ class EnergySettings:
     """Left when a way home ends, reserve or not: at about this charge aircraft land by themselves,
     wherever they are."""
 
+    stick: StickBounds = StickBounds(reaction_s=0.0, braking_mps2=None)
+    """A stick is counted for its timeout only: braking takes no energy that hovering does not."""
+
     nearer_m: float = 1.0
     """An order that ends this much farther from home at most does not lead away from it: a place
     being held, with its corrections."""
@@ -91,8 +105,9 @@ class EnergySettings:
 class FenceSettings:
     """Beside what the site's own limits say."""
 
-    braking_mps2: float = 2.5
-    """What a loaded aircraft brakes with: how far a stick's velocity still carries it."""
+    stick: StickBounds = StickBounds(reaction_s=0.0, braking_mps2=2.5)
+    """The app itself ends a stick at its timeout, so no reaction time passes; a loaded aircraft
+    then brakes with this."""
 
     steering_overshoot_m: float = 3.0
     """A steered order may pass its target by this: the sticks that brake it reach up to 1.9 m
@@ -148,6 +163,12 @@ class PredictionSettings:
 
     piece_s: float = 3.0
     """Paths are compared in pieces of this time, or of their own uncertainty when that is more."""
+
+    stick: StickBounds = StickBounds(reaction_s=1.0, braking_mps2=2.5)
+    """As an order's: `reaction_s` passes before the vehicle brakes, whoever ends the stick."""
+
+    stick_line_deg: float = 15.0
+    """A body-frame stick that turns the vehicle by more than this sweeps a disc, not a line."""
 
     stick_horizon_s: float = 5.0
     """A stick without a known target is foreseen this far: no app holds one longer."""

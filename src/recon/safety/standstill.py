@@ -1,7 +1,7 @@
 """Which orders only stop: what is asked of motion is not asked of them."""
 
 from recon.model.command import Command, VirtualStick
-from recon.safety.as_sent import as_sent
+from recon.safety.path.order_path import as_sent
 from recon.safety.situation import Situation
 
 

@@ -11,10 +11,9 @@ from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleProfile, VehicleState
 from recon.safety import PreparedAirspace
-from recon.safety.energy import consumption
+from recon.safety.energy import consumption, need_of
 from recon.safety.rules.battery import battery
 from recon.safety.situation import Situation
-from recon.safety.way_ahead import need_of
 
 ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=40.0)
 OUT = LatLon(waypoint(200.0).latitude_deg, -93.6)

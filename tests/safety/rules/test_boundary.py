@@ -21,8 +21,8 @@ from tests.safety.fenced import (
 from recon.model.command import Body, HoldPosition, Hover, LandNow, Nudge, ReturnHome
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath
+from recon.safety.path.pieces import PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.rules.boundary import boundary
 
 L_SHAPE = region((-50, -50), (400, -50), (400, 50), (50, 50), (50, 400), (-50, 400))
@@ -196,8 +196,8 @@ class TestAlreadyOutside:
         state = flier(45.0, 300.0)
         fence = CORNERED.boundary
         assert fence is not None
-        path = flown(command(stick(0.0, -1.0)), here(CORNERED, state))
-        assert isinstance(path, FlownPath)
+        path = path_volume(command(stick(0.0, -1.0)), here(CORNERED, state))
+        assert isinstance(path, PathVolume)
         margin_m = float(fence.room_m(path.here)[0])
         exact = airspace(boundary=L_SHAPE, limits=replace(WIDE, boundary_margin_m=margin_m))
         assert asked(boundary, stick(0.0, -1.0), exact, state) is None
@@ -207,8 +207,8 @@ class TestAlreadyOutside:
 
     def test_the_edge_itself_is_called_inside(self) -> None:
         state = flier(0.0, 0.0)
-        path = flown(command(stick(0.0, -1.0)), here(WHOLE, state))
-        assert isinstance(path, FlownPath)
+        path = path_volume(command(stick(0.0, -1.0)), here(WHOLE, state))
+        assert isinstance(path, PathVolume)
         east = airspace(boundary=square(float(path.here_m[0]), -400.0, 400.0, 400.0))
         assert reason(asked(boundary, stick(0.0, -1.0), east, state)).endswith(
             "; it is 0.00 m inside now and may not be sent farther out, only back in"
@@ -217,8 +217,8 @@ class TestAlreadyOutside:
     def test_a_path_that_touches_the_edge_is_not_beyond_it(self) -> None:
         touches = mission((0.0, 0.0, 40.0), (100.0, 100.0, 40.0))
         away = flier(100.0, 0.0, takeoff_point=flier(100.0, 0.0).position.value)
-        path = flown(command(touches), here(WHOLE, away))
-        assert isinstance(path, FlownPath)
+        path = path_volume(command(touches), here(WHOLE, away))
+        assert isinstance(path, PathVolume)
         west_m = float(path.pieces.triangles_m[..., 0].min())
         east = airspace(boundary=square(west_m, -400.0, 400.0, 400.0))
         assert reason(asked(boundary, touches, east, away)) == (

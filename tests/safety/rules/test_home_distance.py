@@ -22,8 +22,8 @@ from recon.model.command import Body, HoldPosition, Hover
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath
+from recon.safety.path.pieces import PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.rules.home_distance import home_distance
 
 NEAR = airspace(limits=replace(WIDE, max_distance_from_home_m=300.0))
@@ -48,8 +48,8 @@ def test_every_waypoint_counts(east_m: float, allowed: bool) -> None:
 
 def test_the_limit_itself_is_allowed() -> None:
     body = mission((250.0, 0.0, 40.0), (0.0, 0.0, 40.0))
-    path = flown(command(body), here(NEAR))
-    assert isinstance(path, FlownPath)
+    path = path_volume(command(body), here(NEAR))
+    assert isinstance(path, PathVolume)
     offsets_m = path.pieces.triangles_m - path.home_m[:2]
     exact_m = float(np.linalg.norm(offsets_m, axis=-1).max())
     limited = airspace(limits=replace(WIDE, max_distance_from_home_m=exact_m))

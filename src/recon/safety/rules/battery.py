@@ -4,10 +4,9 @@ from math import ceil, floor, isfinite
 
 from recon.model.command import BODY_NAMES, Body, Command, FlyMission, Refusal
 from recon.model.vehicle import BatteryWarning, VehicleState
-from recon.safety.energy import Need, consumption
+from recon.safety.energy import Need, consumption, leads_away, need_of
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
-from recon.safety.way_ahead import leads_away, need_of
 
 RULE = "battery"
 ROUNDING = 1e-9
@@ -23,7 +22,9 @@ def battery(command: Command, situation: Situation) -> Refusal | None:
     vehicle, body = situation.vehicle, command.body
     if vehicle is None or not command.moves or is_stop(command, situation):
         return None
-    is_away = command.takeoff or leads_away(body, vehicle, situation)
+    is_away = command.takeoff or leads_away(
+        body, vehicle, situation.airspace, situation.settings.energy
+    )
     reason = _warned(vehicle, is_away) or _short(vehicle, body, is_away, situation)
     return None if reason is None else Refusal(RULE, f"{vehicle.display_name}: {reason}")
 

@@ -5,9 +5,9 @@ import numpy.typing as npt
 
 from recon.geo import Polygon
 from recon.model.command import Command, Refusal
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath, Kind
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -26,10 +26,10 @@ def boundary(command: Command, situation: Situation) -> Refusal | None:
     fence = situation.airspace.boundary
     if fence is None or is_stop(command, situation):
         return None
-    path = flown(command, situation)
+    path = path_volume(command, situation)
     if path is None:
         return None
-    if isinstance(path, Unknown):
+    if isinstance(path, UnknownPath):
         return Refusal(RULE, path.reason)
     margin_m = situation.airspace.airspace.limits.boundary_margin_m
     # A climb covers what is below it.
@@ -43,7 +43,7 @@ def boundary(command: Command, situation: Situation) -> Refusal | None:
 
 def _worse(
     outside: npt.NDArray[np.int64],
-    path: FlownPath,
+    path: PathVolume,
     fence: Polygon,
     margin_m: float,
     rounding_m: float,
@@ -60,7 +60,7 @@ def _worse(
     return np.sort(np.concatenate([outside[~entries], begins[is_worse]]))
 
 
-def _reason(path: FlownPath, index: int, fence: Polygon, margin_m: float) -> str:
+def _reason(path: PathVolume, index: int, fence: Polygon, margin_m: float) -> str:
     what = path.subject(index)
     room_m = float(fence.room_m(path.footprints.only(np.array([index])))[0])
     if room_m < 0.0:

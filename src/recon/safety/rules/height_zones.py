@@ -6,10 +6,10 @@ from recon.model.command import Command, Refusal
 from recon.model.zone import ZoneKind
 from recon.safety.airspace import PreparedZone
 from recon.safety.columns import columns
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath
 from recon.safety.heights import height_words, stays_above, stays_below, up_of, zone_datum
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.pieces import PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -29,11 +29,11 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
     is not known to be, it is not asked.
     """
     airspace = situation.airspace
-    path = flown(command, situation) if airspace.zones_of(ZoneKind.HEIGHT) else None
+    path = path_volume(command, situation) if airspace.zones_of(ZoneKind.HEIGHT) else None
     if path is None:
         return None
     stops = is_stop(command, situation)
-    if isinstance(path, Unknown):
+    if isinstance(path, UnknownPath):
         return None if stops else Refusal(RULE, path.reason)
     margin_m = airspace.airspace.limits.boundary_margin_m
     for zone in airspace.zones_near(ZoneKind.HEIGHT, path.footprints, margin_m):
@@ -43,7 +43,7 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
     return None
 
 
-def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, stops: bool) -> str | None:
+def _fault(zone: PreparedZone, path: PathVolume, situation: Situation, stops: bool) -> str | None:
     airspace, settings, pieces = situation.airspace, situation.settings.fences, path.pieces
     margin_m = 0.0 if stops else airspace.airspace.limits.boundary_margin_m
     slack_m = settings.stop_slack_m if stops else 0.0
@@ -72,7 +72,7 @@ def _fault(zone: PreparedZone, path: FlownPath, situation: Situation, stops: boo
     return None
 
 
-def _reason(zone: PreparedZone, path: FlownPath, index: int, limit: str) -> str:
+def _reason(zone: PreparedZone, path: PathVolume, index: int, limit: str) -> str:
     return (
         f"{path.subject(index)} is at {path.heights(index)} in the height zone "
         f"{zone.zone.name!r}; {limit}"

@@ -3,9 +3,9 @@
 import numpy as np
 
 from recon.model.command import Command, Refusal
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
-from recon.safety.flown_path import Kind
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.pieces import Kind
+from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -21,10 +21,10 @@ def home_distance(command: Command, situation: Situation) -> Refusal | None:
     """
     if is_stop(command, situation):
         return None
-    path = flown(command, situation)
+    path = path_volume(command, situation)
     if path is None:
         return None
-    if isinstance(path, Unknown):
+    if isinstance(path, UnknownPath):
         return Refusal(RULE, path.reason)
     limit_m = situation.airspace.airspace.limits.max_distance_from_home_m
     pieces, home_m = path.pieces, path.home_m[:2]

@@ -6,9 +6,6 @@ import numpy.typing as npt
 from recon.model.command import Command, Refusal
 from recon.model.zone import Zone, ZoneKind
 from recon.safety.airspace import PreparedZone
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath
 from recon.safety.heights import (
     height_words,
     stays_above,
@@ -16,6 +13,9 @@ from recon.safety.heights import (
     up_of,
     zone_datum,
 )
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.pieces import PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -38,11 +38,11 @@ def keep_out(command: Command, situation: Situation) -> Refusal | None:
     beyond their floors and ceilings; where the vehicle is not known to be, it is not asked.
     """
     airspace = situation.airspace
-    path = flown(command, situation) if airspace.zones_of(ZoneKind.KEEP_OUT) else None
+    path = path_volume(command, situation) if airspace.zones_of(ZoneKind.KEEP_OUT) else None
     if path is None:
         return None
     stops = is_stop(command, situation)
-    if isinstance(path, Unknown):
+    if isinstance(path, UnknownPath):
         return None if stops else Refusal(RULE, path.reason)
     margin_m = airspace.airspace.limits.boundary_margin_m
     for zone in airspace.zones_near(ZoneKind.KEEP_OUT, path.footprints, margin_m):
@@ -56,7 +56,7 @@ class _Judged:
     """One zone and one path."""
 
     def __init__(
-        self, zone: PreparedZone, path: FlownPath, situation: Situation, stops: bool
+        self, zone: PreparedZone, path: PathVolume, situation: Situation, stops: bool
     ) -> None:
         settings = situation.settings.fences
         self.polygon, self.zone, self.path = zone.polygon, zone.zone, path
@@ -115,7 +115,7 @@ class _Judged:
         return no_deeper
 
 
-def _reason(zone: PreparedZone, path: FlownPath, index: int, situation: Situation) -> str:
+def _reason(zone: PreparedZone, path: PathVolume, index: int, situation: Situation) -> str:
     margin_m = situation.airspace.airspace.limits.boundary_margin_m
     vertical_m = situation.settings.fences.zone_vertical_margin_m
     gap_m = float(zone.polygon.gap_m(path.footprints.only(np.array([index])))[0])

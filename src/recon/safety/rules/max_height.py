@@ -6,12 +6,12 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.model.command import Command, Refusal, VirtualStick
-from recon.safety.as_sent import as_sent
 from recon.safety.datum import is_ground_assumed_flat
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath, Kind
 from recon.safety.heights import stays_below
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.order_path import as_sent
+from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -29,10 +29,10 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     ground now. A stick without velocity may be `stop_slack_m` higher; where the vehicle is not
     known to be, its height above takeoff counts.
     """
-    path = flown(command, situation)
+    path = path_volume(command, situation)
     if path is None:
         return None
-    if isinstance(path, Unknown):
+    if isinstance(path, UnknownPath):
         return _blind(command, situation, path)
     stops = is_stop(command, situation)
     settings = situation.settings.fences
@@ -44,7 +44,7 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     return None if len(high) == 0 else Refusal(RULE, _reason(path, int(high[0]), situation))
 
 
-def _higher(path: FlownPath, indices: IntArray, situation: Situation, most_m: float) -> IntArray:
+def _higher(path: PathVolume, indices: IntArray, situation: Situation, most_m: float) -> IntArray:
     """Which of these pieces are more than this above the lowest ground under them."""
     pieces = path.pieces
     is_low_enough = stays_below(
@@ -53,7 +53,7 @@ def _higher(path: FlownPath, indices: IntArray, situation: Situation, most_m: fl
     return indices[~is_low_enough]
 
 
-def _worse(path: FlownPath, high: IntArray, situation: Situation, rounding_m: float) -> IntArray:
+def _worse(path: PathVolume, high: IntArray, situation: Situation, rounding_m: float) -> IntArray:
     """Of the pieces that break the rule, those that the vehicle does not break as much now."""
     begins = high[path.pieces.is_entry[high]]
     if len(begins) == 0:
@@ -66,7 +66,7 @@ def _worse(path: FlownPath, high: IntArray, situation: Situation, rounding_m: fl
     return np.setdiff1d(high, np.setdiff1d(begins, worse))
 
 
-def _blind(command: Command, situation: Situation, unknown: Unknown) -> Refusal | None:
+def _blind(command: Command, situation: Situation, unknown: UnknownPath) -> Refusal | None:
     """A stop of a vehicle that is nowhere known still asks for a height."""
     body = command.body
     if not isinstance(body, VirtualStick) or not is_stop(command, situation):
@@ -81,7 +81,7 @@ def _blind(command: Command, situation: Situation, unknown: Unknown) -> Refusal 
     return Refusal(RULE, f"{height_m:.1f} m above takeoff: at most {limit_m:g} m is allowed here")
 
 
-def _reason(path: FlownPath, index: int, situation: Situation) -> str:
+def _reason(path: PathVolume, index: int, situation: Situation) -> str:
     limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
     pieces = path.pieces
     if pieces.high_m[index] == inf:

@@ -5,10 +5,10 @@ import numpy as np
 from recon.model.command import Command, Refusal
 from recon.safety.columns import columns
 from recon.safety.datum import is_ground_assumed_flat
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath, Kind
 from recon.safety.heights import stays_above
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 from recon.safety.standstill import is_stop
 
@@ -27,11 +27,11 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
     model tells no ground, the path is refused. A stick without velocity may be `stop_slack_m`
     lower; where the vehicle is not known to be, it is not asked.
     """
-    path = flown(command, situation)
+    path = path_volume(command, situation)
     if path is None:
         return None
     stops = is_stop(command, situation)
-    if isinstance(path, Unknown):
+    if isinstance(path, UnknownPath):
         return None if stops else Refusal(RULE, path.reason)
     slack_m = situation.settings.fences.stop_slack_m if stops else 0.0
     least_m = situation.airspace.airspace.limits.min_height_above_ground_m - slack_m
@@ -47,7 +47,7 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
     return None if len(low) == 0 else Refusal(RULE, _reason(path, int(low[0]), situation))
 
 
-def _reason(path: FlownPath, index: int, situation: Situation) -> str:
+def _reason(path: PathVolume, index: int, situation: Situation) -> str:
     least_m = situation.airspace.airspace.limits.min_height_above_ground_m
     pieces = path.pieces
     what = path.subject(index)

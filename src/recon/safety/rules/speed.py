@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import hypot
 
 from recon.model.command import Body, Command, FlyMission, GoTo, Nudge, Refusal, VirtualStick
-from recon.safety.as_sent import as_sent
+from recon.safety.path.order_path import as_sent
 from recon.safety.situation import Situation
 
 RULE = "speed"

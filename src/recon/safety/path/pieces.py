@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo import Footprints
-from recon.safety.departure import Departure
+from recon.safety.path.departure import Departure
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -76,7 +76,7 @@ class Pieces:
         return _WORDS[Kind(self.kinds[index])].format(self.names[index])
 
 
-class FlownPath:
+class PathVolume:
     """Where a command may take a vehicle; flights are in the order in which they are flown."""
 
     def __init__(self, pieces: Pieces, departure: Departure) -> None:

@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Unknown:
+class UnknownPath:
     """Why nobody can say where the vehicle would fly."""
 
     reason: str
@@ -43,23 +43,23 @@ class Departure:
         return float(self.home_m[2])
 
 
-def departure(situation: Situation, vehicle: VehicleState) -> Departure | Unknown:
+def departure(situation: Situation, vehicle: VehicleState) -> Departure | UnknownPath:
     """Return from where the vehicle sets out, or why that is not known."""
     airspace = situation.airspace
     name, position, home = vehicle.display_name, vehicle.position.value, datum.home(vehicle)
     height_m = vehicle.height_above_takeoff_m.value
     if position is None:
-        return Unknown(f"{name} does not say where it is: wait until its GNSS has a position")
+        return UnknownPath(f"{name} does not say where it is: wait until its GNSS has a position")
     if height_m is None:
-        return Unknown(f"{name} does not say how high it is: look at its app")
+        return UnknownPath(f"{name} does not say how high it is: look at its app")
     if home is None:
-        return Unknown(
+        return UnknownPath(
             f"{name}: its home is not known, for it took off before the station heard it; write "
             "its pad into site.toml, or let its pilot land it and take off again"
         )
     frame, takeoff_m = datum.frame_for(airspace, vehicle), datum.takeoff_up_m(airspace, vehicle)
     if frame is None or takeoff_m is None:
-        return Unknown(
+        return UnknownPath(
             f"{name}: the elevation model tells no ground where it took off, so its heights cannot "
             "be compared with anything; write its pad's altitude into site.toml"
         )

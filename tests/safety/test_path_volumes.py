@@ -23,27 +23,29 @@ from recon.model.command import (
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Attitude, Failsafe, VehicleState
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
-from recon.safety.departure import Unknown
-from recon.safety.flown import flown
-from recon.safety.flown_path import FlownPath, Kind
+from recon.safety.path.departure import UnknownPath
+from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.volumes import path_volume
 
 FLAT = airspace()
 INF = np.inf
 
 
-def path(body: Body, state: VehicleState | None = None, air: PreparedAirspace = FLAT) -> FlownPath:
-    found = flown(command(body), here(air, state))
-    assert isinstance(found, FlownPath), found
+def path(body: Body, state: VehicleState | None = None, air: PreparedAirspace = FLAT) -> PathVolume:
+    found = path_volume(command(body), here(air, state))
+    assert isinstance(found, PathVolume), found
     return found
 
 
 def unknown(body: Body, state: VehicleState, air: PreparedAirspace = FLAT) -> str:
-    found = flown(command(body), here(air, state))
-    assert isinstance(found, Unknown), found
+    found = path_volume(command(body), here(air, state))
+    assert isinstance(found, UnknownPath), found
     return found.reason
 
 
-def pieces(found: FlownPath, kind: Kind) -> list[tuple[str, list[list[float]], float, float, bool]]:
+def pieces(
+    found: PathVolume, kind: Kind
+) -> list[tuple[str, list[list[float]], float, float, bool]]:
     """Label, corners, low, high and whether it begins here, of each piece of a kind."""
     every = found.pieces
     return [
@@ -60,11 +62,11 @@ def pieces(found: FlownPath, kind: Kind) -> list[tuple[str, list[list[float]], f
 
 @pytest.mark.parametrize("body", [Hover(), LandNow(), ReturnHome(), StartCamera(1.0), StopCamera()])
 def test_what_sets_nothing_in_motion_flies_nowhere(body: Body) -> None:
-    assert flown(command(body), here(FLAT)) is None
+    assert path_volume(command(body), here(FLAT)) is None
 
 
 def test_no_vehicle_flies_nowhere() -> None:
-    assert flown(command(goto(10.0, 0.0)), replace(here(FLAT), vehicle=None)) is None
+    assert path_volume(command(goto(10.0, 0.0)), replace(here(FLAT), vehicle=None)) is None
 
 
 class TestMission:
@@ -331,7 +333,7 @@ class TestUnknown:
 
 def test_several_rules_share_one_path() -> None:
     order, now = command(TestMission.square), here(FLAT)
-    assert flown(order, now) is flown(order, now)
-    assert flown(replace(order), now) is not flown(order, now)
+    assert path_volume(order, now) is path_volume(order, now)
+    assert path_volume(replace(order), now) is not path_volume(order, now)
     assert replace(now) == now
-    assert flown(order, replace(now)) is not flown(order, now)
+    assert path_volume(order, replace(now)) is not path_volume(order, now)

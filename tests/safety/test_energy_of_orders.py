@@ -16,10 +16,19 @@ from recon.model.command import (
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
-from recon.safety.energy import consumption, mission_need, mission_points, path_need, place_of
-from recon.safety.way_ahead import leads_away, need_of, way_of
+from recon.safety.energy import (
+    consumption,
+    leads_away,
+    mission_need,
+    mission_points,
+    need_of,
+    path_need,
+    place_of,
+    way_of,
+)
 
 NOW = situation()
+AIRSPACE, ENERGY = NOW.airspace, NOW.settings.energy
 
 
 def north(metres: float) -> LatLon:
@@ -51,7 +60,7 @@ def stick(x: float, y: float, frame: StickFrame = StickFrame.GROUND) -> VirtualS
 def test_a_way_leads_from_here_to_the_end(
     body: Body, end: tuple[float, float, float], speed_mps: float
 ) -> None:
-    way = way_of(body, OUT)
+    way = way_of(body, OUT, ENERGY)
     assert way is not None
     assert way[0][0] == place_of(OUT) == pytest.approx((100.0, 0.0, 40.0), abs=0.05)
     assert way[0][1] == pytest.approx(end, abs=0.05)
@@ -60,7 +69,7 @@ def test_a_way_leads_from_here_to_the_end(
 
 def test_a_bodys_velocity_counts_as_away_from_home_wherever_that_is() -> None:
     south_west = replace(OUT, position=Stamped(LatLon(41.9991, -93.6012), 0))
-    way = way_of(stick(10.0, 0.0, StickFrame.BODY), south_west)
+    way = way_of(stick(10.0, 0.0, StickFrame.BODY), south_west, ENERGY)
     assert way is not None
     (north_m, east_m, _), (end_north_m, end_east_m, _) = way[0]
     assert end_north_m / end_east_m == pytest.approx(north_m / east_m)
@@ -68,7 +77,7 @@ def test_a_bodys_velocity_counts_as_away_from_home_wherever_that_is() -> None:
 
 
 def test_holding_leads_nowhere() -> None:
-    assert way_of(HoldPosition(), OUT) == ([place_of(OUT)], 0.0)
+    assert way_of(HoldPosition(), OUT, ENERGY) == ([place_of(OUT)], 0.0)
 
 
 @pytest.mark.parametrize(
@@ -96,7 +105,7 @@ def test_holding_leads_nowhere() -> None:
     ],
 )  # fmt: skip
 def test_what_ends_a_metre_farther_from_home_leads_away(body: Body, is_away: bool) -> None:
-    assert leads_away(body, OUT, NOW) is is_away
+    assert leads_away(body, OUT, AIRSPACE, ENERGY) is is_away
 
 
 @pytest.mark.parametrize("lost", [{"position": Stamped()}, {"takeoff_point": None}])
@@ -107,14 +116,14 @@ def test_what_is_not_known_leads_away_and_needs_nobody_knows_what(
     uses = consumption(state, NOW.airspace, NOW.settings.energy)
     assert uses is not None
     for body in (goto(0.0), mission(), HoldPosition()):
-        assert leads_away(body, state, NOW)
+        assert leads_away(body, state, AIRSPACE, ENERGY)
         assert need_of(uses, state, body) is None
 
 
 def test_what_it_needs_is_that_of_its_way() -> None:
     uses = consumption(OUT, NOW.airspace, NOW.settings.energy)
     assert uses is not None
-    way = way_of(goto(300.0), OUT)
+    way = way_of(goto(300.0), OUT, ENERGY)
     assert way is not None
     assert need_of(uses, OUT, goto(300.0)) == path_need(uses, *way)
     points = mission_points(OUT, mission().mission)

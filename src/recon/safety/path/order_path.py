@@ -1,0 +1,134 @@
+"""The one interpreter of orders: which motion an order asks for, as the wire carries it."""
+
+import struct
+from dataclasses import dataclass
+from math import copysign, cos, hypot, inf, radians, sin
+
+from recon.geo.distance import moved_m
+from recon.model.command import Body, FlyMission, GoTo, Hover, Nudge, StickFrame, VirtualStick
+from recon.model.geo import LatLon
+from recon.model.mission import Mission
+from recon.model.units import wrap_degrees
+from recon.model.vehicle import VehicleState
+from recon.safety.settings import StickBounds
+
+
+@dataclass(frozen=True, slots=True)
+class StraightFlight:
+    """A goto or a nudge: straight to a target, at every height between; then the vehicle hovers.
+
+    `height_above_takeoff_m` is None where the vehicle's own height, which a nudge adds to, is
+    unknown.
+    """
+
+    target: LatLon
+    height_above_takeoff_m: float | None
+    speed_mps: float
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class StickFlight:
+    """One virtual stick, in the 32-bit numbers of the wire.
+
+    `north_mps` and `east_mps` are the velocity at yaw 0: over ground, or forward and right in the
+    body's frame. `turn_deg` is the turn from the present yaw to the stick's: 0 in the ground frame,
+    None when the present yaw is unknown; `first_yaw_deg` is where it begins.
+    """
+
+    north_mps: float
+    east_mps: float
+    frame: StickFrame
+    first_yaw_deg: float
+    turn_deg: float | None
+    height_above_takeoff_m: float
+    timeout_s: float
+
+    @property
+    def speed_mps(self) -> float:
+        """The horizontal speed."""
+        return hypot(self.north_mps, self.east_mps)
+
+    def reach_m(self, bounds: StickBounds, *, speed_mps: float | None = None) -> float:
+        """Return the distance flown in the timeout and in what the bounds add to it.
+
+        `speed_mps` replaces the stick's own speed.
+        """
+        speed = self.speed_mps if speed_mps is None else speed_mps
+        braking_m = 0.0 if bounds.braking_mps2 is None else speed**2 / (2.0 * bounds.braking_mps2)
+        return speed * (self.timeout_s + bounds.reaction_s) + braking_m
+
+    def east_north_mps(self) -> tuple[float, float]:
+        """Return the velocity over ground once the vehicle has turned."""
+        yaw = radians(self.first_yaw_deg + (self.turn_deg or 0.0))
+        return (
+            self.north_mps * sin(yaw) + self.east_mps * cos(yaw),
+            self.north_mps * cos(yaw) - self.east_mps * sin(yaw),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """The vehicle stays where it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class TakeoffClimb:
+    """A hover that takes off: straight up."""
+
+
+OrderPath = Mission | StraightFlight | StickFlight | Hold | TakeoffClimb
+
+
+def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
+    """Return the motion that an order to move asks of a vehicle.
+
+    A nudge of a vehicle without a position, and a mission without waypoints, move nothing: `Hold`.
+    """
+    match body:
+        case FlyMission(mission) if mission.waypoints:
+            return mission
+        case GoTo():
+            return StraightFlight(
+                body.target, body.height_above_takeoff_m, body.speed_mps, "the way to the target"
+            )
+        case Nudge() if vehicle.position.value is not None:
+            target = moved_m(vehicle.position.value, body.north_m, body.east_m)
+            height_m = vehicle.height_above_takeoff_m.value
+            end_m = None if height_m is None else height_m + body.up_m
+            return StraightFlight(target, end_m, body.speed_mps, "the nudge")
+        case VirtualStick():
+            return _stick(body, vehicle)
+        case Hover():
+            return TakeoffClimb()
+        case _:
+            return Hold()
+
+
+def _stick(body: VirtualStick, vehicle: VehicleState) -> StickFlight:
+    first_yaw_deg = 0.0
+    turn_deg: float | None = 0.0 if body.frame is StickFrame.GROUND else None
+    attitude = vehicle.attitude.value
+    if body.frame is StickFrame.BODY and attitude is not None:
+        first_yaw_deg = attitude.yaw_deg
+        turn_deg = wrap_degrees(as_sent(body.yaw_deg) - first_yaw_deg)
+    return StickFlight(
+        as_sent(body.velocity_x_mps),
+        as_sent(body.velocity_y_mps),
+        body.frame,
+        first_yaw_deg,
+        turn_deg,
+        as_sent(body.height_above_takeoff_m),
+        as_sent(body.timeout_s),
+    )
+
+
+def as_sent(value: float) -> float:
+    """Return the number that the wire's 32-bit float makes of it: what is tiny becomes 0.
+
+    What no such float can hold becomes infinite. Of a greater number it is never less.
+    """
+    try:
+        return float(struct.unpack(">f", struct.pack(">f", value))[0])
+    except OverflowError:
+        return copysign(inf, value)
