@@ -180,7 +180,7 @@ class TestHistory:
             story.says(1, core(), extended(f"S{number}"))
         assert sorted(story.fleet.vehicles) == ["G10", "G11", "G12", "G13"]
         link = story.fleet.links[1]
-        assert (link.claimed_serial, link.serial_not_taken) == (None, "S49")
+        assert (link.claimed_serial, link.rejected_serial) == (None, "S49")
         assert story.fleet.unbound_links() == (link,)
         assert link.own_state.is_flying.value is True
 
@@ -190,7 +190,7 @@ class TestHistory:
         assert story.vehicle("G10").link_id == 2
         assert story.vehicle("NEW").link_id == 1
         assert story.vehicle("NEW").is_flying.value is True
-        assert story.fleet.links[1].serial_not_taken is None
+        assert story.fleet.links[1].rejected_serial is None
 
     def test_a_link_that_names_another_then_is_neither(self) -> None:
         story = self.full().at(30.0).opens(2).says(2, extended("G10"), core())
@@ -200,7 +200,7 @@ class TestHistory:
         assert story.vehicle("G10").link_id is None
         assert story.vehicle("G10").height_above_takeoff_m.value == 40.0
         link = story.fleet.links[2]
-        assert (link.claimed_serial, link.serial_not_taken) == (None, "OTHER")
+        assert (link.claimed_serial, link.rejected_serial) == (None, "OTHER")
         assert link.own_state.height_above_takeoff_m.value == 7.0
 
     def test_sixty_four_that_are_heard_take_no_room_from_another(self) -> None:

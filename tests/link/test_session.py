@@ -250,7 +250,7 @@ class TestAnswers:
         s.submit(approved(2, mission(3), 2 * SECOND))
         sent_ids(s, 2 * SECOND)
         assert answers(s.receive(ack(MISSION, positive=0), 3 * SECOND)) == []
-        assert s.acks.unbelieved == 1
+        assert s.acks.ignored_late == 1
         assert answers(s.receive(ack(MISSION), 3 * SECOND)) == [CommandAnswered(LINK_ID, 2, True)]
 
     def test_after_ten_seconds_a_late_answer_comes_no_more(self) -> None:

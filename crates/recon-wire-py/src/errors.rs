@@ -11,12 +11,12 @@ import_exception!(recon.wire.errors, FieldError);
 
 /// The Python exception of a wire error, with `expected` and `came` as text.
 pub fn raise(error: Error) -> PyErr {
-    let told = (error.to_string(), error.expected(), error.came());
+    let fields = (error.to_string(), error.expected(), error.came());
     match error {
-        Error::Short { .. } => ShortError::new_err(told),
-        Error::Sync { .. } => SyncError::new_err(told),
-        Error::Size { .. } => SizeError::new_err(told),
-        Error::Hash { .. } => HashError::new_err(told),
-        Error::Value { .. } => FieldError::new_err(told),
+        Error::Short { .. } => ShortError::new_err(fields),
+        Error::Sync { .. } => SyncError::new_err(fields),
+        Error::Size { .. } => SizeError::new_err(fields),
+        Error::Hash { .. } => HashError::new_err(fields),
+        Error::Value { .. } => FieldError::new_err(fields),
     }
 }

@@ -32,7 +32,7 @@ fn encode<'py>(
     Ok(pyo3::types::PyBytes::new(packet.py(), &frame))
 }
 
-/// The packet of one whole frame. Raises WireError when it is none.
+/// The packet of one whole frame. Raises WireError for anything else.
 #[pyfunction]
 #[pyo3(signature = (frame, /, limits=None))]
 fn decode(

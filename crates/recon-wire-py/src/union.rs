@@ -20,7 +20,7 @@ macro_rules! packets {
             })
         }
 
-        /// The packet of a Python object; TypeError when it is none.
+        /// The packet of a Python object; TypeError for anything else.
         pub fn from_python(object: &Bound<'_, PyAny>) -> PyResult<Packet> {
             if let Ok(image) = object.cast::<Image>() {
                 return Ok(image.get().to_packet(object.py())?.into());

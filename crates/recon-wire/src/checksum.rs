@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_as_weak_as_it_is_said_to_be() {
+    fn zeros_and_a_wrapping_sum_collide_as_documented() {
         assert_eq!(Hash::of(&[0, 0, 0]), Hash::of(&[1, 254, 1]));
     }
 

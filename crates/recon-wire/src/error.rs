@@ -1,4 +1,4 @@
-//! The errors of the wire. Each says what was expected and what came.
+//! The errors of the wire. Each states what was expected and what was found.
 //!
 //! ```text
 //! Error

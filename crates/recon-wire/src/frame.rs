@@ -161,7 +161,7 @@ fn allows(rule: SizeRule, size: u64) -> bool {
 }
 
 /// Where the first sync in `bytes` begins: a whole one, or a last byte that may be its first half; the
-/// length of `bytes` when there is none.
+/// length of `bytes` without one.
 #[inline]
 pub(crate) fn find_sync(bytes: &[u8]) -> usize {
     if bytes.starts_with(&SYNC) {

@@ -209,7 +209,7 @@ fn every_golden_packet_decodes_to_its_fields_and_encodes_to_its_bytes() {
 }
 
 #[test]
-fn every_bad_stream_gives_what_its_description_says() {
+fn every_bad_stream_gives_what_its_description_states() {
     let vectors = vectors(&root().join("bad"));
     assert!(vectors.len() > 30);
     for (name, bytes, description) in vectors {

@@ -1,4 +1,4 @@
-"""Who is there: links, identity by serial, telemetry folded into vehicle states, staleness.
+"""Links, vehicle identity by serial, telemetry per vehicle, staleness, order confirmation.
 
 `step(fleet, event, now_ns) -> (fleet, outputs)` is pure.
 """

@@ -1,4 +1,4 @@
-"""When telemetry confirms a command that was sent; what its modes mean is in `flight_table`.
+"""Confirmation of sent commands by telemetry; `flight_table` interprets the flight modes.
 
 An app acknowledges before it acts, so an acknowledgment confirms nothing. Only telemetry received
 after the command was sent counts.
@@ -34,9 +34,9 @@ LEG_DIRECTION_TOLERANCE_DEG = 30.0
 AT_WAYPOINT_M = 5.0
 
 CAMERA_QUIET_S = 2.0
-"""No image for this long after a stop was sent: the feed has stopped."""
+"""Without an image for this long after the stop was sent, the feed has stopped."""
 
-_TOLD: dict[type, Instruction] = {
+_INSTRUCTION: dict[type, Instruction] = {
     Hover: Instruction.HOLD_SENT,
     LandNow: Instruction.LAND_SENT,
     ReturnHome: Instruction.RETURN_SENT,
@@ -46,20 +46,20 @@ _TOLD: dict[type, Instruction] = {
 
 
 class Progress(IntEnum):
-    """How far telemetry shows a command carried out."""
+    """How much of a command telemetry shows as carried out."""
 
     UNSEEN = 0
     BEGUN = 1
-    """Hover: its mode has left the mission; it is not standing yet. Mission: it takes off."""
+    """Hover: out of mission mode but not yet stationary. Mission: taking off."""
     CONFIRMED = 2
-    """It is being carried out; the end is still to be seen."""
+    """Being carried out; not yet complete."""
     COMPLETE = 3
-    """It is carried out, and nothing is left to be seen."""
+    """Complete."""
 
 
 @dataclass(frozen=True, slots=True)
 class SentContext:
-    """What was known when a command was first sent."""
+    """State of the vehicle when a command was first sent."""
 
     sent_at_ns: int
     mode_when_sent: FlightMode | None
@@ -67,16 +67,16 @@ class SentContext:
 
 
 def progress(body: Body, sent: SentContext, state: VehicleState, now_ns: int) -> Progress:
-    """Return what telemetry newer than the command shows of it (decisions on the ICD, 14)."""
+    """Return the progress that telemetry newer than the command shows (ICD decision 14)."""
     return _CONFIRMATIONS[type(body)](body, sent, state, now_ns)
 
 
 def reading_of_sent(body: Body, sent: SentContext, state: VehicleState) -> Reading:
-    """Return what the newest mode means for an order to move that telemetry has not shown yet."""
+    """Return the flight table's reading for a motion order not yet confirmed by telemetry."""
     is_down = _core_is_new(sent, state) and state.is_flying.value is False
     place = Place.GROUND_AT_END if is_down else Place.AT_END
     level = state.gnss_signal_level.value
-    return read(_TOLD[type(body)], _new_mode(sent, state), level, place, sent.mode_when_sent)
+    return read(_INSTRUCTION[type(body)], _new_mode(sent, state), level, place, sent.mode_when_sent)
 
 
 def _complete_if(is_seen: bool) -> Progress:
@@ -97,16 +97,16 @@ def _hover(body: Hover, sent: SentContext, state: VehicleState, _now_ns: int) ->
     if not _has_left(reading_of_sent(body, sent, state)) or not _core_is_new(sent, state):
         return Progress.UNSEEN
     if sent.was_flying is not True and state.is_flying.value is not True:
-        return Progress.UNSEEN  # a takeoff by hover that has not left the ground
+        return Progress.UNSEEN  # a takeoff by hover still on the ground
     velocity = state.velocity_ned.value
     is_standing = velocity is not None and velocity.speed_mps < STANDING_SPEED_MPS
     return Progress.COMPLETE if is_standing else Progress.BEGUN
 
 
 def _has_left(reading: Reading) -> bool:
-    """Whether it flies no mission, no way home, no landing and no sticks (decision 14).
+    """Whether it flies no mission, return, landing or sticks (ICD decision 14).
 
-    A mode of the pilot's own is the pilot's only when it is new; else it is where it was before.
+    A pilot mode counts as the pilot's action only when it is new.
     """
     was_so = reading.verdict is Verdict.UNDECIDED and reading.kind in _PILOTED
     return was_so or reading.verdict is Verdict.CARRIED_OUT
@@ -147,7 +147,7 @@ def _mission(body: FlyMission, sent: SentContext, state: VehicleState, _now_ns: 
 
 
 def _is_on_first_leg(body: FlyMission, state: VehicleState) -> bool:
-    """Whether the vehicle flies towards the first waypoint, or is there and flies no other way."""
+    """Whether the vehicle flies towards the first waypoint, or is there and not moving away."""
     position, velocity = state.position.value, state.velocity_ned.value
     if position is None or velocity is None:
         return False

@@ -1,9 +1,20 @@
-"""One table that says what a flight mode means for an order: told x new mode x place -> verdict.
+"""The flight table: instruction x new flight mode x place -> verdict.
 
-An order is followed by telemetry alone. Whether a vehicle has started, finished, was taken over by
-its pilot or follows its own failsafe is read here and nowhere else; `docs/flight-table.md` is
-written from this table. A mode is *new* when the vehicle was not in it before it was told; the
-cells of a mode that is not new count only as far as they say carried out, started or finished.
+Theory of operation. The station knows what a vehicle does from telemetry alone, because an
+acknowledgment is sent before the app acts. The newest flight mode is read against the last
+instruction and the place of the vehicle, and yields one verdict:
+
+- *carried out*, *started*, *finished* advance the order's life cycle;
+- *pilot*: the pilot has taken over. The station stops commanding and hands authority to the pilot;
+- *failsafe*: the aircraft acts on its own. The order fails with an alarm;
+- *undecided*: no conclusion. An order that stays undecided for long fails.
+
+An instruction is "sent" until telemetry confirms it. A mode is *new* when the vehicle was not in
+it when the instruction was sent: a mode that is not new can confirm, start or finish an order,
+but shows neither a takeover nor a failsafe. ATTI with good GNSS is the pilot's choice; with poor
+GNSS the aircraft may have fallen back to it.
+
+This is the only place that makes these distinctions; `docs/flight-table.md` is generated from it.
 """
 
 from dataclasses import dataclass
@@ -13,7 +24,7 @@ from recon.model.vehicle import FlightMode
 
 
 class Verdict(Enum):
-    """What is the case."""
+    """What a flight mode shows about an instruction."""
 
     CARRIED_OUT = "carried out"
     STARTED = "started"
@@ -24,7 +35,7 @@ class Verdict(Enum):
 
 
 class Instruction(Enum):
-    """What the station has told a vehicle; "sent" until telemetry shows it carried out."""
+    """The last instruction to a vehicle; "sent" until telemetry confirms it."""
 
     NOTHING = "nothing"
     HOLD_SENT = "hold, sent"
@@ -41,7 +52,7 @@ class Instruction(Enum):
 
 
 class ModeKind(Enum):
-    """Flight modes that mean the same here."""
+    """Groups of flight modes with the same meaning in this table."""
 
     WAYPOINT = "mission"
     GO_HOME = "go home"
@@ -56,7 +67,7 @@ class ModeKind(Enum):
 
 
 class Place(Enum):
-    """Where it is, by the newest telemetry."""
+    """Where the vehicle is, by the newest telemetry."""
 
     AT_END = "at its end"
     ELSEWHERE = "elsewhere"
@@ -65,15 +76,15 @@ class Place(Enum):
 
     @property
     def is_ground(self) -> bool:
-        """Whether telemetry says that it does not fly."""
+        """Whether telemetry reports it on the ground."""
         return self in (Place.GROUND_AT_END, Place.GROUND_ELSEWHERE)
 
 
 AT_END_M = 5.0
-"""A mission that leaves mode 10 farther than this from its end was not flown to its end."""
+"""A mission that leaves mode 10 farther than this from its end was interrupted."""
 
 GOOD_GNSS_LEVEL = 3
-"""From this level on DJI holds position by GNSS: no reason to fall back to ATTI by itself."""
+"""From this level on DJI holds position by GNSS: no reason for a fallback to ATTI."""
 
 KIND_OF_MODE: dict[FlightMode, ModeKind] = {
     FlightMode.GPS_WAYPOINT: ModeKind.WAYPOINT,
@@ -120,7 +131,7 @@ VERDICT_OF_LETTER = {
     "-": Verdict.UNDECIDED,
 }
 
-# One row for each thing told, one cell for each kind of mode in the order of ModeKind, and in each
+# One row for each instruction, one cell for each kind of mode in the order of ModeKind, and in each
 # cell four letters: in the air at its end, elsewhere; on the ground at its end, elsewhere.
 # The columns: mission go-home landing stick position takeoff pilot ATTI+ ATTI- unknown.
 _ROWS: dict[Instruction, str] = {
@@ -140,8 +151,8 @@ _ROWS: dict[Instruction, str] = {
 }
 
 TABLE: dict[tuple[Instruction, ModeKind, Place], Verdict] = {
-    (told, kind, place): VERDICT_OF_LETTER[letter]
-    for told, row in _ROWS.items()
+    (instruction, kind, place): VERDICT_OF_LETTER[letter]
+    for instruction, row in _ROWS.items()
     for kind, cell in zip(COLUMNS, row.split(), strict=True)
     for place, letter in zip(Place, cell, strict=True)
 }
@@ -157,15 +168,15 @@ class Reading:
 
     @property
     def is_at_once(self) -> bool:
-        """Whether nothing is waited for: only a person brings about such a mode.
+        """Whether the verdict counts at once: only a pilot can select such a mode.
 
-        Other signs of the pilot or a failsafe may pass (an app that cancels a mission shows
-        position mode before it goes home), and count when they have lasted.
+        Other signs of a takeover or failsafe may be transient (an app that cancels a mission
+        passes through position mode before it returns home) and must last before they count.
         """
         return self.kind in (ModeKind.PILOT, ModeKind.ATTI_GOOD)
 
 
-UNTOLD = Reading(Verdict.UNDECIDED, None, "its app does not say its flight mode")
+NO_MODE = Reading(Verdict.UNDECIDED, None, "flight mode not reported")
 
 
 def kind_of(mode: FlightMode, gnss_level: int | None) -> ModeKind:
@@ -176,62 +187,62 @@ def kind_of(mode: FlightMode, gnss_level: int | None) -> ModeKind:
 
 
 def read(
-    told: Instruction,
+    instruction: Instruction,
     mode: FlightMode | None,
     gnss_level: int | None,
     place: Place,
     mode_before: FlightMode | None = None,
 ) -> Reading:
-    """Return what a mode means; `mode_before` is the one the vehicle was in when it was told."""
+    """Return the reading of a mode; `mode_before` is the mode when the instruction was sent."""
     if mode is None:
-        return UNTOLD
+        return NO_MODE
     kind = kind_of(mode, gnss_level)
-    verdict = TABLE[told, kind, place]
-    is_old = mode is mode_before and not place.is_ground and not _is_moved_hold(told, kind)
+    verdict = TABLE[instruction, kind, place]
+    is_old = mode is mode_before and not place.is_ground and not _is_moved_hold(instruction, kind)
     if is_old and verdict in (Verdict.PILOT, Verdict.FAILSAFE):
-        return Reading(Verdict.UNDECIDED, kind, "it was in this mode before")
-    return Reading(verdict, kind, _why(verdict, told, kind, place))
+        return Reading(Verdict.UNDECIDED, kind, "the mode has not changed since the order")
+    return Reading(verdict, kind, _why(verdict, instruction, kind, place))
 
 
-def _is_moved_hold(told: Instruction, kind: ModeKind) -> bool:
-    """Whether the place is the news: a vehicle that holds is in position mode anyway."""
-    return told is Instruction.HOLD and kind is ModeKind.NEUTRAL
+def _is_moved_hold(instruction: Instruction, kind: ModeKind) -> bool:
+    """Whether a hold was left: its mode is old, the position is what changed."""
+    return instruction is Instruction.HOLD and kind is ModeKind.NEUTRAL
 
 
-def _why(verdict: Verdict, told: Instruction, kind: ModeKind, place: Place) -> str:
+def _why(verdict: Verdict, instruction: Instruction, kind: ModeKind, place: Place) -> str:
     if verdict is Verdict.FAILSAFE:
         return _why_failsafe(kind, place)
     if verdict is Verdict.PILOT:
-        return _why_pilot(told, kind)
-    return f"{told.value}: {kind.value} mode, {place.value}"
+        return _why_pilot(instruction, kind)
+    return f"{instruction.value}: {kind.value} mode, {place.value}"
 
 
 def _why_failsafe(kind: ModeKind, place: Place) -> str:
     if place.is_ground:
-        return "it is on the ground, which was not ordered: its failsafe, or the pilot landed it"
+        return "on the ground without an order: failsafe, or landed by the pilot"
     if kind is ModeKind.GO_HOME:
-        return "it flies home, which was not ordered: its failsafe, or the pilot's return button"
-    return "it lands, which was not ordered: its failsafe, or the pilot's button"
+        return "returning home without an order: failsafe, or the pilot's return button"
+    return "landing without an order: failsafe, or the pilot's landing button"
 
 
-def _why_pilot(told: Instruction, kind: ModeKind) -> str:
+def _why_pilot(instruction: Instruction, kind: ModeKind) -> str:
     if kind is ModeKind.WAYPOINT:
-        return "it flies a mission not ordered now: the pilot's, or one carried out late"
+        return "flying a mission that is not the current order: the pilot's, or a late start"
     if kind is ModeKind.JOYSTICK:
-        return "it is flown by sticks that the station does not send"
+        return "controlled by sticks that the station does not send"
     if kind is ModeKind.NEUTRAL:
-        return _LEFT[told]
+        return _LEFT[instruction]
     if kind is ModeKind.ATTI_GOOD:
-        return "ATTI was selected while GNSS is good: only a pilot does that"
-    return "a flight mode was selected that only a pilot selects"
+        return "ATTI selected with good GNSS: pilot input"
+    return "pilot-only flight mode selected"
 
 
 _LEFT: dict[Instruction, str] = {
-    Instruction.HOLD: f"it has moved more than {AT_END_M:g} m from where it was to hold: the pilot",
-    Instruction.MISSION: f"it left its mission more than {AT_END_M:g} m from its end without going "
-    "home or landing: the pilot",
-    Instruction.MISSION_TO_LAND: "it left its mission and does not land: the pilot",
-    Instruction.STICK: "it is no longer flown by the station's sticks: the pilot",
-    Instruction.RETURN: "it has stopped its way home and hovers: the pilot",
-    Instruction.LAND: "it has stopped landing and hovers: the pilot",
+    Instruction.HOLD: f"moved more than {AT_END_M:g} m from its hold position: pilot input",
+    Instruction.MISSION: f"left its mission more than {AT_END_M:g} m before its end without "
+    "returning or landing: pilot input",
+    Instruction.MISSION_TO_LAND: "left its mission without landing: pilot input",
+    Instruction.STICK: "left virtual-stick mode: pilot input",
+    Instruction.RETURN: "stopped its return and hovers: pilot input",
+    Instruction.LAND: "stopped landing and hovers: pilot input",
 }

@@ -1,4 +1,4 @@
-"""The flight table as a page of the documentation, written from the table itself."""
+"""The flight table as a documentation page, generated from the table."""
 
 from recon.fleet.flight_table import (
     AT_END_M,
@@ -14,28 +14,28 @@ from recon.fleet.flight_table import (
 
 _INTRODUCTION = f"""# The flight table
 
-Written from `src/recon/fleet/flight_table.py` by `make docs`; do not edit it here.
+Generated from `src/recon/fleet/flight_table.py` by `make docs`; do not edit it here.
 
-An acknowledgment confirms nothing: telemetry does. This table says what each flight mode means for
-what the station has told a vehicle, by the place where the newest telemetry has it. It is the only
-place where *started*, *finished*, *taken over by the pilot* and *failsafe* are told apart.
+Telemetry confirms an order, an acknowledgment does not. This table gives the meaning of each flight
+mode for the last instruction to a vehicle and the place where telemetry shows it. It is the only
+place that distinguishes *started*, *finished*, *taken over by the pilot* and *failsafe*.
 
-- **carried out**: as ordered. **started**: the mission is flown. **finished**: it is done.
-- **pilot**: the station lets go at once. The pilot leads from then on, the order is superseded,
-  and nothing is sent that fights them. Someone at the station must take over explicitly.
-- **failsafe**: the aircraft does what it does by itself, or the pilot pressed the return or landing
-  button; telemetry cannot tell these apart. The order has failed, and an alarm says so.
-- **undecided**: nothing follows from it. An order that stays undecided for long fails.
+- **carried out**: as ordered. **started**: the mission is being flown. **finished**: complete.
+- **pilot**: the station stops commanding at once. The pilot has control authority, the order is
+  replaced, and nothing more is sent. An operator must take control explicitly.
+- **failsafe**: the aircraft acts on its own, or the pilot pressed the return or landing button;
+  telemetry cannot distinguish these. The order fails with an alarm.
+- **undecided**: no conclusion. An order that stays undecided for long fails.
 
 *At its end*: within {AT_END_M:g} m of the last waypoint, on its last leg; for a hold, within
-{AT_END_M:g} m of where it began to hold (while GNSS is good). Orders without a place of their own
-are always *at their end*. *Sent* rows hold until telemetry shows the order carried out.
+{AT_END_M:g} m of the position where the hold began (while GNSS is good). Orders without a target
+are always *at their end*. *Sent* rows apply until telemetry confirms the order.
 
-A mode counts as **pilot** or **failsafe** only when it is new: when the vehicle was not in it when
-it was told. (Of a hold that is left, the place is new.) But for the pilot's own modes and ATTI with
-good GNSS it must also have lasted a second, for an app that cancels a mission shows position mode
-before it goes home. ATTI is a pilot's choice while the GNSS signal level is {GOOD_GNSS_LEVEL} or
-more; below, the aircraft may have fallen back to it by itself.
+A mode counts as **pilot** or **failsafe** only when it is new: the vehicle was not in it when the
+instruction was sent. (When a hold is left, the position is what is new.) Except for pilot modes and
+ATTI with good GNSS it must also last a second, because an app that cancels a mission passes through
+position mode before it returns home. ATTI is the pilot's choice while the GNSS signal level is
+{GOOD_GNSS_LEVEL} or more; below, the aircraft may have fallen back to it.
 
 ## Flight modes
 
@@ -47,7 +47,7 @@ more; below, the aircraft may have fallen back to it by itself.
 def markdown() -> str:
     """Return the whole page."""
     kinds = (f"| {kind.value} | {', '.join(_modes(kind))} |\n" for kind in COLUMNS)
-    return "".join([_INTRODUCTION, *kinds, *(_section(told) for told in Instruction)])
+    return "".join([_INTRODUCTION, *kinds, *(_section(each) for each in Instruction)])
 
 
 def _modes(kind: ModeKind) -> list[str]:
@@ -55,13 +55,14 @@ def _modes(kind: ModeKind) -> list[str]:
     return [f"{m.value} {m.name}" for m, of in KIND_OF_MODE.items() if of is counted]
 
 
-def _section(told: Instruction) -> str:
-    """What one thing told means: kinds of modes with the same verdicts share a row."""
+def _section(instruction: Instruction) -> str:
+    """One instruction; kinds of modes with the same verdicts share a row."""
     rows: dict[tuple[Verdict, ...], list[str]] = {}
     for kind in COLUMNS:
-        verdicts = tuple(TABLE[told, kind, place] for place in Place)
+        verdicts = tuple(TABLE[instruction, kind, place] for place in Place)
         rows.setdefault(verdicts, []).append(kind.value)
-    head = f"\n## Told: {told.value}\n\n| mode | {' | '.join(place.value for place in Place)} |\n"
+    places = " | ".join(place.value for place in Place)
+    head = f"\n## Instruction: {instruction.value}\n\n| mode | {places} |\n"
     return head + "|---|---|---|---|---|\n" + "".join(_row(k, v) for v, k in rows.items())
 
 

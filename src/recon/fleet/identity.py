@@ -1,9 +1,19 @@
-"""Identity by serial: which link is which vehicle.
+"""Vehicle identity by serial: binds links to vehicles.
 
-A link has no identity until its serial arrives. A second link with a known serial is a rival: if
-the old link stays silent for a second after that, the rival is the vehicle (an app that
-reconnected); if the old link speaks, it is a conflict, which ends when either link closes or the
-old one falls silent for longer.
+Theory of operation. A link is *unidentified* until its serial arrives in extended telemetry (1 to
+2 Hz). The first link with a serial is *bound* to the vehicle. A second link with the same serial
+is a *rival* (typically an app that reconnected while its old socket still looks alive):
+
+- the bound link stays silent for `takeover_silence_s` after the rival's serial: the rival is
+  bound, the old link is closed, and the vehicle keeps its history;
+- the bound link delivers a packet: the two are in *conflict*. Only hold, land and return are sent,
+  to both. The conflict ends when either link closes, or when the bound link has been silent for
+  `conflict_silence_s` (longer than the telemetry gaps that video causes);
+- the bound link closes: the oldest rival is bound, and the remaining ones start their wait again.
+
+A link that reports another serial releases the old one first, and telemetry received under the old
+serial stays with the old vehicle. Vehicles without a link are kept up to a limit; one that may be
+flying is never forgotten, because it is a hazard until telemetry or an operator locates it.
 """
 
 from collections.abc import Iterable
@@ -18,37 +28,37 @@ SIMULATED_PREFIX = "SIM-"
 
 
 def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
-    """Return the fleet after a link said its serial.
+    """Return the fleet after a link reported its serial.
 
-    A new one is not taken while there is no room for it: its link stays without identity, and what
-    it flies a hazard without a name.
+    At the limit of vehicles a new serial is rejected: the link stays unidentified, and its vehicle
+    is an unidentified hazard.
     """
     link = fleet.links[link_id]
     if link.claimed_serial == serial:
         return fleet
     if link.claimed_serial is not None:
-        # What was heard under the old serial belongs to the old vehicle.
+        # Telemetry under the old serial belongs to the old vehicle.
         fleet = release(fleet, replace(link, own_state=_blank(link)), now_ns)
-    owner = fleet.vehicles.get(serial)
-    if owner is None and has_no_room(fleet):
-        unknown = replace(fleet.links[link_id], claimed_serial=None, serial_not_taken=serial)
+    known = fleet.vehicles.get(serial)
+    if known is None and has_no_room(fleet):
+        unknown = replace(fleet.links[link_id], claimed_serial=None, rejected_serial=serial)
         return _put_link(fleet, unknown)
-    has_owner = owner is not None and owner.link_id is not None
+    is_bound = known is not None and known.link_id is not None
     fleet = _put_link(
         fleet,
         replace(
             fleet.links[link_id],
             claimed_serial=serial,
-            serial_not_taken=None,
-            rival_since_ns=now_ns if has_owner else None,
+            rejected_serial=None,
+            rival_since_ns=now_ns if is_bound else None,
             in_conflict=False,
         ),
     )
-    return _mark_rivals(fleet, serial) if has_owner else _bind(fleet, link_id, serial)
+    return _mark_rivals(fleet, serial) if is_bound else _bind(fleet, link_id, serial)
 
 
-def heard(fleet: Fleet, link_id: int, now_ns: int) -> Fleet:
-    """Return the fleet after a link delivered a valid packet: a owner with rivals objects."""
+def packet_received(fleet: Fleet, link_id: int, now_ns: int) -> Fleet:
+    """Return the fleet after a valid packet: from a bound link with rivals it is a conflict."""
     serial = fleet.links[link_id].claimed_serial
     vehicle = fleet.vehicles.get(serial or "")
     if vehicle is None or vehicle.link_id != link_id or not vehicle.rival_link_ids:
@@ -61,7 +71,7 @@ def heard(fleet: Fleet, link_id: int, now_ns: int) -> Fleet:
 
 
 def release(fleet: Fleet, link: LinkRecord, now_ns: int) -> Fleet:
-    """Return the fleet after a link gave up its serial (closed, or claims another now)."""
+    """Return the fleet after a link closed or changed its serial."""
     serial = link.claimed_serial
     vehicle = fleet.vehicles.get(serial or "")
     if serial is None or vehicle is None:
@@ -78,14 +88,14 @@ def release(fleet: Fleet, link: LinkRecord, now_ns: int) -> Fleet:
 
 
 def settle(fleet: Fleet, now_ns: int) -> tuple[Fleet, tuple[tuple[int, str], ...]]:
-    """Return the fleet after rivals whose time has come took over, and the links to close."""
+    """Return the fleet after due takeovers by rivals, and the links to close with reasons."""
     closing: list[tuple[int, str]] = []
     for vehicle in tuple(fleet.vehicles.values()):
         heir = _heir(fleet, vehicle, now_ns)
         if heir is None or vehicle.link_id is None or vehicle.serial is None:
             continue
         old = fleet.links[vehicle.link_id]
-        closing.append((old.id, f"silent; {vehicle.serial} came back on link {heir.id}"))
+        closing.append((old.id, f"silent; {vehicle.serial} reconnected on link {heir.id}"))
         fleet = _put_link(fleet, replace(old, claimed_serial=None))
         fleet = _bind(fleet, heir.id, vehicle.serial)
         fleet = _restart_rivals(fleet, vehicle.serial, now_ns)
@@ -93,9 +103,9 @@ def settle(fleet: Fleet, now_ns: int) -> tuple[Fleet, tuple[tuple[int, str], ...
 
 
 def forget_vehicles(fleet: Fleet) -> Fleet:
-    """Return the fleet without the vehicles beyond its limit that have no link, silent longest.
+    """Return the fleet without the longest-silent unlinked vehicles beyond its limit.
 
-    Never one that may fly: it is a hazard until it is heard or a person says where it is.
+    A vehicle that may be flying is never forgotten: it is a hazard until it is located.
     """
     excess = len(fleet.vehicles) - fleet.settings.vehicles_kept
     if excess <= 0:
@@ -108,40 +118,40 @@ def forget_vehicles(fleet: Fleet) -> Fleet:
 
 
 def without(fleet: Fleet, serials: Iterable[str | None]) -> Fleet:
-    """Return the fleet that has forgotten some of its vehicles."""
+    """Return the fleet without some of its vehicles."""
     forgotten = set(serials)
     kept = {key: v for key, v in fleet.vehicles.items() if key not in forgotten}
     return replace(fleet, vehicles=kept)
 
 
 def may_fly(vehicle: VehicleState) -> bool:
-    """Return whether a vehicle has told that it flies, or of itself but not whether it does."""
+    """Return whether a vehicle reported flying, or telemetry without its flying state."""
     is_flying = vehicle.is_flying.value
     return is_flying is True or (is_flying is None and vehicle.core_received_at_ns is not None)
 
 
 def has_no_room(fleet: Fleet) -> bool:
-    """Return whether so many vehicles that may fly are without a link that no new one is taken."""
+    """Return whether the limit of unlinked vehicles that may be flying is reached."""
     hazards = sum(v.link_id is None and may_fly(v) for v in fleet.vehicles.values())
     return hazards >= fleet.settings.vehicles_kept
 
 
 def _heir(fleet: Fleet, vehicle: VehicleState, now_ns: int) -> LinkRecord | None:
-    """The rival that may take over now, if there is one."""
+    """The rival that takes over now, if any."""
     if vehicle.link_id is None or not vehicle.rival_link_ids:
         return None
-    last_heard_ns = fleet.links[vehicle.link_id].last_packet_at_ns or 0
+    last_packet_ns = fleet.links[vehicle.link_id].last_packet_at_ns or 0
     settings = fleet.settings
     for rival in _rivals(fleet, vehicle.serial or ""):
         limit_s = settings.conflict_silence_s if rival.in_conflict else settings.takeover_silence_s
-        quiet_since_ns = max(last_heard_ns, rival.rival_since_ns or 0)
+        quiet_since_ns = max(last_packet_ns, rival.rival_since_ns or 0)
         if now_ns - quiet_since_ns >= seconds_to_ns(limit_s):
             return rival
     return None
 
 
 def _rivals(fleet: Fleet, serial: str) -> tuple[LinkRecord, ...]:
-    """Open links that claim a serial without being its vehicle's link, the first to come first."""
+    """Open links that claim a serial without being bound to its vehicle, the oldest first."""
     vehicle = fleet.vehicles[serial]
     claiming: Iterable[LinkRecord] = (
         link
@@ -152,7 +162,7 @@ def _rivals(fleet: Fleet, serial: str) -> tuple[LinkRecord, ...]:
 
 
 def _bind(fleet: Fleet, link_id: int, serial: str) -> Fleet:
-    """Make a link the vehicle's link; the vehicle keeps its history."""
+    """Bind a link to its vehicle, which keeps its history."""
     link = fleet.links[link_id]
     known = fleet.vehicles.get(serial) or VehicleState(serial=serial)
     profile = fleet.profiles.get(serial)
@@ -168,7 +178,7 @@ def _bind(fleet: Fleet, link_id: int, serial: str) -> Fleet:
 
 
 def _restart_rivals(fleet: Fleet, serial: str, now_ns: int) -> Fleet:
-    """The remaining rivals begin their wait anew against the new owner."""
+    """The remaining rivals wait again, against the newly bound link."""
     for rival in _rivals(fleet, serial):
         fleet = _put_link(fleet, replace(rival, rival_since_ns=now_ns, in_conflict=False))
     return _mark_rivals(fleet, serial)
@@ -185,7 +195,7 @@ def _mark_rivals(fleet: Fleet, serial: str) -> Fleet:
 
 
 def _blank(link: LinkRecord) -> VehicleState:
-    """A link's own state with nothing heard; only that its app is a simulated one stays known."""
+    """An empty state for a link; only the mark of a simulated app is kept."""
     is_simulated = link.own_state.is_simulated
     return VehicleState(serial=None, link_id=link.id, is_simulated=is_simulated)
 

@@ -1,8 +1,8 @@
-"""Which waypoints of a mission a vehicle has passed, told from its positions alone.
+"""Waypoints of a mission that a vehicle has passed, from its positions alone.
 
 The count only grows. A waypoint is passed when the vehicle has been near it, or is nearer to a leg
-that it leads to; how far legs are looked ahead is bounded by how far the vehicle can have come
-since the position before, so that neighbouring rows are not mistaken for each other.
+after it. The legs considered are bounded by the distance the vehicle can have flown since the
+previous position, so that neighbouring rows are not confused.
 """
 
 from collections.abc import Sequence
@@ -18,10 +18,10 @@ NEAR_M = 3.0
 
 CLEARLY_NEARER_M = 0.5
 FASTEST_MPS = 18.0
-"""The SDK's 15 m/s and some wind behind it."""
+"""The SDK's 15 m/s plus tailwind."""
 
 GAP_S = 1.0
-"""After a gap this long the first waypoint may have been passed unseen."""
+"""After a gap this long the first waypoint may have been passed unnoticed."""
 
 Point = tuple[float, float, float]
 
@@ -32,7 +32,7 @@ def waypoints_passed(
     """Return how many waypoints are passed, at least `passed`.
 
     `height_m` is above takeoff, as the waypoints' own; None leaves heights out. `since_s` is the
-    time since the position that `passed` was told from.
+    time since the previous position.
     """
     points = mission.waypoints
     passed = _past_the_near_ones(points, passed, position, height_m)
@@ -63,7 +63,7 @@ def _onto_the_nearest_leg(
     height_m: float | None,
     reach_m: float,
 ) -> int:
-    """Leg k leads from waypoint k - 1 to waypoint k: who flies it has passed k waypoints."""
+    """Leg k leads from waypoint k - 1 to k: a vehicle on it has passed k waypoints."""
     best_m = NEAR_M + CLEARLY_NEARER_M
     if passed > 0 and passed < len(points):
         best_m = _to_leg_m(points[passed - 1], points[passed], position, height_m)

@@ -24,7 +24,7 @@ class FleetSettings:
     vehicles_kept: int = 64
     """An app that names a new serial again and again must not fill the memory: beyond this, the
     vehicles on the ground that have no link and were silent longest are forgotten; while this many
-    without a link may fly, nobody new is taken."""
+    without a link may fly, no new serial is accepted."""
 
     closed_links_kept: int = 32
-    """Closed links that stay visible, so that a person can read why they closed."""
+    """Closed links kept for display with the reason they closed."""

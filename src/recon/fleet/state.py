@@ -1,4 +1,4 @@
-"""What the fleet knows: links and vehicles."""
+"""State of the fleet: links and vehicles."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from recon.model.vehicle import Staleness, VehicleProfile, VehicleState, stalene
 
 @dataclass(frozen=True)
 class LinkRecord:
-    """One connection. `own_state` is what it reported while it was not a vehicle's link."""
+    """One connection; `own_state` holds its telemetry while it is not bound to a vehicle."""
 
     id: int
     remote_address: str
@@ -19,20 +19,20 @@ class LinkRecord:
     closed_at_ns: int | None = None
     closed_reason: str | None = None
     claimed_serial: str | None = None
-    serial_not_taken: str | None = None
-    """The serial it says, while there is no room for another vehicle."""
+    rejected_serial: str | None = None
+    """The serial it reports while the limit of vehicles is reached."""
     last_packet_at_ns: int | None = None
     rival_since_ns: int | None = None
-    """When it brought a serial that another open link holds."""
+    """When it reported a serial that another open link is bound to."""
     in_conflict: bool = False
-    """Whether the owner spoke after that."""
+    """Whether the bound link delivered a packet after that."""
     packets: int = 0
     images: int = 0
     meaningless: int = 0
 
     @property
     def is_open(self) -> bool:
-        """Whether the connection stands."""
+        """Whether the connection is open."""
         return self.closed_at_ns is None
 
 
@@ -40,7 +40,7 @@ class LinkRecord:
 class Fleet:
     """All links (open and lately closed) and all vehicles identified in this run.
 
-    Of those without a link, the ones on the ground are forgotten beyond a limit.
+    Beyond a limit, vehicles on the ground without a link are forgotten.
     """
 
     settings: FleetSettings = FleetSettings()
@@ -49,7 +49,7 @@ class Fleet:
     vehicles: Mapping[str, VehicleState] = field(default_factory=dict)
 
     def vehicle_of_link(self, link_id: int) -> VehicleState | None:
-        """Return the state a link's reports go to: its vehicle's, or its own without one."""
+        """Return the state that a link's reports update: its vehicle's, or its own if unbound."""
         link = self.links.get(link_id)
         if link is None:
             return None
@@ -65,7 +65,7 @@ class Fleet:
         return own + vehicle.rival_link_ids
 
     def unbound_links(self) -> tuple[LinkRecord, ...]:
-        """Return the open links that are no vehicle's link: unidentified, or rivals."""
+        """Return the open links not bound to a vehicle: unidentified or rivals."""
         return tuple(
             link for link in self.links.values() if link.is_open and not self._is_bound(link)
         )

@@ -1,4 +1,4 @@
-"""The fleet's step: links come and go, reports are folded in, identities are settled."""
+"""The fleet's step: opens and closes links, applies reports, resolves identities."""
 
 from dataclasses import dataclass
 
@@ -18,12 +18,12 @@ from recon.model.report import (
 from recon.model.vehicle import VehicleState
 
 SIMULATOR_GREETING = "recon-sim simulated vehicle"
-"""A simulated app says so twice: in its first message and by its serial's prefix."""
+"""First message of a simulated app; its serial's prefix marks it too."""
 
 
 @dataclass(frozen=True, slots=True)
 class CloseLink:
-    """The connection is to be closed, for this reason."""
+    """Output: close a connection, with the reason."""
 
     link_id: int
     reason: str
@@ -51,7 +51,7 @@ def _is_open(fleet: Fleet, link_id: int) -> bool:
 
 def _opened(fleet: Fleet, link_id: int, remote_address: str, now_ns: int) -> Fleet:
     if _is_open(fleet, link_id):
-        return fleet  # a number is given once: opening it again must not unbind its vehicle
+        return fleet  # ids are unique: opening one again must not unbind its vehicle
     link = LinkRecord(
         id=link_id,
         remote_address=remote_address,
@@ -81,7 +81,7 @@ def _forget_oldest(links: dict[int, LinkRecord], kept: int) -> dict[int, LinkRec
 
 def _received(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
     fleet = _count(fleet, link_id, report, now_ns)
-    fleet = identity.heard(fleet, link_id, now_ns)
+    fleet = identity.packet_received(fleet, link_id, now_ns)
     if isinstance(report, ExtendedReport) and report.serial is not None:
         fleet = identity.claim(fleet, link_id, report.serial, now_ns)
         fleet = identity.forget_vehicles(fleet)
@@ -119,7 +119,7 @@ def _fold(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
 
 
 def _remember_simulated(fleet: Fleet, link_id: int) -> Fleet:
-    """The greeting is about the app, whichever vehicle it flies: the link keeps it."""
+    """The greeting concerns the app, not the vehicle: the link keeps it."""
     link = fleet.links[link_id]
     own_state = replace(link.own_state, is_simulated=True)
     return replace(fleet, links={**fleet.links, link_id: replace(link, own_state=own_state)})

@@ -1,4 +1,4 @@
-"""Reports folded into a vehicle's state."""
+"""Applies telemetry reports to a vehicle's state."""
 
 from dataclasses import fields
 from math import isfinite
@@ -21,7 +21,7 @@ def fold_core(
 ) -> VehicleState:
     """Return the state after core telemetry (ICD 3.1.1).
 
-    A field the app does not know becomes unknown: an old value is never passed on as new.
+    A field reported as unknown becomes unknown: old values are never kept as new ones.
     """
     offset_m = _altitude_offset_m(report)
     takes_off = report.is_flying is True and state.is_flying.value is False
@@ -64,9 +64,9 @@ def fold_extended(state: VehicleState, report: ExtendedReport, now_ns: int) -> V
 def with_newest_values(
     state: VehicleState, other: VehicleState, settings: FleetSettings
 ) -> VehicleState:
-    """Return a vehicle's state with all that another link heard of it later.
+    """Return a vehicle's state merged with newer values of another link.
 
-    A takeoff the other link saw is the newer one; its track goes on where the vehicle's ends.
+    A takeoff reported on the other link is the newer one; its track continues the vehicle's.
     """
     newest: dict[str, Any] = {
         name: max(getattr(state, name), getattr(other, name), key=_received_at_ns)
@@ -77,8 +77,8 @@ def with_newest_values(
     }
     last_ns = state.track[-1].at_ns if state.track else -1
     track = (*state.track, *(point for point in other.track if point.at_ns > last_ns))
-    saw_takeoff = other.takeoff_point is not None or state.altitude_offset_at_takeoff_m is None
-    source = other if saw_takeoff else state
+    has_takeoff = other.takeoff_point is not None or state.altitude_offset_at_takeoff_m is None
+    source = other if has_takeoff else state
     return replace(
         state,
         **newest,
@@ -116,7 +116,7 @@ def _altitude_offset_m(report: CoreReport) -> float | None:
 def _offset_at_takeoff_m(
     state: VehicleState, report: CoreReport, offset_m: float | None
 ) -> float | None:
-    """The offset of the first packet in flight; none on the ground."""
+    """The offset of the first packet in flight; None on the ground."""
     if report.is_flying is False:
         return None
     if report.is_flying and state.altitude_offset_at_takeoff_m is None:

@@ -1,8 +1,8 @@
-"""Which command an acknowledgment answers.
+"""Matches acknowledgments to commands.
 
-On the wire an acknowledgment names only the kind of command. TCP keeps order, so the oldest
-unanswered command of the kind is the one answered, unless an earlier one has missed its time: then
-the answer may be its late one, and is not believed.
+On the wire an acknowledgment names only the kind of command. TCP keeps order, so it answers the
+oldest unanswered command of the kind, unless an earlier one timed out: then it may be the late
+answer of that one, and is ignored.
 """
 
 from collections import defaultdict, deque
@@ -16,11 +16,11 @@ from recon.model.units import seconds_to_ns
 
 @dataclass(slots=True)
 class AckBook:
-    """The unanswered commands of one link. Stick packets are not kept: their acks only count."""
+    """The unanswered commands of one link. Stick packets are not tracked."""
 
     link_id: int
     settings: LinkSettings
-    unbelieved: int = 0
+    ignored_late: int = 0
     unexpected: int = 0
     _waiting: dict[AnsweredKind, deque[tuple[int, int]]] = field(
         default_factory=lambda: defaultdict(deque)
@@ -30,7 +30,7 @@ class AckBook:
     )
 
     def sent(self, kind: AnsweredKind, command_id: int, now_ns: int) -> None:
-        """Remember that an answer to this command is awaited."""
+        """Expect an answer to this command."""
         if kind is not AnsweredKind.STICK:
             self._waiting[kind].append((command_id, now_ns))
 
@@ -39,14 +39,14 @@ class AckBook:
         return bool(self._waiting[kind])
 
     def answered(self, report: AckReport, now_ns: int) -> CommandAnswered | None:
-        """Return which command an acknowledgment answers, or None when that cannot be told."""
+        """Return which command an acknowledgment answers, or None when it is ambiguous."""
         if report.answered is AnsweredKind.STICK:
             return None
         missed = self._missed_at_ns[report.answered]
         self._forget_missed(missed, now_ns)
         if missed:
             missed.popleft()
-            self.unbelieved += 1
+            self.ignored_late += 1
             return None
         if not self._waiting[report.answered]:
             self.unexpected += 1
@@ -55,7 +55,7 @@ class AckBook:
         return CommandAnswered(self.link_id, command_id, report.positive)
 
     def expire(self, now_ns: int) -> list[CommandAnswered]:
-        """Return the commands whose acknowledgment has missed its time."""
+        """Return the commands whose acknowledgment timed out."""
         missed: list[CommandAnswered] = []
         for kind, waiting in self._waiting.items():
             while waiting and now_ns - waiting[0][1] >= seconds_to_ns(self.settings.ack_timeout_s):
@@ -67,6 +67,6 @@ class AckBook:
         return missed
 
     def _forget_missed(self, times_ns: deque[int], now_ns: int) -> None:
-        """Forget misses so long ago that their answers come no more."""
+        """Forget timeouts too old for a late answer."""
         while times_ns and now_ns - times_ns[0] > seconds_to_ns(self.settings.late_ack_s):
             times_ns.popleft()

@@ -1,8 +1,8 @@
-"""What waits to be sent to one app: three places, each holding the newest order of its kind.
+"""Unsent orders of one app: three lanes, each holding the newest order of its kind.
 
-Emergency orders overtake everything and take unsent motion with them; a newer motion order (mission
-or stick) replaces an unsent older one; a newer camera order likewise. So the queue is bounded, and
-what leaves it unsent is always told.
+Emergency orders overtake everything and drop unsent motion; a newer motion order (mission or stick)
+replaces an unsent older one; a newer camera order likewise. So the queue is bounded, and every
+order dropped unsent is reported.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from recon.safety import ApprovedCommand
 
 
 class Lane(IntEnum):
-    """The places, the most urgent first."""
+    """The lanes, the most urgent first."""
 
     EMERGENCY = 0
     MOTION = 1
@@ -23,7 +23,7 @@ class Lane(IntEnum):
 
 
 def lane_of(command: Command) -> Lane:
-    """Return the place a command waits in."""
+    """Return the lane of a command."""
     if command.is_emergency:
         return Lane.EMERGENCY
     return Lane.CAMERA if isinstance(command.body, CAMERA_BODIES) else Lane.MOTION
@@ -34,60 +34,61 @@ class Outbox:
     """The unsent orders of one link."""
 
     link_id: int
-    _places: dict[Lane, ApprovedCommand]
+    _lanes: dict[Lane, ApprovedCommand]
 
     @classmethod
     def empty(cls, link_id: int) -> "Outbox":
-        """Return an outbox with nothing in it."""
+        """Return an empty outbox."""
         return cls(link_id, {})
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._lanes)
 
     def put(self, approved: ApprovedCommand) -> list[CommandDropped]:
         """Queue an order; return the unsent ones it displaces."""
         lane = lane_of(approved.command)
         displaced = {lane, Lane.MOTION} if lane is Lane.EMERGENCY else {lane}
         dropped = [
-            self._dropped(old, Phase.SUPERSEDED, f"by order {approved.command.id}, before sending")
+            self._dropped(
+                old, Phase.SUPERSEDED, f"Replaced by order {approved.command.id} before sending"
+            )
             for key in sorted(displaced)
-            if (old := self._places.pop(key, None)) is not None
+            if (old := self._lanes.pop(key, None)) is not None
             and old.command.id != approved.command.id
         ]
-        self._places[lane] = approved
+        self._lanes[lane] = approved
         return dropped
 
     def expire(self, now_ns: int) -> list[CommandDropped]:
-        """Remove and return the orders whose time is over."""
-        late = [k for k, a in self._places.items() if now_ns >= a.command.expires_at_ns]
+        """Remove and return the expired orders."""
+        late = [k for k, a in self._lanes.items() if now_ns >= a.command.expires_at_ns]
         return [
-            self._dropped(self._places.pop(lane), Phase.EXPIRED, "not sent in time")
-            for lane in late
+            self._dropped(self._lanes.pop(lane), Phase.EXPIRED, "not sent in time") for lane in late
         ]
 
     def waiting(self, lane: Lane) -> ApprovedCommand | None:
-        """Return the order in a place, which stays there."""
-        return self._places.get(lane)
+        """Return the order in a lane without removing it."""
+        return self._lanes.get(lane)
 
     def take(self, may_go: Callable[[Lane, ApprovedCommand], bool]) -> ApprovedCommand | None:
-        """Remove and return the most urgent order that may go now."""
-        if not self._places:
+        """Remove and return the most urgent order that may be sent now."""
+        if not self._lanes:
             return None
         for lane in Lane:
-            waiting = self._places.get(lane)
+            waiting = self._lanes.get(lane)
             if waiting is not None and may_go(lane, waiting):
-                return self._places.pop(lane)
+                return self._lanes.pop(lane)
         return None
 
     def withdraw(self, lane: Lane, reason: str) -> list[CommandDropped]:
-        """Remove and return what waits in one place: nothing takes its place."""
-        old = self._places.pop(lane, None)
+        """Remove and return the order of one lane."""
+        old = self._lanes.pop(lane, None)
         return [] if old is None else [self._dropped(old, Phase.SUPERSEDED, reason)]
 
     def empty_out(self, reason: str) -> list[CommandDropped]:
-        """Remove everything; nothing is ever sent again by itself after a reconnect."""
-        dropped = [self._dropped(a, Phase.FAILED, reason) for a in self._places.values()]
-        self._places.clear()
+        """Remove everything: nothing is sent again automatically after a reconnect."""
+        dropped = [self._dropped(a, Phase.FAILED, reason) for a in self._lanes.values()]
+        self._lanes.clear()
         return dropped
 
     def _dropped(self, approved: ApprovedCommand, phase: Phase, reason: str) -> CommandDropped:

@@ -69,7 +69,7 @@ class LinkServer:
         if len(self.connections) < self.settings.max_links:
             return True
         for connection in tuple(self.connections.values()):
-            if connection.session is not None and not connection.session.has_spoken:
+            if connection.session is not None and not connection.session.has_packets:
                 connection.close("others need the place, and it has never spoken")
                 self.connections.pop(connection.session.link_id, None)
                 return True
@@ -150,7 +150,7 @@ class Connection(asyncio.BufferedProtocol):
 
     def buffer_updated(self, nbytes: int) -> None:
         """Take what came; many packets are handled in turns with the other links."""
-        with self._contained():
+        with self._isolated():
             self._receive(nbytes)
 
     def _receive(self, nbytes: int) -> None:
@@ -168,7 +168,7 @@ class Connection(asyncio.BufferedProtocol):
 
     def resume_writing(self) -> None:
         """Everything written has left: the next packet may go."""
-        with self._contained():
+        with self._isolated():
             self.pump()
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -177,7 +177,7 @@ class Connection(asyncio.BufferedProtocol):
             return
         self.server.forget(self.session)
         reason = self._closing_reason or _reason(exc)
-        with self._contained():
+        with self._isolated():
             self._events.extend(self.session.finish(reason, self.server.now_ns()))
             self._handle(len(self._events))
         self.server.handle(LinkClosed(self.session.link_id, reason))
@@ -188,7 +188,7 @@ class Connection(asyncio.BufferedProtocol):
         """Queue a command and write it if it may go now."""
         if self.session is None:
             return
-        with self._contained():
+        with self._isolated():
             self._take(self.session.submit(approved))
             self.pump()
 
@@ -196,12 +196,12 @@ class Connection(asyncio.BufferedProtocol):
         """Drop the order to move that waits unsent."""
         if self.session is None:
             return
-        with self._contained():
+        with self._isolated():
             self._take(self.session.withdraw_motion(reason))
 
     def tick(self) -> None:
         """Let time pass."""
-        with self._contained():
+        with self._isolated():
             self._tick()
 
     def _tick(self) -> None:
@@ -232,8 +232,8 @@ class Connection(asyncio.BufferedProtocol):
             self._transport.abort()
 
     @contextmanager
-    def _contained(self) -> Iterator[None]:
-        """A fault in the station's own code costs this connection, is told, and nobody else's."""
+    def _isolated(self) -> Iterator[None]:
+        """A fault in the station's own code is reported and costs this connection only."""
         try:
             yield
         except Exception as fault:
@@ -256,7 +256,7 @@ class Connection(asyncio.BufferedProtocol):
 
     def _work(self) -> None:
         """Handle some events; with more left, stop reading and go on in the loop's next turn."""
-        with self._contained():
+        with self._isolated():
             self._work_on()
 
     def _work_on(self) -> None:

@@ -1,7 +1,18 @@
-"""One app's session as a state machine without IO: bytes and times in, events and bytes out.
+"""One app's session as a sans-IO state machine: bytes and times in, events and bytes out.
 
-Framing, acknowledgments, timeouts, pacing and liveness are here; sockets and clocks are not. Both
-drivers of the station, on real sockets and in virtual time, run this same code.
+Theory of operation. Incoming bytes go through the deframer; each intact packet becomes a
+`PacketReceived` event, and an acknowledgment also resolves the oldest unanswered command of its
+kind (`acks`). Outgoing orders wait in an outbox with three lanes, each holding only the newest
+order (`outbox`):
+
+- emergency: sent at once, without pacing;
+- motion and camera: sent when the packet gap has passed and, for missions and camera orders, when
+  the previous one of their kind is answered. In a setpoint stream the gap is shorter, and a waiting
+  camera order takes one turn.
+
+The session closes its link for garbage without a valid packet, for silence after connecting, and
+for a client that does not read. A link that reports another serial drops what waits for the first
+aircraft. Both drivers, on real sockets and in virtual time, run this code.
 """
 
 from dataclasses import dataclass
@@ -21,7 +32,7 @@ from recon.vehicles.reports import to_report
 
 @dataclass(frozen=True, slots=True)
 class Outgoing:
-    """One packet for the socket, to be written by itself, and the event that says so."""
+    """One packet to be written to the socket by itself, and the event that reports it."""
 
     data: bytes
     event: CommandSent
@@ -44,7 +55,7 @@ class Session:
             )
         )
         self._opened_at_ns = opened_at_ns
-        self._has_spoken = False
+        self._has_packets = False
         self._serial: str | None = None
         self._skipped_at_last_packet = 0
         self._last_sent_at_ns: int | None = None
@@ -53,41 +64,41 @@ class Session:
 
     @property
     def counters(self) -> wire.Counters:
-        """What the bytes have been like so far."""
+        """The deframer's counters."""
         return self._deframer.counters
 
     @property
     def commands_queued(self) -> int:
-        """How many orders wait to be sent."""
+        """Number of orders waiting to be sent."""
         return len(self._outbox)
 
     @property
-    def has_spoken(self) -> bool:
-        """Whether a valid packet has ever come."""
-        return self._has_spoken
+    def has_packets(self) -> bool:
+        """Whether any valid packet has arrived."""
+        return self._has_packets
 
     def receive(self, data: bytes, now_ns: int) -> list[Event]:
-        """Take bytes off the socket; return what they said."""
+        """Take bytes from the socket; return the events of their packets."""
         self.bytes_received += len(data)
         return self._events(self._deframer.feed(data, now_ns), now_ns)
 
     def tick(self, now_ns: int) -> list[Event]:
-        """Let time pass: stalled packets, missed acknowledgments, expired orders, liveness."""
+        """Handle timeouts: stalled packets, missed acknowledgments, expired orders, liveness."""
         events = self._events(self._deframer.tick(now_ns), now_ns)
         events += self.acks.expire(now_ns)
         events += self._outbox.expire(now_ns)
-        self._judge_liveness(now_ns)
+        self._check_liveness(now_ns)
         return events
 
     def finish(self, reason: str, now_ns: int) -> list[Event]:
-        """End the stream: what is still held is read, what is unsent fails with `reason`."""
+        """End the stream: buffered bytes are decoded, unsent orders fail with `reason`."""
         events = self._events(self._deframer.finish(), now_ns)
         return [*events, *self._outbox.empty_out(f"{reason}, before it was sent")]
 
     def submit(self, approved: ApprovedCommand) -> list[CommandDropped]:
         """Queue an approved command; return the unsent ones it displaces.
 
-        Raises TypeError for anything that did not come through the gate.
+        Raises TypeError for anything but an approved command for this link.
         """
         if not isinstance(approved, ApprovedCommand):
             raise TypeError(f"only approved commands are sent, not {type(approved).__name__}")
@@ -96,7 +107,7 @@ class Session:
         return self._outbox.put(approved)
 
     def withdraw_motion(self, reason: str) -> list[CommandDropped]:
-        """Drop the mission or stick that waits unsent; what is on its way cannot be called back."""
+        """Drop the unsent mission or stick; what was sent cannot be withdrawn."""
         return self._outbox.withdraw(Lane.MOTION, reason)
 
     def next_packet(self, now_ns: int) -> Outgoing | None:
@@ -112,7 +123,7 @@ class Session:
         return Outgoing(wire.encode(packet), CommandSent(self.link_id, command.id))
 
     def note_socket(self, is_clear: bool, now_ns: int) -> None:
-        """Tell whether everything written has left for the network."""
+        """Report whether everything written has left for the network."""
         if is_clear:
             self._blocked_since_ns = None
         elif self._blocked_since_ns is None:
@@ -133,10 +144,10 @@ class Session:
         return needs_answer_first and self.acks.is_waiting(answered_kind(approved.command.body))
 
     def _gives_way(self, approved: ApprovedCommand) -> bool:
-        """Whether a stick that follows a stick leaves this turn to a camera order.
+        """Whether a stick after a stick yields this turn to a camera order.
 
-        A stream of sticks leaves no gap for anything else: without this a camera order would wait
-        until the stream ends. It costs the stream one stick.
+        A setpoint stream leaves no gap for anything else: without this a camera order would wait
+        until the stream ends. It costs the stream one setpoint.
         """
         camera = self._outbox.waiting(Lane.CAMERA)
         return (
@@ -147,7 +158,7 @@ class Session:
         )
 
     def _gap_s(self, approved: ApprovedCommand) -> float:
-        """Return the least time since the packet before; from stick to stick it is shorter."""
+        """Return the minimum time since the previous packet; shorter within a setpoint stream."""
         settings = self.settings
         gap_s = approved.profile.packet_gap_s if approved.profile else settings.packet_gap_s
         is_in_stream = self._last_was_stick and isinstance(approved.command.body, VirtualStick)
@@ -167,20 +178,20 @@ class Session:
                 events += self._other_aircraft(report.serial)
             events.append(PacketReceived(self.link_id, report))
         if packets:
-            self._has_spoken = True
-        self._judge_garbage(bool(packets))
+            self._has_packets = True
+        self._check_garbage(bool(packets))
         return events
 
     def _other_aircraft(self, serial: str | None) -> list[CommandDropped]:
-        """What waits for one aircraft is not sent to another that the link now speaks for."""
+        """Orders that wait for one aircraft are never sent to another one on the same link."""
         if serial is None or serial == self._serial:
             return []
         is_another = self._serial is not None
         self._serial = serial
-        reason = f"the link now speaks for {serial}"
+        reason = f"the link now reports serial {serial}"
         return self._outbox.empty_out(reason) if is_another else []
 
-    def _judge_garbage(self, has_packets: bool) -> None:
+    def _check_garbage(self, has_packets: bool) -> None:
         skipped = self._deframer.counters.bytes_skipped
         if has_packets:
             self._skipped_at_last_packet = skipped
@@ -189,9 +200,11 @@ class Session:
                 f"{skipped - self._skipped_at_last_packet} bytes without one valid packet"
             )
 
-    def _judge_liveness(self, now_ns: int) -> None:
+    def _check_liveness(self, now_ns: int) -> None:
         waited_ns = now_ns - self._opened_at_ns
-        if not self._has_spoken and waited_ns > seconds_to_ns(self.settings.first_packet_timeout_s):
+        if not self._has_packets and waited_ns > seconds_to_ns(
+            self.settings.first_packet_timeout_s
+        ):
             self.closing_reason = (
                 f"no valid packet within {self.settings.first_packet_timeout_s:g} s of connecting"
             )

@@ -205,7 +205,7 @@ class VehicleState:
     image_received_at_ns: int | None = None
     image_count: int = 0
     altitude_offset_m: Stamped[float] = Stamped()
-    """Altitude minus height above takeoff, of one packet: the offset for waypoint altitudes of a wgs84 app."""
+    """Altitude minus height above takeoff of one packet: the waypoint offset of a wgs84 app."""
     altitude_offset_at_takeoff_m: float | None = None
     takeoff_point: LatLon | None = None
     rival_link_ids: tuple[int, ...] = ()

@@ -1,1 +1,1 @@
-"""Packets to reports, commands to packets: the only place where the ICD's values get a meaning."""
+"""Packets to reports and commands to packets: the only room that interprets the ICD's values."""

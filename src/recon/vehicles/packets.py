@@ -1,4 +1,4 @@
-"""Commands into packets (ICD 3.2). Missions are in heights above takeoff until here."""
+"""Commands into packets (ICD 3.2). Until here missions use heights above takeoff."""
 
 from collections.abc import Callable
 from math import nan
@@ -21,11 +21,11 @@ from recon.model.report import AnsweredKind
 from recon.model.units import wrap_degrees
 
 IGNORED_CORNER_RADIUS_M = 0.2
-"""Sent for missions that are not curved; apps hand the field to an SDK that refuses less."""
+"""Sent for missions that are not curved; apps pass it to an SDK that rejects less."""
 
 
 def to_packet(body: Body, altitude_offset_m: float) -> wire.Packet:
-    """Return the packet that tells an app to carry out `body`.
+    """Return the packet that commands `body`.
 
     `altitude_offset_m` is added to every waypoint's height above takeoff: 0 for apps that expect
     heights above takeoff, Altitude - HAG of the aircraft's telemetry for apps that expect WGS84.
@@ -34,7 +34,7 @@ def to_packet(body: Body, altitude_offset_m: float) -> wire.Packet:
 
 
 def answered_kind(body: Body) -> AnsweredKind:
-    """Return the kind an app's acknowledgment of `body` will name."""
+    """Return the kind that acknowledgments of `body` name."""
     return _KINDS[type(body)]
 
 

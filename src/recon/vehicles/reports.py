@@ -1,4 +1,4 @@
-"""Packets into reports: what an app's bytes mean (ICD 3.1, decisions on noisy values)."""
+"""Packets into reports (ICD 3.1, decisions on noisy values)."""
 
 from collections.abc import Callable
 from enum import IntEnum
@@ -26,13 +26,13 @@ PLACEHOLDER_SERIAL = b"00000"
 
 HIGHEST_M = 20_000.0
 FASTEST_MPS = 150.0
-"""No drone is higher, lower or faster. A good hash never means plausible: beyond, it is unknown."""
+"""Values beyond are treated as unknown: a good hash does not make them plausible."""
 
 _E = TypeVar("_E", bound=IntEnum)
 
 
 def to_report(packet: wire.Packet) -> Report:
-    """Return what a packet from an app says; never raises, whatever its values are."""
+    """Return the report of a packet from an app; never raises, whatever its values."""
     reader = _READERS.get(type(packet))
     if reader is None:
         return _unexpected(packet)
@@ -77,21 +77,21 @@ def _compressed(packet: wire.CompressedImage) -> ImageReport:
 def _acknowledgment(packet: wire.Acknowledgment) -> AckReport | MeaninglessReport:
     answered = _member(AnsweredKind, packet.source_pid)
     if answered is None:
-        return MeaninglessReport(f"acknowledgment of PID {packet.source_pid}, no command's PID")
+        return MeaninglessReport(f"acknowledgment of PID {packet.source_pid}, not a command")
     return AckReport(answered=answered, positive=packet.positive == 1)
 
 
 def _message(packet: wire.MessageString) -> MessageReport | MeaninglessReport:
     severity = _member(MessageSeverity, packet.type)
     if severity is None:
-        return MeaninglessReport(f"message of type {packet.type}, known are 0 to 3")
+        return MeaninglessReport(f"message type must be 0 to 3; got {packet.type}")
     return MessageReport(severity=severity, text=printable(packet.text))
 
 
 def _unexpected(packet: wire.Packet) -> MeaninglessReport:
     if isinstance(packet, wire.UnknownPacket):
         return MeaninglessReport(f"unknown PID {packet.pid}")
-    return MeaninglessReport(f"{type(packet).__name__} goes to an app, never comes from one")
+    return MeaninglessReport(f"{type(packet).__name__} is sent to apps only")
 
 
 _READERS: dict[type, Callable[[Any], Report]] = {
@@ -105,10 +105,7 @@ _READERS: dict[type, Callable[[Any], Report]] = {
 
 
 def to_serial(raw: bytes) -> str | None:
-    """Return a serial made harmless, or None for an empty one and the apps' placeholder.
-
-    Padding does not make an identity of either: two apps that pad alike are still two vehicles.
-    """
+    """Return a sanitised serial, or None for an empty one and the placeholder, padded or not."""
     if raw.strip(b"\0 \t\r\n") in (b"", PLACEHOLDER_SERIAL):
         return None
     return printable(raw, limit_chars=4 * 256)

@@ -1,4 +1,4 @@
-"""Text from the wire, made harmless (ICD-level decision: it is untrusted)."""
+"""Text from the wire, sanitised: it is untrusted."""
 
 
 def _escape(character: str) -> str:
@@ -15,7 +15,7 @@ def _escape(character: str) -> str:
 def printable(raw: bytes, limit_chars: int = 1000) -> str:
     """Return `raw` as text without control, formatting or private characters.
 
-    Bytes that are no UTF-8 and characters that are not printable (terminal escapes, line breaks,
+    Bytes that are not UTF-8 and characters that are not printable (terminal escapes, line breaks,
     direction overrides) appear as backslash escapes; a backslash is doubled, so that two different
     inputs within the limit never look the same. Longer text ends with an ellipsis.
     """

@@ -152,10 +152,10 @@ def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:
 
 
 def _not_taken(link: LinkRecord, settings: FleetSettings) -> Iterator[Condition]:
-    if link.serial_not_taken is None:
+    if link.rejected_serial is None:
         return
     text = (
-        f"its app says it is {link.serial_not_taken}, but {settings.vehicles_kept} vehicles that "
+        f"its app says it is {link.rejected_serial}, but {settings.vehicles_kept} vehicles that "
         "may fly are not heard, and no other is taken in: dismiss those whose place you know; "
         "until then it can only be told to hold, land or return"
     )

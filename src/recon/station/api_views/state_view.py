@@ -176,7 +176,7 @@ def _link(fleet: Fleet, record: LinkRecord, around: Surroundings, now_ns: int) -
         meaningless=record.meaningless,
         bytes_skipped=0 if counters is None else counters.bytes_skipped,
         commands_queued=0 if session is None else session.commands_queued,
-        answers_not_believed=0 if session is None else session.acks.unbelieved,
+        answers_not_believed=0 if session is None else session.acks.ignored_late,
     )
 
 

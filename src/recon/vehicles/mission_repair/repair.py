@@ -1,23 +1,27 @@
-"""The repair itself, step by step."""
+"""The repair of a mission, and its division into parts."""
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import is_finite
 from recon.model.vehicle import VehicleProfile
-from recon.vehicles.mission_repair.corners import fit_corners
-from recon.vehicles.mission_repair.limits import REPAIR_LIMITS, RepairLimits
-from recon.vehicles.mission_repair.parts import cut
-from recon.vehicles.mission_repair.ranges import into_ranges
-from recon.vehicles.mission_repair.spacing import divide_long, merge_near
-from recon.vehicles.mission_repair.working import Numbered, distance_m
+from recon.vehicles.mission_repair.steps import (
+    REPAIR_LIMITS,
+    NumberedWaypoint,
+    RepairLimits,
+    distance_m,
+    divide_long,
+    fit_corners,
+    into_ranges,
+    merge_near,
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Repaired:
-    """A mission as it is flown: one part, or several; and what was changed, in sentences."""
+    """A mission in one or several parts, and the repairs as sentences."""
 
     parts: tuple[Mission, ...]
     repairs: tuple[str, ...] = ()
@@ -26,33 +30,35 @@ class Repaired:
 def repair(
     mission: Mission, profile: VehicleProfile, limits: RepairLimits = REPAIR_LIMITS
 ) -> Repaired:
-    """Return a mission in parts that DJI and the vehicle's app accept, or unchanged. Pure."""
+    """Return a mission in parts that DJI and the vehicle's app accept, or unchanged."""
     if not _is_repairable(mission, limits):
         return Repaired((mission,))
-    numbered = [Numbered(point, number) for number, point in enumerate(mission.waypoints, start=1)]
-    points, told = into_ranges(numbered, limits)
+    numbered = [
+        NumberedWaypoint(point, number) for number, point in enumerate(mission.waypoints, start=1)
+    ]
+    points, changes = into_ranges(numbered, limits)
     for step in (merge_near, divide_long):
         points, sentences = step(points, limits)
-        told += sentences
+        changes += sentences
     if len(points) < limits.min_waypoints:
         return Repaired((mission,))
     most = max(limits.min_waypoints, min(limits.max_waypoints, profile.max_waypoints))
     parts, why = cut(points, most, limits)
     if why:
-        told.append(_in_parts(parts, why))
+        changes.append(_in_parts(parts, why))
     if mission.curved:
         parts, sentences = _with_corners(parts, limits)
-        told += sentences
-    if not told or not all(_has_fitting_legs(part, limits) for part in parts):
+        changes += sentences
+    if not changes or not all(_has_fitting_legs(part, limits) for part in parts):
         return Repaired((mission,))
-    return Repaired(tuple(_missions(mission, parts)), tuple(told))
+    return Repaired(tuple(_missions(mission, parts)), tuple(changes))
 
 
 def joined(parts: tuple[Mission, ...]) -> Mission:
-    """Return parts as the one mission they are flown as; a part begins where the last one ended."""
+    """Return the parts joined into one mission; each part begins where the last one ended."""
     waypoints = parts[0].waypoints
     for part in parts[1:]:
-        # The shared waypoint is left as the later part says: its speed is that of the next leg.
+        # The speed at a shared waypoint is that of the next leg.
         waypoints = (
             *waypoints[:-1],
             _shared(waypoints[-1], part.waypoints[0]),
@@ -77,7 +83,7 @@ def _is_repairable(mission: Mission, limits: RepairLimits) -> bool:
 
 
 def _is_sound(point: Waypoint, limits: RepairLimits) -> bool:
-    """Whether its place and numbers are such as a repair may go by."""
+    """Whether its position and values are valid."""
     numbers = (point.height_above_takeoff_m, point.speed_mps, point.corner_radius_m)
     actions = (point.loiter_s or 0.0, point.gimbal_pitch_deg or 0.0)
     if not is_finite(*numbers, *actions):
@@ -87,34 +93,34 @@ def _is_sound(point: Waypoint, limits: RepairLimits) -> bool:
     return is_place and is_high and point.speed_mps >= 0.0 and (point.loiter_s or 0.0) >= 0.0
 
 
-def _has_fitting_legs(part: list[Numbered], limits: RepairLimits) -> bool:
-    """Whether cutting has helped: near the poles a leg's length depends on where it is measured."""
+def _has_fitting_legs(part: list[NumberedWaypoint], limits: RepairLimits) -> bool:
+    """Whether all legs fit: near the poles a leg's length depends on where it is measured."""
     legs_m = [a.distance_m(b) for a, b in (*pairwise(part), (part[0], part[-1]))]
     return all(limits.least_leg_m <= leg_m <= limits.max_leg_m for leg_m in legs_m)
 
 
-def _in_parts(parts: list[list[Numbered]], why: str) -> str:
+def _in_parts(parts: list[list[NumberedWaypoint]], why: str) -> str:
     ends = ", ".join(f"{part[0].number} to {part[-1].number}" for part in parts)
     return (
-        f"flown in {len(parts)} parts (waypoints {ends}), for {why}; it hovers at the end of each "
-        "part, and the next one is only flown if link and authority were whole since the order"
+        f"flown in {len(parts)} parts (waypoints {ends}): {why}; it hovers at the end of each "
+        "part, and continues only if link and authority were uninterrupted since the order"
     )
 
 
 def _with_corners(
-    parts: list[list[Numbered]], limits: RepairLimits
-) -> tuple[list[list[Numbered]], list[str]]:
-    fitted, told = list[list[Numbered]](), list[str]()
+    parts: list[list[NumberedWaypoint]], limits: RepairLimits
+) -> tuple[list[list[NumberedWaypoint]], list[str]]:
+    fitted, changes = list[list[NumberedWaypoint]](), list[str]()
     for part in parts:
         points, sentences = fit_corners(part, limits)
         fitted.append(points)
-        told += sentences
-    return fitted, told
+        changes += sentences
+    return fitted, changes
 
 
-def _missions(mission: Mission, parts: list[list[Numbered]]) -> list[Mission]:
-    """The parts as missions: only the last may land, and what was done at its shared waypoint is
-    not done again by the next part."""
+def _missions(mission: Mission, parts: list[list[NumberedWaypoint]]) -> list[Mission]:
+    """The parts as missions: only the last may land, and actions at a shared waypoint are not
+    repeated by the next part."""
     made: list[Mission] = []
     for index, part in enumerate(parts):
         points = tuple(point.waypoint for point in part)
@@ -124,3 +130,53 @@ def _missions(mission: Mission, parts: list[list[Numbered]]) -> list[Mission]:
         lands = mission.land_at_end and index == len(parts) - 1
         made.append(replace(mission, waypoints=points, land_at_end=lands))
     return made
+
+
+def cut(
+    points: list[NumberedWaypoint], most: int, limits: RepairLimits
+) -> tuple[list[list[NumberedWaypoint]], str]:
+    """Return the parts, each beginning where the previous one ends, and the reason for several.
+
+    Each part is as long as possible; a single leg always fits.
+    """
+    along_m = list(accumulate((a.distance_m(b) for a, b in pairwise(points)), initial=0.0))
+    parts: list[list[NumberedWaypoint]] = []
+    start = 0
+    while start < len(points) - 1:
+        end = _last_that_fits(points, along_m, start, most, limits)
+        parts.append(points[start : end + 1])
+        start = end
+    return parts, "" if len(parts) == 1 else _why(points, along_m[-1], most, limits)
+
+
+def _last_that_fits(
+    points: list[NumberedWaypoint],
+    along_m: list[float],
+    start: int,
+    most: int,
+    limits: RepairLimits,
+) -> int:
+    """The farthest end of a part from `start`; `along_m`: how far along each point is."""
+    is_whole = along_m[-1] - along_m[start] <= limits.max_path_m
+    longest_m = limits.max_path_m if is_whole else limits.cut_path_m
+    for end in range(min(start + most, len(points)) - 1, start + 1, -1):
+        is_short = along_m[end] - along_m[start] <= longest_m
+        if is_short and _may_span(points[start], points[end], limits):
+            return end
+    return start + 1
+
+
+def _may_span(first: NumberedWaypoint, last: NumberedWaypoint, limits: RepairLimits) -> bool:
+    return limits.least_leg_m <= first.distance_m(last) <= limits.max_leg_m
+
+
+def _why(points: list[NumberedWaypoint], path_m: float, most: int, limits: RepairLimits) -> str:
+    if len(points) > most:
+        return f"{len(points)} waypoints exceed the {most} that its app accepts"
+    if path_m > limits.max_path_m:
+        most_km = limits.max_path_m / 1000.0
+        return f"its path is {path_m / 1000:.1f} km, more than the {most_km:g} km DJI accepts"
+    span_m = points[0].distance_m(points[-1])
+    if span_m < limits.least_leg_m:
+        return f"it ends {span_m:.2f} m from where it begins, DJI requires {limits.least_leg_m:g} m"
+    return f"it ends {span_m / 1000:.2f} km from where it begins, DJI accepts 2 km at most"
