@@ -134,7 +134,7 @@ class TestUrgency:
         s.submit(approved(1, Hover()))
         dropped = s.submit(approved(2, LandNow()))
         assert dropped == [
-            CommandDropped(LINK_ID, 1, Phase.SUPERSEDED, "by order 2, before sending")
+            CommandDropped(LINK_ID, 1, Phase.SUPERSEDED, "Replaced by order 2 before sending")
         ]
         assert sent_ids(s, 0) == [2]
 

@@ -100,14 +100,14 @@ class TestRanges:
             at(0.0, speed_mps=0.0), at(50.0, speed_mps=1e-60), at(90.0, speed_mps=22.0), at(130.0)
         )
         assert [w.speed_mps for w in result.parts[0].waypoints] == [1.0, 1.0, 15.0, 5.0]
-        assert result.repairs[0].startswith("waypoints 1 and 2: speed 0 means another speed")
-        assert result.repairs[1].startswith("waypoint 3: flown at 15 m/s")
+        assert result.repairs[0].startswith("waypoints 1 and 2: speed 0 replaced by 1 m/s")
+        assert result.repairs[1].startswith("waypoint 3: speed limited to 15 m/s")
 
     def test_a_long_stay_is_cut_and_a_gimbal_kept_in_its_range(self) -> None:
         result = repaired(at(0.0, loiter_s=60.0), at(50.0, gimbal_pitch_deg=30.0), at(90.0))
         first, second, _ = result.parts[0].waypoints
         assert (first.loiter_s, second.gimbal_pitch_deg) == (32.767, 0.0)
-        assert "waypoint 1: stays 32.767 s" in result.repairs[0]
+        assert "waypoint 1: loiter time limited to 32.767 s" in result.repairs[0]
         assert "waypoint 2: gimbal pitch" in result.repairs[1]
 
 
@@ -139,7 +139,7 @@ class TestSpacing:
         assert len(points) == 6
         assert points[2].height_above_takeoff_m == pytest.approx(50.0)
         assert points[2].speed_mps == points[1].speed_mps
-        assert "waypoints 2 and 3 are 3.00 km apart: 1 more put between them" in result.repairs
+        assert "waypoints 2 and 3 are 3.00 km apart: 1 inserted between them" in result.repairs
 
     def test_a_leg_over_the_date_line_is_divided_where_it_lies(self) -> None:
         points = (replace(at(0.0), longitude_deg=179.98), replace(at(0.0), longitude_deg=-179.98))
@@ -185,9 +185,9 @@ class TestParts:
             assert before.waypoints[-1] == after.waypoints[0]
         assert joined(result.parts).waypoints == points
         assert result.repairs == (
-            "flown in 3 parts (waypoints 1 to 99, 99 to 197, 197 to 230), for 230 waypoints are "
-            "more than the 99 its app takes; it hovers at the end of each part, and the next one "
-            "is only flown if link and authority were whole since the order",
+            "flown in 3 parts (waypoints 1 to 99, 99 to 197, 197 to 230): 230 waypoints "
+            "exceed the 99 that its app accepts; it hovers at the end of each part, and continues "
+            "only if link and authority were uninterrupted since the order",
         )
 
     def test_an_app_that_takes_fewer_gets_smaller_parts(self) -> None:

@@ -65,7 +65,7 @@ class TestAMission:
         assert scene.phase(order) is Phase.STARTED
         scene.passes(0.4)
         ended_as(scene, order, Phase.SUPERSEDED)
-        assert "the pilot has taken over: it left its mission" in scene.record(order).note
+        assert "the pilot has taken over: left its mission" in scene.record(order).note
         assert holder(scene) is AuthorityHolder.PILOT
         assert commanded(scene) is Commanded.NOTHING
 
@@ -74,7 +74,7 @@ class TestAMission:
         scene.keeps_saying(1, *at(25.0, GPS)).passes(0.5)
         scene.keeps_saying(1, *at(25.0, HOME)).passes(1.5)
         ended_as(scene, order, Phase.FAILED)
-        assert "its failsafe, or the pilot's return button" in scene.record(order).note
+        assert "failsafe, or the pilot's return button" in scene.record(order).note
         assert holder(scene) is AuthorityHolder.OPERATOR
         assert scene.alarms() == {"failsafe"}
 

@@ -314,7 +314,7 @@ class TestEnds:
         s.run_for(2.0)
         seen_s = s.now_s
         assert s.phase(order) is Phase.FAILED
-        assert any("flies home" in text for text in s.alarm_texts())
+        assert any("returning home" in text for text in s.alarm_texts())
         s.run_for(5.0)
         assert s.sticks(seen_s) == []
         assert s.hovers() == []
