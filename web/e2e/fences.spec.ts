@@ -3,15 +3,18 @@ import { CHECKLIST, fencedState } from "./fake/fencedState";
 import { FakeStation } from "./fake/station";
 import { cornerFaults, overlaps } from "./layoutFaults";
 import { faintTexts, smallTargets, smallTexts } from "./legibility";
-import { LOOKS, wear } from "./looks";
+import { applyTheme, THEMES } from "./themes";
 
-/** Opens the page over a station that goes on speaking. */
+/** Opens the page with a station that keeps sending states. */
 async function open(page: Page): Promise<FakeStation> {
   const fake = await FakeStation.behind(page, fencedState(0));
   fake.preflight = CHECKLIST;
   const begin_ms = performance.now();
-  const talk = setInterval(() => fake.say(fencedState((performance.now() - begin_ms) / 1000)), 100);
-  page.once("close", () => clearInterval(talk));
+  const timer = setInterval(
+    () => fake.send(fencedState((performance.now() - begin_ms) / 1000)),
+    100,
+  );
+  page.once("close", () => clearInterval(timer));
   await page.goto("/");
   await expect(page.locator("button.craft")).toHaveCount(4);
   return fake;
@@ -24,93 +27,93 @@ async function hold(page: Page, button: Locator, until: () => Promise<void>): Pr
   await page.keyboard.up("Enter");
 }
 
-test("draws fences with their heights, pads, a hazard area and a steered vehicle's target", async ({
+test("draws fences with heights, pads, a hazard area and the target of a steered vehicle", async ({
   page,
 }) => {
   await open(page);
   await expect(page.getByText("Boundary", { exact: true })).toBeVisible();
   await expect(page.getByText("Keep out: Barn")).toBeVisible();
-  await expect(page.getByText("Heights: Power line, 45 m to 90 m above ground")).toBeVisible();
+  await expect(page.getByText("Height limit: Power line, 45 m to 90 m above ground")).toBeVisible();
   await expect(page.locator(".pad")).toHaveCount(2);
-  await expect(page.getByText("2 Birch flies here, ↥ 42 m")).toBeVisible();
-  await expect(page.getByText("Separation holds are OFF.")).toBeVisible();
+  await expect(page.getByText("2 Birch flying here, ↥ 42 m")).toBeVisible();
+  await expect(page.getByText("Separation hold is OFF.")).toBeVisible();
 });
 
-test("takes a vehicle over, overrides its checklist and dismisses a hazard area", async ({
-  page,
-}) => {
+test("takes over a vehicle, overrides its checklist and clears a hazard area", async ({ page }) => {
   const fake = await open(page);
   await page.keyboard.press("1");
   await hold(page, page.getByRole("button", { name: "Take over 1 Alder" }), () =>
-    expect.poll(() => fake.said.length).toBe(1),
+    expect.poll(() => fake.requests.length).toBe(1),
   );
   await expect(page.getByText("→ Write go_home_height_m")).toBeVisible();
   const override = page.getByRole("button", { name: "Override the checklist of 1 Alder" });
   await expect(override).toHaveAttribute("aria-disabled", "true");
-  await page.getByLabel("Fly missions all the same, because").fill("height read off the app");
-  await hold(page, override, () => expect.poll(() => fake.said.length).toBe(2));
+  await page.getByLabel("Reason for flying missions anyway").fill("height read off the app");
+  await hold(page, override, () => expect.poll(() => fake.requests.length).toBe(2));
   await page.keyboard.press("3");
-  await hold(page, page.getByRole("button", { name: "Dismiss the hazard of 3 Cedar" }), () =>
-    expect.poll(() => fake.said.length).toBe(3),
+  await hold(page, page.getByRole("button", { name: "Clear the hazard area of 3 Cedar" }), () =>
+    expect.poll(() => fake.requests.length).toBe(3),
   );
-  expect(fake.said).toEqual([
+  expect(fake.requests).toEqual([
     ["/api/vehicles/SN-001/authority", { holder: "operator" }],
     ["/api/vehicles/SN-001/preflight/override", { reason: "height read off the app" }],
     ["/api/vehicles/SN-003/hazard/dismiss", null],
   ]);
 });
 
-test("flies a vehicle to a press on the map only when the gate allows it", async ({ page }) => {
+test("flies a vehicle to a target on the map only if the gate allows it", async ({ page }) => {
   const fake = await open(page);
-  const reason = "the way leads through the keep-out zone Barn";
-  fake.check = { accepted: false, rule: "keep_out", reason };
+  const reason = "path crosses keep-out zone Barn";
+  fake.checkResult = { accepted: false, rule: "keep_out", reason };
   await page.keyboard.press("1");
   await page.keyboard.press("g");
   await page.locator(".map-canvas").click({ position: { x: 420, y: 120 } });
-  await expect(page.getByText(`Refused (keep out): ${reason}`)).toBeVisible();
-  await expect(page.locator(".fly-course")).toHaveText(/m towards \d{3}°, about/);
+  await expect(page.getByText(`Refused: ${reason}`)).toBeVisible();
+  await expect(page.locator(".fly-course")).toHaveText(/m, bearing \d{3}°, about/);
   const go = page.getByRole("button", { name: "Fly 1 Alder there and hold" });
   await expect(go).toHaveAttribute("aria-disabled", "true");
-  fake.check = {};
-  await expect(page.getByText("The safety gate allows it as of now.")).toBeVisible();
+  fake.checkResult = {};
+  await expect(page.getByText("Allowed by the safety gate.")).toBeVisible();
   await hold(page, go, () => expect.poll(() => fake.orders.length).toBe(1));
-  const [given] = fake.orders;
-  expect(given).toMatchObject({ serials: ["SN-001"], takeoff: false, order: { kind: "goto" } });
-  expect(given?.owner).toMatch(/^[0-9a-f]{32}$/);
+  const [order] = fake.orders;
+  expect(order).toMatchObject({ serials: ["SN-001"], takeoff: false, order: { kind: "goto" } });
+  expect(order?.owner).toMatch(/^[0-9a-f]{32}$/);
   await page.locator("body").press("Escape");
   await expect(page.locator(".fly")).toBeHidden();
 });
 
-test("calls the fleet home in layers and tells who waits and who is left out", async ({ page }) => {
+test("returns the fleet in layers and shows waiting and excluded vehicles", async ({ page }) => {
   const fake = await open(page);
   await hold(page, page.getByRole("button", { name: "Return all vehicles in layers" }), () =>
-    expect.poll(() => fake.said).toEqual([["/api/fleet-return", { serials: null }]]),
+    expect.poll(() => fake.requests).toEqual([["/api/fleet-return", { serials: null }]]),
   );
-  await expect(page.getByTestId("returning-SN-002")).toContainText("its pad is in use by Alder");
-  await expect(page.getByTestId("returning-SN-003")).toContainText("is left out");
+  await expect(page.getByTestId("returning-SN-002")).toContainText("pad in use by Alder");
+  await expect(page.getByTestId("returning-SN-003")).toContainText("not included");
 });
 
-for (const look of LOOKS) {
+for (const theme of THEMES) {
   for (const [width, height] of [
     [1440, 900],
     [360, 740],
   ] as const) {
-    test(`is legible with all of it: ${look.name}, ${width} px wide`, async ({ page }) => {
+    test(`is legible with fences and fly here: ${theme.name}, ${width} px wide`, async ({
+      page,
+    }) => {
       await page.setViewportSize({ width, height });
-      await page.emulateMedia({ colorScheme: look.colorScheme });
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
       await open(page);
-      await wear(page, look);
+      await applyTheme(page, theme);
       await page.keyboard.press("1");
       await page.keyboard.press("g");
-      await page.getByRole("button", { name: "Aim at the map's middle" }).click();
-      await expect(page.getByText("The safety gate allows it as of now.")).toBeVisible();
+      await page.getByRole("button", { name: "Use map centre" }).click();
+      await expect(page.getByText("Allowed by the safety gate.")).toBeVisible();
       await expect(page.getByText("→ Write go_home_height_m")).toBeVisible();
       expect(await smallTexts(page)).toEqual([]);
       expect(await smallTargets(page)).toEqual([]);
       expect(await faintTexts(page)).toEqual([]);
       expect(await cornerFaults(page)).toEqual([]);
       expect(await overlaps(page, ".fly button, .orders button")).toEqual([]);
-      await page.screenshot({ path: `screens/fences-${look.name}-${width}.png` });
+      await page.screenshot({ path: `screens/fences-${theme.name}-${width}.png` });
     });
   }
 }

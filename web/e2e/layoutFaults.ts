@@ -1,7 +1,7 @@
 import type { Page } from "@playwright/test";
 import type { Fault } from "./legibility";
 
-/** All stop belongs into the upper right corner, whole, large enough to hit, and under nothing else. */
+/** Faults of the all stop button: it must be fully visible in the upper right corner and large enough. */
 export function cornerFaults(page: Page): Promise<Fault[]> {
   return page.evaluate(() => {
     const button = document.querySelector<HTMLElement>(".all-stop");
@@ -26,7 +26,7 @@ export function cornerFaults(page: Page): Promise<Fault[]> {
   });
 }
 
-/** Pairs of the elements named by `selector` that lie on each other, or stick out of the page's sides. */
+/** Elements matching `selector` that overlap each other or extend beyond the page. */
 export function overlaps(page: Page, selector: string): Promise<Fault[]> {
   return page.evaluate((selector) => {
     const shown = [...document.querySelectorAll<HTMLElement>(selector)]
@@ -34,7 +34,7 @@ export function overlaps(page: Page, selector: string): Promise<Fault[]> {
       .map((element) => ({ name: element.textContent, box: element.getBoundingClientRect() }));
     const outside = shown
       .filter(({ box }) => box.left < 0 || box.right > document.documentElement.clientWidth)
-      .map(({ name }) => `${name} sticks out`);
+      .map(({ name }) => `${name} extends beyond the page`);
     const pairs = shown.flatMap((a, index) =>
       shown
         .slice(index + 1)
@@ -43,7 +43,7 @@ export function overlaps(page: Page, selector: string): Promise<Fault[]> {
             Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left) > 0.5 &&
             Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top) > 0.5,
         )
-        .map((b) => `${a.name} on ${b.name}`),
+        .map((b) => `${a.name} overlaps ${b.name}`),
     );
     return [...outside, ...pairs];
   }, selector);

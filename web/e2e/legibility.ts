@@ -1,9 +1,9 @@
 import type { Page } from "@playwright/test";
 
-/** Something on the page that is too small or too faint, described for a person. */
+/** Description of a text or control that is too small or too faint. */
 export type Fault = string;
 
-/** Text smaller than 16 px, other than what only screen readers get. */
+/** Visible text smaller than 16 px. */
 export function smallTexts(page: Page): Promise<Fault[]> {
   return page.evaluate(() => {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
@@ -19,7 +19,7 @@ export function smallTexts(page: Page): Promise<Fault[]> {
   });
 }
 
-/** Buttons and boxes whose target is under 44 px either way; a box counts with its label. */
+/** Buttons and inputs smaller than 44 px in either direction; an input counts with its label. */
 export function smallTargets(page: Page): Promise<Fault[]> {
   return page.evaluate(() => {
     const targets = [...document.querySelectorAll<HTMLElement>("button, input")];
@@ -33,13 +33,13 @@ export function smallTargets(page: Page): Promise<Fault[]> {
   });
 }
 
-/** Text whose contrast with what lies behind it is under 4.5 to 1 (WCAG 2, level AA). */
+/** Text whose contrast with its background is below 4.5 to 1 (WCAG 2, level AA). */
 export function faintTexts(page: Page): Promise<Fault[]> {
   return page.evaluate(() => {
     type Rgba = [number, number, number, number];
     const canvas = new OffscreenCanvas(1, 1);
     const pen = canvas.getContext("2d", { willReadFrequently: true });
-    if (pen === null) throw new Error("The browser gives no 2D canvas.");
+    if (pen === null) throw new Error("No 2D canvas available.");
     const parse = (colour: string): Rgba => {
       pen.clearRect(0, 0, 1, 1);
       pen.fillStyle = colour;
@@ -70,7 +70,7 @@ export function faintTexts(page: Page): Promise<Fault[]> {
       const element = walker.currentNode.parentElement;
       const text = walker.currentNode.textContent?.trim() ?? "";
       if (element === null || text === "" || !element.checkVisibility()) continue;
-      // An order that cannot be given is faint on purpose, and says so in words.
+      // Disabled orders are faint on purpose.
       if (element.closest("[aria-disabled=true], :disabled") !== null) continue;
       const ground = behind(element);
       const ratio = contrast(over(parse(getComputedStyle(element).color), ground), ground);

@@ -2,7 +2,7 @@ import type { Page } from "@playwright/test";
 
 /**
  * The share of the map's pixels, 0 to 1, that differ from its most frequent colour: near 0 for a blank
- * map, a few hundredths for lines alone, large when an image lies on it.
+ * map, a few hundredths with lines only, large with an image.
  */
 export async function drawnShare(page: Page): Promise<number> {
   const picture = await page.locator(".map-canvas canvas").screenshot();
@@ -11,7 +11,7 @@ export async function drawnShare(page: Page): Promise<number> {
     const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
     const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
     const pen = canvas.getContext("2d");
-    if (pen === null) throw new Error("The browser gives no 2D canvas.");
+    if (pen === null) throw new Error("No 2D canvas available.");
     pen.drawImage(bitmap, 0, 0);
     const { data } = pen.getImageData(0, 0, bitmap.width, bitmap.height);
     const counts = new Map<number, number>();

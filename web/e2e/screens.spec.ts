@@ -2,10 +2,10 @@ import { expect, test } from "@playwright/test";
 import { busyState } from "./fake/busyState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
-import { LOOKS, wear } from "./looks";
 import { drawnShare } from "./mapPicture";
+import { applyTheme, THEMES } from "./themes";
 
-/** Pictures of the page for people to look at: `npm run screens`, then `web/screens/`. */
+/** Screenshots for review: `npm run screens`, then `web/screens/`. */
 const SIZES = [
   { width: 1440, height: 900 },
   { width: 1024, height: 768 },
@@ -14,32 +14,32 @@ const SIZES = [
   { width: 360, height: 740 },
 ] as const;
 
-for (const look of LOOKS) {
+for (const theme of THEMES) {
   for (const size of SIZES) {
-    test(`${look.name} at ${size.width}x${size.height}`, async ({ page }) => {
+    test(`${theme.name} at ${size.width}x${size.height}`, async ({ page }) => {
       await page.setViewportSize(size);
-      await page.emulateMedia({ colorScheme: look.colorScheme });
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
       const fake = await FakeStation.behind(page, busyState(0));
       fake.showPicture(await fieldPicture(page));
       const begin_ms = performance.now();
       await page.goto("/");
-      const talk = setInterval(
-        () => fake.say(busyState((performance.now() - begin_ms) / 1000)),
+      const timer = setInterval(
+        () => fake.send(busyState((performance.now() - begin_ms) / 1000)),
         100,
       );
-      await wear(page, look);
+      await applyTheme(page, theme);
       await page.getByRole("button", { name: /^vehicle 1 Alder/ }).waitFor();
       await page.keyboard.press("1");
       await page.keyboard.press("Shift+Digit2");
       await page.getByText("frame 12").first().waitFor();
       await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.1);
-      await page.screenshot({ path: `screens/${look.name}-${size.width}.png` });
-      clearInterval(talk);
+      await page.screenshot({ path: `screens/${theme.name}-${size.width}.png` });
+      clearInterval(timer);
     });
   }
 }
 
-test("contact lost, help and a held button", async ({ page }) => {
+test("connection lost, help and a held button", async ({ page }) => {
   const fake = await FakeStation.behind(page, busyState(0));
   fake.showPicture(await fieldPicture(page));
   await page.goto("/");
@@ -49,12 +49,12 @@ test("contact lost, help and a held button", async ({ page }) => {
   await page.keyboard.down("L");
   await expect(page.getByText("Keep holding to land")).toBeVisible();
   await page.screenshot({ path: "screens/holding.png" });
-  await expect(page.getByText("(command 44)")).toBeVisible();
+  await expect(page.getByText(/^Accepted: /)).toBeVisible();
   await page.keyboard.up("L");
   await page.keyboard.up("Shift");
   await page.screenshot({ path: "screens/answer.png" });
-  await fake.vanish();
-  await expect(page.getByText("No contact with the station.")).toBeVisible();
+  await fake.goOffline();
+  await expect(page.getByText("No connection to the station.")).toBeVisible();
   await page.locator(".status-button").click();
   await page.screenshot({ path: "screens/lost.png" });
   await page.locator(".status-button").click();

@@ -7,8 +7,8 @@ import { build, preview } from "vite";
 const ROOT = fileURLToPath(new URL("..", import.meta.url));
 
 /**
- * Builds the page into a folder of its own and serves it on a port the system chooses, so that runs at the
- * same time never meet. The address goes to the tests in `RECON_E2E_PAGE`.
+ * Builds the page into a temporary folder and serves it on a free port, so that concurrent runs do not
+ * interfere. Tests get the address in `RECON_E2E_PAGE`.
  */
 export default async function servePage(): Promise<() => Promise<void>> {
   const outDir = await mkdtemp(join(tmpdir(), "recon-console-"));
@@ -21,7 +21,7 @@ export default async function servePage(): Promise<() => Promise<void>> {
   });
   const address = server.httpServer.address();
   if (address === null || typeof address === "string") {
-    throw new Error(`The page's server has no port but ${address}.`);
+    throw new Error(`Expected a port, got ${address}.`);
   }
   process.env["RECON_E2E_PAGE"] = `http://127.0.0.1:${address.port}`;
   return async () => {

@@ -4,12 +4,12 @@ import { FakeStation } from "./fake/station";
 import { surveyedState, WAYS } from "./fake/surveyedState";
 import { cornerFaults, overlaps } from "./layoutFaults";
 import { faintTexts, smallTargets, smallTexts } from "./legibility";
-import { LOOKS, wear } from "./looks";
-import { startStation } from "./runningStation";
+import { startStation } from "./stationProcess";
+import { applyTheme, THEMES } from "./themes";
 
-/** The eye draws its first frame before it connects, which takes a busy machine a while. */
+/** The imaging drone renders its first frame before it connects, which is slow on a busy machine. */
 const CONNECT_WITHIN_MS = 60_000;
-/** Two that take off side by side wait for one another; a refused mission is asked for after 15 s. */
+/** Vehicles taking off side by side wait for each other; a refused mission is retried after 15 s. */
 const FLIES_WITHIN_MS = 60_000;
 
 async function hold(page: Page, button: Locator, until: () => Promise<void>): Promise<void> {
@@ -19,7 +19,7 @@ async function hold(page: Page, button: Locator, until: () => Promise<void>): Pr
   await page.keyboard.up("Enter");
 }
 
-test("plans a survey of the site's region, flies it with two vehicles, pauses and aborts it", async ({
+test("plans a survey of a site region, flies it with two vehicles, pauses and aborts it", async ({
   page,
 }) => {
   test.setTimeout(240_000);
@@ -29,40 +29,40 @@ test("plans a survey of the site's region, flies it with two vehicles, pauses an
     await expect(page.locator("button.craft")).toHaveCount(4, { timeout: CONNECT_WITHIN_MS });
     const panel = page.getByRole("region", { name: "Surveys" });
 
-    await test.step("planned, nothing flies by it", async () => {
+    await test.step("planned, nothing moves", async () => {
       await panel.getByLabel("Region").selectOption("south-east field");
       await panel.getByLabel("Height above takeoff, m").fill("40");
-      await panel.getByRole("button", { name: "Plan rows" }).click();
-      await expect(panel.getByText("is planned, and waits to be started")).toBeVisible();
+      await panel.getByRole("button", { name: "Plan survey" }).click();
+      await expect(panel.getByText("Planned, not started")).toBeVisible();
       await expect(page.getByText("1 of 4 flying")).toBeVisible();
     });
 
     const ways = page.waitForResponse(/\/api\/surveys\/\d+\/ways$/);
-    await test.step("two that may take off fly it", async () => {
+    await test.step("two with takeoff allowed fly it", async () => {
       for (const name of ["Drone 1", "Drone 2"]) {
         await page.getByRole("checkbox", { name: new RegExp(name) }).check();
       }
-      await panel.getByLabel("they may take off, once").check();
+      await panel.getByLabel("Allow takeoff for this start").check();
       const start = panel.getByRole("button", { name: /^Start with selected: .*Drone 1.*Drone 2/ });
-      await hold(page, start, () => expect(panel.getByText("is being flown")).toBeVisible());
-      await expect(panel.getByText("flies rows")).toHaveCount(2, { timeout: FLIES_WITHIN_MS });
+      await hold(page, start, () => expect(panel.getByText(/: (Running|Stopped)/)).toBeVisible());
+      await expect(panel.getByText(/ flying rows$/)).toHaveCount(2, { timeout: FLIES_WITHIN_MS });
       await expect(page.getByText("3 of 4 flying")).toBeVisible({ timeout: FLIES_WITHIN_MS });
     });
 
-    await test.step("its rows and cells are on the map", async () => {
+    await test.step("its rows and coverage are on the map", async () => {
       expect((await (await ways).json()).rows.length).toBeGreaterThan(3);
       const cells = page.waitForResponse(/\/api\/surveys\/\d+\/cells\.png/);
-      await page.getByLabel("survey's cells").check();
+      await page.getByLabel("Coverage").check();
       expect((await cells).status()).toBe(200);
       await page.screenshot({ path: "screens/survey-flown.png" });
     });
 
     await test.step("a short press pauses it, a long one aborts it", async () => {
       await hold(page, panel.getByRole("button", { name: /^Pause survey/ }), () =>
-        expect(panel.getByText("is paused")).toBeVisible(),
+        expect(panel.getByText(/: Paused/)).toBeVisible(),
       );
       await hold(page, panel.getByRole("button", { name: /^Abort survey/ }), () =>
-        expect(panel.getByText("is aborted")).toBeVisible(),
+        expect(panel.getByText(/: Aborted/)).toBeVisible(),
       );
       await expect(panel.getByRole("button", { name: /survey south-east field/ })).toHaveCount(0);
     });
@@ -71,28 +71,28 @@ test("plans a survey of the site's region, flies it with two vehicles, pauses an
   }
 });
 
-for (const look of LOOKS) {
+for (const theme of THEMES) {
   for (const [width, height] of [
     [1440, 900],
     [360, 740],
   ] as const) {
-    test(`is legible while surveys fly: ${look.name}, ${width} px wide`, async ({ page }) => {
+    test(`is legible during surveys: ${theme.name}, ${width} px wide`, async ({ page }) => {
       await page.setViewportSize({ width, height });
-      await page.emulateMedia({ colorScheme: look.colorScheme });
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
       const fake = await FakeStation.behind(page, surveyedState(0));
       fake.ways = WAYS;
       fake.showPicture(await fieldPicture(page));
       await page.goto("/");
       const begin_ms = performance.now();
-      const talk = setInterval(
-        () => fake.say(surveyedState((performance.now() - begin_ms) / 1000)),
+      const timer = setInterval(
+        () => fake.send(surveyedState((performance.now() - begin_ms) / 1000)),
         100,
       );
-      page.once("close", () => clearInterval(talk));
-      await wear(page, look);
+      page.once("close", () => clearInterval(timer));
+      await applyTheme(page, theme);
       await page.keyboard.press("3");
       const panel = page.getByRole("region", { name: "Surveys" });
-      await expect(panel.getByText("it was called home")).toBeVisible();
+      await expect(panel.getByText("called home")).toBeVisible();
       await panel.getByText("New survey").click();
       expect(await smallTexts(page)).toEqual([]);
       expect(await smallTargets(page)).toEqual([]);
@@ -100,9 +100,9 @@ for (const look of LOOKS) {
       expect(await cornerFaults(page)).toEqual([]);
       expect(await overlaps(page, ".survey-form label, .section-buttons button")).toEqual([]);
       await panel.evaluate((one) => one.scrollIntoView());
-      await page.screenshot({ path: `screens/survey-${look.name}-${width}.png` });
+      await page.screenshot({ path: `screens/survey-${theme.name}-${width}.png` });
       await panel.locator("form").evaluate((form) => form.scrollIntoView({ block: "end" }));
-      await page.screenshot({ path: `screens/survey-new-${look.name}-${width}.png` });
+      await page.screenshot({ path: `screens/survey-new-${theme.name}-${width}.png` });
     });
   }
 }

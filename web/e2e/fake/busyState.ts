@@ -1,7 +1,7 @@
 import type { StationState } from "../../src/protocol";
 import { alarm, at, command, link, station, vehicle } from "../../src/testing/fakeState";
 
-/** A field on a bad day: everything a page must be able to show at once. */
+/** A field with many problems: everything the page must be able to show at once. */
 export function busyState(elapsed_s: number): StationState {
   const vehicles = [
     vehicle(1, {
@@ -44,13 +44,13 @@ export function busyState(elapsed_s: number): StationState {
       alarm(2, {
         severity: "critical",
         vehicle_name: "Cedar",
-        text: "Flying, and nothing heard for 4 s.",
+        text: "Flying without telemetry for 4 s.",
         raised_age_s: 1.2,
       }),
       alarm(3, {
         severity: "error",
         vehicle_name: "Elm",
-        text: "Link 9 claims to be this vehicle too.",
+        text: "Link 9 reports the same serial number.",
         raised_age_s: 60,
         is_acknowledged: true,
       }),
@@ -69,7 +69,7 @@ export function busyState(elapsed_s: number): StationState {
         vehicle_name: "Elm",
         phase: "refused_by_station",
         history: [{ phase: "refused_by_station", age_s: 3, note: "" }],
-        note: "flying: it is on the ground, and only an explicit takeoff may lift it",
+        note: "flying: On the ground; takeoff was not allowed",
       }),
     ],
     ground_image: {

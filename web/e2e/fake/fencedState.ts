@@ -1,7 +1,7 @@
 import type { PreflightView, StationState } from "../../src/protocol";
 import { alarm, area, at, command, hazard, station, vehicle } from "../../src/testing/fakeState";
 
-/** A field with fences, a vehicle that is not heard, one that is steered, and a fleet on its way home. */
+/** A field with fences, a lost vehicle, a steered one, and a fleet returning home. */
 export function fencedState(elapsed_s: number): StationState {
   const [longitude_deg, latitude_deg] = at(40, 110);
   const vehicles = [
@@ -10,7 +10,7 @@ export function fencedState(elapsed_s: number): StationState {
         holder: "guidance",
         holder_name: "survey",
         age_s: 64,
-        reason: "it flies the survey",
+        reason: "survey running",
       },
     }),
     vehicle(2, {
@@ -66,7 +66,7 @@ export function fencedState(elapsed_s: number): StationState {
       alarm(1, {
         severity: "critical",
         vehicle_name: "Cedar",
-        text: "Flying, and nothing heard for 5 s.",
+        text: "Flying without telemetry for 5 s.",
       }),
     ],
     commands: [
@@ -100,7 +100,7 @@ export function fencedState(elapsed_s: number): StationState {
           vehicle_name: "Birch",
           stage: "waiting",
           wave: 2,
-          reason: "its pad is in use by Alder",
+          reason: "pad in use by Alder",
         },
         {
           ...returning,
@@ -111,14 +111,14 @@ export function fencedState(elapsed_s: number): StationState {
           layer_height_m: null,
           layer_height_above_takeoff_m: null,
           pad: null,
-          reason: "it is not heard",
+          reason: "no telemetry",
         },
       ],
     },
   };
 }
 
-/** A checklist with a point that holds missions back. */
+/** A checklist with an item that blocks missions. */
 export const CHECKLIST: PreflightView = {
   serial: "SN-001",
   name: "Alder",
@@ -137,7 +137,7 @@ export const CHECKLIST: PreflightView = {
       key: "go_home_height",
       name: "Go-home height",
       state: "fails",
-      text: "the site's file does not say it",
+      text: "not set in the site file",
       to_do: "Write go_home_height_m into the vehicle's profile.",
       holds_back: true,
     },

@@ -1,13 +1,13 @@
 import type { Page } from "@playwright/test";
 
-/** A picture like a field seen from above, drawn by the browser: rows, a path, a clear round edge. */
+/** A PNG resembling a field from above, drawn by the browser: rows, a path, a round edge. */
 export async function fieldPicture(page: Page): Promise<Buffer> {
   const url = await page.evaluate(() => {
     const canvas = document.createElement("canvas");
     canvas.width = 520;
     canvas.height = 520;
     const pen = canvas.getContext("2d");
-    if (pen === null) throw new Error("The browser gives no 2D canvas.");
+    if (pen === null) throw new Error("No 2D canvas available.");
     pen.arc(260, 260, 258, 0, 2 * Math.PI);
     pen.clip();
     for (let row = 0; row < 52; row += 1) {

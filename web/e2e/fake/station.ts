@@ -7,17 +7,17 @@ import type {
   SurveyWays,
 } from "../../src/protocol";
 
-/** A station inside the browser: answers the page's requests, and says what a test lets it say. */
+/** A station inside the browser: answers requests and sends the states a test provides. */
 export class FakeStation {
   readonly orders: OrderRequest[] = [];
   readonly acknowledged: number[] = [];
   allStops = 0;
-  /** Every other thing said to the station: its path and what it carried. */
-  readonly said: [path: string, body: unknown][] = [];
-  /** What the gate says to orders that are checked. */
-  check: Partial<OrderResult> = {};
+  /** All other requests: path and body. */
+  readonly requests: [path: string, body: unknown][] = [];
+  /** The gate's result for checked orders. */
+  checkResult: Partial<OrderResult> = {};
   preflight: PreflightView | null = null;
-  /** What is told of any survey's ways. */
+  /** Answer for any survey's paths. */
   ways: SurveyWays | null = null;
   private sockets: WebSocketRoute[] = [];
   private isReachable = true;
@@ -25,7 +25,7 @@ export class FakeStation {
 
   private constructor(private state: StationState) {}
 
-  /** Takes the place of the station for `page`, before it is opened. */
+  /** Replaces the station for `page`; call before opening it. */
   static async behind(page: Page, state: StationState): Promise<FakeStation> {
     const fake = new FakeStation(state);
     await page.routeWebSocket(/\/api\/stream\?owner=[0-9a-f]{32}$/, (socket) =>
@@ -39,26 +39,26 @@ export class FakeStation {
     return fake;
   }
 
-  /** Says a new state, made so many station seconds after the first. */
-  say(state: StationState): void {
+  /** Sends a new state. */
+  send(state: StationState): void {
     this.state = state;
     for (const socket of this.sockets) socket.send(JSON.stringify(state));
   }
 
-  /** What `ground-image.png` and `frame.jpg` give. */
+  /** Sets the picture of `ground-image.png` and `frame.jpg`. */
   showPicture(picture: Buffer): void {
     this.picture = picture;
   }
 
-  /** Closes the streams and answers nothing until `comeBack`. */
-  async vanish(): Promise<void> {
+  /** Closes the streams and answers nothing until `goOnline`. */
+  async goOffline(): Promise<void> {
     this.isReachable = false;
-    const gone = this.sockets;
+    const closed = this.sockets;
     this.sockets = [];
-    await Promise.all(gone.map((socket) => socket.close()));
+    await Promise.all(closed.map((socket) => socket.close()));
   }
 
-  comeBack(): void {
+  goOnline(): void {
     this.isReachable = true;
   }
 
@@ -75,16 +75,19 @@ export class FakeStation {
   private answer(path: string, body: string | null) {
     if (!this.isReachable) return null;
     if (path === "/api/orders") return this.order(JSON.parse(body ?? "{}") as OrderRequest);
-    if (path === "/api/orders/check") return this.judge(JSON.parse(body ?? "{}") as OrderRequest);
+    if (path === "/api/orders/check")
+      return this.checkOrder(JSON.parse(body ?? "{}") as OrderRequest);
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
     if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
-    const isWord = /\/(authority|override)$/.test(path);
-    if (isWord || path === "/api/fleet-return") {
-      this.said.push([path, JSON.parse(body ?? "{}")]);
-      return { json: isWord ? { accepted: true, rule: null, reason: null } : { results: [] } };
+    const isControlRequest = /\/(authority|override)$/.test(path);
+    if (isControlRequest || path === "/api/fleet-return") {
+      this.requests.push([path, JSON.parse(body ?? "{}")]);
+      return {
+        json: isControlRequest ? { accepted: true, rule: null, reason: null } : { results: [] },
+      };
     }
     if (/\/dismiss$|^\/api\/separation-hold\//.test(path)) {
-      this.said.push([path, null]);
+      this.requests.push([path, null]);
       return { status: 204 };
     }
     if (path === "/api/all-stop") return this.stopAll();
@@ -97,7 +100,7 @@ export class FakeStation {
       const frame = String(this.state.ground_image?.frame_id ?? 1);
       return { body: this.picture, contentType: "image/png", headers: { "X-Frame-Id": frame } };
     }
-    return { status: 404, json: { error: "there is no such thing here" } };
+    return { status: 404, json: { error: "not found" } };
   }
 
   private order(request: OrderRequest) {
@@ -105,9 +108,9 @@ export class FakeStation {
     return { json: { results: this.results(request) } };
   }
 
-  private judge(request: OrderRequest) {
-    const judged = this.results(request).map((result) => ({ ...result, ...this.check }));
-    return { json: { results: judged } };
+  private checkOrder(request: OrderRequest) {
+    const checked = this.results(request).map((result) => ({ ...result, ...this.checkResult }));
+    return { json: { results: checked } };
   }
 
   private results(request: OrderRequest) {

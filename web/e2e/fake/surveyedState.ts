@@ -7,13 +7,13 @@ const ROWS = [-60, -30, 0, 30, 60].map((east_m): [number, number][] => [
   at(east_m, 70),
 ]);
 
-/** A field that is surveyed: one vehicle flies rows, one goes home for a battery, one waits. */
+/** A field during a survey: one vehicle flies rows, one returns for a battery, one waits. */
 export function surveyedState(elapsed_s: number): StationState {
   const authority = {
     holder: "guidance",
     holder_name: "survey",
     age_s: 64,
-    reason: "it flies the survey",
+    reason: "survey running",
   };
   const vehicles = [
     vehicle(1, { authority: { ...authority, holder: "guidance" } }),
@@ -56,21 +56,20 @@ export function surveyedState(elapsed_s: number): StationState {
             ...waits,
             serial: "SN-002",
             vehicle_name: "Birch",
-            waits_for: "it was called home: its battery lasts for no row that is left",
+            waits_for: "called home: battery too low for the remaining rows",
           },
           {
             ...waits,
             serial: "SN-003",
             vehicle_name: "Cedar",
-            waits_for: "it is on the ground, and nobody has said that it may take off (again)",
+            waits_for: "On the ground; takeoff was not allowed",
           },
         ],
       }),
       survey(3, {
         name: "orchard",
         phase: "paused",
-        reason:
-          "every mission was refused; SN-003: max_height: Cedar: its path would be 52 m above ground; the site allows 50 m",
+        reason: "every mission was refused; Cedar: path at 52 m above ground; the site allows 50 m",
         vehicles: [],
         figures: null,
         cells: null,
@@ -79,7 +78,7 @@ export function surveyedState(elapsed_s: number): StationState {
   };
 }
 
-/** Its rows, a mission that is flown now, and what has been flown. */
+/** The survey's rows, a current mission, and flown paths. */
 export const WAYS: SurveyWays = {
   survey_id: ID,
   rows: ROWS,

@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const PROJECT = fileURLToPath(new URL("../..", import.meta.url));
-/** `make` brings uv here when the system has none. */
+/** Where `make` installs uv if the system has none. */
 const OWN_UV = ".tools/bin/uv";
 const UV = existsSync(join(PROJECT, OWN_UV)) ? OWN_UV : "uv";
 const COMMAND =
@@ -12,16 +12,16 @@ const COMMAND =
 const STARTS_WITHIN_MS = 90_000;
 const ENDS_WITHIN_MS = 10_000;
 
-/** A station with simulated vehicles, in a process of its own. */
+/** A station with simulated vehicles in its own process. */
 export interface RunningStation {
-  /** Where its console is. */
+  /** Address of its console. */
   readonly url: string;
   stop(): Promise<void>;
 }
 
-/** Starts `RECON_E2E_COMMAND` with these words after it; waits until it prints the console's address. */
-export async function startStation(...words: string[]): Promise<RunningStation> {
-  const station = spawn([COMMAND, ...words].join(" "), {
+/** Starts `RECON_E2E_COMMAND` with these arguments and waits for the console address it prints. */
+export async function startStation(...args: string[]): Promise<RunningStation> {
+  const station = spawn([COMMAND, ...args].join(" "), {
     cwd: PROJECT,
     shell: true,
     detached: true,
@@ -36,12 +36,12 @@ export async function startStation(...words: string[]): Promise<RunningStation> 
 
 function consoleAddress(station: ChildProcess): Promise<string> {
   return new Promise((resolve, reject) => {
-    let said = "";
-    const fail = (why: string) => reject(new Error(`"${COMMAND}" ${why}. It said:\n${said}`));
+    let output = "";
+    const fail = (why: string) => reject(new Error(`"${COMMAND}" ${why}. Output:\n${output}`));
     const timer = setTimeout(() => fail("printed no console address"), STARTS_WITHIN_MS);
     const listen = (chunk: Buffer) => {
-      said += chunk.toString();
-      const url = /^console: (http:\/\/\S+)/m.exec(said)?.[1];
+      output += chunk.toString();
+      const url = /^console: (http:\/\/\S+)/m.exec(output)?.[1];
       if (url === undefined) return;
       clearTimeout(timer);
       resolve(url);
@@ -55,7 +55,7 @@ function consoleAddress(station: ChildProcess): Promise<string> {
   });
 }
 
-/** Ends the station and all it started, first kindly. */
+/** Ends the station and its children: SIGINT first, SIGKILL after a timeout. */
 async function stop(station: ChildProcess): Promise<void> {
   const { pid } = station;
   if (pid === undefined || station.exitCode !== null) return;

@@ -1,0 +1,17 @@
+import { expect, type Page } from "@playwright/test";
+
+/** The page's three themes: the computer's colour scheme, and whether high contrast is on. */
+export const THEMES = [
+  { name: "light", colorScheme: "light", sun: false },
+  { name: "dark", colorScheme: "dark", sun: false },
+  { name: "sun", colorScheme: "light", sun: true },
+] as const;
+
+export type PageTheme = (typeof THEMES)[number];
+
+/** Switches an open page to high contrast if `theme` has it. */
+export async function applyTheme(page: Page, theme: PageTheme): Promise<void> {
+  if (!theme.sun) return;
+  await page.keyboard.press("t");
+  await expect(page.locator("html")).toHaveAttribute("data-theme", "sun");
+}
