@@ -46,7 +46,7 @@ export interface StationSource {
   readonly connection: Accessor<Connection>;
   /** Seconds to add at `now` to every age in `state`; null before the first state. */
   behindS(now: Instant): number | null;
-  /** Sends an order, always without takeoff: no console button may lift a vehicle off the ground. */
+  /** Sends an order, always without takeoff. */
   order(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Makes every flying vehicle hold position; motors stay on. */
   allStop(): Promise<Outcome<readonly OrderResult[]>>;
