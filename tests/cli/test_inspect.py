@@ -12,7 +12,7 @@ import pytest
 import typer
 
 from recon import wire
-from recon.cli.inspect import harmless, inspect, inspect_command
+from recon.cli.inspect import inspect, inspect_command, printable_bytes
 from recon.link.capture import MAGIC, RECORD_HEADER
 
 ACK = wire.encode(wire.Acknowledgment(positive=1, source_pid=253))
@@ -52,11 +52,11 @@ def test_a_whole_packet_in_a_cut_off_one_is_shown() -> None:
     assert lines(image[:-50] + HOVER)[0] == "EmergencyCommand action=0"
 
 
-def test_text_from_the_wire_is_harmless() -> None:
+def test_text_from_the_wire_is_printable_bytes() -> None:
     [shown, _] = lines(NASTY)
     assert shown.isprintable()
     assert "rot" in shown
-    assert harmless(b"\x1b]0;x\x07\xff\\ \xc3\xa4") == "\\x1b]0;x\\x07\ufffd\\\\ \u00e4"
+    assert printable_bytes(b"\x1b]0;x\x07\xff\\ \xc3\xa4") == "\\x1b]0;x\\x07\ufffd\\\\ \u00e4"
     [packet, _] = objects(NASTY)
     assert packet["fields"]["text"].isprintable()
 
@@ -121,7 +121,7 @@ def test_a_damaged_capture_says_where() -> None:
     shown = lines(MAGIC + record(0, 1, HOVER) + record(0, 7, ACK))
     assert shown[0].endswith("EmergencyCommand action=0")
     assert shown[-1] == (
-        "the capture is damaged at byte 33: expected direction 0 or 1, came 7; the rest is left out"
+        "the capture is damaged at byte 33: expected direction 0 or 1, got 7; the rest is skipped"
     )
 
 

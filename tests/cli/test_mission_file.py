@@ -67,7 +67,7 @@ def test_heights_of_a_line_are_above_takeoff(tmp_path: Path) -> None:
         ("", "expected JSON"),
         ("{", "expected JSON"),
         ("[" * 100_000, "expected JSON"),
-        ('{"waypoints": [NaN]}', "NaN is no number"),
+        ('{"waypoints": [NaN]}', "NaN is not a JSON number"),
         ("[1]", "expected a JSON object"),
         ({}, "got neither"),
         ({"type": "Polygon"}, '"Polygon"'),
@@ -96,9 +96,9 @@ def test_what_is_no_mission_is_one_sentence(tmp_path: Path, value: Any, says: st
 
 def test_a_line_without_speed_or_height_asks_for_them(tmp_path: Path) -> None:
     path = written(tmp_path, LINE)
-    with pytest.raises(MissionFileError, match="say --speed"):
+    with pytest.raises(MissionFileError, match="use --speed"):
         read_mission(path, 30.0, None)
-    with pytest.raises(MissionFileError, match="position 1 has no height: say --height"):
+    with pytest.raises(MissionFileError, match="position 1 has no height: use --height"):
         read_mission(path, None, 4.0)
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from recon.cli.negative_numbers import TakesNegativeNumbers
+from recon.cli.commands import TakesNegativeNumbers
 
 app = typer.Typer()
 

@@ -6,7 +6,7 @@ import pytest
 from tests.score.scenes import SMALL, written
 from typer.testing import CliRunner
 
-from recon.cli.app import app
+from recon.cli.commands import app
 
 EVENTS = ["--gear", "events"]
 FEW = [*EVENTS, "--seeds", "2", "--first-seed", "7"]

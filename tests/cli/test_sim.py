@@ -3,6 +3,7 @@
 import asyncio
 import signal
 import sys
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -14,7 +15,8 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from recon import wire
-from recon.cli.sim import parse_home, parse_size, parse_station, sim_command
+from recon.cli.sim import sim_command
+from recon.cli.sim_options import parse_address, parse_home, parse_size
 from recon.sim.errors import SimulationError
 
 LIMIT_S = 60.0
@@ -40,7 +42,7 @@ command.command()(sim_command)
         (["--frames", "/", "--frame-size", "big"], "--frame-size: expected COLSxROWS"),
         (["--replay-site", "/no/such/folder"], "expected a folder with RefFrame.jpeg"),
         (["--replay-site", "/", "--frames", "/"], "--replay-site or --frames, got both"),
-        (["--no-eye", "--frames", "/"], "--no-eye: expected neither"),
+        (["--no-imager", "--frames", "/"], "--no-imager: expected neither"),
         (["--site", "/no/such/folder"], "expected a site's file"),
     ],
 )
@@ -57,14 +59,14 @@ def test_bad_options_get_one_sentence_and_exit_code_2(options: list[str], words:
     [("127.0.0.1:3001", ("127.0.0.1", 3001)), ("[::1]:80", ("::1", 80)), ("a.b:1", ("a.b", 1))],
 )
 def test_stations(text: str, expected: tuple[str, int]) -> None:
-    assert parse_station(text) == expected
+    assert parse_address("--station", text) == expected
 
 
 @given(st.text(max_size=30))
 def test_any_text_is_read_or_refused(text: str) -> None:
-    for parse in (parse_station, parse_home, parse_size):
+    for parse in (partial(parse_address, "--station"), parse_home, parse_size):
         try:
-            values = parse(text)
+            values: tuple[object, ...] = parse(text)
         except SimulationError as problem:
             values = (str(problem), "expected")
         assert len(values) == 2

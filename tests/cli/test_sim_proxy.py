@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from recon.cli.app import app
+from recon.cli.commands import app
 
 LIMIT_S = 60.0
 

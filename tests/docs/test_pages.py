@@ -11,7 +11,7 @@ import pytest
 import typer
 import typer.core
 
-from recon.cli.app import app
+from recon.cli.commands import COMMANDS, app
 from recon.site import load_site
 
 ROOT = Path(__file__).parents[2]
@@ -50,8 +50,9 @@ def test_commands_and_options_exist(page: Path) -> None:
     for _language, block in FENCE.findall(page.read_text(encoding="utf-8")):
         for line in re.findall(r"^(?:uv run (?:--locked )?)?recon (.+)$", block, re.MULTILINE):
             name, *words = line.split("#")[0].split()
-            assert name in group.commands, f"{page_id(page)}: recon {name}"
-            command = group.commands[name]
+            assert name in COMMANDS, f"{page_id(page)}: recon {name}"
+            command = group.get_command(typer.Context(group), name)
+            assert command is not None
             is_alone = getattr(command, "invoke_without_command", False)
             is_alone = is_alone and (not words or words[0].startswith("--"))
             if isinstance(command, typer.core.TyperGroup) and not is_alone:

@@ -61,7 +61,7 @@ async def field(*sim_options: str, damage: Damage | None = None) -> AsyncIterato
     ticking = asyncio.create_task(driver.run())
     proxy, port = await _proxied(links.port, damage)
     station = f"127.0.0.1:{port}"
-    options = ["--station", station, "--vehicles", "2", "--no-eye", "--airborne", *sim_options]
+    options = ["--station", station, "--vehicles", "2", "--no-imager", "--airborne", *sim_options]
     simulator = await asyncio.create_subprocess_exec(
         sys.executable, "-m", "recon", "sim", *options, stdout=asyncio.subprocess.DEVNULL
     )

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.cli.flown import Flown, addresses, run_options, sim_options
 from tests.cli.processes import Started, started
+from tests.cli.station_process import StationProcess, addresses, run_options, sim_options
 from tests.e2e.wire_tap import WireTap, tapped
 from tests.record.audits import until
 
@@ -74,10 +74,10 @@ class Field:
         sim = sim_options(self.tap.port, VEHICLES, "--grounded", *fault)
         self.simulator: Started = stack.enter_context(started(*sim))
 
-    def start(self) -> Flown:
+    def start(self) -> StationProcess:
         station = self.stack.enter_context(started(*run_options(self.audit, self.station_port)))
         url, link_port = addresses(station)
-        return Flown(station, None, url, link_port, self.audit)
+        return StationProcess(station, None, url, link_port, self.audit)
 
     def take_off(self) -> None:
         standing = self.here.until(lambda them: len(them) == VEHICLES and None not in modes(them))

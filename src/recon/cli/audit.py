@@ -1,6 +1,5 @@
-"""`recon audit show` and `recon audit verify`: what happened, and whether the file is whole."""
+"""`recon audit show` and `recon audit verify`: the entries of an audit, and its integrity."""
 
-import json
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -10,14 +9,15 @@ from typing import Annotated
 import msgspec
 import typer
 
-from recon.cli.at_station import NO_USE
-from recon.cli.output import clean, say
+from recon.cli.commands import new_app
+from recon.cli.connection import WRONG_USE
+from recon.cli.output import print_json, print_line, printable
 from recon.record.audit import AuditLine, decode_line
 from recon.record.audit_check import Verdict, check_audit
 from recon.record.audit_files import audit_files, raw_lines
 from recon.record.errors import RecordError
 
-audit_app = typer.Typer(help="Read a station's audit, and check that it is whole.")
+audit_app = new_app(help="Read a station's audit and verify its integrity.", no_args_is_help=True)
 
 PathsArgument = Annotated[
     list[Path], typer.Argument(metavar="FILE|FOLDER...", help="Audit files, or their folder.")
@@ -28,57 +28,61 @@ PathsArgument = Annotated[
 def show_command(
     paths: PathsArgument,
     vehicle: Annotated[
-        str | None, typer.Option(help="Only what is about this serial or name.")
+        str | None, typer.Option(help="Only entries about this serial or name.")
     ] = None,
     kind: Annotated[
-        str | None, typer.Option(help="Only kinds that begin so, like `order` or `alarm.raised`.")
+        str | None,
+        typer.Option(help="Only kinds that start with this, like `order` or `alarm.raised`."),
     ] = None,
-    who: Annotated[str | None, typer.Option("--by", help="Only what this one asked.")] = None,
+    client: Annotated[str | None, typer.Option("--by", help="Only entries of this client.")] = None,
     positions: Annotated[
         bool, typer.Option("--positions", help="Include vehicle positions.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="The lines as they are.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print entries as JSON lines.")] = False,
 ) -> None:
-    """Show what happened, who asked and when, the oldest first."""
-    with _files_that_can_be_read():
+    """Show audit entries, the oldest first."""
+    with _exits_when_unreadable():
         for line in _lines(paths):
             is_chosen = (
                 (positions or kind is not None or line.kind != "vehicle.position")
                 and (kind is None or line.kind.startswith(kind))
                 and (vehicle is None or vehicle in (line.serial, line.vehicle))
-                and (who is None or line.by == who)
+                and (client is None or line.by == client)
             )
             if is_chosen and as_json:
-                print(json.dumps(msgspec.to_builtins(line)))
+                print_json(msgspec.to_builtins(line))
             elif is_chosen:
-                say(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<16}  {line.text}")
+                print_line(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<16}  {line.text}")
 
 
 @audit_app.command("verify")
 def verify_command(
     paths: PathsArgument,
-    as_json: Annotated[bool, typer.Option("--json", help="Tell it as JSON, for programs.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Check that files are whole: exit code 0 when they are, 1 when not, 2 when unreadable."""
-    with _files_that_can_be_read():
+    """Verify the integrity of audit files.
+
+    Exit code 0 when all are intact, 1 when one is damaged, 2 when one cannot be read.
+    """
+    with _exits_when_unreadable():
         verdicts = [check_audit(path) for path in _files(paths)]
     if as_json:
-        print(json.dumps([_values(verdict) for verdict in verdicts]))
+        print_json([_values(verdict) for verdict in verdicts])
     else:
         for verdict in verdicts:
             for sentence in _sentences(verdict):
-                say(sentence)
+                print_line(sentence)
     raise typer.Exit(0 if all(verdict.is_whole for verdict in verdicts) else 1)
 
 
 @contextmanager
-def _files_that_can_be_read() -> Iterator[None]:
-    """What cannot be read is a wrong use, apart from a file that is damaged."""
+def _exits_when_unreadable() -> Iterator[None]:
+    """Exit with 2 for a file that cannot be read; a damaged one exits with 1."""
     try:
         yield
     except RecordError as problem:
-        print(f"recon: {clean(str(problem))}", file=sys.stderr)
-        raise typer.Exit(NO_USE) from None
+        print(f"recon: {printable(str(problem))}", file=sys.stderr)
+        raise typer.Exit(WRONG_USE) from None
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
@@ -92,7 +96,7 @@ def _files(paths: Sequence[Path]) -> list[Path]:
 
 
 def _lines(paths: Sequence[Path]) -> Iterator[AuditLine]:
-    """Every line that can be read; what cannot is told by `verify`."""
+    """Yield every readable line; `verify` reports the others."""
     for path in _files(paths):
         try:
             with path.open("rb") as file:
@@ -126,17 +130,17 @@ def _values(verdict: Verdict) -> dict[str, object]:
 
 
 def _sentences(verdict: Verdict) -> Iterator[str]:
-    state = "whole" if verdict.is_whole else "DAMAGED"
+    state = "intact" if verdict.is_whole else "DAMAGED"
     yield f"{verdict.path}: {state}, {verdict.lines} lines, last hash {verdict.last_hash}"
     for fault in verdict.faults:
         yield f"  {fault}"
     if verdict.torn_bytes:
-        yield f"  the last {verdict.torn_bytes} bytes are a line cut short, as a crash leaves it"
+        yield f"  the last {verdict.torn_bytes} bytes are an incomplete line, as after a crash"
     if verdict.lost:
-        yield f"  {verdict.lost} entries could not be written then, as the file itself says"
+        yield f"  {verdict.lost} entries could not be written, as the file itself records"
     if verdict.missing_before is not None:
-        yield f"  the file of the run before, {verdict.missing_before}, is not in the folder"
+        yield f"  the previous run's file, {verdict.missing_before}, is not in the folder"
     if not verdict.is_closed and verdict.is_end_known:
-        yield "  the run did not end in order (killed?); the next one notes how far this file went"
+        yield "  the run did not shut down normally; the next run recorded this file's end"
     elif not verdict.is_closed:
-        yield "  the run has not ended in order: it still runs, or was killed, or the end is cut"
+        yield "  no shutdown recorded: the run is still active, was killed, or the end is missing"

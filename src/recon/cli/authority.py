@@ -1,4 +1,8 @@
-"""`recon take`, `release` and `preflight`: who leads a vehicle, and whether it is ready."""
+"""What an operator decides about vehicles without sending them anything.
+
+`recon take`, `release`: control authority. `preflight`: the checklist, and overriding it.
+`dismiss`: a lost vehicle's hazard area. `separation-hold`: automatic holds.
+"""
 
 from enum import Enum
 from typing import Annotated
@@ -6,115 +10,166 @@ from typing import Annotated
 import msgspec
 import typer
 
-from recon.cli.at_station import (
+from recon.cli.connection import (
     DEFAULT_ADDRESS,
     DONE,
     REFUSED,
+    AddressOption,
     JsonOption,
     NameArgument,
     NamesArgument,
-    StationOption,
     TokenOption,
-    at_station,
+    VehicleNameError,
+    named_serials,
+    run_at_station,
 )
-from recon.cli.output import say, say_json, table
-from recon.cli.vehicle_names import NamingError, serials_of
+from recon.cli.output import print_json, print_line, print_table
 from recon.client import Preflight, Refusal, Station
 
 
 class Receiver(Enum):
-    """To whom a vehicle can be left."""
+    """Receiver of control authority."""
 
     PILOT = "pilot"
     GUIDANCE = "guidance"
 
 
+class Switch(Enum):
+    """On or off."""
+
+    ON = "on"
+    OFF = "off"
+
+
 def take_command(
     vehicles: NamesArgument = None,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Take vehicles over: from now on only the operator sets them in motion. Nothing is sent."""
+    """Take control authority for the operator.
 
-    async def work(at: Station) -> int:
+    From then on only the operator's orders set these vehicles in motion. Nothing is sent to them.
+    """
+
+    async def work(station: Station) -> int:
         done = [
-            _told(serial, await at.known(serial).take(), "led by the operator")
-            for serial in serials_of(at, _named(vehicles))
+            _is_done(serial, await station.known(serial).take(), "operator control")
+            for serial in named_serials(station, vehicles)
         ]
         return DONE if all(done) else REFUSED
 
-    at_station(station, token_file, work)
+    run_at_station(address, token_file, work)
 
 
 def release_command(
     vehicles: NamesArgument = None,
-    to: Annotated[Receiver, typer.Option("--to", help="Who leads them then.")] = Receiver.PILOT,
-    station: StationOption = DEFAULT_ADDRESS,
+    to: Annotated[Receiver, typer.Option("--to", help="The new holder.")] = Receiver.PILOT,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Leave vehicles to their pilots, or to the station's own planning. Nothing is sent."""
+    """Hand control authority to the pilot or to guidance.
 
-    async def work(at: Station) -> int:
+    Nothing is sent to the vehicles.
+    """
+
+    async def work(station: Station) -> int:
         done: list[bool] = []
-        for serial in serials_of(at, _named(vehicles)):
-            known = at.known(serial)
+        for serial in named_serials(station, vehicles):
+            known = station.known(serial)
             give = known.give_to_pilot if to is Receiver.PILOT else known.give_to_guidance
-            done.append(_told(serial, await give(), f"led by {to.value}"))
+            done.append(_is_done(serial, await give(), f"{to.value} control"))
         return DONE if all(done) else REFUSED
 
-    at_station(station, token_file, work)
+    run_at_station(address, token_file, work)
 
 
 def preflight_command(
     vehicle: NameArgument,
     override: Annotated[
         str | None,
-        typer.Option("--override", help="Fly missions all the same, for this reason; audited."),
+        typer.Option("--override", metavar="REASON", help="Allow missions anyway; audited."),
     ] = None,
     as_json: JsonOption = False,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Show a vehicle's checklist. Exit code 0 when missions may fly: passed, or overridden."""
+    """Show a vehicle's checklist.
 
-    async def work(at: Station) -> int:
-        (serial,) = serials_of(at, [vehicle])
-        known = at.known(serial)
+    Exit code 0 when missions are allowed: passed, or overridden.
+    """
+
+    async def work(station: Station) -> int:
+        (serial,) = named_serials(station, [vehicle])
+        known = station.known(serial)
         if override is not None:
             refusal = await known.override_preflight(override)
             if refusal is not None:
-                _told(serial, refusal, "")
+                _is_done(serial, refusal, "")
                 return REFUSED
-        return _tell(await known.preflight(), as_json)
+        return _print_checklist(await known.preflight(), as_json)
 
-    at_station(station, token_file, work)
-
-
-def _named(vehicles: list[str] | None) -> list[str]:
-    if not vehicles:
-        raise NamingError("name the vehicles")
-    return vehicles
+    run_at_station(address, token_file, work)
 
 
-def _told(serial: str, refusal: Refusal | None, words: str) -> bool:
+def dismiss_command(
+    vehicle: NameArgument,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Clear a lost vehicle's hazard area.
+
+    Only when you know where the vehicle is: others then fly through the area again. Name an
+    unidentified vehicle as its alarm does.
+    """
+
+    async def work(station: Station) -> int:
+        try:
+            (name,) = named_serials(station, [vehicle])
+        except VehicleNameError:
+            name = vehicle
+        await station.known(name).dismiss_hazard()
+        print_line(f"{name}: hazard area cleared (audited)")
+        return DONE
+
+    run_at_station(address, token_file, work)
+
+
+def separation_hold_command(
+    switch: Annotated[Switch, typer.Argument(help="Off raises an alarm.")],
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Turn automatic holds for vehicles on conflicting paths on or off."""
+
+    async def work(station: Station) -> int:
+        await station.switch_separation_hold(switch is Switch.ON)
+        print_line(f"automatic separation holds are {switch.value.upper()}")
+        return DONE
+
+    run_at_station(address, token_file, work)
+
+
+def _is_done(serial: str, refusal: Refusal | None, result: str) -> bool:
+    """Print a vehicle's result or refusal; return whether it was accepted."""
     if refusal is None:
-        say(f"{serial}: {words}")
+        print_line(f"{serial}: {result}")
     else:
-        say(f"{serial}: refused by the rule {refusal.rule}: {refusal.reason}")
+        print_line(f"{serial}: refused ({refusal.rule}): {refusal.reason}")
     return refusal is None
 
 
-def _tell(checklist: Preflight, as_json: bool) -> int:
+def _print_checklist(checklist: Preflight, as_json: bool) -> int:
     may_fly = checklist.is_passed or checklist.override is not None
     if as_json:
-        say_json(msgspec.to_builtins(checklist))
+        print_json(msgspec.to_builtins(checklist))
         return DONE if may_fly else REFUSED
     rows = [(p.name, p.state, p.text, p.to_do) for p in checklist.points]
-    table(f"preflight of {checklist.name}", ("point", "state", "what is", "what to do"), rows)
+    columns = ("check", "state", "finding", "what to do")
+    print_table(f"preflight of {checklist.name}", columns, rows)
     if checklist.override is not None:
-        say(f"overridden by {checklist.override.by}: {checklist.override.reason}")
+        print_line(f"overridden by {checklist.override.by}: {checklist.override.reason}")
     elif checklist.is_passed:
-        say("passed")
+        print_line("passed")
     else:
-        say(f"{len(checklist.unmet)} points hold missions back")
+        print_line(f"failed: {len(checklist.unmet)} checks block missions")
     return DONE if may_fly else REFUSED

@@ -9,11 +9,9 @@ from typing import Annotated, Any
 import typer
 
 import recon
-from recon.cli.console_files import console_folder
-from recon.cli.event_loop import run_in_loop
-from recon.cli.run import announce
+from recon.cli.foreground import print_now, run_in_loop
+from recon.cli.run import announce, console_folder
 from recon.cli.scripted_operator import fly_surveys
-from recon.cli.until_stopped import say_at_once
 from recon.client import ClientError
 from recon.model.errors import ReconError
 from recon.score import Scenario, ScenarioError, load_scenario
@@ -45,7 +43,10 @@ def demo_command(
         int, typer.Option(min=0, help="The same seed has the same sky and flies the same way.")
     ] = DEMO_SEED,
 ) -> None:
-    """Run the station with a scenario's simulated drones, which survey its field until Ctrl+C."""
+    """Run the station with simulated drones that survey a field.
+
+    It runs until Ctrl+C.
+    """
     try:
         path = demo_scenario_file() if scenario is None else scenario
         played = load_scenario(path)
@@ -127,11 +128,11 @@ class _Demo:
 
     async def _fly(self, url: str) -> None:
         try:
-            await fly_surveys(url, self._scenario, say_at_once)
+            await fly_surveys(url, self._scenario, print_now)
         except ClientError as problem:
             # A station that is told to end takes this task with it, and has nothing to explain.
             await asyncio.sleep(STATION_ENDS_WITHIN_S)
-            say_at_once(f"nothing more is flown by itself: {problem}")
+            print_now(f"nothing more is flown by itself: {problem}")
 
     async def _end_simulator(self) -> None:
         simulator = self._simulator

@@ -10,7 +10,6 @@ from inspect import signature
 from pathlib import Path
 from typing import Annotated, Any, BinaryIO, NamedTuple, TextIO
 
-import numpy as np
 import typer
 
 from recon import wire
@@ -21,7 +20,7 @@ LATEST_NS = 2**63 - 1
 
 
 class Read(NamedTuple):
-    """Bytes of one read: which way they went and when, unless the stream is a bare one."""
+    """Bytes of one read; direction and time only in a capture."""
 
     data: bytes
     direction: Direction | None = None
@@ -29,22 +28,23 @@ class Read(NamedTuple):
 
 
 class DamagedCaptureError(Exception):
-    """A capture file goes on with something that is no record."""
+    """A capture file contains something that is not a record."""
 
 
 def inspect_command(
     files: Annotated[
         list[str],
-        typer.Argument(
-            metavar="FILE...", help="Bytes as they were received, or captures; - for stdin."
-        ),
+        typer.Argument(metavar="FILE...", help="Raw streams or capture files; - for stdin."),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
 ) -> None:
-    """Print the packets of a captured byte stream, then what the deframer counted."""
+    """Print the packets of a captured stream.
+
+    After them come the deframer's counters.
+    """
     for file in files:
         if len(files) > 1 and not as_json:
-            typer.echo(f"== {harmless(file.encode(errors='replace'))}")
+            typer.echo(f"== {printable_bytes(file.encode(errors='replace'))}")
         _inspect_file(file, as_json)
 
 
@@ -57,10 +57,10 @@ def _inspect_file(file: str, as_json: bool) -> None:
                 inspect(source, as_json, sys.stdout)
         sys.stdout.flush()
     except BrokenPipeError:
-        # The reader has seen enough (`| head`); nothing is left to say, not even at exit.
+        # The reader has ended (`| head`); nothing may be written any later, not even at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as problem:
-        name = harmless(file.encode(errors="replace"))
+        name = printable_bytes(file.encode(errors="replace"))
         typer.echo(f"recon inspect: cannot read {name}: {problem.strerror}", err=True)
         raise typer.Exit(2) from None
 
@@ -90,8 +90,8 @@ def inspect(source: BinaryIO, json_lines: bool, out: TextIO) -> None:
     _show_summary(deframers, trouble, json_lines, out)
 
 
-def harmless(data: bytes) -> str:
-    """Text from the wire for a terminal: bad UTF-8 replaced visibly, control characters escaped."""
+def printable_bytes(data: bytes) -> str:
+    """Return received text safe for a terminal: bad UTF-8 replaced, control characters escaped."""
     text = data.decode("utf-8", "replace")
     return "".join(
         letter
@@ -107,7 +107,7 @@ def _reads(source: BinaryIO) -> Iterator[Read]:
         yield from _capture_reads(source)
         return
     yield Read(start)
-    # What a pipe has now, rather than wait for a full buffer: the packets show as they come.
+    # read1 returns what a pipe has now instead of waiting for a full buffer.
     read = getattr(source, "read1", source.read)
     while data := read(READ_BYTES):
         yield Read(data)
@@ -120,7 +120,7 @@ def _capture_reads(source: BinaryIO) -> Iterator[Read]:
         if direction not in tuple(Direction):
             raise DamagedCaptureError(
                 f"the capture is damaged at byte {position}: "
-                f"expected direction 0 or 1, came {direction}; the rest is left out"
+                f"expected direction 0 or 1, got {direction}; the rest is skipped"
             )
         position += RECORD_HEADER.size + length
         while length > 0 and (data := source.read(min(length, READ_BYTES))):
@@ -129,7 +129,7 @@ def _capture_reads(source: BinaryIO) -> Iterator[Read]:
 
 
 def _exactly(source: BinaryIO, count: int) -> bytes:
-    """`count` bytes, or what is left."""
+    """Return `count` bytes, or fewer at the end."""
     data = b""
     while len(data) < count and (more := source.read(count - len(data))):
         data += more
@@ -143,18 +143,18 @@ def _field_names(class_name: str) -> tuple[str, ...]:
 
 
 def _fields(packet: Any) -> dict[str, Any]:
-    """Fields of a packet as JSON knows them; images by size, bytes as harmless text or hex."""
+    """Return a packet's fields as JSON values: images by size, bytes as escaped text or hex."""
     fields: dict[str, Any] = {}
     for name in _field_names(type(packet).__name__):
         value = getattr(packet, name)
-        if isinstance(value, np.ndarray):
+        if name == "pixels":
             fields["rows"], fields["cols"] = value.shape[:2]
         elif name == "jpeg":
             fields["jpeg_bytes"] = len(value)
         elif name == "payload":
             fields[name] = value.hex()
         elif isinstance(value, bytes):
-            fields[name] = harmless(value)
+            fields[name] = printable_bytes(value)
         elif isinstance(value, tuple):
             fields[name] = [_fields(part) for part in value]
         elif isinstance(value, float) and not math.isfinite(value):
@@ -207,7 +207,7 @@ def _show_summary(
         if json_lines:
             print(json.dumps({"counters": counters, "direction": name}), file=out)
         else:
-            told = ", ".join(f"{key} {value}" for key, value in counters.items())
-            print(f"{name.replace('_', ' ')}: {told}", file=out)
+            line = ", ".join(f"{key} {value}" for key, value in counters.items())
+            print(f"{name.replace('_', ' ')}: {line}", file=out)
     if trouble:
         print(json.dumps({"trouble": trouble}) if json_lines else trouble, file=out)

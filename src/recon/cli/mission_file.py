@@ -10,18 +10,18 @@ from recon.client import ClientError, Mission, Waypoint
 
 LARGEST_FILE_BYTES = 4 * 1024 * 1024
 MOST_WAYPOINTS = 5_000
-"""Longer ones than an aircraft takes are split by the station; this is no mission any more."""
+"""The station splits missions that are too long for an aircraft; more is surely not a mission."""
 
 _WAYPOINT_KEYS = frozenset(field.name for field in fields(Waypoint))
 _MISSION_KEYS = frozenset({"waypoints", "land_at_end", "curved"})
 
 
 class MissionFileError(ClientError):
-    """A file that is no mission; the text names the file and what is wrong in it."""
+    """Not a mission; the text names the file and the place in it."""
 
 
 def read_mission(path: Path, height_m: float | None, speed_mps: float | None) -> Mission:
-    """Return the mission of a file; height and speed stand in where a GeoJSON file has none.
+    """Return the mission of a file; height and speed are for GeoJSON, which may lack them.
 
     Raises `MissionFileError`.
     """
@@ -37,7 +37,7 @@ def read_mission(path: Path, height_m: float | None, speed_mps: float | None) ->
     _refuse_unknown(path, "the mission", data, _MISSION_KEYS)
     waypoints = data["waypoints"]
     if not isinstance(waypoints, list):
-        raise MissionFileError(f"{path}: waypoints: expected a list, got {_said(waypoints)}")
+        raise MissionFileError(f"{path}: waypoints: expected a list, got {_shown(waypoints)}")
     _refuse_too_many(path, len(waypoints))
     return Mission(
         tuple(_waypoint(path, number, w) for number, w in enumerate(waypoints, start=1)),
@@ -57,20 +57,20 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(text, parse_constant=_no_constant)
     except (ValueError, RecursionError) as problem:
-        raise MissionFileError(f"{path}: expected JSON, got something else: {problem}") from problem
+        raise MissionFileError(f"{path}: expected JSON: {problem}") from problem
     if not isinstance(data, dict):
-        raise MissionFileError(f"{path}: expected a JSON object, got {_said(data)}")
+        raise MissionFileError(f"{path}: expected a JSON object, got {_shown(data)}")
     return data
 
 
 def _no_constant(word: str) -> float:
-    raise ValueError(f"{word} is no number of JSON")
+    raise ValueError(f"{word} is not a JSON number")
 
 
 def _waypoint(path: Path, number: int, data: Any) -> Waypoint:
     place = f"waypoint {number}"
     if not isinstance(data, dict):
-        raise MissionFileError(f"{path}: {place}: expected an object, got {_said(data)}")
+        raise MissionFileError(f"{path}: {place}: expected an object, got {_shown(data)}")
     _refuse_unknown(path, place, data, _WAYPOINT_KEYS)
     values: dict[str, Any] = {}
     for key, value in data.items():
@@ -90,16 +90,17 @@ def _waypoint(path: Path, number: int, data: Any) -> Waypoint:
 def _from_line(
     path: Path, data: dict[str, Any], height_m: float | None, speed_mps: float | None
 ) -> Mission:
-    """The one line of a GeoJSON file: longitude, latitude, and perhaps height above takeoff."""
+    """Return the mission along the one LineString: longitude, latitude, optional height above
+    takeoff."""
     lines = list(_lines(data, 0))
     if len(lines) != 1:
         raise MissionFileError(f"{path}: expected one LineString, got {len(lines)}")
     positions = lines[0].get("coordinates")
     if not isinstance(positions, list):
-        raise MissionFileError(f"{path}: coordinates: expected a list, got {_said(positions)}")
+        raise MissionFileError(f"{path}: coordinates: expected a list, got {_shown(positions)}")
     _refuse_too_many(path, len(positions))
     if speed_mps is None:
-        raise MissionFileError(f"{path}: GeoJSON tells no speed: say --speed")
+        raise MissionFileError(f"{path}: GeoJSON has no speed: use --speed")
     return Mission(
         tuple(
             _position(path, number, position, height_m, speed_mps)
@@ -128,25 +129,25 @@ def _position(
     place = f"position {number}"
     if not isinstance(position, list) or len(position) not in (2, 3):
         raise MissionFileError(
-            f"{path}: {place}: expected longitude, latitude and perhaps a height, got "
-            f"{_said(position)}"
+            f"{path}: {place}: expected longitude, latitude and an optional height, got "
+            f"{_shown(position)}"
         )
     longitude, latitude, *rest = (_number(path, place, value) for value in position)
     if height_m is None and not rest:
-        raise MissionFileError(f"{path}: {place} has no height: say --height")
+        raise MissionFileError(f"{path}: {place} has no height: use --height")
     return Waypoint(latitude, longitude, rest[0] if height_m is None else height_m, speed_mps)
 
 
 def _number(path: Path, place: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-        raise MissionFileError(f"{path}: {place}: expected a number, got {_said(value)}")
+        raise MissionFileError(f"{path}: {place}: expected a number, got {_shown(value)}")
     return float(value)
 
 
 def _flag(path: Path, data: dict[str, Any], key: str) -> bool:
     value = data.get(key, False)
     if not isinstance(value, bool):
-        raise MissionFileError(f"{path}: {key}: expected true or false, got {_said(value)}")
+        raise MissionFileError(f"{path}: {key}: expected true or false, got {_shown(value)}")
     return value
 
 
@@ -154,7 +155,7 @@ def _refuse_unknown(path: Path, place: str, data: dict[str, Any], known: frozens
     for key in data:
         if key not in known:
             raise MissionFileError(
-                f"{path}: {place}: expected {', '.join(sorted(known))}, got {_said(key)}"
+                f"{path}: {place}: expected {', '.join(sorted(known))}, got {_shown(key)}"
             )
 
 
@@ -163,5 +164,5 @@ def _refuse_too_many(path: Path, count: int) -> None:
         raise MissionFileError(f"{path}: expected up to {MOST_WAYPOINTS} waypoints, got {count}")
 
 
-def _said(value: Any) -> str:
+def _shown(value: Any) -> str:
     return json.dumps(value)[:60]

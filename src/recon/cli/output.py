@@ -1,4 +1,4 @@
-"""What became of orders, told to a person or to a program."""
+"""Printed results: one line per vehicle, tables, or JSON."""
 
 import asyncio
 import json
@@ -6,18 +6,14 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
-
-from recon.cli.at_station import DONE, REFUSED
+from recon.cli.connection import DONE, REFUSED
 from recon.client import Order, Refusal, Station, TookTooLongError, VehicleAnswer
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of an order for one vehicle. `is_left_alone`: a stop that stands on the ground
-    does not need."""
+    """Result of an order for one vehicle. `is_left_alone`: on the ground, where a stop needs
+    nothing sent."""
 
     serial: str | None
     link_id: int | None
@@ -32,96 +28,106 @@ class Outcome:
 
     @property
     def sentence(self) -> str:
-        """The outcome for a person."""
+        """The outcome in one line."""
         if self.is_left_alone:
-            return f"{self.vehicle}: left alone: it is on the ground"
+            return f"{self.vehicle}: on the ground, nothing sent"
         if not self.is_accepted:
-            return f"{self.vehicle}: refused by the rule {self.rule}: {self.note}"
+            return f"{self.vehicle}: refused ({self.rule}): {self.note}"
         words = (self.phase or "accepted").replace("_", " ")
         return f"{self.vehicle}: {words}" + (f" ({self.note})" if self.note else "")
 
 
-async def outcomes(
+async def await_outcomes(
     station: Station,
     answers: Sequence[VehicleAnswer],
     wait_s: float,
     *,
     leaves_grounded_alone: bool = False,
 ) -> list[Outcome]:
-    """Wait for every order's end at once; return what became of each."""
+    """Wait for all orders at once, each for up to `wait_s`; return their outcomes."""
     waits = (_outcome(station, a, wait_s, leaves_grounded_alone) for a in answers)
     return list(await asyncio.gather(*waits))
 
 
-def tell(told: Sequence[Outcome], as_json: bool) -> int:
+def print_outcomes(outcomes: Sequence[Outcome], as_json: bool) -> int:
     """Print outcomes; return the exit code."""
     if as_json:
-        print(json.dumps([asdict(outcome) for outcome in told]))
+        print_json([asdict(outcome) for outcome in outcomes])
     else:
-        for outcome in told:
-            say(outcome.sentence)
-        if not told:
-            say("there is no vehicle to order")
-    return DONE if all(o.is_done or o.is_left_alone for o in told) else REFUSED
+        for outcome in outcomes:
+            print_line(outcome.sentence)
+        if not outcomes:
+            print_line("no vehicles to command")
+    return DONE if all(o.is_done or o.is_left_alone for o in outcomes) else REFUSED
 
 
-def say(sentence: str) -> None:
-    """Print a sentence; whatever is in it, the terminal stays as it is."""
-    print(clean(sentence), flush=True)
+def refused(refusal: Refusal) -> str:
+    """Return a refusal in one line."""
+    return f"refused ({refusal.rule}): {refusal.reason}"
 
 
-def say_json(value: Any) -> None:
-    """Print a value for programs."""
+def print_line(text: str) -> None:
+    """Print a line; control characters in it are escaped."""
+    print(printable(text), flush=True)
+
+
+def print_json(value: Any) -> None:
+    """Print a value as one line of JSON."""
     print(json.dumps(value), flush=True)
 
 
-def clean(text: str) -> str:
-    """Return text without what a terminal would obey."""
+def printable(text: str) -> str:
+    """Return text with everything escaped that a terminal would interpret."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print a table as wide as the terminal; into a file, each row in one line."""
+def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a table as wide as the terminal; into a file or pipe, one line per row."""
+    # Imported here: it takes longer to load than a stop may wait.
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
     console = Console(markup=False, highlight=False)
     if not console.is_terminal:
         for row in rows:
-            say("  ".join(cell or "-" for cell in row))
+            print_line("  ".join(cell or "-" for cell in row))
         return
-    made = Table(title=title, title_justify="left")
+    table = Table(title=title, title_justify="left")
     for column in columns:
-        made.add_column(column, overflow="fold")
+        table.add_column(column, overflow="fold")
     for row in rows:
-        made.add_row(*(Text(clean(cell)) for cell in row))
-    console.print(made)
+        table.add_row(*(Text(printable(cell)) for cell in row))
+    console.print(table)
 
 
 async def _outcome(
     station: Station, answer: VehicleAnswer, wait_s: float, leaves_grounded_alone: bool
 ) -> Outcome:
     order = answer.answer
-    whom = (answer.serial, answer.link_id, answer.vehicle_name)
+    vehicle = (answer.serial, answer.link_id, answer.vehicle_name)
     if isinstance(order, Refusal):
-        stands = leaves_grounded_alone and _stands(station, answer.serial)
-        return Outcome(*whom, False, False, stands, rule=order.rule, note=order.reason)
+        is_skipped = leaves_grounded_alone and _is_on_ground(station, answer.serial)
+        return Outcome(*vehicle, False, False, is_skipped, rule=order.rule, note=order.reason)
     if wait_s == 0.0:
-        return Outcome(*whom, True, True, command_id=order.command_id)
-    return await _awaited(order, whom, wait_s)
+        return Outcome(*vehicle, True, True, command_id=order.command_id)
+    return await _awaited(order, vehicle, wait_s)
 
 
 async def _awaited(
-    order: Order, whom: tuple[str | None, int | None, str], wait_s: float
+    order: Order, vehicle: tuple[str | None, int | None, str], wait_s: float
 ) -> Outcome:
     try:
         life = await order.effect(wait_s)
     except TookTooLongError as problem:
-        return Outcome(*whom, True, False, command_id=order.command_id, note=str(problem))
+        return Outcome(*vehicle, True, False, command_id=order.command_id, note=str(problem))
     return Outcome(
-        *whom, True, life.is_seen, False, order.command_id, life.phase.value, note=life.note
+        *vehicle, True, life.is_seen, False, order.command_id, life.phase.value, note=life.note
     )
 
 
-def _stands(station: Station, serial: str | None) -> bool:
-    """Whether a vehicle says now that it is on the ground."""
+def _is_on_ground(station: Station, serial: str | None) -> bool:
+    """Whether current telemetry reports a vehicle on the ground."""
     return any(
         v.serial == serial and v.is_flying.value is False and v.is_live for v in station.vehicles()
     )

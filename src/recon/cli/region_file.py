@@ -1,4 +1,4 @@
-"""One region to survey from a GeoJSON file, checked before anything is asked of the station."""
+"""One region to survey from a GeoJSON file, checked before any request to the station."""
 
 from pathlib import Path
 from typing import Any
@@ -12,13 +12,13 @@ Rings = list[list[list[float]]]
 
 
 class RegionFileError(ClientError):
-    """A file that holds no region to survey; the text names the file, the feature, and why."""
+    """Not a region to survey; the text names the file, the feature and the reason."""
 
 
 def read_region(path: Path, feature: str | None, origin: GeoPoint) -> tuple[str, Rings]:
     """Return the name and the rings of the one region in a file, or of the feature of that name.
 
-    `origin` is the site's: a region far from it is none. Raises `RegionFileError`.
+    Raises `RegionFileError`, also for a region far from `origin`, the site's.
     """
     try:
         features = read_features(path)
@@ -44,7 +44,7 @@ def _chosen(path: Path, features: tuple[Feature, ...], name: str | None) -> Feat
             f"{path}: expected one feature, got {len(features)}: name one with --feature ({known})"
         )
     raise RegionFileError(
-        f"{path}: expected one feature named {name!a}, got {len(named)}; there are: {known}"
+        f"{path}: expected one feature named {name!a}, got {len(named)}; features: {known}"
     )
 
 
@@ -54,7 +54,7 @@ def _name(feature: Feature) -> str | None:
 
 
 def _rings(feature: Feature) -> Rings:
-    """Longitude and latitude; heights, which a region has none of, are left out."""
+    """Return longitude and latitude only; a region has no heights."""
     coordinates: Any = feature.geometry["coordinates"]
     polygon = coordinates if feature.geometry["type"] == "Polygon" else coordinates[0]
     return [[position[:2] for position in ring] for ring in polygon]

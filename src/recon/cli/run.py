@@ -1,52 +1,59 @@
-"""`recon run`: the station."""
+"""`recon run`: the station; `recon openapi`: the description of its API."""
 
+import json
 import string
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from recon.cli.console_files import console_folder
-from recon.cli.event_loop import run_in_loop
+import recon
+from recon.api.app import create_app
+from recon.api.security import Access
+from recon.cli.foreground import print_now, run_in_loop
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
 from recon.site import Site, default_site, load_site, site_report
+from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
+from recon.station.kernel.build import first_state
+from recon.station.kernel.driver import AsyncioDriver
 from recon.station.kernel.run import RunConfig, Started, StartError, run
 
-SHORTEST_TOKEN = 16
+MIN_TOKEN_LENGTH = 16
 TOKEN_LETTERS = frozenset(string.ascii_letters + string.digits + "-._~")
-"""What travels unchanged in an address and in a WebSocket's list of subprotocols."""
+"""Characters that need no escaping in a URL or in a WebSocket's list of subprotocols."""
 
 
 def run_command(
     site: Annotated[
-        Path | None, typer.Option(help="Folder with a site.toml; without one, no ground image.")
+        Path | None,
+        typer.Option(
+            help="Folder with a site.toml; without one, vehicle profiles and ground image are off."
+        ),
     ] = None,
     link_host: Annotated[
-        str, typer.Option(help="Address for companion apps; 0.0.0.0 lets phones in.")
+        str, typer.Option(help="Address for companion apps; 0.0.0.0 accepts phones on the network.")
     ] = "127.0.0.1",
     link_port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port for companion apps; 0 picks one.")
+        int, typer.Option(min=0, max=65535, help="Port for companion apps; 0: any free port.")
     ] = 3001,
     http_host: Annotated[
-        str, typer.Option(help="Address of the console; beyond loopback a token is needed.")
+        str, typer.Option(help="Address of the console; other than loopback needs --token-file.")
     ] = "127.0.0.1",
     http_port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port of the console; 0 picks one.")
+        int, typer.Option(min=0, max=65535, help="Port of the console; 0: any free port.")
     ] = 8080,
     token_file: Annotated[
-        Path | None, typer.Option(help="File with the secret that opens the console.")
+        Path | None, typer.Option(help="File with the access token of the console.")
     ] = None,
-    capture: Annotated[
-        Path | None, typer.Option(help="Folder to write every link's raw bytes to.")
-    ] = None,
+    capture: Annotated[Path | None, typer.Option(help="Folder for every link's raw bytes.")] = None,
     audit: Annotated[
         Path | None,
-        typer.Option(help="Folder of the audit; default is one for the link port, see the guide."),
+        typer.Option(help="Folder of the audit; default: one per link port."),
     ] = None,
     garbage_limit: Annotated[
-        int, typer.Option(min=1024, help="Close a link after so many bytes without a packet.")
+        int, typer.Option(min=1024, help="Close a link after this many bytes without a packet.")
     ] = LinkSettings().garbage_limit_bytes,
 ) -> None:
     """Run the station until Ctrl+C."""
@@ -72,34 +79,56 @@ async def _announce(started: Started) -> None:
 
 
 def describe(site: Site) -> None:
-    """Print what the site came to: how well the control points fit, what is assumed."""
+    """Print how well the control points fit, and the site's warnings."""
     for line in site_report(site):
-        print(line, flush=True)
+        print_now(line)
 
 
 def announce(started: Started) -> None:
     """Print every address the station listens on."""
     for address in started.link_addresses:
-        print(f"companion apps: {address}", flush=True)
-    print(f"audit: {started.audit_folder}", flush=True)
+        print_now(f"companion apps: {address}")
+    print_now(f"audit: {started.audit_folder}")
     if started.taken_up:
-        print(f"from the last run: {shown(started.taken_up)}; nothing is ordered", flush=True)
-    print(f"console: {started.console_url}", flush=True)
+        print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")
+    print_now(f"console: {started.console_url}")
 
 
 def read_token(path: Path) -> str:
-    """Return the secret in a file; raises `StartError` for a missing file or a short secret."""
+    """Return the token in a file; raises `StartError` when it is missing, short or unsuitable."""
     try:
         token = path.read_text(encoding="utf-8").strip()
     except (OSError, UnicodeDecodeError) as problem:
         raise StartError(f"cannot read the token file {path}: {problem}") from problem
-    if len(token) < SHORTEST_TOKEN:
+    if len(token) < MIN_TOKEN_LENGTH:
         raise StartError(
-            f"{path}: expected a secret of {SHORTEST_TOKEN} characters or more, got {len(token)}"
+            f"{path}: expected a token of at least {MIN_TOKEN_LENGTH} characters, got {len(token)}"
         )
     if not TOKEN_LETTERS.issuperset(token):
         raise StartError(
-            f"{path}: expected a secret of letters, digits and -._~ only, got others: browsers "
-            "cannot send those; `openssl rand -hex 24` makes a good one"
+            f"{path}: expected a token of letters, digits and -._~ only (browsers cannot send "
+            "others); create one with `openssl rand -hex 24`"
         )
     return token
+
+
+def console_folder() -> Path | None:
+    """Return the folder of the built console: inside the package, or web/dist of a checkout."""
+    package = Path(recon.__file__).parent
+    for folder in (package / "console", package.parent.parent / "web" / "dist"):
+        if (folder / "index.html").is_file():
+            return folder
+    return None
+
+
+def openapi_command() -> None:
+    """Print the API's OpenAPI document."""
+    print(json.dumps(openapi_document(), indent=2, sort_keys=True))
+
+
+def openapi_document() -> dict[str, Any]:
+    """Return the OpenAPI document, from which the console's types are generated."""
+    site = default_site()
+    driver = AsyncioDriver(first_state(site), lambda: 0)
+    service = Service.around(driver, site, None)
+    return create_app(service, Access(), None, recon.version()).openapi()

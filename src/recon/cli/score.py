@@ -46,7 +46,7 @@ def score_command(
     forecast: MethodOption = None,
     gear: GearOption = Gear.STATION,
 ) -> None:
-    """Fly a scenario in a closed loop, once a seed, and print how good its methods are."""
+    """Fly a scenario in a closed loop and score its methods."""
     try:
         if not (1 <= seeds <= MOST_SEEDS and first_seed >= 0):
             raise ScenarioError(

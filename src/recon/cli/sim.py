@@ -1,13 +1,15 @@
-"""`recon sim`: simulated companion apps."""
+"""`recon sim`: simulated companion apps; `recon sim scenario`: those of a scenario."""
 
 import asyncio
 import sys
+from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import typer
 
-from recon.cli.places import parse_place
+from recon.cli.commands import new_app
+from recon.cli.foreground import print_now, until_stopped
 from recon.cli.sim_options import (
     AirborneOption,
     AltitudeBiasMOption,
@@ -34,12 +36,17 @@ from recon.cli.sim_options import (
     WaypointAltitude,
     WindMpsOption,
     WindToDegOption,
+    check_numbers,
+    parse_address,
+    parse_home,
+    parse_size,
 )
-from recon.cli.until_stopped import say_at_once, until_stopped
+from recon.cli.sim_proxy import proxy_command
 from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
-from recon.score.simulation import go_home_heights_of, pads_of, rig_of
+from recon.score import load_scenario
+from recon.score.simulation import go_home_heights_of, pads_of, rig_of, simulation_of
 from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.fault_file import FaultScript, load_faults
@@ -56,16 +63,19 @@ from recon.sim.run import run_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.site import Imager, Site, SiteError, demo_site_folder, load_site
 
-LONGEST_LATENCY_S = 60.0
+MAX_FPS_HZ = 30.0
+
+sim_app = new_app()
 
 
 class ImagerWorld(NamedTuple):
-    """Where the eye hangs (None: above home) and what it sees."""
+    """Camera and pose of the imaging drone (None: above home), and the source of its frames."""
 
     rig: CameraRig | None
     source: FrameSource
 
 
+@sim_app.callback(invoke_without_command=True)
 def sim_command(
     context: typer.Context,
     vehicles: VehiclesOption = 4,
@@ -93,17 +103,22 @@ def sim_command(
     mission_ids: MissionIdsOption = True,
     seed: SeedOption = 0,
 ) -> None:
-    """Run simulated companion apps that connect to a station, until Ctrl+C."""
+    """Run simulated companion apps that connect to a station.
+
+    They run until Ctrl+C.
+    """
     if context.invoked_subcommand is not None:
         return
     try:
-        host, port = parse_station(station)
-        _refuse_bad_numbers(fps, endurance_min, latency_s)
+        host, port = parse_address("--station", station)
+        check_numbers(fps, endurance_min, latency_s)
         script = FaultScript() if faults is None else load_faults(faults)
-        place = _place(site)
+        place = _load_site(site)
         feed_settings = FeedSettings(fps, image_format, latency_s, feed)
         if not imager and (frames is not None or replay_site is not None):
-            raise SimulationError("--no-eye: expected neither --frames nor --replay-site, got one")
+            raise SimulationError(
+                "--no-imager: expected neither --frames nor --replay-site, got one"
+            )
         world = _imager_world(place, replay_site, frames, frame_size, seed) if imager else None
         config = SimulationConfig(
             home=_home(home, place, world),
@@ -126,7 +141,7 @@ def sim_command(
             pads=pads_of(place) if home is None and replay_site is None else {},
             go_home_heights_m=go_home_heights_of(place),
         )
-        asyncio.run(until_stopped(run_fleet(config, say_at_once), "simulation ended"))
+        asyncio.run(until_stopped(run_fleet(config, print_now), "simulation ended"))
     except ReconError as problem:
         print(f"recon sim: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
@@ -135,45 +150,32 @@ def sim_command(
 _AIRBORNE = {None: Airborne.IMAGER, True: Airborne.ALL, False: Airborne.NONE}
 
 
-def parse_station(text: str) -> tuple[str, int]:
-    """Return host and port of `HOST:PORT` ([..] around an IPv6 address); `SimulationError`."""
-    return parse_place("--station", text)
+@sim_app.command("scenario")
+def scenario_command(
+    scenario: Annotated[Path, typer.Argument(help="A scenario file, as in scenarios/.")],
+    station: StationOption = "127.0.0.1:3001",
+    fps: FpsOption = 1.0,
+    image_format: ImageFormatOption = ImageFormat.RAW,
+    seed: SeedOption = 0,
+) -> None:
+    """Run a scenario's drones, sky, wind and faults.
 
-
-def parse_home(text: str) -> tuple[float, float]:
-    """Return latitude and longitude of `LAT,LON` in degrees; raises `SimulationError`."""
+    They run until Ctrl+C. The station should run the scenario's site.
+    """
     try:
-        latitude, longitude = (float(word) for word in text.split(","))
-    except ValueError:
-        latitude = longitude = 999.0
-    if not (abs(latitude) <= 89.0 and abs(longitude) <= 180.0):
-        raise SimulationError(f"--home: expected LAT,LON in degrees like 41.9,-93.6, got {text!r}")
-    return latitude, longitude
+        host, port = parse_address("--station", station)
+        if not 0.0 < fps <= MAX_FPS_HZ:
+            raise SimulationError(f"--fps: expected up to {MAX_FPS_HZ:g} per second, got {fps:g}")
+        feed = FeedSettings(fps, image_format)
+        config = simulation_of(load_scenario(scenario), abs(seed), feed)
+        config = replace(config, station_host=host, station_port=port)
+        asyncio.run(until_stopped(run_fleet(config, print_now), "simulation ended"))
+    except ReconError as problem:
+        print(f"recon sim scenario: {problem}", file=sys.stderr)
+        raise typer.Exit(2) from None
 
 
-def parse_size(text: str) -> tuple[int, int]:
-    """Return columns and rows of `COLSxROWS`, as large as the wire allows; `SimulationError`."""
-    cols, _, rows = text.partition("x")
-    is_number = cols.isascii() and cols.isdigit() and rows.isascii() and rows.isdigit()
-    if not (is_number and 0 < int(cols) <= 3840 and 0 < int(rows) <= 2160):
-        raise SimulationError(
-            f"--frame-size: expected COLSxROWS up to 3840x2160, like 1280x720, got {text!r}"
-        )
-    return int(cols), int(rows)
-
-
-def _refuse_bad_numbers(fps: float, endurance_min: float, latency_s: float | None) -> None:
-    _refuse_non_positive("--fps", fps)
-    _refuse_non_positive("--endurance-min", endurance_min)
-    if latency_s is not None and not 0.0 <= latency_s <= LONGEST_LATENCY_S:
-        raise SimulationError(
-            f"--latency-s: expected 0 to {LONGEST_LATENCY_S:g} seconds, got {latency_s:g}"
-        )
-
-
-def _refuse_non_positive(option: str, value: float) -> None:
-    if not 0.0 < value < 1e6:
-        raise SimulationError(f"{option}: expected a positive number, got {value:g}")
+sim_app.command("proxy")(proxy_command)
 
 
 def _wind(speed_mps: float, heading_deg: float, seed: int) -> WindSettings | None:
@@ -182,7 +184,7 @@ def _wind(speed_mps: float, heading_deg: float, seed: int) -> WindSettings | Non
     return WindSettings(seed=abs(seed), speed_10m_mps=speed_mps, heading_deg=heading_deg)
 
 
-def _place(folder: Path | None) -> Site:
+def _load_site(folder: Path | None) -> Site:
     place = load_site(demo_site_folder() if folder is None else folder)
     if place.frame is None:
         raise SiteError(f"{folder}: expected a site with an origin, got none")
@@ -200,7 +202,7 @@ def _home(text: str | None, place: Site, world: ImagerWorld | None) -> GeoPoint:
 def _imager_world(
     place: Site, replay: Path | None, frames: Path | None, frame_size: str, seed: int
 ) -> ImagerWorld:
-    """Return where the eye hangs and what it sees: a real field, a folder, or made-up land."""
+    """Return the imaging drone's rig and frames: of a real field, a folder, or rendered land."""
     if replay is not None and frames is not None:
         raise SimulationError("expected --replay-site or --frames, got both")
     if replay is not None:
@@ -211,7 +213,7 @@ def _imager_world(
         return ImagerWorld(rig, folder_frames(frames, rows, cols))
     if rig is None or place.imager is None:
         raise SimulationError(
-            "expected a site with an [imager], or --frames, or --no-eye, got none"
+            "expected a site with an [imager], or --frames, or --no-imager, got none"
         )
     sky, imager = _sky(rig.frame.origin, seed), CameraSettings(seed)
     land = FieldRenderer(rig.camera, place.imager.image_circle, seed, sky, imager)
@@ -219,7 +221,7 @@ def _imager_world(
 
 
 def _sky(origin: GeoPoint, seed: int) -> Sky:
-    """Return fair weather over a place: many small clouds, so that shadows come and go."""
+    """Return fair weather over a place: many small clouds, with frequent shadows."""
     sun = SunSettings(LatLon(origin.latitude_deg, origin.longitude_deg))
     clouds = LayerSettings(cover=0.35, outer_scale_m=2_500.0, softness=0.15)
     return Sky(SkySettings(seed, sun, (clouds,)))

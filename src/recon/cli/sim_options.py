@@ -1,4 +1,4 @@
-"""The options of `recon sim`."""
+"""The options of `recon sim`, and the parsing of their values."""
 
 from enum import Enum
 from pathlib import Path
@@ -9,86 +9,135 @@ import typer
 from recon.sim.app.camera_feed import ImageFormat
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import FaultKind
+from recon.sim.errors import SimulationError
 
-MOST_VEHICLES = 256
+MAX_VEHICLES = 256
+MAX_LATENCY_S = 60.0
 
 
 class WaypointAltitude(Enum):
-    """What a waypoint's altitude means to the simulated apps."""
+    """Altitude reference of waypoints in the simulated apps."""
 
     WGS84 = "wgs84"
     TAKEOFF = "takeoff"
 
 
 VehiclesOption = Annotated[
-    int, typer.Option(min=1, max=MOST_VEHICLES, help="How many, the eye included.")
+    int,
+    typer.Option(min=1, max=MAX_VEHICLES, help="Number of vehicles, the imaging drone included."),
 ]
 StationOption = Annotated[str, typer.Option(help="HOST:PORT of the station.")]
 AltitudeReferenceOption = Annotated[
-    WaypointAltitude, typer.Option(help="What a waypoint's altitude means to the apps.")
+    WaypointAltitude, typer.Option(help="Altitude reference of waypoints in the apps.")
 ]
 HoverOnGroundOption = Annotated[
-    HoverOnGround, typer.Option(help="What hover and return do on the ground.")
+    HoverOnGround, typer.Option(help="Effect of hover and return on the ground.")
 ]
 ImagerOption = Annotated[
-    bool, typer.Option("--eye/--no-eye", help="Whether the first vehicle has a camera.")
+    bool,
+    typer.Option("--imager/--no-imager", help="Whether the first vehicle is an imaging drone."),
 ]
 AirborneOption = Annotated[
     bool | None,
     typer.Option(
         "--airborne/--grounded",
-        help="All start in the air, or none; otherwise only the eye does.",
+        help="All start in the air, or none; default: only the imaging drone.",
     ),
 ]
 WanderOption = Annotated[
-    bool, typer.Option(help="Survey vehicles fly to and fro until ordered otherwise.")
+    bool, typer.Option(help="Survey drones fly back and forth until commanded otherwise.")
 ]
 HomeOption = Annotated[
-    str | None, typer.Option(help="LAT,LON to start from; default is the site's.")
+    str | None, typer.Option(help="LAT,LON to start from; default: the site's origin.")
 ]
-SiteOption = Annotated[Path | None, typer.Option(help="Folder with a site.toml: place, eye, pads.")]
+SiteOption = Annotated[
+    Path | None, typer.Option(help="Folder with a site.toml: origin, imaging drone, pads.")
+]
 ReplaySiteOption = Annotated[
     Path | None,
-    typer.Option(help="Folder with RefFrame.jpeg and GCPs.txt: the eye over a real field."),
+    typer.Option(help="Folder with RefFrame.jpeg and GCPs.txt: frames of a real field."),
 ]
 FramesOption = Annotated[
-    Path | None, typer.Option(help="Folder of images that the eye sends in turn.")
+    Path | None, typer.Option(help="Folder of images for the imaging drone to send in turn.")
 ]
 FrameSizeOption = Annotated[str, typer.Option(help="COLSxROWS of frames from a folder.")]
-FpsOption = Annotated[float, typer.Option(help="Most frames per second the eye sends.")]
+FpsOption = Annotated[float, typer.Option(help="Frames per second of the imaging drone, at most.")]
 ImageFormatOption = Annotated[
-    ImageFormat, typer.Option(help="How frames travel: packet 2 or packet 5.")
+    ImageFormat, typer.Option(help="Format of frames: raw (packet 2) or JPEG (packet 5).")
 ]
 LatencySOption = Annotated[
-    float | None, typer.Option(help="Capture to send; default is drawn from 0.2 to 1 s.")
+    float | None, typer.Option(help="Seconds from capture to sending; default: random, 0.2 to 1 s.")
 ]
 FeedOption = Annotated[
-    bool, typer.Option("--feed/--no-feed", help="Whether the eye's feed is on at the start.")
+    bool, typer.Option("--feed/--no-feed", help="Whether the image stream is on at the start.")
 ]
 AltitudeBiasMOption = Annotated[
-    float | None, typer.Option(help="Error of the absolute altitude; default is drawn.")
+    float | None, typer.Option(help="Error of the reported altitude, m; default: random.")
 ]
-EnduranceMinOption = Annotated[float, typer.Option(help="Hover time of a full battery.")]
+EnduranceMinOption = Annotated[float, typer.Option(help="Hover time of a full battery, minutes.")]
 FaultOption = Annotated[
     list[str] | None,
     typer.Option(
-        help="NAME[:vehicle[:start_s[:duration_s]]], again for more. Names: "
+        help="NAME[:vehicle[:start_s[:duration_s]]]; may be repeated. Names: "
         + ", ".join(kind.value for kind in FaultKind)
     ),
 ]
 FaultsOption = Annotated[
-    Path | None, typer.Option(help="TOML file with faults by script and by chance.")
+    Path | None, typer.Option(help="TOML file with scripted and random faults.")
 ]
 WindMpsOption = Annotated[
-    float, typer.Option(help="Mean wind ten metres up, with its gusts; 0 is calm.")
+    float, typer.Option(help="Mean wind 10 m above ground, with gusts, m/s; 0: calm.")
 ]
 WindToDegOption = Annotated[
-    float, typer.Option(help="Where the wind goes, clockwise from north: 50 is to the north-east.")
+    float, typer.Option(help="Direction the wind blows to, degrees clockwise from north.")
 ]
 MissionIdsOption = Annotated[
     bool,
     typer.Option(
-        "--mission-ids/--no-mission-ids", help="Whether apps tell MissionID, or 0 always."
+        "--mission-ids/--no-mission-ids", help="Whether apps report MissionID, or always 0."
     ),
 ]
-SeedOption = Annotated[int, typer.Option(help="The same seed behaves the same way.")]
+SeedOption = Annotated[int, typer.Option(help="The same seed gives the same run.")]
+
+
+def parse_address(option: str, text: str, lowest_port: int = 1) -> tuple[str, int]:
+    """Return host and port of `HOST:PORT` ([..] around an IPv6 address); `SimulationError`."""
+    host, colon, port = text.rpartition(":")
+    host = host.removeprefix("[").removesuffix("]")
+    is_number = port.isascii() and port.isdigit()
+    if not (colon and host and is_number and lowest_port <= int(port) < 65_536):
+        raise SimulationError(f"{option}: expected HOST:PORT like 127.0.0.1:3001, got {text!r}")
+    return host, int(port)
+
+
+def parse_home(text: str) -> tuple[float, float]:
+    """Return latitude and longitude of `LAT,LON` in degrees; raises `SimulationError`."""
+    try:
+        latitude, longitude = (float(word) for word in text.split(","))
+    except ValueError:
+        latitude = longitude = 999.0
+    if not (abs(latitude) <= 89.0 and abs(longitude) <= 180.0):
+        raise SimulationError(f"--home: expected LAT,LON in degrees like 41.9,-93.6, got {text!r}")
+    return latitude, longitude
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Return columns and rows of `COLSxROWS`, within the protocol's limits; `SimulationError`."""
+    cols, _, rows = text.partition("x")
+    is_number = cols.isascii() and cols.isdigit() and rows.isascii() and rows.isdigit()
+    if not (is_number and 0 < int(cols) <= 3840 and 0 < int(rows) <= 2160):
+        raise SimulationError(
+            f"--frame-size: expected COLSxROWS up to 3840x2160, like 1280x720, got {text!r}"
+        )
+    return int(cols), int(rows)
+
+
+def check_numbers(fps: float, endurance_min: float, latency_s: float | None) -> None:
+    """Raise `SimulationError` for a number out of range."""
+    for option, value in (("--fps", fps), ("--endurance-min", endurance_min)):
+        if not 0.0 < value < 1e6:
+            raise SimulationError(f"{option}: expected a positive number, got {value:g}")
+    if latency_s is not None and not 0.0 <= latency_s <= MAX_LATENCY_S:
+        raise SimulationError(
+            f"--latency-s: expected 0 to {MAX_LATENCY_S:g} seconds, got {latency_s:g}"
+        )

@@ -1,4 +1,4 @@
-"""`recon sim proxy`: a bad link on purpose, between any app and the station."""
+"""`recon sim proxy`: a degraded link between any app and the station."""
 
 import asyncio
 import sys
@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from recon.cli.places import parse_place
-from recon.cli.until_stopped import say_at_once, until_stopped
+from recon.cli.foreground import print_now, until_stopped
+from recon.cli.sim_options import parse_address
 from recon.model.errors import ReconError
 from recon.sim.proxy import Damage, ProxyConfig, Towards, run_proxy
 
@@ -16,25 +16,24 @@ BYTES_PER_KB = 1_000.0
 
 
 def proxy_command(
-    listen: Annotated[str, typer.Option(help="HOST:PORT for apps; port 0 picks one.")] = (
+    listen: Annotated[str, typer.Option(help="HOST:PORT for apps; port 0: any free port.")] = (
         "127.0.0.1:3002"
     ),
     station: Annotated[str, typer.Option(help="HOST:PORT of the station.")] = "127.0.0.1:3001",
-    delay_ms: Annotated[float, typer.Option(help="Every byte comes so much later.")] = 0.0,
-    jitter_ms: Annotated[float, typer.Option(help="And up to so much later still.")] = 0.0,
-    rate_kb_s: Annotated[
-        float | None, typer.Option(help="Thousand bytes a second and direction, at most.")
-    ] = None,
-    stalls_per_min: Annotated[float, typer.Option(help="How often nothing passes.")] = 0.0,
-    stall_s: Annotated[float, typer.Option(help="How long nothing passes then.")] = 2.0,
-    resets_per_min: Annotated[
-        float, typer.Option(help="How often a connection is ended hard.")
-    ] = 0.0,
-    corruption_per_mb: Annotated[float, typer.Option(help="Bytes changed in a million.")] = 0.0,
-    towards: Annotated[Towards, typer.Option(help="Which direction is damaged.")] = Towards.BOTH,
-    seed: Annotated[int, typer.Option(help="The same seed damages the same way.")] = 0,
+    delay_ms: Annotated[float, typer.Option(help="Delay of every byte.")] = 0.0,
+    jitter_ms: Annotated[float, typer.Option(help="Random extra delay, at most.")] = 0.0,
+    rate_kb_s: Annotated[float | None, typer.Option(help="Rate limit per direction, kB/s.")] = None,
+    stalls_per_min: Annotated[float, typer.Option(help="Stalls per minute.")] = 0.0,
+    stall_s: Annotated[float, typer.Option(help="Duration of a stall.")] = 2.0,
+    resets_per_min: Annotated[float, typer.Option(help="Connection resets per minute.")] = 0.0,
+    corruption_per_mb: Annotated[float, typer.Option(help="Corrupted bytes per megabyte.")] = 0.0,
+    towards: Annotated[Towards, typer.Option(help="The degraded direction.")] = Towards.BOTH,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same faults.")] = 0,
 ) -> None:
-    """Pass apps' connections on to a station and damage what passes, until Ctrl+C."""
+    """Forward apps' connections to a station over a degraded link.
+
+    It runs until Ctrl+C.
+    """
     try:
         damage = Damage(
             delay_s=delay_ms / MS_PER_S,
@@ -46,13 +45,13 @@ def proxy_command(
             corrupted_per_mb=corruption_per_mb,
         )
         config = ProxyConfig(
-            listen=parse_place("--listen", listen, lowest_port=0),
-            station=parse_place("--station", station),
+            listen=parse_address("--listen", listen, lowest_port=0),
+            station=parse_address("--station", station),
             damage=damage,
             towards=towards,
             seed=seed,
         )
-        asyncio.run(until_stopped(run_proxy(config, say_at_once), "proxy ended"))
+        asyncio.run(until_stopped(run_proxy(config, print_now), "proxy ended"))
     except ReconError as problem:
         print(f"recon sim proxy: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None

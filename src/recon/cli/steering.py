@@ -1,6 +1,6 @@
-"""`recon goto` and `recon nudge`: flown by the station for as long as the command runs.
+"""`recon goto` and `recon nudge`: steered by the station while the command runs.
 
-The command holds the vehicle: when it ends, by Ctrl+C or however, the vehicle stops and holds.
+When the command ends before arrival, by Ctrl+C or otherwise, the vehicle stops and holds position.
 """
 
 from collections.abc import Awaitable, Callable
@@ -9,39 +9,40 @@ from typing import Annotated
 
 import typer
 
-from recon.cli.at_station import (
+from recon.cli.connection import (
     DEFAULT_ADDRESS,
+    AddressOption,
     JsonOption,
     NameArgument,
-    StationOption,
     TokenOption,
-    at_station,
+    named_serials,
+    run_at_station,
 )
-from recon.cli.output import Outcome, say, tell
-from recon.cli.vehicle_names import serials_of
+from recon.cli.output import Outcome, print_line, print_outcomes
 from recon.client import Order, Phase, Refusal, Station, Vehicle
 
-ARRIVED_WITHIN_S = 600.0
+ARRIVAL_TIMEOUT_S = 600.0
+CONNECT_TIMEOUT_S = 3.0
 SpeedOption = Annotated[float, typer.Option("--speed", help="Metres per second.")]
-WithinOption = Annotated[
-    float, typer.Option("--within", min=1.0, max=3600.0, help="Give up after so many seconds.")
+TimeoutOption = Annotated[
+    float,
+    typer.Option("--within", min=1.0, max=3600.0, help="Seconds until the order is given up."),
 ]
 Give = Callable[[Vehicle], Awaitable[Order | Refusal]]
 
 
 def _latitude(degrees: float) -> float:
-    return _within(degrees, 90.0)
+    return _in_range(degrees, 90.0)
 
 
 def _longitude(degrees: float) -> float:
-    return _within(degrees, 180.0)
+    return _in_range(degrees, 180.0)
 
 
-def _within(degrees: float, most: float) -> float:
-    """Refuse what is on no map, before anybody is asked; whose it is, the error says by itself."""
-    if -most <= degrees <= most:
+def _in_range(degrees: float, limit: float) -> float:
+    if -limit <= degrees <= limit:
         return degrees
-    raise typer.BadParameter(f"expected degrees from -{most:g} to {most:g}, got {degrees:g}")
+    raise typer.BadParameter(f"expected degrees from -{limit:g} to {limit:g}, got {degrees:g}")
 
 
 def goto_command(
@@ -52,19 +53,24 @@ def goto_command(
     longitude: Annotated[
         float, typer.Argument(metavar="LON", help="Degrees, WGS84.", callback=_longitude)
     ],
-    height: Annotated[float, typer.Option("--height", help="Metres above its takeoff point.")],
+    height: Annotated[float, typer.Option("--height", help="Metres above the takeoff point.")],
     speed: SpeedOption = 5.0,
-    within: WithinOption = ARRIVED_WITHIN_S,
+    timeout: TimeoutOption = ARRIVAL_TIMEOUT_S,
     as_json: JsonOption = False,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Fly a vehicle straight to a place, until it is there. Ctrl+C stops it."""
+    """Fly a vehicle straight to a position.
 
-    async def give(flown: Vehicle) -> Order | Refusal:
-        return await flown.goto(latitude, longitude, height_above_takeoff_m=height, speed_mps=speed)
+    The command runs until the vehicle has arrived. Ctrl+C stops the vehicle.
+    """
 
-    _steer(vehicle, give, within, as_json, station, token_file)
+    async def give(aircraft: Vehicle) -> Order | Refusal:
+        return await aircraft.goto(
+            latitude, longitude, height_above_takeoff_m=height, speed_mps=speed
+        )
+
+    _steer(vehicle, give, timeout, as_json, address, token_file)
 
 
 def nudge_command(
@@ -74,57 +80,59 @@ def nudge_command(
     up: Annotated[float, typer.Option("--up", help="Metres; negative is down.")] = 0.0,
     turn: Annotated[float, typer.Option("--turn", help="Degrees clockwise.")] = 0.0,
     speed: SpeedOption = 2.0,
-    within: WithinOption = 60.0,
+    timeout: TimeoutOption = 60.0,
     as_json: JsonOption = False,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Move a vehicle by a little from where it is, until it is there. Ctrl+C stops it."""
+    """Move a vehicle by a few metres.
 
-    async def give(flown: Vehicle) -> Order | Refusal:
-        return await flown.nudge(
+    The command runs until the vehicle has arrived. Ctrl+C stops the vehicle.
+    """
+
+    async def give(aircraft: Vehicle) -> Order | Refusal:
+        return await aircraft.nudge(
             north_m=north, east_m=east, up_m=up, turn_deg=turn, speed_mps=speed
         )
 
-    _steer(vehicle, give, within, as_json, station, token_file)
+    _steer(vehicle, give, timeout, as_json, address, token_file)
 
 
 def _steer(
-    name: str, give: Give, within_s: float, as_json: bool, address: str, token_file: Path | None
+    name: str, give: Give, timeout_s: float, as_json: bool, address: str, token_file: Path | None
 ) -> None:
     async def work(station: Station) -> int:
-        (serial,) = serials_of(station, [name])
-        flown = await station.vehicle(serial, timeout_s=3.0)
-        order = await give(flown)
-        called = flown.now().name
+        (serial,) = named_serials(station, [name])
+        aircraft = await station.vehicle(serial, timeout_s=CONNECT_TIMEOUT_S)
+        order = await give(aircraft)
+        vehicle = aircraft.now().name
         if isinstance(order, Refusal):
             rule, reason = order.rule, order.reason
-            return tell(
-                [Outcome(serial, None, called, False, False, rule=rule, note=reason)], as_json
-            )
+            refused = Outcome(serial, None, vehicle, False, False, rule=rule, note=reason)
+            return print_outcomes([refused], as_json)
         if not as_json:
-            say(f"{called}: on its way; Ctrl+C stops it")
-        is_anothers = False
+            print_line(f"{vehicle}: moving; Ctrl+C stops it")
+        is_replaced = False
         try:
-            outcome = await _there(order, called, within_s)
-            is_anothers = outcome.phase == Phase.SUPERSEDED.value
+            outcome = await _arrival(order, vehicle, timeout_s)
+            is_replaced = outcome.phase == Phase.SUPERSEDED.value
         finally:
-            # Its end stops the vehicle too, as a connection that is lost, with an alarm. Not when
-            # somebody else flies it by now: a pilot who took the sticks is not fought.
-            if not is_anothers:
-                await flown.hold()
-        return tell([outcome], as_json)
+            # Closing the connection would stop the vehicle too, but with an alarm. No hold when
+            # another order or the pilot flies it now: never fight a pilot's sticks.
+            if not is_replaced:
+                await aircraft.hold()
+        return print_outcomes([outcome], as_json)
 
-    at_station(address, token_file, work)
+    run_at_station(address, token_file, work)
 
 
-async def _there(order: Order, called: str, within_s: float) -> Outcome:
-    """Wait until the vehicle is there, or the order has ended in another way."""
-    life = await order.arrival(within_s)
+async def _arrival(order: Order, vehicle: str, timeout_s: float) -> Outcome:
+    """Wait until the vehicle has arrived, or the order has ended otherwise."""
+    life = await order.arrival(timeout_s)
     return Outcome(
         order.serial,
         None,
-        called,
+        vehicle,
         is_accepted=True,
         is_done=life.is_there,
         command_id=order.command_id,

@@ -1,4 +1,4 @@
-"""`recon hold`, `land`, `return`, `all-stop`: what is always allowed for a vehicle in the air."""
+"""`recon hold`, `land`, `return`, `all-stop`: always allowed for a vehicle in the air."""
 
 import asyncio
 import time
@@ -8,99 +8,108 @@ from typing import Annotated
 
 import typer
 
-from recon.cli.at_station import (
+from recon.cli.connection import (
     DEFAULT_ADDRESS,
+    AddressOption,
     JsonOption,
     NamesArgument,
-    StationOption,
     TokenOption,
+    VehicleNameError,
     WaitOption,
-    at_station,
-    read_secret,
+    named_serials,
+    read_token,
+    run_at_station,
 )
-from recon.cli.output import Outcome, outcomes, tell
-from recon.cli.vehicle_names import NamingError, serials_of
+from recon.cli.output import Outcome, await_outcomes, print_outcomes
 from recon.client import ClientError, Fleet, Life, Station, StopAnswer, VehicleAnswer
 
-CONFIRMED_WITHIN_S = 15.0
-LOOKED_EVERY_S = 0.2
-ON_THE_GROUND = "flying"
-"""The rule by which the gate refuses a hover to what stands: there, apps answer with a takeoff."""
+CONFIRMATION_TIMEOUT_S = 15.0
+POLL_INTERVAL_S = 0.2
+ON_GROUND_RULE = "flying"
+"""The rule that refuses a hover on the ground, where some apps would answer it with a takeoff."""
 
-AllOption = Annotated[bool, typer.Option("--all", help="Every vehicle that has a serial.")]
+AllOption = Annotated[bool, typer.Option("--all", help="Every identified vehicle.")]
 Give = Callable[[Fleet, Sequence[str] | None], Awaitable[tuple[VehicleAnswer, ...]]]
 
 
 def hold_command(
     vehicles: NamesArgument = None,
-    everyone: AllOption = False,
-    wait: WaitOption = CONFIRMED_WITHIN_S,
+    all_vehicles: AllOption = False,
+    wait: WaitOption = CONFIRMATION_TIMEOUT_S,
     as_json: JsonOption = False,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Stop vehicles and hold them where they are."""
-    _order(Fleet.hold, vehicles, everyone, wait, as_json, station, token_file)
+    """Stop vehicles and hold position."""
+    _order(Fleet.hold, vehicles, all_vehicles, wait, as_json, address, token_file)
 
 
 def land_command(
     vehicles: NamesArgument = None,
-    everyone: AllOption = False,
-    wait: WaitOption = CONFIRMED_WITHIN_S,
+    all_vehicles: AllOption = False,
+    wait: WaitOption = CONFIRMATION_TIMEOUT_S,
     as_json: JsonOption = False,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Land vehicles where they are. Confirmed means that they have begun to."""
-    _order(Fleet.land, vehicles, everyone, wait, as_json, station, token_file)
+    """Land vehicles where they are.
+
+    Exit code 0 once telemetry shows them landing.
+    """
+    _order(Fleet.land, vehicles, all_vehicles, wait, as_json, address, token_file)
 
 
 def return_command(
     vehicles: NamesArgument = None,
-    everyone: AllOption = False,
-    wait: WaitOption = CONFIRMED_WITHIN_S,
+    all_vehicles: AllOption = False,
+    wait: WaitOption = CONFIRMATION_TIMEOUT_S,
     as_json: JsonOption = False,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Send vehicles home, each at the go-home height set in the aircraft, to land there."""
-    _order(Fleet.return_home, vehicles, everyone, wait, as_json, station, token_file)
+    """Return vehicles to home, each at its own go-home height, and land.
+
+    The go-home height is set in the aircraft. Exit code 0 once telemetry shows them returning.
+    """
+    _order(Fleet.return_home, vehicles, all_vehicles, wait, as_json, address, token_file)
 
 
 def all_stop_command(
-    wait: WaitOption = CONFIRMED_WITHIN_S,
+    wait: WaitOption = CONFIRMATION_TIMEOUT_S,
     as_json: JsonOption = False,
-    station: StationOption = DEFAULT_ADDRESS,
+    address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Hold everything that flies, with a serial or without. Never cuts motors."""
-    told = asyncio.run(_all_stop(Station(station, read_secret(token_file)), wait))
-    raise typer.Exit(tell(told, as_json))
+    """Hold every vehicle in the air, identified or not. Never stops motors."""
+    outcomes = asyncio.run(_all_stop(Station(address, read_token(token_file)), wait))
+    raise typer.Exit(print_outcomes(outcomes, as_json))
 
 
 def _order(
     give: Give,
     names: list[str] | None,
-    everyone: bool,
+    all_vehicles: bool,
     wait_s: float,
     as_json: bool,
     address: str,
     token_file: Path | None,
 ) -> None:
-    if bool(names) is everyone:
-        raise NamingError("name the vehicles, or say --all: no order is for a guess")
+    if bool(names) is all_vehicles:
+        raise VehicleNameError("Name the vehicles or use --all")
 
     async def work(station: Station) -> int:
-        serials = None if everyone else serials_of(station, names or [])
+        serials = None if all_vehicles else named_serials(station, names)
         answers = await give(station.fleet, serials)
-        told = await outcomes(station, answers, wait_s, leaves_grounded_alone=everyone)
-        return tell(told, as_json)
+        outcomes = await await_outcomes(
+            station, answers, wait_s, leaves_grounded_alone=all_vehicles
+        )
+        return print_outcomes(outcomes, as_json)
 
-    at_station(address, token_file, work)
+    run_at_station(address, token_file, work)
 
 
 async def _all_stop(station: Station, wait_s: float) -> list[Outcome]:
-    """Stop first; only then look what became of it."""
+    """Send the stop before anything else; then poll for the outcomes."""
     try:
         answers = await station.all_stop_at_once()
         lives: dict[int, Life] = {}
@@ -109,9 +118,9 @@ async def _all_stop(station: Station, wait_s: float) -> list[Outcome]:
             try:
                 lives = {life.id: life for life in await station.commands()}
             except ClientError:
-                # The stop is given; that nobody can say what became of it is told below.
+                # The stops were sent; their outcomes are reported as unknown below.
                 lives = {}
-            await asyncio.sleep(LOOKED_EVERY_S)
+            await asyncio.sleep(POLL_INTERVAL_S)
         return [_stopped(answer, lives.get(answer.command_id), wait_s) for answer in answers]
     finally:
         await station.close()
@@ -123,13 +132,14 @@ def _are_over(answers: Sequence[StopAnswer], lives: dict[int, Life]) -> bool:
 
 
 def _stopped(answer: StopAnswer, life: Life | None, wait_s: float) -> Outcome:
-    stands = answer.rule == ON_THE_GROUND
-    whom = (answer.serial, answer.link_id, answer.vehicle_name)
+    is_on_ground = answer.rule == ON_GROUND_RULE
+    vehicle = (answer.serial, answer.link_id, answer.vehicle_name)
     if not answer.accepted:
-        return Outcome(*whom, False, False, stands, rule=answer.rule, note=answer.reason or "")
+        note = answer.reason or ""
+        return Outcome(*vehicle, False, False, is_on_ground, rule=answer.rule, note=note)
     if wait_s == 0.0 or life is None:
-        is_done, note = wait_s == 0.0, "" if wait_s == 0.0 else "what became of it is not known"
-        return Outcome(*whom, True, is_done, False, answer.command_id, note=note)
+        is_done, note = wait_s == 0.0, "" if wait_s == 0.0 else "outcome unknown"
+        return Outcome(*vehicle, True, is_done, False, answer.command_id, note=note)
     return Outcome(
-        *whom, True, life.is_seen, False, answer.command_id, life.phase.value, note=life.note
+        *vehicle, True, life.is_seen, False, answer.command_id, life.phase.value, note=life.note
     )

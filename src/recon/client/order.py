@@ -2,11 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from recon.client.errors import ConnectionLostError, TookTooLongError
 from recon.client.life import Life
-from recon.client.stream import Heard, Stream
 from recon.model.command import Phase, Refusal
+
+if TYPE_CHECKING:
+    from recon.client.stream import Heard, Stream
 
 SAME_RUN_NS = 1_000_000
 """The run's beginning is told as a difference of two numbers; rounding is far below this."""
@@ -21,7 +24,7 @@ class Order:
     link_id: int | None
     vehicle_name: str
     _run_started_ns: int = field(repr=False)
-    _stream: Stream = field(repr=False, compare=False)
+    _stream: "Stream" = field(repr=False, compare=False)
     repairs: tuple[str, ...] = ()
     """What the station changed in a mission so that the aircraft accepts it, in sentences."""
     parts: int = 0
@@ -78,7 +81,7 @@ class Order:
             "it must not"
         )
 
-    def _life(self, heard: Heard) -> Life | None:
+    def _life(self, heard: "Heard") -> Life | None:
         if abs(heard.message.run_started_ns - self._run_started_ns) > SAME_RUN_NS:
             raise ConnectionLostError(
                 f"order {self.command_id} to {self.vehicle_name}: expected the station that took "

@@ -1,20 +1,23 @@
 """Where orders are handed in: one request each, and one answer for each vehicle named."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from recon.client.errors import ConnectionLostError, MaybeSentError, OrderInvalidError
-from recon.client.http import Http
 from recon.client.messages import OrderMessage, ResultMessage
 from recon.client.order import Order, VehicleAnswer
 from recon.client.order_form import order_form
-from recon.client.stream import Stream
 from recon.model.command import STEERED_BODIES, Body, Refusal
+
+if TYPE_CHECKING:
+    from recon.client.http import Http
+    from recon.client.stream import Stream
 
 
 class OrderDesk:
     """Gives orders to one station. Nothing is ever given twice."""
 
-    def __init__(self, http: Http, stream: Stream) -> None:
+    def __init__(self, http: "Http", stream: "Stream") -> None:
         self.http = http
         self.stream = stream
 

@@ -1,10 +1,14 @@
 """Who leads a vehicle, and its preflight checklist, as a program reads and says it."""
 
+from typing import TYPE_CHECKING
+
 import msgspec
 
-from recon.client.http import Http
 from recon.model.authority import AuthorityHolder
 from recon.model.command import Refusal
+
+if TYPE_CHECKING:
+    from recon.client.http import Http
 
 
 class PreflightPoint(msgspec.Struct, frozen=True):
@@ -49,23 +53,23 @@ class WordMessage(msgspec.Struct, frozen=True):
     reason: str | None
 
 
-async def say_holder(http: Http, vehicle_path: str, holder: AuthorityHolder) -> Refusal | None:
+async def say_holder(http: "Http", vehicle_path: str, holder: AuthorityHolder) -> Refusal | None:
     """Take a vehicle over or give it away; None when that is done."""
     asked = {"holder": holder.value}
     return await _say(http, f"{vehicle_path}/authority", asked)
 
 
-async def ask_preflight(http: Http, vehicle_path: str) -> Preflight:
+async def ask_preflight(http: "Http", vehicle_path: str) -> Preflight:
     """Return a vehicle's checklist as of now."""
     return await http.get(f"{vehicle_path}/preflight", Preflight, "a preflight checklist")
 
 
-async def say_override(http: Http, vehicle_path: str, reason: str) -> Refusal | None:
+async def say_override(http: "Http", vehicle_path: str, reason: str) -> Refusal | None:
     """Override a vehicle's checklist; None when that is done."""
     return await _say(http, f"{vehicle_path}/preflight/override", {"reason": reason})
 
 
-async def _say(http: Http, path: str, asked: dict[str, str]) -> Refusal | None:
+async def _say(http: "Http", path: str, asked: dict[str, str]) -> Refusal | None:
     answer = await http.post(path, asked, WordMessage, "what became of a word")
     if answer.accepted:
         return None

@@ -5,12 +5,10 @@ from types import TracebackType
 from recon.client.address import parse_address
 from recon.client.errors import StationUnreachableError, TookTooLongError
 from recon.client.fleet import Fleet
-from recon.client.http import Http
 from recon.client.life import Life
 from recon.client.messages import StateMessage
 from recon.client.order import VehicleAnswer
 from recon.client.order_api import OrderDesk
-from recon.client.stream import Stream
 from recon.client.surveys import Surveys
 from recon.client.telemetry import Telemetry
 from recon.client.vehicle import Vehicle
@@ -27,6 +25,10 @@ class Station:
 
     def __init__(self, url: str, token: str | None = None, *, answer_within_s: float = 5.0) -> None:
         """Take a station's address; raises `AddressError`. Nothing is opened yet."""
+        # Imported here: `recon hold --help` need not wait for the HTTP libraries.
+        from recon.client.http import Http
+        from recon.client.stream import Stream
+
         self.address = parse_address(url, token)
         self._stream = Stream(self.address)
         self._http = Http(self.address, answer_within_s)

@@ -1,12 +1,14 @@
 """Surveys, as a program asks for them and follows them."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
-from recon.client.http import Http
 from recon.model.command import Refusal
+
+if TYPE_CHECKING:
+    from recon.client.http import Http
 
 SurveyPhaseWord = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 WhenDoneWord = Literal["return_home", "hover"]
@@ -78,7 +80,7 @@ class _SiteMessage(msgspec.Struct, frozen=True):
 class Surveys:
     """The surveys of a station."""
 
-    def __init__(self, http: Http) -> None:
+    def __init__(self, http: "Http") -> None:
         self._http = http
 
     async def create(

@@ -1,13 +1,13 @@
 """One vehicle in the verbs of a pilot. Every verb is one order: an `Order`, or a `Refusal`."""
 
 from collections.abc import AsyncIterator
+from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from recon.client.errors import ConnectionLostError
 from recon.client.order import Order
 from recon.client.order_api import OrderDesk
 from recon.client.readiness import Preflight, ask_preflight, say_holder, say_override
-from recon.client.stream import Heard
 from recon.client.telemetry import Telemetry
 from recon.model.authority import AuthorityHolder
 from recon.model.command import (
@@ -27,6 +27,9 @@ from recon.model.command import (
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.units import ns_to_seconds
+
+if TYPE_CHECKING:
+    from recon.client.stream import Heard
 
 QUIET_S = 1.0
 """Ten states come each second; after this without one the old one is told again, as old."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import count
 
-from recon import __version__
+from recon import version
 from recon.api import schema
 from recon.api.port import SurveyCells
 from recon.model.authority import AuthorityHolder
@@ -277,7 +277,7 @@ class Service:
         links = self.driver.links
         capture = None if links is None else links.capture
         return schema.StationView(
-            version=__version__,
+            version=version(),
             link_addresses=self.link_addresses,
             uptime_s=ns_to_seconds(now_ns - self.driver.started_at_ns),
             frames_dropped=self.driver.station.imaging.frames_dropped,

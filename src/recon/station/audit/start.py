@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from recon import __version__
+from recon import version
 from recon.record.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
 from recon.record.audit_files import RunEnd, audit_files, read_run_end, run_number
 from recon.record.audit_log import AuditLog, refuse_other_writer
@@ -88,7 +88,7 @@ def started_entry(
 ) -> AuditEntry:
     """Return the entry of a start: version, settings, site and the first ids of orders."""
     details = {
-        "version": __version__,
+        "version": version(),
         "python": sys.version.split()[0],
         "site": dict(site),
         "first_id": first_ids[0],
@@ -97,7 +97,7 @@ def started_entry(
         "troubles": list(troubles),
         "settings": asdict(settings),
     }
-    return AuditEntry(STARTED_KIND, f"station started, version {__version__}", details=details)
+    return AuditEntry(STARTED_KIND, f"station started, version {version()}", details=details)
 
 
 def ended_entry(problem: BaseException | None) -> AuditEntry:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import uvicorn
 
-from recon import __version__
+from recon import version
 from recon.api.app import create_app
 from recon.api.security import LOOPBACK_NAMES, Access
 from recon.link.capture import Capture
@@ -291,7 +291,7 @@ def _stopped_by_signals(server: uvicorn.Server) -> Iterator[None]:
 
 def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
     access = Access.make(config.http_host, config.token)
-    app = create_app(service, access, config.console, __version__)
+    app = create_app(service, access, config.console, version())
     return _HttpServer(
         uvicorn.Config(
             app,

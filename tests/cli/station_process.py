@@ -1,4 +1,4 @@
-"""A station with simulated drones, each a process of its own, and `recon` commands at it."""
+"""A station and simulated drones as separate processes, and `recon` commands."""
 
 import json
 import os
@@ -20,8 +20,8 @@ ROOT = Path(__file__).parents[2]
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
-    """What a command printed, and its exit code."""
+class CommandResult:
+    """Output and exit code of a command."""
 
     code: int
     out: str
@@ -33,8 +33,8 @@ class Said:
 
 
 @dataclass(slots=True)
-class Flown:
-    """A running station, its simulator, and the shell beside them."""
+class StationProcess:
+    """A running station, its simulator, and `recon` commands that connect to it."""
 
     station: Started
     simulator: Started | None
@@ -42,8 +42,8 @@ class Flown:
     link_port: int
     audit: Path
 
-    def recon(self, *words: object, address: str | None = None) -> Said:
-        """Run a command to its end; no traceback ever."""
+    def recon(self, *words: object, address: str | None = None) -> CommandResult:
+        """Run a command to its end; a traceback fails the test."""
         environment = {**os.environ, "RECON_STATION": address or self.url}
         ended = subprocess.run(
             [sys.executable, "-m", "recon", *map(str, words)],
@@ -54,21 +54,21 @@ class Flown:
             check=False,
         )
         assert "Traceback" not in ended.stderr
-        return Said(ended.returncode, ended.stdout, ended.stderr)
+        return CommandResult(ended.returncode, ended.stdout, ended.stderr)
 
     def get(self, path: str) -> Any:
-        """What the API tells."""
+        """Return a resource of the API."""
         with urllib.request.urlopen(f"{self.url}{path}", timeout=PATIENCE_S) as response:
             return json.load(response)
 
-    def until(self, is_so: Callable[[list[dict[str, Any]]], bool]) -> list[dict[str, Any]]:
-        """Wait until the vehicles are so; each new state of the stream is looked at."""
+    def until(self, condition: Callable[[list[dict[str, Any]]], bool]) -> list[dict[str, Any]]:
+        """Wait until the vehicles meet a condition; checks every state of the stream."""
         with connect(self.url.replace("http", "ws") + "/api/stream") as stream:
             for _ in range(round(10 * PATIENCE_S)):
                 vehicles: list[dict[str, Any]] = json.loads(stream.recv(PATIENCE_S))["vehicles"]
-                if is_so(vehicles):
+                if condition(vehicles):
                     return vehicles
-        raise AssertionError(f"it never came to this: {vehicles}")
+        raise AssertionError(f"condition never met; last: {vehicles}")
 
 
 def run_options(audit: Path, link_port: int = 0) -> tuple[str, ...]:
@@ -78,7 +78,7 @@ def run_options(audit: Path, link_port: int = 0) -> tuple[str, ...]:
 
 def sim_options(link_port: int, vehicles: int, *more: str) -> tuple[str, ...]:
     station = ("--station", f"127.0.0.1:{link_port}", "--site", str(demo_site_folder()))
-    return ("sim", *station, "--vehicles", str(vehicles), "--no-eye", *more)
+    return ("sim", *station, "--vehicles", str(vehicles), "--no-imager", *more)
 
 
 def addresses(station: Started) -> tuple[str, int]:
@@ -88,15 +88,17 @@ def addresses(station: Started) -> tuple[str, int]:
 
 
 @contextmanager
-def flown(audit: Path, vehicles: int, *more: str) -> Iterator[Flown]:
-    """Run a station and simulated drones; both are gone afterwards."""
+def station_process(audit: Path, vehicles: int, *more: str) -> Iterator[StationProcess]:
+    """Run a station and simulated drones; both are stopped afterwards."""
     with ExitStack() as stack:
-        station = stack.enter_context(started(*run_options(audit)))
-        url, link_port = addresses(station)
+        process = stack.enter_context(started(*run_options(audit)))
+        url, link_port = addresses(process)
         simulator = None
         if vehicles:
             simulator = stack.enter_context(started(*sim_options(link_port, vehicles, *more)))
-        here = Flown(station, simulator, url, link_port, audit)
+        station = StationProcess(process, simulator, url, link_port, audit)
         if vehicles:
-            here.until(lambda told: len([v for v in told if v["flight_mode"]["value"]]) == vehicles)
-        yield here
+            station.until(
+                lambda states: sum(bool(v["flight_mode"]["value"]) for v in states) == vehicles
+            )
+        yield station

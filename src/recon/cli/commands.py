@@ -1,0 +1,152 @@
+"""The commands of `recon`, each loaded only when it is called or its own help is asked.
+
+The station, its libraries and the simulator take seconds to load; `recon all-stop` must not wait
+for them, nor `recon --help`.
+"""
+
+import re
+from importlib import import_module
+from typing import Any, NamedTuple
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+
+class CommandSource(NamedTuple):
+    """Where a command is defined: `module:name` of its function, or of a group of commands."""
+
+    target: str
+    summary: str
+    """First line of the command's own help; a test compares them."""
+    takes_negative_numbers: bool = False
+
+    def load(self) -> Any:
+        """Import the module; return the function or the `typer.Typer`."""
+        module, _, name = self.target.partition(":")
+        return getattr(import_module(f"recon.cli.{module}"), name)
+
+
+COMMANDS = {
+    "run": CommandSource("run:run_command", "Run the station until Ctrl+C."),
+    "status": CommandSource("status:status_command", "Show every vehicle and its telemetry's age."),
+    "all-stop": CommandSource(
+        "stop_commands:all_stop_command",
+        "Hold every vehicle in the air, identified or not. Never stops motors.",
+    ),
+    "hold": CommandSource("stop_commands:hold_command", "Stop vehicles and hold position."),
+    "land": CommandSource("stop_commands:land_command", "Land vehicles where they are."),
+    "return": CommandSource(
+        "stop_commands:return_command",
+        "Return vehicles to home, each at its own go-home height, and land.",
+    ),
+    "fleet-return": CommandSource(
+        "fleet_return:fleet_return_command",
+        "Return vehicles in separate height layers; they land one at a time.",
+    ),
+    "goto": CommandSource(
+        "steering:goto_command",
+        "Fly a vehicle straight to a position.",
+        takes_negative_numbers=True,
+    ),
+    "nudge": CommandSource("steering:nudge_command", "Move a vehicle by a few metres."),
+    "fly": CommandSource("missions:fly_command", "Fly a mission from a file."),
+    "camera": CommandSource("missions:camera_command", "Start or stop a vehicle's image stream."),
+    "survey": CommandSource(
+        "survey:survey_app", "Survey a region: create, start, pause, abort, status."
+    ),
+    "take": CommandSource("authority:take_command", "Take control authority for the operator."),
+    "release": CommandSource(
+        "authority:release_command", "Hand control authority to the pilot or to guidance."
+    ),
+    "preflight": CommandSource("authority:preflight_command", "Show a vehicle's checklist."),
+    "dismiss": CommandSource("authority:dismiss_command", "Clear a lost vehicle's hazard area."),
+    "separation-hold": CommandSource(
+        "authority:separation_hold_command",
+        "Turn automatic holds for vehicles on conflicting paths on or off.",
+    ),
+    "alarms": CommandSource("status:alarms_command", "Show alarms, and acknowledge them."),
+    "commands": CommandSource("status:commands_command", "Show recent orders and their outcomes."),
+    "audit": CommandSource("audit:audit_app", "Read a station's audit and verify its integrity."),
+    "demo": CommandSource(
+        "demo:demo_command", "Run the station with simulated drones that survey a field."
+    ),
+    "sim": CommandSource("sim:sim_app", "Run simulated companion apps that connect to a station."),
+    "score": CommandSource(
+        "score:score_command", "Fly a scenario in a closed loop and score its methods."
+    ),
+    "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
+    "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
+}
+"""In the order of `recon --help`."""
+
+
+class LazyGroup(TyperGroup):
+    """A group that lists its commands by name and summary, and loads the one that is called.
+
+    `ctx` and `formatter` are click's, of the copy of click inside typer.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        """Register the names, from which a mistyped command gets its suggestions."""
+        super().__init__(**{**options, "commands": dict.fromkeys(COMMANDS)})
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return every name, without loading anything."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Load one command; None when the name is unknown."""
+        source = COMMANDS.get(cmd_name)
+        if source is None:
+            return None
+        loaded = source.load()
+        app = loaded if isinstance(loaded, typer.Typer) else _app_of(loaded, source)
+        command = typer.main.get_command(app)
+        command.name = cmd_name
+        return command
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the summaries into the help page."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, source.summary) for name, source in COMMANDS.items()])
+
+
+NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+class TakesNegativeNumbers(TyperCommand):
+    """A command whose arguments may be negative numbers, without a `--` before them.
+
+    Western longitudes look like options to a shell. Any other word that begins with a hyphen and
+    is not an option is refused as usual.
+    """
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Allow unknown options only when all of them are numbers."""
+        known = {"--", *ctx.help_option_names}
+        known.update(word for param in self.params for word in param.opts)
+        odd = [a for a in args if a.startswith("-") and a.partition("=")[0] not in known]
+        ctx.ignore_unknown_options = all(NUMBER.fullmatch(word) for word in odd)
+        return super().parse_args(ctx, args)
+
+
+def new_app(**options: Any) -> typer.Typer:
+    """Return a `typer.Typer` with plain help pages: formatted ones take longer to load than a
+    stop may wait."""
+    return typer.Typer(
+        rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False, **options
+    )
+
+
+def _app_of(function: Any, source: CommandSource) -> typer.Typer:
+    app = new_app()
+    app.command(cls=TakesNegativeNumbers if source.takes_negative_numbers else None)(function)
+    return app
+
+
+app = new_app(name="recon", cls=LazyGroup, no_args_is_help=True)
+
+
+@app.callback()
+def recon() -> None:
+    """A ground control station for several DJI drones over fields."""

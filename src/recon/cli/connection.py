@@ -1,0 +1,98 @@
+"""What every command that connects to a running station shares: its address, vehicle names, ends.
+
+Exit codes: 0 done; 1 refused, or not confirmed by telemetry; 2 wrong use, or no connection.
+"""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon.client import ClientError, Station, Telemetry
+from recon.client.errors import AddressError
+
+DONE, REFUSED, WRONG_USE = 0, 1, 2
+
+DEFAULT_ADDRESS = "http://127.0.0.1:8080"
+MAX_TOKEN_BYTES = 4096
+
+AddressOption = Annotated[
+    str, typer.Option("--station", envvar="RECON_STATION", help="Address of the station's console.")
+]
+TokenOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--token-file", envvar="RECON_TOKEN_FILE", help="File with the station's access token."
+    ),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+WaitOption = Annotated[
+    float,
+    typer.Option(
+        "--wait",
+        min=0.0,
+        max=3600.0,
+        help="Seconds to wait for confirmation by telemetry; 0: none.",
+    ),
+]
+NamesArgument = Annotated[
+    list[str] | None, typer.Argument(metavar="VEHICLE...", help="Serials, or names from site.toml.")
+]
+NameArgument = Annotated[
+    str, typer.Argument(metavar="VEHICLE", help="Serial, or name from site.toml.")
+]
+
+Work = Callable[[Station], Awaitable[int]]
+
+
+class VehicleNameError(ClientError):
+    """A name that matches no vehicle, or several."""
+
+
+def run_at_station(address: str, token_file: Path | None, work: Work) -> None:
+    """Connect, run `work` and exit with its exit code; raises `ClientError`s."""
+    raise typer.Exit(asyncio.run(_connected(address, read_token(token_file), work)))
+
+
+async def _connected(address: str, token: str | None, work: Work) -> int:
+    async with Station(address, token) as station:
+        return await work(station)
+
+
+def read_token(path: Path | None) -> str | None:
+    """Return the access token in a file; raises `AddressError` when it cannot be read."""
+    if path is None:
+        return None
+    try:
+        with path.open("rb") as file:
+            return file.read(MAX_TOKEN_BYTES).decode("utf-8").strip()
+    except (OSError, UnicodeDecodeError) as problem:
+        raise AddressError(f"cannot read the token file {path}: {problem}") from problem
+
+
+def named_serials(station: Station, names: Sequence[str] | None) -> list[str]:
+    """Return the serial of each name, each once; raises `VehicleNameError`, also without names.
+
+    A serial takes precedence over an equal name. Names match in any case.
+    """
+    if not names:
+        raise VehicleNameError("Name the vehicles")
+    known = station.vehicles()
+    return list(dict.fromkeys(_serial_of(name, known) for name in names))
+
+
+def _serial_of(name: str, known: Sequence[Telemetry]) -> str:
+    serials = [v.serial for v in known if v.serial is not None]
+    if name in serials:
+        return name
+    matches = [v.serial for v in known if v.name.casefold() == name.casefold() and v.serial]
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
+        raise VehicleNameError(f"{len(matches)} vehicles have the name {name!r}: use a serial")
+    choices = ", ".join(f"{v.serial} ({v.name})" for v in known if v.serial) or "none"
+    raise VehicleNameError(
+        f"expected a vehicle's serial or name, got {name!r}; connected vehicles: {choices}"
+    )

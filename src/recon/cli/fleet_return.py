@@ -1,0 +1,96 @@
+"""`recon fleet-return`: vehicles returned in separate height layers, and their progress."""
+
+import asyncio
+import time
+from collections.abc import Callable, Sequence
+
+import msgspec
+
+from recon.cli.connection import (
+    DEFAULT_ADDRESS,
+    DONE,
+    REFUSED,
+    AddressOption,
+    JsonOption,
+    NamesArgument,
+    TokenOption,
+    WaitOption,
+    named_serials,
+    run_at_station,
+)
+from recon.cli.output import print_json, print_table
+from recon.client import Returning, Station
+
+PLANNING_TIMEOUT_S = 10.0
+POLL_INTERVAL_S = 0.5
+
+Condition = Callable[[Sequence[Returning]], bool]
+
+
+def fleet_return_command(
+    vehicles: NamesArgument = None,
+    wait: WaitOption = 0.0,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Return vehicles in separate height layers; they land one at a time.
+
+    Without names: every vehicle that is or may be in the air. Exits once the plan is made; with
+    --wait, once all have ended or after that many seconds. The return continues after the exit.
+    """
+
+    async def work(station: Station) -> int:
+        serials = named_serials(station, vehicles) if vehicles else None
+        called = {answer.serial for answer in await station.fleet.return_in_layers(serials)}
+        flights = await _poll(station, called, _are_planned, PLANNING_TIMEOUT_S)
+        if wait > 0.0:
+            flights = await _poll(station, called, _are_done, wait)
+        _print_flights(flights, as_json)
+        is_good = all(flight.stage not in ("left_out", "released") for flight in flights)
+        is_over = wait == 0.0 or _are_done(flights)
+        return DONE if is_good and is_over else REFUSED
+
+    run_at_station(address, token_file, work)
+
+
+def _are_planned(flights: Sequence[Returning]) -> bool:
+    return all(flight.wave is not None or flight.is_done for flight in flights)
+
+
+def _are_done(flights: Sequence[Returning]) -> bool:
+    return all(flight.is_done for flight in flights)
+
+
+async def _poll(
+    station: Station, called: set[str | None], condition: Condition, timeout_s: float
+) -> list[Returning]:
+    """Return the called vehicles' flights once they meet the condition, or at the timeout."""
+    end_s = time.monotonic() + timeout_s
+    while True:
+        flights = [f for f in await station.fleet.returning() if f.serial in called]
+        if condition(flights) or time.monotonic() >= end_s:
+            return flights
+        await asyncio.sleep(POLL_INTERVAL_S)
+
+
+def _print_flights(flights: Sequence[Returning], as_json: bool) -> None:
+    if as_json:
+        print_json(msgspec.to_builtins(flights))
+        return
+    rows = [
+        (
+            flight.vehicle_name,
+            flight.stage.replace("_", " "),
+            "" if flight.wave is None else f"wave {flight.wave}",
+            _metres(flight.layer_height_above_takeoff_m),
+            flight.pad or "",
+            flight.reason or "",
+        )
+        for flight in flights
+    ]
+    print_table("fleet return", ("vehicle", "stage", "wave", "height", "pad", "reason"), rows)
+
+
+def _metres(height_m: float | None) -> str:
+    return "" if height_m is None else f"{height_m:.0f} m"

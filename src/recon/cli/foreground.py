@@ -1,0 +1,33 @@
+"""Commands that run in the foreground until Ctrl+C or SIGTERM."""
+
+import asyncio
+import contextlib
+import signal
+from collections.abc import Coroutine
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+
+def run_in_loop(work: Coroutine[Any, Any, None]) -> None:
+    """Run to the end in a new event loop: uvloop's, or asyncio's where it is missing (Windows)."""
+    if find_spec("uvloop") is None:
+        asyncio.run(work)
+    else:
+        import_module("uvloop").run(work)
+
+
+async def until_stopped(work: Coroutine[Any, Any, None], last_line: str) -> None:
+    """Run `work` until it ends or a signal cancels it, then print the last line."""
+    working = asyncio.ensure_future(work)
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, working.cancel)
+    with contextlib.suppress(asyncio.CancelledError):
+        await working
+    print_now(last_line)
+
+
+def print_now(line: str) -> None:
+    """Print a line without buffering, also into a pipe."""
+    print(line, flush=True)

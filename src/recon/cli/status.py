@@ -1,0 +1,133 @@
+"""`recon status`, `recon alarms`, `recon commands`: the state of the station, in the terminal."""
+
+from typing import Annotated
+
+import msgspec
+import typer
+
+from recon.cli.connection import (
+    DEFAULT_ADDRESS,
+    DONE,
+    AddressOption,
+    JsonOption,
+    TokenOption,
+    run_at_station,
+)
+from recon.cli.output import print_json, print_line, print_table
+from recon.client import Alarm, Life, Station, Telemetry
+
+
+def status_command(
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Show every vehicle and its telemetry's age."""
+
+    async def work(station: Station) -> int:
+        vehicles, alarms = station.vehicles(), await station.alarms()
+        if as_json:
+            print_json(msgspec.to_builtins(vehicles))
+            return DONE
+        columns = ("vehicle", "serial", "telemetry", "state", "mode", "height", "speed", "battery")
+        print_table("vehicles", columns, [_vehicle_row(vehicle) for vehicle in vehicles])
+        active = sum(alarm.is_active for alarm in alarms)
+        print_line(f"{len(vehicles)} vehicles, {active} active alarms")
+        return DONE
+
+    run_at_station(address, token_file, work)
+
+
+def alarms_command(
+    acknowledged: Annotated[
+        list[int] | None,
+        typer.Option("--ack", metavar="ID", help="Acknowledge an alarm; may be repeated."),
+    ] = None,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Show alarms, and acknowledge them.
+
+    An alarm stays listed until its cause has ended and an operator has acknowledged it.
+    """
+
+    async def work(station: Station) -> int:
+        for number in acknowledged or []:
+            await station.acknowledge(number)
+        alarms = await station.alarms()
+        if as_json:
+            print_json(msgspec.to_builtins(alarms))
+            return DONE
+        columns = ("id", "severity", "since", "alarm", "acknowledged")
+        print_table("alarms", columns, [_alarm_row(alarm) for alarm in alarms])
+        print_line(f"{sum(alarm.is_active for alarm in alarms)} active alarms")
+        return DONE
+
+    run_at_station(address, token_file, work)
+
+
+def commands_command(
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Show recent orders and their outcomes.
+
+    The newest comes first.
+    """
+
+    async def work(station: Station) -> int:
+        lives = await station.commands()
+        if as_json:
+            print_json(msgspec.to_builtins(lives))
+            return DONE
+        columns = ("id", "vehicle", "order", "phase", "age", "note")
+        print_table("orders", columns, [_life_row(life) for life in lives])
+        print_line(f"{len(lives)} orders")
+        return DONE
+
+    run_at_station(address, token_file, work)
+
+
+def _vehicle_row(vehicle: Telemetry) -> tuple[str, ...]:
+    simulated = " (simulated)" if vehicle.is_simulated else ""
+    battery = vehicle.battery_fraction.value
+    return (
+        vehicle.name + simulated,
+        vehicle.serial or "none",
+        _age(vehicle.telemetry_age_s, vehicle.staleness.value),
+        {True: "flying", False: "on the ground", None: "unknown"}[vehicle.is_flying.value],
+        (vehicle.flight_mode.value or "unknown").replace("_", " "),
+        _with_unit(vehicle.height_above_takeoff_m.value, "m"),
+        _with_unit(_speed_mps(vehicle), "m/s"),
+        "unknown" if battery is None else f"{battery:.0%}",
+    )
+
+
+def _speed_mps(vehicle: Telemetry) -> float | None:
+    velocity = vehicle.velocity_ned
+    parts = (velocity.north_mps, velocity.east_mps, velocity.down_mps)
+    known = [part for part in parts if part is not None]
+    return sum(part**2 for part in known) ** 0.5 if len(known) == len(parts) else None
+
+
+def _alarm_row(alarm: Alarm) -> tuple[str, ...]:
+    ended = "" if alarm.is_active else " (ended)"
+    acknowledged = "yes" if alarm.is_acknowledged else "no"
+    since = f"{alarm.raised_age_s:.0f} s"
+    return (str(alarm.id), alarm.severity, since, alarm.text + ended, acknowledged)
+
+
+def _life_row(life: Life) -> tuple[str, ...]:
+    age = f"{life.history[0].age_s:.0f} s" if life.history else ""
+    kind, phase = (word.replace("_", " ") for word in (life.kind, life.phase.value))
+    return (str(life.id), life.vehicle_name, kind, phase, age, life.note)
+
+
+def _age(age_s: float | None, staleness: str) -> str:
+    return "never" if age_s is None else f"{age_s:.1f} s, {staleness}"
+
+
+def _with_unit(value: float | None, unit: str) -> str:
+    return "unknown" if value is None else f"{value:.1f} {unit}"

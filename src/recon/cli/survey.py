@@ -1,0 +1,271 @@
+"""`recon survey`: a region cut into rows, flown by vehicles that guidance controls."""
+
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import typer
+
+from recon.cli.commands import new_app
+from recon.cli.connection import (
+    DEFAULT_ADDRESS,
+    DONE,
+    REFUSED,
+    AddressOption,
+    JsonOption,
+    NamesArgument,
+    TokenOption,
+    Work,
+    named_serials,
+    run_at_station,
+)
+from recon.cli.output import print_json, print_line, print_table
+from recon.client import ClientError, Refusal, Station, Survey, Surveys
+from recon.model.geo import GeoPoint
+from recon.model.survey import WhenDone, none_such
+
+HECTARE_M2 = 10_000.0
+PHASES = {"created": "planned"}
+"""Words that differ from the API's."""
+NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
+
+survey_app = new_app(
+    help="Survey a region: create, start, pause, abort, status.", no_args_is_help=True
+)
+
+NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
+
+
+class SurveyNumberError(ClientError):
+    """No survey has this number."""
+
+
+@survey_app.command("create")
+def create_command(
+    region: Annotated[
+        str,
+        typer.Argument(
+            metavar="REGION", help="Name of a survey region of the site, or a GeoJSON file."
+        ),
+    ],
+    height: Annotated[float, typer.Option("--height", help="Metres above takeoff.")],
+    speed: Annotated[float, typer.Option("--speed", help="Metres per second.")] = 5.0,
+    feature: Annotated[
+        str | None, typer.Option("--feature", help="Name of the feature in the file.")
+    ] = None,
+    name: Annotated[str | None, typer.Option("--name", help="Name of the survey.")] = None,
+    planner: Annotated[
+        str, typer.Option("--planner", help="lawnmower_once or lawnmower_again.")
+    ] = "lawnmower_once",
+    front: Annotated[
+        float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")
+    ] = 0.7,
+    side: Annotated[
+        float, typer.Option("--side-overlap", help="Overlap of rows, 0 to 0.95.")
+    ] = 0.6,
+    bearing: Annotated[
+        float | None,
+        typer.Option("--bearing", help="Of the rows, degrees; default: shortest flight."),
+    ] = None,
+    interval: Annotated[
+        float,
+        typer.Option("--interval", help="Seconds between photos, as set in the camera's timer."),
+    ] = 2.0,
+    rounds: Annotated[
+        int, typer.Option("--rounds", help="Most rounds over ground that is still missing.")
+    ] = 6,
+    minutes: Annotated[
+        float | None, typer.Option("--minutes", min=0.1, help="No new mission after this many.")
+    ] = None,
+    when_done: Annotated[
+        WhenDone,
+        typer.Option("--when-done", help="What vehicles do when finished or low on battery."),
+    ] = WhenDone.RETURN_HOME,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Plan a survey.
+
+    Nothing flies yet: `recon survey start` starts it.
+    """
+    settings: dict[str, Any] = {
+        "height_above_takeoff_m": height,
+        "speed_mps": speed,
+        "planner": planner,
+        "front_overlap": front,
+        "side_overlap": side,
+        "row_bearing_deg": bearing,
+        "camera": {"interval_s": interval},
+        "budget": {"rounds": rounds, "time_s": None if minutes is None else 60.0 * minutes},
+        "when_done": when_done.value,
+    }
+
+    async def work(station: Station) -> int:
+        area = await _area(station, region, feature, name)
+        return _print_answer(await station.surveys.create(**area, **settings), as_json)
+
+    run_at_station(address, token_file, work)
+
+
+@survey_app.command("start")
+def start_command(
+    number: NumberArgument,
+    vehicles: NamesArgument = None,
+    takeoff: Annotated[
+        bool, typer.Option("--takeoff", help="Allow takeoff for this start.")
+    ] = False,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Fly a survey with these vehicles; guidance takes control of them.
+
+    For a running survey: add vehicles, or resume those that stopped.
+    """
+
+    async def work(station: Station) -> int:
+        serials = named_serials(station, vehicles)
+        return _print_answer(await station.surveys.start(number, serials, takeoff=takeoff), as_json)
+
+    run_at_station(address, token_file, work)
+
+
+@survey_app.command("pause")
+def pause_command(
+    number: NumberArgument,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Pause a survey.
+
+    Its vehicles hold position, under operator control.
+    """
+    run_at_station(address, token_file, _stop(Surveys.pause, number, as_json))
+
+
+@survey_app.command("abort")
+def abort_command(
+    number: NumberArgument,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """End a survey; it cannot be resumed.
+
+    Its vehicles hold position, under operator control.
+    """
+    run_at_station(address, token_file, _stop(Surveys.abort, number, as_json))
+
+
+@survey_app.command("status")
+def status_command(
+    number: Annotated[
+        int | None, typer.Argument(metavar="ID", help="One survey; default: all.")
+    ] = None,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Show surveys, their coverage and vehicles, the newest first."""
+    run_at_station(address, token_file, _status(number, as_json))
+
+
+def _stop(
+    stop: Callable[[Surveys, int], Awaitable[Survey | Refusal]], number: int, as_json: bool
+) -> Work:
+    async def work(station: Station) -> int:
+        return _print_answer(await stop(station.surveys, number), as_json)
+
+    return work
+
+
+def _status(number: int | None, as_json: bool) -> Work:
+    async def work(station: Station) -> int:
+        known = await station.surveys.list()
+        surveys = [survey for survey in known if number in (None, survey.id)]
+        if number is not None and not surveys:
+            raise SurveyNumberError(none_such(number, ((s.id, s.name, s.phase) for s in known)))
+        if as_json:
+            print_json(msgspec.to_builtins(surveys))
+        else:
+            _print_surveys(surveys)
+        return DONE
+
+    return work
+
+
+async def _area(
+    station: Station, region: str, feature: str | None, name: str | None
+) -> dict[str, Any]:
+    """Return the region of a GeoJSON file as rings, or the name of a region of the site."""
+    path = Path(region)
+    if not path.is_file() and path.suffix.lower() not in (".geojson", ".json"):
+        return {"region": region, "name": name}
+    # Imported here: geometry takes longer to load than a pause may wait.
+    from recon.cli.region_file import read_region
+
+    site = await station.surveys.site_origin()
+    if site is None or site.latitude_deg is None or site.longitude_deg is None:
+        raise ClientError(NO_ORIGIN)
+    origin = GeoPoint(site.latitude_deg, site.longitude_deg, site.ground_altitude_m or 0.0)
+    own_name, rings = read_region(path, feature, origin)
+    return {"polygon": rings, "name": name or own_name}
+
+
+def _print_answer(answer: Survey | Refusal, as_json: bool) -> int:
+    if isinstance(answer, Refusal):
+        print_line(f"refused ({answer.rule}): {answer.reason}")
+        return REFUSED
+    if as_json:
+        print_json(msgspec.to_builtins(answer))
+    else:
+        print_line(_sentence(answer))
+        _print_surveys([answer])
+    return DONE
+
+
+def _sentence(survey: Survey) -> str:
+    """Return the survey's number, phase and name; later commands use the number."""
+    number, phase = survey.id, PHASES.get(survey.phase, survey.phase)
+    sentence = f"survey {number}: {phase}, {survey.name}"
+    if survey.phase != "created":
+        return sentence
+    return f"{sentence}. Start it with `recon survey start {number} VEHICLE...`"
+
+
+def _print_surveys(surveys: list[Survey]) -> None:
+    rows = [
+        (
+            f"survey {s.id}",
+            s.name,
+            PHASES.get(s.phase, s.phase),
+            f"{s.rows} rows",
+            *_areas(s),
+            s.reason,
+        )
+        for s in surveys
+    ]
+    columns = (
+        *("number", "name", "phase", "rows", "region"),
+        *("not yet", "in shade", "in sun", "reason"),
+    )
+    print_table("surveys", columns, rows)
+    members = [
+        (v.vehicle_name, "flying rows" if v.is_flying_rows else v.waits_for or v.refused or "idle")
+        for survey in surveys
+        for v in survey.vehicles
+    ]
+    if members:
+        print_table("vehicles", ("vehicle", "activity"), members)
+
+
+def _areas(survey: Survey) -> tuple[str, str, str, str]:
+    figures = survey.figures
+    if figures is None:
+        return "", "", "", ""
+    areas = (figures.region_m2, figures.not_yet_m2, figures.in_shade_m2, figures.in_sun_m2)
+    region, not_yet, in_shade, in_sun = (f"{area / HECTARE_M2:.2f} ha" for area in areas)
+    return region, f"not yet {not_yet}", f"in shade {in_shade}", f"in sun {in_sun}"
