@@ -1,7 +1,7 @@
 """Only telemetry newer than a command confirms it (decisions on the ICD, 14)."""
 
 import pytest
-from tests.fleet.said import S, Story, core, extended
+from tests.fleet.reports import S, Story, core, extended
 
 from recon.fleet.confirmation import Progress, SentContext, progress, reading_of_sent
 from recon.fleet.flight_table import Verdict
@@ -37,8 +37,15 @@ STICK = VirtualStick(StickFrame.GROUND, 0.0, 1.0, 0.0, 30.0, 1.0)
 
 
 def after(*reports: Report) -> VehicleState:
-    """A vehicle that said these things 1 s after the command was sent."""
-    return Story().opens(1).says(1, extended("A", mode=None)).at(2.0).says(1, *reports).vehicle()
+    """A vehicle that reported these values 1 s after the command was sent."""
+    return (
+        Story()
+        .opens(1)
+        .receives(1, extended("A", mode=None))
+        .at(2.0)
+        .receives(1, *reports)
+        .vehicle()
+    )
 
 
 def sent(mode: FlightMode | None = WAYPOINT, was_flying: bool | None = True) -> SentContext:

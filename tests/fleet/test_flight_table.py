@@ -1,4 +1,4 @@
-"""The flight table: total, told by the page, and right in the cells that matter."""
+"""The flight table: complete, as documented, correct in the cells that matter."""
 
 from itertools import product
 from pathlib import Path
@@ -41,21 +41,21 @@ UNDER_WAY = (
 
 
 def seen(
-    told: Instruction,
+    instruction: Instruction,
     mode: FlightMode | None,
     place: Place = ELSEWHERE,
     *,
     before: FlightMode | None = None,
     gnss: int | None = 4,
 ) -> Verdict:
-    return read(told, mode, gnss, place, before).verdict
+    return read(instruction, mode, gnss, place, before).verdict
 
 
 def test_every_mode_of_the_icd_has_a_kind_and_every_cell_a_verdict() -> None:
     assert set(KIND_OF_MODE) == set(FlightMode)
     assert set(TABLE) == set(product(Instruction, ModeKind, Place))
-    for told, mode, place, gnss in product(Instruction, FlightMode, Place, (None, 0, 5)):
-        reading = read(told, mode, gnss, place)
+    for instruction, mode, place, gnss in product(Instruction, FlightMode, Place, (None, 0, 5)):
+        reading = read(instruction, mode, gnss, place)
         assert isinstance(reading, Reading)
         assert reading.why
 
@@ -116,52 +116,56 @@ class TestMissions:
     def test_one_that_lands_and_hovers_instead_was_stopped_by_the_pilot(self, place: Place) -> None:
         assert seen(Instruction.MISSION_TO_LAND, MODE.GPS_ATTI, place) is PILOT
 
-    def test_sticks_that_nobody_here_sends_are_not_the_stations(self) -> None:
+    def test_sticks_not_sent_by_the_station_are_the_pilots(self) -> None:
         assert seen(Instruction.MISSION, MODE.JOYSTICK) is PILOT
         assert seen(Instruction.HOLD, MODE.JOYSTICK, END) is PILOT
 
 
 class TestThePilot:
     @pytest.mark.parametrize(
-        "told", [told for told in Instruction if told is not Instruction.NOTHING]
+        "instruction",
+        [instruction for instruction in Instruction if instruction is not Instruction.NOTHING],
     )
     @pytest.mark.parametrize("mode", [MODE.GPS_SPORT, MODE.MANUAL, MODE.TRIPOD, MODE.TAP_FLY])
     def test_a_mode_only_a_person_selects_is_the_pilot_at_once(
-        self, told: Instruction, mode: FlightMode
+        self, instruction: Instruction, mode: FlightMode
     ) -> None:
-        reading = read(told, mode, None, ELSEWHERE)
+        reading = read(instruction, mode, None, ELSEWHERE)
         assert (reading.verdict, reading.is_at_once) == (PILOT, True)
 
-    @pytest.mark.parametrize("told", [told for told in Instruction if told is not Instruction.HOLD])
+    @pytest.mark.parametrize(
+        "instruction",
+        [instruction for instruction in Instruction if instruction is not Instruction.HOLD],
+    )
     @pytest.mark.parametrize("mode", [MODE.GPS_SPORT, MODE.ATTI, MODE.GPS_ATTI, MODE.JOYSTICK])
-    def test_a_mode_that_held_before_says_nothing_of_the_pilot(
-        self, told: Instruction, mode: FlightMode
+    def test_a_mode_that_held_before_is_no_sign_of_the_pilot(
+        self, instruction: Instruction, mode: FlightMode
     ) -> None:
-        assert seen(told, mode, before=mode) is not PILOT
+        assert seen(instruction, mode, before=mode) is not PILOT
 
-    @pytest.mark.parametrize("told", UNDER_WAY)
+    @pytest.mark.parametrize("instruction", UNDER_WAY)
     @pytest.mark.parametrize("mode", [MODE.ATTI, MODE.ATTI_COURSE_LOCK])
     @pytest.mark.parametrize(
         ("gnss", "verdict"), [(5, PILOT), (3, PILOT), (2, UNDECIDED), (None, UNDECIDED)]
     )
     def test_atti_is_the_pilots_while_gnss_is_good(
-        self, told: Instruction, mode: FlightMode, gnss: int | None, verdict: Verdict
+        self, instruction: Instruction, mode: FlightMode, gnss: int | None, verdict: Verdict
     ) -> None:
-        assert seen(told, mode, gnss=gnss) is verdict
+        assert seen(instruction, mode, gnss=gnss) is verdict
 
     def test_hovering_instead_of_landing_or_going_home_is_the_pilot(self) -> None:
         assert seen(Instruction.LAND, MODE.GPS_ATTI) is PILOT
         assert seen(Instruction.RETURN, MODE.GPS_ATTI) is PILOT
         assert seen(Instruction.STICK, MODE.GPS_ATTI) is PILOT
 
-    def test_before_an_order_shows_position_mode_says_nothing(self) -> None:
-        for told in (
+    def test_before_an_order_shows_position_mode_is_undecided(self) -> None:
+        for instruction in (
             Instruction.LAND_SENT,
             Instruction.RETURN_SENT,
             Instruction.STICK_SENT,
             Instruction.MISSION_SENT,
         ):
-            assert seen(told, MODE.GPS_ATTI) is UNDECIDED
+            assert seen(instruction, MODE.GPS_ATTI) is UNDECIDED
 
     def test_a_hold_that_moved_away_was_moved(self) -> None:
         assert seen(Instruction.HOLD, MODE.GPS_ATTI, END) is C
@@ -193,26 +197,26 @@ class TestOrders:
         assert seen(Instruction.LAND, MODE.GO_HOME) is FAILSAFE
 
     @pytest.mark.parametrize(
-        "told",
+        "instruction",
         [Instruction.LAND, Instruction.RETURN, Instruction.LAND_SENT, Instruction.RETURN_SENT],
     )
     @pytest.mark.parametrize("mode", [MODE.GPS_ATTI, MODE.AUTO_LANDING, MODE.UNKNOWN])
-    def test_the_ground_ends_them(self, told: Instruction, mode: FlightMode) -> None:
-        assert seen(told, mode, DOWN) is F
+    def test_the_ground_ends_them(self, instruction: Instruction, mode: FlightMode) -> None:
+        assert seen(instruction, mode, DOWN) is F
 
-    @pytest.mark.parametrize("told", Instruction)
+    @pytest.mark.parametrize("instruction", Instruction)
     @pytest.mark.parametrize("mode", [MODE.UNKNOWN, MODE.OTHER])
-    def test_an_unknown_mode_never_blames_anybody_in_the_air(
-        self, told: Instruction, mode: FlightMode
+    def test_an_unknown_mode_is_never_a_takeover_in_the_air(
+        self, instruction: Instruction, mode: FlightMode
     ) -> None:
-        assert seen(told, mode) in (UNDECIDED, C)
+        assert seen(instruction, mode) in (UNDECIDED, C)
 
-    @pytest.mark.parametrize("told", Instruction)
+    @pytest.mark.parametrize("instruction", Instruction)
     @pytest.mark.parametrize("place", Place)
-    def test_no_mode_is_no_verdict(self, told: Instruction, place: Place) -> None:
-        assert seen(told, None, place) is UNDECIDED
+    def test_no_mode_is_no_verdict(self, instruction: Instruction, place: Place) -> None:
+        assert seen(instruction, None, place) is UNDECIDED
 
-    def test_told_nothing_only_the_pilots_own_modes_say_something(self) -> None:
+    def test_without_an_instruction_only_pilot_modes_give_a_verdict(self) -> None:
         for mode, place in product(FlightMode, (END, ELSEWHERE)):
             is_pilots = kind_of(mode, 4) in (ModeKind.PILOT, ModeKind.ATTI_GOOD)
             assert seen(Instruction.NOTHING, mode, place) is (PILOT if is_pilots else UNDECIDED)

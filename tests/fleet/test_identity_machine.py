@@ -3,7 +3,7 @@
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
-from tests.fleet.said import Story, core, extended
+from tests.fleet.reports import Story, core, extended
 
 SERIALS = st.sampled_from([None, "A", "B", "C"])
 
@@ -44,13 +44,13 @@ class Links(RuleBasedStateMachine):
 
     @precondition(lambda self: self.open)
     @rule(data=st.data(), serial=SERIALS)
-    def says_its_serial(self, data: st.DataObject, serial: str | None) -> None:
-        self.story.says(self.pick(data), extended(serial))
+    def reports_its_serial(self, data: st.DataObject, serial: str | None) -> None:
+        self.story.receives(self.pick(data), extended(serial))
         self.serials |= {serial} - {None}
 
     @rule(link_id=st.integers(0, 40), flying=st.sampled_from([True, False, None]))
     def telemetry_on_any_link(self, link_id: int, flying: bool | None) -> None:
-        self.story.says(link_id, core(flying=flying))
+        self.story.receives(link_id, core(flying=flying))
 
     @rule(is_prompt=st.booleans())
     def ticks(self, is_prompt: bool) -> None:

@@ -1,4 +1,4 @@
-"""A link server on loopback, with everything it says written down."""
+"""A link server on loopback, with all its events recorded."""
 
 import asyncio
 import time

@@ -1,4 +1,4 @@
-"""A fault in a session's own code costs its connection, and nobody else's."""
+"""A fault in a session's own code costs only its connection."""
 
 import pytest
 from tests.link.approved import core
@@ -26,7 +26,7 @@ def break_method(monkeypatch: pytest.MonkeyPatch, name: str, link_id: int) -> No
 
 @pytest.mark.parametrize("loop", sorted(LOOPS))
 @pytest.mark.parametrize("method", METHODS)
-def test_it_ends_that_link_with_an_event_and_the_next_one_is_heard(
+def test_it_ends_that_link_with_an_event_and_the_next_link_works(
     loop: str, method: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def main() -> None:

@@ -48,7 +48,7 @@ async def packet_from(reader: asyncio.StreamReader) -> wire.Packet:
 
 
 class TestGoodApps:
-    def test_what_an_app_says_arrives_in_order(self, loop: str) -> None:
+    def test_packets_of_an_app_arrive_in_order(self, loop: str) -> None:
         async def main() -> None:
             async with listening() as station:
                 link_id, _, writer = await station.connect()
@@ -140,7 +140,7 @@ class TestGoodApps:
 
         run_on(loop, main)
 
-    def test_a_reset_connection_is_told(self, loop: str) -> None:
+    def test_a_reset_connection_is_reported(self, loop: str) -> None:
         async def main() -> None:
             async with listening() as station:
                 link_id, _, writer = await station.connect()
@@ -493,8 +493,8 @@ class TestServer:
     def test_closing_a_link_that_is_gone_is_nothing(self, loop: str) -> None:
         async def main() -> None:
             async with listening() as station:
-                station.server.close_link(99, "nobody")
-                station.server.withdraw_motion((99,), "nobody")
+                station.server.close_link(99, "unknown link")
+                station.server.withdraw_motion((99,), "unknown link")
                 order(station, 1, Hover(), 99)
                 assert station.events == []
 

@@ -163,7 +163,7 @@ class TestSuperseding:
         assert [d.command_id for d in dropped] == list(range(999))
         assert s.commands_queued == 1
 
-    def test_expiry_is_told(self) -> None:
+    def test_expiry_is_reported(self) -> None:
         s = session()
         s.submit(approved(1, stick()))
         sent_ids(s, 0)
@@ -233,7 +233,7 @@ class TestAnswers:
         assert answers(s.receive(ack(MISSION), 0)) == []
         assert s.acks.unexpected == 1
 
-    def test_a_missed_answer_is_told_and_frees_the_place(self) -> None:
+    def test_a_missed_answer_is_reported_and_frees_its_lane(self) -> None:
         s = session()
         s.submit(approved(1, mission()))
         sent_ids(s, 0)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from tests.fleet.said import PLACE, S, core, extended
+from tests.fleet.reports import PLACE, S, core, extended
 from tests.ready import ready_airspace, ready_profile
 
 from recon.fleet.state import Fleet

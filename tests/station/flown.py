@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from tests.fleet.said import PLACE, core, extended
+from tests.fleet.reports import PLACE, core, extended
 from tests.safety.cases import mission, waypoint
 from tests.station.commanded import CommandedStation
 

@@ -1,4 +1,4 @@
-"""Missions repaired to what DJI accepts: said in words, within bounds, once and for all."""
+"""Missions repaired to what DJI accepts: reported, within bounds, idempotent."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -95,7 +95,7 @@ class TestGoodMissions:
 
 
 class TestRanges:
-    def test_speeds_are_brought_into_range_and_said_with_numbers(self) -> None:
+    def test_speeds_are_limited_and_reported_with_numbers(self) -> None:
         result = repaired(
             at(0.0, speed_mps=0.0), at(50.0, speed_mps=1e-60), at(90.0, speed_mps=22.0), at(130.0)
         )
@@ -125,7 +125,7 @@ class TestSpacing:
         assert last == at(90.0)
         assert result.repairs == ("waypoint 3 is 0.40 m from waypoint 2 and was merged into it",)
 
-    def test_actions_that_are_lost_are_said(self) -> None:
+    def test_lost_actions_are_reported(self) -> None:
         result = repaired(
             at(0.0, gimbal_pitch_deg=-90.0, loiter_s=30.0),
             at(0.5, gimbal_pitch_deg=-30.0, loiter_s=10.0),
@@ -227,7 +227,7 @@ SPANS = st.one_of(
 
 @st.composite
 def missions(draw: st.DrawFn) -> Mission:
-    """Missions as people and programs get them wrong: near and far, slow and fast."""
+    """Missions with typical mistakes: near and far, slow and fast."""
     count = draw(st.integers(2, 40))
     curved = draw(st.booleans())
     north_m = east_m = 0.0
@@ -312,10 +312,10 @@ def test_waypoints_that_stay_are_the_ordered_ones_to_the_bit(mission: Mission, m
     kept = [
         p for p in flown if (p.latitude_deg, p.longitude_deg, p.height_above_takeoff_m) in ordered
     ]
-    said_new = sum(
+    reported_new = sum(
         int(text.split(": ")[1].split()[0]) for text in result.repairs if "apart" in text
     )
-    assert len(flown) - len(kept) == said_new
+    assert len(flown) - len(kept) == reported_new
 
 
 @settings(max_examples=200, deadline=None)

@@ -89,7 +89,7 @@ class TestMission:
         packet = written(mission(waypoint(0.0), waypoint(50.0, height_above_takeoff_m=60.0)), 260.0)
         assert [w.altitude_m for w in packet.waypoints] == [300.0, 320.0]
 
-    def test_console_log_and_audit_are_told_what_was_sent(self) -> None:
+    def test_console_log_and_audit_are_reported_what_was_sent(self) -> None:
         assert describe_altitudes(mission(), None) == "sent as 40.0 to 40.0 m above takeoff"
         assert describe_altitudes(mission(), 260.0) == (
             "40.0 to 40.0 m above takeoff, sent as 300.0 to 300.0 m WGS84 "

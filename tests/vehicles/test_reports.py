@@ -206,7 +206,9 @@ class TestOthers:
         },
     )
 )
-def test_whatever_core_telemetry_says_what_is_known_is_finite(packet: wire.CoreTelemetry) -> None:
+def test_whatever_core_telemetry_reports_what_is_known_is_finite(
+    packet: wire.CoreTelemetry,
+) -> None:
     report = to_report(packet)
     assert isinstance(report, CoreReport)
     numbers = [report.reported_altitude_m, report.height_above_takeoff_m]
@@ -234,10 +236,10 @@ def test_two_serials_are_never_taken_for_one(a: bytes, b: bytes) -> None:
 def test_what_no_drone_can_do_is_unknown(field: str, value: float) -> None:
     report = to_report(wire.CoreTelemetry(**{**CORE, field: value}))
     assert isinstance(report, CoreReport)
-    said = {
+    reported = {
         "altitude_m": report.reported_altitude_m,
         "height_above_takeoff_m": report.height_above_takeoff_m,
         "velocity_north_mps": report.velocity_ned,
         "velocity_down_mps": report.velocity_ned,
     }
-    assert said[field] is None
+    assert reported[field] is None

@@ -39,7 +39,7 @@ def test_a_golden_packet_encodes_to_its_bytes_again(vector: Vector) -> None:
 
 
 def same(value: Any, expected: int | str) -> bool:
-    """Whether a field is what its vector says; NaN payloads are checked by the bytes instead."""
+    """Whether a field is what its vector states; NaN payloads are checked by the bytes instead."""
     if isinstance(value, bytes):
         return value.hex() == expected
     if isinstance(value, int) or isinstance(expected, int):

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from tests.fleet.said import S
+from tests.fleet.reports import S
 
 from recon.station.state.alarm_book import (
     Alarm,

@@ -1,7 +1,7 @@
 """What is wrong now, from the station's state alone."""
 
 import pytest
-from tests.fleet.said import core, extended
+from tests.fleet.reports import core, extended
 from tests.station.commanded import CommandedStation
 
 from recon.model.report import MessageReport, MessageSeverity

@@ -1,7 +1,7 @@
 """Who leads a vehicle: taken by word, lost by a stop, and always the pilot's for the taking."""
 
 import pytest
-from tests.fleet.said import core, extended
+from tests.fleet.reports import core, extended
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import CommandedStation
 

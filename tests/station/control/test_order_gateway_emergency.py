@@ -1,7 +1,7 @@
 """Emergency orders: repeated, superseded, confirmed, or an alarm that stays (decisions 14-16)."""
 
 import pytest
-from tests.fleet.said import core, extended
+from tests.fleet.reports import core, extended
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import CommandedStation, flying
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from tests.fleet.said import core, extended
+from tests.fleet.reports import core, extended
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import CommandedStation, flying
 

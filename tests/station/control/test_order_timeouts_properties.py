@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.fleet.said import S
+from tests.fleet.reports import S
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
 from tests.station.flown import NORTHWARD, STANDING, at, row, to_land

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import get_args
 
 import numpy as np
-from tests.fleet.said import core, extended
+from tests.fleet.reports import core, extended
 from tests.station.commanded import CommandedStation
 
 from recon.model.event import Event, JobEnded

@@ -2,7 +2,7 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.fleet.said import S, core, extended
+from tests.fleet.reports import S, core, extended
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
 

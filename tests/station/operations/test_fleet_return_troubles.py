@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from tests.fleet.said import core, extended
+from tests.fleet.reports import core, extended
 from tests.safety.cases import PLACE, vehicle
 from tests.station.commanded import CommandedStation
 from tests.station.returning_world import ReturningWorld, returning_world

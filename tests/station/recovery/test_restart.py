@@ -9,7 +9,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.fleet.said import PLACE, core, extended
+from tests.fleet.reports import PLACE, core, extended
 from tests.station.audited import UTC_NS, Audited
 from tests.station.commanded import CommandedStation
 from tests.station.recovery.restarts import restart, restart_world, restored_from, saved

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from tests.fleet.said import core, extended
+from tests.fleet.reports import core, extended
 from tests.record.audits import PATIENCE_S, until
 from tests.station.commanded import CommandedStation
 

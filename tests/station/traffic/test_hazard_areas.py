@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from tests.fleet.said import PLACE, core, extended
+from tests.fleet.reports import PLACE, core, extended
 from tests.station.commanded import CommandedStation
 
 from recon.fleet.settings import FleetSettings

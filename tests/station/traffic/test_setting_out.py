@@ -1,6 +1,6 @@
 """Two sent off in one breath are kept apart before telemetry shows either of them flying."""
 
-from tests.fleet.said import PLACE, core, extended
+from tests.fleet.reports import PLACE, core, extended
 from tests.station.commanded import CommandedStation
 
 from recon.geo.distance import moved_m

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from tests.fleet.said import PLACE, S, core, extended
+from tests.fleet.reports import PLACE, S, core, extended
 from tests.station.commanded import CommandedStation
 from tests.station.operations.test_fleet_return import SIX, six_in_the_air
 from tests.station.returning_world import LEAST_LEVEL_M

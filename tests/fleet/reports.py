@@ -60,7 +60,7 @@ def extended(
 
 
 class Story:
-    """A fleet and what happens to it, told in seconds."""
+    """A fleet and its events, with times in seconds."""
 
     def __init__(self, fleet: Fleet | None = None) -> None:
         self.fleet = fleet or Fleet()
@@ -82,7 +82,7 @@ class Story:
     def closes(self, link_id: int) -> "Story":
         return self.happens(LinkClosed(link_id, "gone"))
 
-    def says(self, link_id: int, *reports: Report) -> "Story":
+    def receives(self, link_id: int, *reports: Report) -> "Story":
         for report in reports:
             self.happens(PacketReceived(link_id, report))
         return self
