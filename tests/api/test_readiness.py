@@ -11,7 +11,6 @@ from recon import wire
 from recon.api import schema
 from recon.model.authority import AuthorityHolder
 from recon.model.event import LinkOpened, PacketReceived
-from recon.station.control.authority import authority_of
 from recon.vehicles.reports import to_report
 
 
@@ -55,7 +54,7 @@ class TestAuthority:
     ) -> None:
         taken = self.take(client, holder)
         assert taken == {"accepted": True, "rule": None, "reason": None}
-        authority = authority_of(station.driver.station, "A")
+        authority = station.driver.station.control("A").authority
         assert (authority.holder, authority.holder_name) == (
             AuthorityHolder(holder),
             "api 127.0.0.1",
@@ -72,7 +71,7 @@ class TestAuthority:
         answer = self.take(client, "guidance")
         assert (answer["accepted"], answer["rule"]) == (False, "authority")
         assert "take control first" in answer["reason"]
-        assert authority_of(station.driver.station, "A").holder is AuthorityHolder.PILOT
+        assert station.driver.station.control("A").authority.holder is AuthorityHolder.PILOT
 
     def test_nobody_leads_what_is_not_known(self, client: Client) -> None:
         assert "X is not known" in self.take(client, "operator", "X")["reason"]

@@ -67,7 +67,7 @@ class Steered:
 
     @property
     def lease(self) -> SetpointLease | None:
-        return self.w.driver.station.streams.get(SERIAL)
+        return self.w.driver.station.control(SERIAL).lease
 
     def order(self, body: Body, owner: str | None = None) -> int:
         number = self.w._next_order

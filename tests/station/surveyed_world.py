@@ -12,7 +12,6 @@ from recon.model.command import FlyMission
 from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyPhase
 from recon.model.zone import Region
-from recon.station.control.authority import authority_of
 from recon.station.state.orders import OrderRecord
 from recon.station.state.survey_record import SurveyRecord
 
@@ -96,7 +95,7 @@ class SurveyedWorld:
         ]
 
     def holder(self, serial: str) -> AuthorityHolder:
-        return authority_of(self.driver.station, serial).holder
+        return self.driver.station.control(serial).authority.holder
 
 
 def surveyed_world(

@@ -28,7 +28,7 @@ def takes(
 
 
 def led_by(scene: CommandedStation) -> AuthorityHolder:
-    return authority.authority_of(scene.station, "A").holder
+    return scene.station.control("A").authority.holder
 
 
 def guidance_orders(scene: CommandedStation, body: Body, number: int = 90) -> Phase:
@@ -91,7 +91,7 @@ class TestByHand:
 class TestByWord:
     def test_the_operator_leads_until_somebody_takes_it(self, scene: CommandedStation) -> None:
         assert led_by(scene) is AuthorityHolder.OPERATOR
-        assert authority.authority_of(scene.station, "A").reason == "not yet transferred"
+        assert scene.station.control("A").authority.reason == "not yet transferred"
 
     def test_guidance_flies_what_was_given_to_it_and_nothing_else(
         self, scene: CommandedStation
@@ -102,10 +102,10 @@ class TestByWord:
         assert scene.phase(scene.order(mission())) is Phase.REFUSED_BY_STATION
 
     def test_who_gave_it_and_when_is_kept(self, scene: CommandedStation) -> None:
-        held = authority.authority_of(takes(scene, AuthorityHolder.GUIDANCE).station, "A")
+        held = takes(scene, AuthorityHolder.GUIDANCE).station.control("A").authority
         assert (held.holder_name, held.since_ns) == ("Ann", scene.now_ns)
         assert held.reason == "given to it by Ann"
-        held = authority.authority_of(takes(scene, AuthorityHolder.OPERATOR, "Bob").station, "A")
+        held = takes(scene, AuthorityHolder.OPERATOR, "Bob").station.control("A").authority
         assert (held.holder, held.holder_name, held.reason) == (
             AuthorityHolder.OPERATOR,
             "Bob",
@@ -137,7 +137,7 @@ class TestByWord:
         )
         assert refusal is not None
         assert "X is not known" in refusal.reason
-        assert "X" not in takes(scene, AuthorityHolder.OPERATOR, serial="X").station.authorities
+        assert "X" not in takes(scene, AuthorityHolder.OPERATOR, serial="X").station.controls
 
 
 class TestAStop:
@@ -147,7 +147,7 @@ class TestAStop:
     ) -> None:
         takes(scene, AuthorityHolder.GUIDANCE)
         scene.order(body)
-        held = authority.authority_of(scene.station, "A")
+        held = scene.station.control("A").authority
         assert (held.holder, held.holder_name) == (AuthorityHolder.OPERATOR, "test")
         assert held.reason.endswith(", ordered by test")
         assert guidance_orders(scene, mission()) is Phase.REFUSED_BY_STATION
@@ -183,18 +183,18 @@ class TestAStop:
     def test_a_stop_of_a_link_without_a_serial_is_nobodys(self, scene: CommandedStation) -> None:
         scene.opens(2, core()).order(Hover(), None, link=2)
         scene.order(Hover(), None, link=99)
-        assert dict(scene.station.authorities) == {}
+        assert not any(control.is_taken for control in scene.station.controls.values())
 
 
 class TestThePilot:
     def pilot(self, scene: CommandedStation, serial: str = "A") -> tuple[WithdrawMotion, ...]:
-        scene.station, outputs = authority.pilot_has_it(scene.station, serial, scene.now_ns)
+        scene.station, outputs = authority.give_to_pilot(scene.station, serial, scene.now_ns)
         assert all(isinstance(output, WithdrawMotion) for output in outputs)
         return outputs  # type: ignore[return-value]
 
     def test_leads_at_once_with_the_reason(self, scene: CommandedStation) -> None:
         self.pilot(scene)
-        held = authority.authority_of(scene.station, "A")
+        held = scene.station.control("A").authority
         assert (held.holder, held.holder_name, held.since_ns) == (
             AuthorityHolder.PILOT,
             "pilot",
@@ -215,7 +215,7 @@ class TestThePilot:
 
     def test_is_not_fought_no_zero_follows_the_stick(self, scene: CommandedStation) -> None:
         scene.order(STICK)
-        assert "A" in scene.station.sticks
+        assert scene.station.neutral_pending == ("A",)
         self.pilot(scene)
         scene.keeps_saying(1, core(), extended(mode=FlightMode.JOYSTICK)).passes(5.0)
         sticks = [body for body in scene.bodies() if isinstance(body, VirtualStick)]
@@ -238,14 +238,14 @@ class TestThePilot:
         self, scene: CommandedStation
     ) -> None:
         self.pilot(scene)
-        assert scene.station.intents["A"] == Intent(Commanded.NOTHING, scene.now_ns)
+        assert scene.station.control("A").intent == Intent(Commanded.NOTHING, scene.now_ns)
 
     def test_only_the_first_sight_of_it_counts(self, scene: CommandedStation) -> None:
         self.pilot(scene)
         before = scene.station
         scene.passes(1.0)
         assert self.pilot(scene) == ()
-        assert scene.station.authorities == before.authorities
+        assert scene.station.control("A").authority == before.control("A").authority
 
     def test_of_an_unknown_vehicle_is_nobody(self, scene: CommandedStation) -> None:
         before = scene.station

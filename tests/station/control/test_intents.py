@@ -11,7 +11,7 @@ from recon.model.vehicle import FlightMode
 
 
 def intent(scene: CommandedStation) -> Intent:
-    return scene.station.intents.get("A", Intent())
+    return scene.station.control("A").intent
 
 
 def test_nothing_was_told_before_the_first_order() -> None:

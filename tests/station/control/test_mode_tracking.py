@@ -25,13 +25,11 @@ HOME, LANDING, SPORT = FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.G
 
 
 def holder(scene: CommandedStation) -> AuthorityHolder:
-    authority = scene.station.authorities.get("A")
-    return AuthorityHolder.OPERATOR if authority is None else authority.holder
+    return scene.station.control("A").authority.holder
 
 
 def commanded(scene: CommandedStation) -> Commanded:
-    intent = scene.station.intents.get("A")
-    return Commanded.NOTHING if intent is None else intent.commanded
+    return scene.station.control("A").intent.commanded
 
 
 def ended_as(scene: CommandedStation, order: int, phase: Phase) -> None:

@@ -136,7 +136,7 @@ class Life:
         assert was.plan is not None
         assert (was.plan.index, was.plan.broken) == (sent - 1, None)
         assert before.fleet.vehicles["A"].link_id == was.plan.link_id == self.link
-        assert before.authorities.get("A") in (None, was.plan.authority)
+        assert before.control("A").authority == was.plan.authority
 
     def says(self, reports: object) -> None:
         for report in reports:  # type: ignore[attr-defined]

@@ -49,25 +49,30 @@ class TestOverride:
 
     def test_who_when_and_why_is_kept(self, scene: CommandedStation) -> None:
         overrides(scene, "  wind in the trees \n")
-        assert dict(scene.station.preflight_overrides) == {
-            "A": Override("Ann", "wind in the trees", scene.now_ns)
-        }
+        kept = scene.station.control("A").preflight_override
+        assert kept == Override("Ann", "wind in the trees", scene.now_ns)
 
     @pytest.mark.parametrize("reason", ["", "  \n\t", "x" * 501])
     def test_it_needs_a_reason_that_can_be_read(self, scene: CommandedStation, reason: str) -> None:
         refusal = preflight.refusal(scene.station, PreflightOverridden("A", "Ann", reason))
         assert refusal is not None
         assert refusal.rule == "preflight_override"
-        assert dict(overrides(scene, reason).station.preflight_overrides) == {}
+        assert overrides(scene, reason).station.control("A").preflight_override is None
 
     def test_a_vehicle_nobody_knows_has_no_list(self, scene: CommandedStation) -> None:
         refusal = preflight.refusal(scene.station, PreflightOverridden("X", "Ann", "why not"))
         assert refusal is not None
         assert "X is not known" in refusal.reason
-        assert dict(overrides(scene, serial="X").station.preflight_overrides) == {}
+        assert "X" not in overrides(scene, serial="X").station.controls
 
     def test_a_reason_of_500_characters_is_one(self, scene: CommandedStation) -> None:
-        assert "A" in overrides(scene, "x" * 500).station.preflight_overrides
+        given = overrides(scene, "x" * 500).station.control("A").preflight_override
+        assert given is not None
+        assert given.reason == "x" * 500
+
+
+def is_overridden(scene: CommandedStation) -> bool:
+    return scene.station.control("A").preflight_override is not None
 
 
 class TestItsEnd:
@@ -75,29 +80,29 @@ class TestItsEnd:
         self, scene: CommandedStation
     ) -> None:
         overrides(scene).passes(1.0)
-        assert "A" in scene.station.preflight_overrides
+        assert is_overridden(scene)
         scene.keeps_saying(1, *HOVERING).passes(5.0)
-        assert "A" in scene.station.preflight_overrides
+        assert is_overridden(scene)
         scene.keeps_saying(1, *ON_GROUND).passes(0.1)
-        assert "A" not in scene.station.preflight_overrides
+        assert not is_overridden(scene)
 
     def test_a_landing_that_nobody_heard_ends_it_too(self, scene: CommandedStation) -> None:
         overrides(scene).keeps_saying(1, *HOVERING).passes(1.0)
         scene.closes(1).passes(30.0).opens(2, *ON_GROUND)
-        assert "A" not in scene.station.preflight_overrides
+        assert not is_overridden(scene)
 
     def test_a_reconnect_on_the_ground_does_not(self, scene: CommandedStation) -> None:
         overrides(scene).closes(1).passes(2.0).opens(2, *ON_GROUND)
-        assert "A" in scene.station.preflight_overrides
+        assert is_overridden(scene)
 
     def test_an_unknown_moment_in_flight_does_not(self, scene: CommandedStation) -> None:
         overrides(scene).keeps_saying(1, *HOVERING).passes(1.0).says(1, core(flying=None))
-        assert "A" in scene.station.preflight_overrides
+        assert is_overridden(scene)
 
     def test_anothers_landing_does_not(self, scene: CommandedStation) -> None:
         overrides(scene).opens(2, core(), extended("B")).says(2, *ON_GROUND[:1])
         scene.opens(3, core()).says(3, core(flying=False))
-        assert "A" in scene.station.preflight_overrides
+        assert is_overridden(scene)
 
 
 class TestClock:
@@ -134,7 +139,7 @@ class TestFacts:
         scene.says(1, MessageReport(MessageSeverity.WARNING, "compass error"))
         vehicle = scene.station.fleet.vehicles["A"]
         said = preflight.facts(scene.station, vehicle).app_warnings
-        assert said == ("A: its app says: compass error",)
+        assert said == ("A: message from its app: compass error",)
         (alarm,) = [a for a in scene.station.alarms.alarms.values() if a.condition.serial == "A"]
         scene.happens(AlarmAcknowledged(alarm.id, "Ann"))
         assert preflight.facts(scene.station, vehicle).app_warnings == ()

@@ -191,7 +191,7 @@ class TestAStream:
         assert s.sticks(failed_s + 0.15) == []
         assert s.hovers(failed_s) != []
         assert s.aircraft.motion.ground_speed_mps < 0.5
-        assert s.w.driver.station.streams == {}
+        assert s.w.driver.station.leased == ()
 
 
 class TestAnEvent:

@@ -100,16 +100,16 @@ class TestAuthority:
     def test_a_pilot_keeps_it_and_guidance_does_not(
         self, flown: World, before: AuthorityHolder, after: AuthorityHolder
     ) -> None:
-        authorities = {"SIM-1": ControlAuthority(before, "somebody", 1, "a reason")}
-        flown.driver.station = replace(flown.driver.station, authorities=authorities)
+        held = ControlAuthority(before, "somebody", 1, "a reason")
+        flown.driver.station = flown.driver.station.with_control("SIM-1", authority=held)
         flown.run_for(6.0)
-        authority = restart(flown).authorities["SIM-1"]
+        authority = restart(flown).control("SIM-1").authority
         assert authority.holder is after
         assert "restarted" in authority.reason
 
     def test_a_vehicle_on_the_ground_keeps_its_pilot(self, flown: World) -> None:
         flown.driver.handle(AuthorityTaken("SIM-2", AuthorityHolder.PILOT, "p"))
-        authority = restart(flown).authorities["SIM-2"]
+        authority = restart(flown).control("SIM-2").authority
         assert (authority.holder, authority.holder_name) == (AuthorityHolder.PILOT, "p")
 
 
@@ -135,7 +135,7 @@ class TestVehicles:
         vehicle = flown.vehicle("SIM-1")
         assert vehicle.link_id is not None
         assert vehicle.takeoff_point == home is not None
-        assert flown.driver.station.restored_flights == {}
+        assert all(c.restored is None for c in flown.driver.station.controls.values())
         assert not [e for e in audited.of("alarm.raised") if e.details["rule"] == "restarted"]
 
     def test_nothing_is_sent(self, flown: World) -> None:
@@ -173,7 +173,7 @@ class TestVehicles:
         later = flown.driver.now_ns + 2 * HOUR_NS
         station = restored_from(snapshot_of(flown), later)
         assert station.fleet.vehicles == {}
-        assert station.authorities == {}
+        assert station.controls == {}
 
     def test_a_clock_that_was_set_back_restores_no_flight(self, flown: World) -> None:
         assert restored_from(snapshot_of(flown), 0).fleet.vehicles == {}
@@ -182,9 +182,11 @@ class TestVehicles:
         flown.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.PILOT, "p"))
         first = restart(flown)
         second = restored_from(saved(first, flown.driver.now_ns), flown.driver.now_ns)
-        assert first.restored_flights == second.restored_flights != {}
+        last = first.control("SIM-1").restored
+        assert last is not None
+        assert second.control("SIM-1").restored == last
         assert second.fleet.vehicles["SIM-1"].takeoff_point is not None
-        assert second.authorities["SIM-1"].holder is AuthorityHolder.PILOT
+        assert second.control("SIM-1").authority.holder is AuthorityHolder.PILOT
 
     def test_the_audit_shows_what_was_restored(self, flown: World) -> None:
         flown.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.PILOT, "p"))
@@ -364,7 +366,7 @@ class TestHostile:
             return
         station = restored_from(snapshot, UTC_NS)
         assert all(not record.is_tracked for record in station.orders.records.values())
-        assert station.sticks == {}
+        assert station.neutral_pending == ()
         assert station.next_own_id < 0
         assert LastRun(snapshot).first_ids[0] >= 1
         json.dumps([entry.text for entry in restart_entries(station)])
@@ -424,7 +426,7 @@ class TestTaking:
         )
         fleet = replace(scene.station.fleet, vehicles={"A": vehicle})
         authority = ControlAuthority(AuthorityHolder.PILOT, name, 1, "x")
-        station = replace(scene.station, fleet=fleet, authorities={"A": authority})
+        station = replace(scene.station, fleet=fleet).with_control("A", authority=authority)
         snapshot = saved(station, 1)
         assert set(snapshot.vehicles) == set(snapshot.authorities) == {"A"}
 
@@ -443,9 +445,11 @@ class TestTaking:
         assert snapshot.vehicles == snapshot.unidentified == {}
 
     def test_a_pilot_is_kept_when_there_are_too_many_vehicles(self) -> None:
-        operator = dict.fromkeys(map(str, range(MAX_VEHICLES + 9)), ControlAuthority())
-        pilot = {"P": ControlAuthority(AuthorityHolder.PILOT, "p", 1, "x")}
-        snapshot = saved(replace(Station(), authorities={**operator, **pilot}), 1)
+        station, operator = Station(), ControlAuthority(holder_name="o")
+        for serial in map(str, range(MAX_VEHICLES + 9)):
+            station = station.with_control(serial, authority=operator)
+        pilot = ControlAuthority(AuthorityHolder.PILOT, "p", 1, "x")
+        snapshot = saved(station.with_control("P", authority=pilot), 1)
         assert len(snapshot.authorities) == MAX_VEHICLES
         assert "P" in snapshot.authorities
 

@@ -24,7 +24,8 @@ def restarted(count: int, missing: frozenset[str] = frozenset()) -> World:
     here.connected.clear()
     here.run_for(GONE_S)
     here.driver.station = restart(here, snapshot)
-    assert len(here.driver.station.restored_flights) == count
+    restored = [c for c in here.driver.station.controls.values() if c.restored is not None]
+    assert len(restored) == count
     for app in apps:
         here.run_for(LATEST_S / count)
         if app.settings.serial not in missing:

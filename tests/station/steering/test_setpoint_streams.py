@@ -298,7 +298,7 @@ class TestEnds:
         seen_s = s.now_s
         assert s.phase(order) is Phase.SUPERSEDED
         assert "pilot" in s.note(order)
-        assert s.w.driver.station.authorities[SERIAL].holder is AuthorityHolder.PILOT
+        assert s.w.driver.station.control(SERIAL).authority.holder is AuthorityHolder.PILOT
         assert s.note(s.goto(50.0)).startswith("authority: ")
         s.run_for(10.0)
         assert s.sticks(seen_s + 0.05) == []

@@ -1,7 +1,5 @@
 """What the watchdogs find becomes alarms and holds, ten times a second."""
 
-from dataclasses import replace
-
 import pytest
 from tests.fleet.reports import PLACE, S, core, extended
 from tests.station.commanded import CommandedStation
@@ -28,11 +26,9 @@ class Two:
 
     def __init__(self, gap_m: float, a_mps: float = 5.0, b_mps: float = -5.0) -> None:
         self.scene = CommandedStation()
-        taken = {
-            serial: ControlAuthority(AuthorityHolder.OPERATOR, "Ann", 0, "taken over by Ann")
-            for serial in "AB"
-        }
-        self.scene.station = replace(self.scene.station, authorities=taken)
+        taken = ControlAuthority(AuthorityHolder.OPERATOR, "Ann", 0, "taken over by Ann")
+        for serial in "AB":
+            self.scene.station = self.scene.station.with_control(serial, authority=taken)
         self.north_m = {1: 0.0, 2: gap_m}
         self.mps = {1: a_mps, 2: b_mps}
         self.flying = {1: True, 2: True}
@@ -158,7 +154,7 @@ class TestSeparation:
         held = two.scene.station.watchdog_state.held
         assert set(held) == {"B"}
         newer = Intent(Commanded.MISSION, two.scene.now_ns + 1)
-        station = replace(two.scene.station, intents={"B": newer})
+        station = two.scene.station.with_control("B", intent=newer)
         two.scene.station = station
         two.passes(0.2)
         assert two.scene.station.watchdog_state.held.get("B") is not held["B"]

@@ -22,7 +22,6 @@ from recon.model.event import (
 from recon.model.survey import Survey
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import FlightMode, Staleness, VehicleState
-from recon.station.control.authority import authority_of
 from recon.station.state.station import Station
 from recon.station.state.survey_record import Member, SurveyRecord
 
@@ -98,7 +97,7 @@ class People:
         if not self._is_to_fly(record, member, vehicle):
             self._since_ns.pop(serial, None)
         elif self._lasts(serial, now_ns):
-            if authority_of(station, serial).holder is AuthorityHolder.PILOT:
+            if station.control(serial).authority.holder is AuthorityHolder.PILOT:
                 yield AuthorityTaken(serial, AuthorityHolder.OPERATOR, BY)
             yield SurveyStarted(SURVEY_ID, (serial,), BY, takeoff=True)
 

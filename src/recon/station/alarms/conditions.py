@@ -140,7 +140,7 @@ def _landing(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
 
 def _by_itself(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
     """What the aircraft does that nobody here ordered, by the flight table."""
-    follows = station.trackings.get(vehicle.serial or "")
+    follows = station.control(vehicle.serial).tracking
     if follows is not None and follows.failsafe is not None:
         yield _about(vehicle, "failsafe", Severity.ERROR, follows.failsafe)
 

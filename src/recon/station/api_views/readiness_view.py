@@ -5,15 +5,15 @@ from recon.model.units import ns_to_seconds
 from recon.safety import Situation
 from recon.safety.check import Check
 from recon.safety.preflight import checklist
-from recon.station.control.authority import NOBODY_YET, authority_of
 from recon.station.control.preflight import facts
 from recon.station.state.station import Station
 
 
 def authority_view(station: Station, serial: str | None, now_ns: int) -> schema.AuthorityView:
     """Return who leads a vehicle, or a link without a serial."""
-    authority = NOBODY_YET if serial is None else authority_of(station, serial)
-    age_s = None if authority is NOBODY_YET else ns_to_seconds(now_ns - authority.since_ns)
+    control = station.control(serial)
+    authority = control.authority
+    age_s = ns_to_seconds(now_ns - authority.since_ns) if control.is_taken else None
     return schema.AuthorityView(
         holder=authority.holder.value,
         holder_name=authority.holder_name,
@@ -24,7 +24,7 @@ def authority_view(station: Station, serial: str | None, now_ns: int) -> schema.
 
 def override_view(station: Station, serial: str | None, now_ns: int) -> schema.OverrideView | None:
     """Return somebody's override of a vehicle's checklist, if there is one."""
-    given = station.preflight_overrides.get(serial or "")
+    given = station.control(serial).preflight_override
     if given is None:
         return None
     age_s = ns_to_seconds(now_ns - given.at_ns)

@@ -6,7 +6,7 @@ from recon.station.state.station import Station
 
 def steering_view(station: Station, serial: str | None) -> schema.SteeringView | None:
     """Return where a vehicle's stream of sticks leads; None while it is not steered."""
-    lease = station.streams.get(serial or "")
+    lease = station.control(serial).lease
     if lease is None:
         return None
     return schema.SteeringView(

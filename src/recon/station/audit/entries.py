@@ -1,10 +1,9 @@
 """What a step changed that belongs into the audit. Pure: the same steps give the same entries."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from recon.model.authority import ControlAuthority
 from recon.model.command import Refusal
 from recon.model.event import (
     AlarmAcknowledged,
@@ -17,7 +16,6 @@ from recon.model.event import (
     Tick,
 )
 from recon.record.audit import AuditEntry
-from recon.safety import Override
 from recon.station.audit.alarm_entries import AlarmsLogged, alarm_entries, seen_entry
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries
@@ -25,9 +23,10 @@ from recon.station.audit.order_entries import OrdersLogged, ended_streams, order
 from recon.station.control import authority, preflight
 from recon.station.operations import OPERATIONS
 from recon.station.state.station import Station
+from recon.station.state.vehicle_control import VehicleControl
 from recon.station.traffic import known_traffic
 
-_DEFAULT_AUTHORITY = ControlAuthority()
+Changed = Iterable[tuple[str, VehicleControl]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,10 +50,9 @@ def audit(
     entries += new
     flights, new = flight_entries(memory.flights, before, event, after, now_ns)
     entries += new
-    if after.authorities is not before.authorities:
-        entries += _authorities(before.authorities, after)
-    if after.preflight_overrides is not before.preflight_overrides:
-        entries += _overrides(before.preflight_overrides, after)
+    changed = after.controls_changed_since(before)
+    entries += _authorities(before, after, changed)
+    entries += _overrides(before, after, changed)
     orders = memory.orders
     if after.orders is not before.orders:
         orders, new = order_entries(orders, before.orders, after.orders, now_ns)
@@ -99,10 +97,10 @@ def _refused(
         yield _about(station, f"{what}.refused", f"refused: {refusal.reason}", by, serial, details)
 
 
-def _authorities(before: Mapping[str, ControlAuthority], after: Station) -> Iterator[AuditEntry]:
-    for serial, held in after.authorities.items():
-        was = before.get(serial, _DEFAULT_AUTHORITY)
-        if (held.holder, held.holder_name) == (was.holder, was.holder_name):
+def _authorities(before: Station, after: Station, changed: Changed) -> Iterator[AuditEntry]:
+    for serial, control in changed:
+        held, was = control.authority, before.control(serial).authority
+        if held is was or (held.holder, held.holder_name) == (was.holder, was.holder_name):
             continue
         details = {
             "holder": held.holder.value,
@@ -115,15 +113,18 @@ def _authorities(before: Mapping[str, ControlAuthority], after: Station) -> Iter
         yield _about(after, "authority.taken", text, by, serial, details)
 
 
-def _overrides(before: Mapping[str, Override], after: Station) -> Iterator[AuditEntry]:
-    for serial, override in after.preflight_overrides.items():
-        if before.get(serial) is not override:
+def _overrides(before: Station, after: Station, changed: Changed) -> Iterator[AuditEntry]:
+    for serial, control in changed:
+        override, was = control.preflight_override, before.control(serial).preflight_override
+        if override is was:
+            continue
+        if override is not None:
             text = f"may fly without its preflight checklist: {override.reason}"
             details = {"reason": override.reason}
             yield _about(after, "preflight.overridden", text, override.by, serial, details)
-    for serial in before.keys() - after.preflight_overrides.keys():
-        text = "needs its preflight checklist again"
-        yield _about(after, "preflight.override_ended", text, "station", serial)
+        else:
+            text = "needs its preflight checklist again"
+            yield _about(after, "preflight.override_ended", text, "station", serial)
 
 
 def _about(

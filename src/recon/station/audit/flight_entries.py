@@ -81,9 +81,9 @@ def _due(
 
 
 def _entry(kind: str, text: str, station: Station, vehicle: VehicleState) -> AuditEntry:
-    name, serial = vehicle.display_name, vehicle.serial or ""
+    name = vehicle.display_name
     velocity = vehicle.velocity_ned.value
-    authority, intent = station.authorities.get(serial), station.intents.get(serial)
+    control = station.control(vehicle.serial)
     details: dict[str, Any] = {
         "is_flying": vehicle.is_flying.value,
         "position": _position(vehicle.position.value),
@@ -93,8 +93,8 @@ def _entry(kind: str, text: str, station: Station, vehicle: VehicleState) -> Aud
         "velocity_down_mps": None if velocity is None else velocity.down_mps,
         "battery_fraction": vehicle.battery_fraction.value,
         "takeoff_point": _position(vehicle.takeoff_point),
-        "holder": "operator" if authority is None else authority.holder.value,
-        "commanded": "nothing" if intent is None else intent.commanded.value,
+        "holder": control.authority.holder.value,
+        "commanded": control.intent.commanded.value,
     }
     return AuditEntry(kind, f"{name}: {text}", "station", vehicle.serial, name, details)
 

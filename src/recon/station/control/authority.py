@@ -1,8 +1,8 @@
-"""Who leads each vehicle. Taking over is explicit; the pilot's sticks always win.
+"""Who may set each vehicle in motion. The only writer of `VehicleControl.authority`.
 
-Nothing here sends anything to a vehicle. A new holder's word is needed for every order to move;
-what a vehicle was told before goes on until then, but streams of sticks end at once (`stream_ends`
-sees that their giver leads no longer).
+Taking over is explicit, and the pilot at the remote control always has priority. Nothing here
+sends anything to a vehicle. What a vehicle was commanded to do goes on until its new holder orders
+something else, but setpoint streams end at once (`stream_ends` compares the holder at each packet).
 """
 
 from dataclasses import replace
@@ -12,21 +12,16 @@ from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Command, Phase, Refusal
 from recon.model.event import AuthorityTaken
 from recon.model.intent import Intent
+from recon.station.control import intents
 from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.outputs import Output, WithdrawMotion
 from recon.station.state.station import Station
-from recon.station.steering import stream_ends
-from recon.station.steering.stream_ends import Driven
+from recon.station.steering import neutral_setpoint, stream_ends
+from recon.station.steering.stream_ends import StreamUpdate
 
 RULE = "authority"
-NOBODY_YET = ControlAuthority()
 PILOT = "pilot"
-
-
-def authority_of(station: Station, serial: str) -> ControlAuthority:
-    """Return who leads a vehicle; the operator, until somebody takes it."""
-    return station.authorities.get(serial, NOBODY_YET)
 
 
 def refusal(station: Station, event: AuthorityTaken) -> Refusal | None:
@@ -34,7 +29,7 @@ def refusal(station: Station, event: AuthorityTaken) -> Refusal | None:
     vehicle = station.fleet.vehicles.get(event.serial)
     if vehicle is None:
         return Refusal(RULE, f"{event.serial} is not known: no app has said this serial")
-    authority = authority_of(station, event.serial)
+    authority = station.control(event.serial).authority
     if event.holder is AuthorityHolder.GUIDANCE and authority.holder is AuthorityHolder.PILOT:
         return Refusal(
             RULE,
@@ -49,11 +44,8 @@ def take(station: Station, event: AuthorityTaken, now_ns: int) -> Station:
     if refusal(station, event) is not None:
         return station
     given = "taken over by" if event.holder is AuthorityHolder.OPERATOR else "given to it by"
-    return _led(
-        station,
-        event.serial,
-        ControlAuthority(event.holder, event.by, now_ns, f"{given} {event.by}"),
-    )
+    authority = ControlAuthority(event.holder, event.by, now_ns, f"{given} {event.by}")
+    return _with_authority(station, event.serial, authority)
 
 
 def after_stop(station: Station, command: Command, now_ns: int) -> Station:
@@ -65,32 +57,29 @@ def after_stop(station: Station, command: Command, now_ns: int) -> Station:
     serial = None if target is None else target.serial
     if serial is None or not command.is_emergency or command.asked_as is AuthorityHolder.GUIDANCE:
         return station
-    if authority_of(station, serial).holder is not AuthorityHolder.GUIDANCE:
+    if station.control(serial).authority.holder is not AuthorityHolder.GUIDANCE:
         return station
     reason = f"{command.name.replace('_', ' ')}, ordered by {command.issued_by}"
-    return _led(
-        station,
-        serial,
-        ControlAuthority(AuthorityHolder.OPERATOR, command.issued_by, now_ns, reason),
-    )
+    authority = ControlAuthority(AuthorityHolder.OPERATOR, command.issued_by, now_ns, reason)
+    return _with_authority(station, serial, authority)
 
 
-def pilot_has_it(
+def give_to_pilot(
     station: Station, serial: str, now_ns: int, why: str = "the pilot has taken the sticks"
 ) -> tuple[Station, tuple[Output, ...]]:
-    """Return the station after telemetry shows that a pilot flies the vehicle: it lets go.
+    """Return the station after telemetry shows that a pilot flies a vehicle.
 
-    The pilot leads it from now on. Nothing is sent: streams of sticks, their zeros and what waits
-    in queues end, and orders to move it end as superseded. Called once for each takeover seen; of
-    a vehicle that the pilot leads already nothing changes.
+    Nothing is sent: its setpoint stream, its pending neutral setpoint and its queued packets end,
+    and orders to move it end as superseded. Without effect when its pilot has authority already.
     """
     vehicle = station.fleet.vehicles.get(serial)
-    if vehicle is None or authority_of(station, serial).holder is AuthorityHolder.PILOT:
+    if vehicle is None or station.control(serial).authority.holder is AuthorityHolder.PILOT:
         return station, ()
-    station = _led(station, serial, ControlAuthority(AuthorityHolder.PILOT, PILOT, now_ns, why))
-    station = _without_sticks(station, serial, why, now_ns)
+    authority = ControlAuthority(AuthorityHolder.PILOT, PILOT, now_ns, why)
+    station = _with_authority(station, serial, authority)
+    station = _without_setpoints(station, serial, why, now_ns)
     station = _superseded(station, serial, why, now_ns)
-    station = replace(station, intents={**station.intents, serial: Intent(since_ns=now_ns)})
+    station = intents.with_intent(station, serial, Intent(since_ns=now_ns))
     condition = Condition(
         key=f"pilot_took_over:{serial}",
         severity=Severity.WARNING,
@@ -107,35 +96,48 @@ def pilot_has_it(
 
 def hand_back(station: Station, serial: str, to: str, why: str, now_ns: int) -> Station:
     """Return the station with a vehicle led by the operator that guidance leads no longer."""
-    if authority_of(station, serial).holder is not AuthorityHolder.GUIDANCE:
+    if station.control(serial).authority.holder is not AuthorityHolder.GUIDANCE:
         return station
-    return _led(station, serial, ControlAuthority(AuthorityHolder.OPERATOR, to, now_ns, why))
+    authority = ControlAuthority(AuthorityHolder.OPERATOR, to, now_ns, why)
+    return _with_authority(station, serial, authority)
 
 
-def flies_unbidden(station: Station, serial: str, now_ns: int) -> Station:
-    """Return the station after a vehicle was seen to move in the air with nothing ordered here.
+def on_manual_flight(station: Station, serial: str, now_ns: int) -> Station:
+    """Return the station after a vehicle moved in the air with nothing ordered.
 
-    It is flown by hand: its pilot leads it until somebody takes it over. Whom somebody has taken
-    over stays as it is; there the pilot shows by the flight table.
+    Its pilot has authority until somebody takes it. Where somebody has, authority stays: there the
+    flight table shows the pilot.
     """
-    if serial in station.authorities:
+    if station.control(serial).is_taken:
         return station
     why = "it moves, and nothing has been ordered here: its pilot flies it"
-    return _led(station, serial, ControlAuthority(AuthorityHolder.PILOT, PILOT, now_ns, why))
+    authority = ControlAuthority(AuthorityHolder.PILOT, PILOT, now_ns, why)
+    return _with_authority(station, serial, authority)
 
 
-def _led(station: Station, serial: str, authority: ControlAuthority) -> Station:
-    return replace(station, authorities={**station.authorities, serial: authority})
+def restore(
+    station: Station, serial: str, holder: AuthorityHolder, holder_name: str, now_ns: int
+) -> Station:
+    """Return the station with the authority of the last run. Guidance does not get it back."""
+    reason = f"the {holder.value} had control before the station was restarted"
+    if holder is AuthorityHolder.GUIDANCE:
+        holder, holder_name = AuthorityHolder.OPERATOR, ""
+        reason = "guidance had control before the station was restarted"
+    authority = ControlAuthority(holder, holder_name, now_ns, reason)
+    return _with_authority(station, serial, authority)
 
 
-def _without_sticks(station: Station, serial: str, why: str, now_ns: int) -> Station:
-    sticks = {key: pending for key, pending in station.sticks.items() if key != serial}
-    station = replace(station, sticks=sticks)
-    lease = station.streams.get(serial)
+def _with_authority(station: Station, serial: str, authority: ControlAuthority) -> Station:
+    return station.with_control(serial, authority=authority)
+
+
+def _without_setpoints(station: Station, serial: str, why: str, now_ns: int) -> Station:
+    station = neutral_setpoint.cancel(station, serial)
+    lease = station.control(serial).lease
     if lease is None:
         return station
-    ended = Phase.SUPERSEDED, why
-    return stream_ends.let_go(Driven(station), serial, lease, ended, now_ns).station
+    end = Phase.SUPERSEDED, why
+    return stream_ends.end_silently(StreamUpdate(station), serial, lease, end, now_ns).station
 
 
 def _superseded(station: Station, serial: str, why: str, now_ns: int) -> Station:

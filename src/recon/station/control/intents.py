@@ -1,23 +1,19 @@
-"""What each vehicle does on the station's word, kept true by telemetry.
+"""What each vehicle was last commanded to do. The only writer of `VehicleControl.intent`.
 
-The intent of a vehicle is what it was last sent. Waypoints are counted as they are passed. After a
-landing, the pilot's takeover, a failsafe or an order that came to nothing, the station has told it
-nothing.
+`mode_tracking` keeps it true to telemetry. After a landing, a pilot's takeover, a failsafe or an
+order that failed, a vehicle is commanded nothing.
 """
 
-from recon.fleet.confirmation import STANDING_SPEED_MPS, SentContext
+from recon.fleet.confirmation import STANDING_SPEED_MPS
 from recon.fleet.flight_table import AT_END_M, GOOD_GNSS_LEVEL, Instruction, ModeKind, Place
-from recon.fleet.mission_progress import distance_to_m, waypoints_passed
+from recon.fleet.mission_progress import distance_to_m
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import Body, FlyMission, Hover, LandNow, ReturnHome, VirtualStick
 from recon.model.intent import Commanded, Intent
 from recon.model.replacing import replace
-from recon.model.units import ns_to_seconds
-from recon.model.vehicle import FlightMode, VehicleState
+from recon.model.vehicle import VehicleState
+from recon.station.state.setpoint_lease import SetpointLease
 from recon.station.state.station import Station
-from recon.station.state.tracking import Tracking
-
-NOTHING = Intent()
 
 _COMMANDED: dict[type, Commanded] = {
     Hover: Commanded.HOLD,
@@ -45,90 +41,73 @@ _BEGUN: dict[Commanded, Instruction] = {
 }
 
 
-def on_sent(
-    station: Station, serial: str, command_id: int, body: Body, context: SentContext
-) -> Station:
-    """Return the station after an order to move or to stop left for a vehicle."""
+def with_intent(station: Station, serial: str, intent: Intent) -> Station:
+    """Return the station with a vehicle commanded something else."""
+    return station.with_control(serial, intent=intent)
+
+
+def of_order(command_id: int, body: Body, sent_at_ns: int) -> Intent | None:
+    """Return the intent of an order that was sent; None for a camera order."""
     commanded = _COMMANDED.get(type(body))
     if commanded is None:
-        return station
-    intent = Intent(
+        return None
+    return Intent(
         commanded,
-        context.sent_at_ns,
+        sent_at_ns,
         command_id,
         mission=body.mission if isinstance(body, FlyMission) else None,
         target_height_above_takeoff_m=(
             body.height_above_takeoff_m if isinstance(body, VirtualStick) else None
         ),
     )
-    return _put(station, serial, intent, context.mode_when_sent)
 
 
-def begun(station: Station, serial: str, command_id: int, body: Body, now_ns: int) -> Station:
-    """Return the station after telemetry showed an order carried out: a mission flown, a landing.
-
-    An order that came to nothing and is carried out late is what the vehicle does now.
-    """
-    if station.intents.get(serial, NOTHING).command_id != command_id:
-        station = on_sent(station, serial, command_id, body, SentContext(now_ns, None, None))
-    vehicle = station.fleet.vehicles.get(serial)
-    following = following_of(station, serial)
-    if vehicle is None or following.has_begun:
-        return station
-    mode = vehicle.flight_mode.value
-    follows = replace(
-        following,
-        has_begun=True,
-        mode_before=mode,
-        link_id=vehicle.link_id,
-        core_at_ns=vehicle.core_received_at_ns,
+def of_stream(lease: SetpointLease) -> Intent:
+    """Return the intent of a steered order."""
+    return Intent(
+        Commanded.STICK,
+        lease.started_at_ns,
+        lease.command.id,
+        target=lease.goal.target,
+        target_height_above_takeoff_m=lease.goal.height_above_takeoff_m,
+        speed_mps=lease.goal.speed_mps,
     )
-    return with_following(station, serial, follows)
 
 
-def holds_here(station: Station, serial: str, now_ns: int) -> Station:
-    """Return the station with a vehicle told to hold where it is: its flight is over.
-
-    The place it holds is known when it stands.
-    """
-    vehicle = station.fleet.vehicles[serial]
-    intent = Intent(Commanded.HOLD, now_ns)
-    station = _put(station, serial, intent, vehicle.flight_mode.value)
-    follows = replace(following_of(station, serial), has_begun=True, link_id=vehicle.link_id)
-    return with_following(station, serial, follows)
+def after_stream(
+    station: Station, serial: str, command_id: int, commanded: Commanded, now_ns: int
+) -> Station:
+    """Return the station after a stream ended, unless a newer order has replaced its intent."""
+    if station.control(serial).intent.command_id != command_id:
+        return station
+    return with_intent(station, serial, Intent(commanded, now_ns))
 
 
-def stands(station: Station, serial: str) -> Station:
+def with_held_place(station: Station, serial: str) -> Station:
     """Return the station with the place known that a vehicle holds, once it stands there."""
-    intent, vehicle = station.intents.get(serial, NOTHING), station.fleet.vehicles[serial]
-    is_held = intent.commanded is Commanded.HOLD and following_of(station, serial).has_begun
+    control, vehicle = station.control(serial), station.fleet.vehicles[serial]
+    intent, tracking = control.intent, control.tracking
+    if intent.commanded is not Commanded.HOLD or intent.target is not None:
+        return station
     velocity = vehicle.velocity_ned.value
-    if not is_held or intent.target is not None or velocity is None:
+    if tracking is None or not tracking.has_begun or velocity is None:
         return station
-    if velocity.speed_mps >= STANDING_SPEED_MPS:
+    if velocity.speed_mps >= STANDING_SPEED_MPS or vehicle.position.value is None:
         return station
-    held = replace(intent, target=vehicle.position.value)
-    return replace(station, intents={**station.intents, serial: held})
+    return with_intent(station, serial, replace(intent, target=vehicle.position.value))
 
 
-def follow_anew(station: Station, serial: str) -> Station:
-    """Return the station with a vehicle followed by the intent that a stream of sticks gave it."""
-    vehicle = station.fleet.vehicles[serial]
-    return _put(station, serial, station.intents[serial], vehicle.flight_mode.value)
+def with_passed(station: Station, serial: str, passed: int) -> Station:
+    """Return the station with the count of a mission's passed waypoints."""
+    intent = station.control(serial).intent
+    if passed == intent.passed:
+        return station
+    return with_intent(station, serial, replace(intent, passed=passed))
 
 
-def let_go(station: Station, serial: str, now_ns: int, *, failsafe: str | None = None) -> Station:
-    """Return the station with a vehicle told nothing; `failsafe`: what it does by itself."""
-    vehicle = station.fleet.vehicles.get(serial)
-    mode = None if vehicle is None else vehicle.flight_mode.value
-    kept = {key: intent for key, intent in station.intents.items() if key != serial}
-    follows = Tracking(told_at_ns=now_ns, mode_before=mode, failsafe=failsafe)
-    return with_following(replace(station, intents=kept), serial, follows)
-
-
-def told(intent: Intent, following: Tracking) -> Instruction:
-    """Return the flight table's row for what a vehicle was told."""
-    if not following.has_begun:
+def instruction_of(intent: Intent, has_begun: bool) -> Instruction:
+    """Return the flight table's row for an intent that telemetry shows begun, or not yet."""
+    if not has_begun:
         return _SENT[intent.commanded]
     mission = intent.mission
     if mission is not None and mission.land_at_end:
@@ -147,43 +126,6 @@ def place_of(intent: Intent, vehicle: VehicleState, kind: ModeKind | None) -> Pl
     return Place.AT_END if is_at_end else Place.ELSEWHERE
 
 
-def count_passed(station: Station, serial: str) -> Station:
-    """Return the station with the waypoints counted that a vehicle has passed by now."""
-    intent, following = station.intents.get(serial, NOTHING), following_of(station, serial)
-    vehicle = station.fleet.vehicles[serial]
-    core_at_ns, position = vehicle.core_received_at_ns, vehicle.position.value
-    if intent.mission is None or not following.has_begun or position is None:
-        return station
-    if core_at_ns is None or core_at_ns == following.core_at_ns:
-        return station
-    since_ns = following.core_at_ns if following.core_at_ns is not None else intent.since_ns
-    height_m, since_s = vehicle.height_above_takeoff_m.value, ns_to_seconds(core_at_ns - since_ns)
-    passed = waypoints_passed(intent.mission, intent.passed, position, height_m, since_s)
-    station = with_following(station, serial, replace(following, core_at_ns=core_at_ns))
-    if passed == intent.passed:
-        return station
-    return replace(station, intents={**station.intents, serial: replace(intent, passed=passed)})
-
-
-def following_of(station: Station, serial: str) -> Tracking:
-    """Return how a vehicle is followed."""
-    return station.trackings.get(serial, _UNFOLLOWED)
-
-
-_UNFOLLOWED = Tracking()
-
-
-def with_following(station: Station, serial: str, following: Tracking) -> Station:
-    """Return the station with a vehicle followed so."""
-    return replace(station, trackings={**station.trackings, serial: following})
-
-
-def _put(station: Station, serial: str, intent: Intent, mode: FlightMode | None) -> Station:
-    follows = Tracking(told_at_ns=intent.since_ns, command_id=intent.command_id, mode_before=mode)
-    station = replace(station, intents={**station.intents, serial: intent})
-    return with_following(station, serial, follows)
-
-
 def _is_at_end(intent: Intent, vehicle: VehicleState, is_level: bool) -> bool | None:
     position = vehicle.position.value
     if intent.mission is not None:
@@ -198,6 +140,6 @@ def _is_at_end(intent: Intent, vehicle: VehicleState, is_level: bool) -> bool | 
             return None
         level = vehicle.gnss_signal_level.value
         if level is None or level < GOOD_GNSS_LEVEL:
-            return True  # a place that wanders says nothing of the vehicle
+            return True  # with poor satellite reception the position wanders, not the vehicle
         return horizontal_distance_m(intent.target, position) <= AT_END_M
     return True

@@ -8,7 +8,6 @@ and an alarm says why. Nothing else is ever sent by itself.
 
 from dataclasses import replace
 
-from recon.model.authority import ControlAuthority
 from recon.model.command import Command, FlyMission, Phase, Refusal
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
@@ -22,8 +21,6 @@ from recon.station.state.stepped import Judge, Stepped
 from recon.vehicles.mission_repair import repair
 from recon.vehicles.packets import describe_altitudes
 
-_DEFAULT_AUTHORITY = ControlAuthority()
-
 
 def plan(station: Station, command: Command) -> FlightPlan | None:
     """Return how a mission will be flown, repaired to what DJI accepts; None for other orders."""
@@ -36,7 +33,7 @@ def plan(station: Station, command: Command) -> FlightPlan | None:
         parts=repaired.parts,
         repairs=repaired.repairs,
         link_id=None if vehicle is None else vehicle.link_id,
-        authority=station.authorities.get(command.serial or "", _DEFAULT_AUTHORITY),
+        authority=station.control(command.serial).authority,
         heard_at_ns=None if vehicle is None else vehicle.core_received_at_ns,
     )
 
@@ -129,7 +126,7 @@ def _break(station: Station, chain: FlightPlan, vehicle: VehicleState, now_ns: i
     silent_s = ns_to_seconds(max(now_ns - heard_ns, heard_ns - before_ns))
     if silent_s > gap_s:
         return f"it was not heard for more than {gap_s:g} s since the order"
-    authority = station.authorities.get(vehicle.serial or "", _DEFAULT_AUTHORITY)
+    authority = station.control(vehicle.serial).authority
     if authority != chain.authority:
         return f"it was taken over since the order ({authority.reason})"
     return None

@@ -1,15 +1,18 @@
-"""What vehicles do, read by the flight table, and what follows from it.
+"""Telemetry compared with what each vehicle was commanded to do, by the flight table.
 
-An order that telemetry has shown is followed to its end here: finished, taken over by the pilot,
-or ended by the aircraft's own failsafe. So is a vehicle that has been told nothing, or to hold.
+The only writer of `VehicleControl.tracking`. An order that telemetry has shown begun is tracked to
+its end here: finished, taken over by the pilot, or ended by the aircraft's own failsafe. So is a
+vehicle that holds, or that has been commanded nothing.
 """
 
+from recon.fleet.confirmation import SentContext
 from recon.fleet.flight_table import Instruction, ModeKind, Reading, Verdict, kind_of, read
-from recon.model.command import STEERED_BODIES, LandNow, Phase
+from recon.fleet.mission_progress import waypoints_passed
+from recon.model.command import STEERED_BODIES, Body, LandNow, Phase
 from recon.model.intent import Commanded, Intent
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds, seconds_to_ns
-from recon.model.vehicle import VehicleState
+from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.control import authority, intents, missions
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
@@ -17,30 +20,35 @@ from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Judge, Stepped
 from recon.station.state.tracking import Tracking
+from recon.station.state.vehicle_control import NO_INTENT
 
-_SPEAKS_WITHIN_S = 0.5
-"""Who speaks more often is followed whenever it speaks: nothing is gained by looking between."""
+_RECENT_S = 0.5
+"""A vehicle heard within this is tracked at each of its packets, and not at ticks as well."""
 
 FLOWN_BY_HAND_MPS = 2.0
 """In position mode an aircraft that nobody steers stands: gusts and GNSS noise stay under this."""
 
 _LASTING = (Verdict.PILOT, Verdict.FAILSAFE)
-_SENT_BY_LIFE = (Instruction.HOLD_SENT, Instruction.RETURN_SENT, Instruction.LAND_SENT)
-"""Emergency orders not yet shown: their repeats and their alarm are the order's own matter."""
+_UNCONFIRMED_EMERGENCY = (Instruction.HOLD_SENT, Instruction.RETURN_SENT, Instruction.LAND_SENT)
+"""Until telemetry shows these, their order's own repeats and timeouts decide."""
+
+_FAILED_BEFORE_START = (Phase.TIMED_OUT, Phase.REFUSED_BY_APP, Phase.FAILED, Phase.EXPIRED)
+
+_NOT_TRACKED = Tracking()
 
 
-def follow(station: Station, serials: tuple[str, ...], now_ns: int, ask: Judge) -> Stepped:
+def track(station: Station, serials: tuple[str, ...], now_ns: int, judge: Judge) -> Stepped:
     """Return the station after telemetry was read for these vehicles, and what is sent for it."""
     outputs: tuple[Output, ...] = ()
     for serial in serials:
-        station, sent = _follow(station, serial, now_ns, ask)
+        station, sent = _track(station, serial, now_ns, judge)
         outputs += sent
     return station, outputs
 
 
-def silent(station: Station, now_ns: int) -> tuple[str, ...]:
-    """Return the vehicles that have not just been followed by their own telemetry."""
-    limit_ns = seconds_to_ns(_SPEAKS_WITHIN_S)
+def not_recently_heard(station: Station, now_ns: int) -> tuple[str, ...]:
+    """Return the vehicles that have not just been tracked at a packet of their own."""
+    limit_ns = seconds_to_ns(_RECENT_S)
     return tuple(
         serial
         for serial, vehicle in station.fleet.vehicles.items()
@@ -48,40 +56,99 @@ def silent(station: Station, now_ns: int) -> tuple[str, ...]:
     )
 
 
-def _follow(station: Station, serial: str, now_ns: int, ask: Judge) -> Stepped:
+def tracking_of(station: Station, serial: str) -> Tracking:
+    """Return how a vehicle is tracked."""
+    return station.control(serial).tracking or _NOT_TRACKED
+
+
+def on_order_sent(
+    station: Station, serial: str, command_id: int, body: Body, context: SentContext
+) -> Station:
+    """Return the station after an order to move or to stop left for a vehicle."""
+    intent = intents.of_order(command_id, body, context.sent_at_ns)
+    return station if intent is None else _start(station, serial, intent, context.mode_when_sent)
+
+
+def on_order_begun(
+    station: Station, serial: str, command_id: int, body: Body, now_ns: int
+) -> Station:
+    """Return the station after telemetry showed an order begun: a mission flown, a landing.
+
+    An order that had failed and begins late is the vehicle's intent again.
+    """
+    if station.control(serial).intent.command_id != command_id:
+        station = on_order_sent(station, serial, command_id, body, SentContext(now_ns, None, None))
+    vehicle, tracking = station.fleet.vehicles.get(serial), tracking_of(station, serial)
+    if vehicle is None or tracking.has_begun:
+        return station
+    begun = replace(
+        tracking,
+        has_begun=True,
+        mode_before=vehicle.flight_mode.value,
+        link_id=vehicle.link_id,
+        core_at_ns=vehicle.core_received_at_ns,
+    )
+    return _with_tracking(station, serial, begun)
+
+
+def hold_here(station: Station, serial: str, now_ns: int) -> Station:
+    """Return the station with a vehicle that holds where it is, its order finished.
+
+    The place it holds is known once it stands.
+    """
+    vehicle = station.fleet.vehicles[serial]
+    intent = Intent(Commanded.HOLD, now_ns)
+    station = _start(station, serial, intent, vehicle.flight_mode.value)
+    begun = replace(tracking_of(station, serial), has_begun=True, link_id=vehicle.link_id)
+    return _with_tracking(station, serial, begun)
+
+
+def on_pilot_takeover(station: Station, serial: str, why: str, now_ns: int) -> Stepped:
+    """Return the station after a pilot took a vehicle over: the order behind its intent is
+    superseded, and the pilot has authority."""
+    record = _active_order(station, serial)
+    if record is not None:
+        is_landing = isinstance(record.command.body, LandNow)
+        alarm = orders.LANDING_STOPPED if is_landing else None
+        note = f"the pilot has taken over: {why}"
+        station = _put(station, orders.ended(record, Phase.SUPERSEDED, now_ns, note, alarm=alarm))
+    station, outputs = authority.give_to_pilot(station, serial, now_ns, why)
+    return _command_nothing(station, serial, now_ns), outputs
+
+
+def _track(station: Station, serial: str, now_ns: int, judge: Judge) -> Stepped:
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None:
         return _forget(station, serial), ()
-    station = _let_go_of_nothing(station, serial, vehicle, now_ns)
-    station = _led_by_who_flies(station, serial, vehicle, now_ns)
-    station = intents.stands(intents.count_passed(station, serial), serial)
-    record = _record(station, serial)
+    station = _end_stale_intent(station, serial, vehicle, now_ns)
+    station = _detect_manual_flight(station, serial, vehicle, now_ns)
+    station = intents.with_held_place(_count_passed(station, serial, vehicle), serial)
+    record = _active_order(station, serial)
     if record is not None:
         station = missions.watch_chain(station, record, vehicle, now_ns)
     reading = _reading(station, serial, vehicle)
     if reading is None:
         return station, ()
-    follows = intents.following_of(station, serial)
-    follows = replace(follows, read=vehicle.flight_mode)
-    station = intents.with_following(station, serial, follows)
-    return _apply(station, serial, vehicle, reading, now_ns, ask)
+    tracking = replace(tracking_of(station, serial), read=vehicle.flight_mode)
+    station = _with_tracking(station, serial, tracking)
+    return _apply(station, serial, vehicle, reading, now_ns, judge)
 
 
 def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | None:
     """Return what the newest mode means, None while there is no newer one or no newer place."""
-    intent, following = _state(station, serial)
-    told, mode = intents.told(intent, following), vehicle.flight_mode
-    if told in _SENT_BY_LIFE or mode.value is None or mode.received_at_ns is None:
+    intent, tracking = station.control(serial).intent, tracking_of(station, serial)
+    instruction, mode = intents.instruction_of(intent, tracking.has_begun), vehicle.flight_mode
+    if instruction in _UNCONFIRMED_EMERGENCY or mode.value is None or mode.received_at_ns is None:
         return None
     core_ns = vehicle.core_received_at_ns
-    is_new = mode.received_at_ns > following.told_at_ns and mode != following.read
+    is_new = mode.received_at_ns > tracking.told_at_ns and mode != tracking.read
     if not is_new or core_ns is None or core_ns < mode.received_at_ns:
         return None
     level = vehicle.gnss_signal_level.value
     place = intents.place_of(intent, vehicle, kind_of(mode.value, level))
     if place is None:
         return None
-    return read(told, mode.value, level, place, following.mode_before)
+    return read(instruction, mode.value, level, place, tracking.mode_before)
 
 
 def _apply(
@@ -90,101 +157,88 @@ def _apply(
     vehicle: VehicleState,
     reading: Reading,
     now_ns: int,
-    ask: Judge,
+    judge: Judge,
 ) -> Stepped:
     verdict = reading.verdict
     if verdict in _LASTING:
-        station, has_lasted = _doubted(station, serial, vehicle, verdict)
+        station, has_lasted = _with_doubt(station, serial, vehicle, verdict)
         if not (has_lasted or reading.is_at_once):
             return station, ()
         if verdict is Verdict.PILOT:
-            return pilot_has_it(station, serial, reading.why, now_ns)
-        return _failsafe(station, serial, reading.why, now_ns), ()
+            return on_pilot_takeover(station, serial, reading.why, now_ns)
+        return _on_failsafe(station, serial, reading.why, now_ns), ()
     if verdict is Verdict.FINISHED:
-        return _finished(station, serial, vehicle, now_ns, ask)
+        return _on_finished(station, serial, vehicle, now_ns, judge)
     if verdict is Verdict.UNDECIDED:
-        return _undecided(station, serial, vehicle, reading, now_ns), ()
-    follows = intents.following_of(station, serial)
-    by_sticks = verdict is Verdict.CARRIED_OUT and _is_steered(station, serial)
-    seen = replace(
-        follows,
-        has_begun=follows.has_begun or by_sticks,
+        return _on_undecided(station, serial, vehicle, reading, now_ns), ()
+    tracking = tracking_of(station, serial)
+    is_steered = verdict is Verdict.CARRIED_OUT and _is_steered(station, serial)
+    shown = replace(
+        tracking,
+        has_begun=tracking.has_begun or is_steered,
         doubt=None,
         mode_before=vehicle.flight_mode.value,
         link_id=vehicle.link_id,
     )
-    return (station if seen == follows else intents.with_following(station, serial, seen)), ()
+    return (station if shown == tracking else _with_tracking(station, serial, shown)), ()
 
 
-def _doubted(
+def _with_doubt(
     station: Station, serial: str, vehicle: VehicleState, verdict: Verdict
 ) -> tuple[Station, bool]:
-    """Note a verdict that counts when it has lasted; return whether it has."""
-    follows = intents.following_of(station, serial)
-    told_ns = vehicle.flight_mode.received_at_ns or 0
-    if follows.doubt is not verdict:
-        doubted = replace(follows, doubt=verdict, doubt_since_ns=told_ns)
-        return intents.with_following(station, serial, doubted), False
-    lasted_s = ns_to_seconds(told_ns - follows.doubt_since_ns)
+    """Note a verdict that counts once it has lasted; return whether it has."""
+    tracking = tracking_of(station, serial)
+    mode_ns = vehicle.flight_mode.received_at_ns or 0
+    if tracking.doubt is not verdict:
+        doubted = replace(tracking, doubt=verdict, doubt_since_ns=mode_ns)
+        return _with_tracking(station, serial, doubted), False
+    lasted_s = ns_to_seconds(mode_ns - tracking.doubt_since_ns)
     return station, lasted_s >= station.settings.mode_lasts_s
 
 
-def pilot_has_it(station: Station, serial: str, why: str, now_ns: int) -> Stepped:
-    """Return the station after a pilot took a vehicle: the order behind what it did is superseded,
-    nothing goes on, and the pilot leads."""
-    record = _record(station, serial)
-    if record is not None:
-        is_landing = isinstance(record.command.body, LandNow)
-        alarm = orders.LANDING_STOPPED if is_landing else None
-        note = f"the pilot has taken over: {why}"
-        station = _put(station, orders.ended(record, Phase.SUPERSEDED, now_ns, note, alarm=alarm))
-    station, outputs = authority.pilot_has_it(station, serial, now_ns, why)
-    return intents.let_go(station, serial, now_ns), outputs
-
-
-def _failsafe(station: Station, serial: str, why: str, now_ns: int) -> Station:
-    record = _record(station, serial)
+def _on_failsafe(station: Station, serial: str, why: str, now_ns: int) -> Station:
+    record = _active_order(station, serial)
     if record is not None:
         station = _put(station, orders.ended(record, Phase.FAILED, now_ns, why))
-    return intents.let_go(station, serial, now_ns, failsafe=why)
+    return _command_nothing(station, serial, now_ns, failsafe=why)
 
 
-def _finished(
-    station: Station, serial: str, vehicle: VehicleState, now_ns: int, ask: Judge
+def _on_finished(
+    station: Station, serial: str, vehicle: VehicleState, now_ns: int, judge: Judge
 ) -> Stepped:
-    record = _record(station, serial)
+    record = _active_order(station, serial)
     if vehicle.is_flying.value is False:
         if record is not None:
             note = "by telemetry: it is on the ground"
             station = _put(station, orders.ended(record, Phase.DONE, now_ns, note))
-        return intents.let_go(station, serial, now_ns), ()
-    station = intents.holds_here(station, serial, now_ns)
+        return _command_nothing(station, serial, now_ns), ()
+    station = hold_here(station, serial, now_ns)
     if record is None:
         return station, ()
-    return missions.part_flown(station, record, now_ns, ask)
+    return missions.part_flown(station, record, now_ns, judge)
 
 
-def _undecided(
+def _on_undecided(
     station: Station, serial: str, vehicle: VehicleState, reading: Reading, now_ns: int
 ) -> Station:
-    """Nothing follows from a mode, unless it lasts, or the vehicle came back with it on another
-    connection: then nobody knows any more what the vehicle does."""
-    follows = intents.following_of(station, serial)
-    mode = vehicle.flight_mode.value
-    if mode is follows.mode_before:
+    """Wait, unless the mode lasts or the vehicle came back with it on another link: then the
+    outcome of its order is unknown, and it is commanded nothing."""
+    tracking, mode = tracking_of(station, serial), vehicle.flight_mode.value
+    if mode is tracking.mode_before:
         return station
-    if follows.command_id is None and not follows.has_begun:
-        return intents.with_following(station, serial, replace(follows, mode_before=mode))
-    if not follows.has_begun:
+    if tracking.command_id is None and not tracking.has_begun:
+        return _with_tracking(station, serial, replace(tracking, mode_before=mode))
+    if not tracking.has_begun:
         return station
     if vehicle.is_flying.value is False:
-        return intents.let_go(station, serial, now_ns)
-    station, _ = _doubted(station, serial, vehicle, Verdict.UNDECIDED)
-    doubt_s = ns_to_seconds((vehicle.flight_mode.received_at_ns or 0) - _since_ns(station, serial))
-    came_back = follows.link_id is not None and vehicle.link_id != follows.link_id
+        return _command_nothing(station, serial, now_ns)
+    station, _ = _with_doubt(station, serial, vehicle, Verdict.UNDECIDED)
+    since_ns = tracking_of(station, serial).doubt_since_ns
+    doubt_s = ns_to_seconds((vehicle.flight_mode.received_at_ns or 0) - since_ns)
+    came_back = tracking.link_id is not None and vehicle.link_id != tracking.link_id
     if not came_back and doubt_s < station.settings.undecided_s:
         return station
-    record = _record(station, serial)
+    record = _active_order(station, serial)
     if record is not None:
         text = (
             f"it came back otherwise than it was left ({reading.why})"
@@ -192,51 +246,45 @@ def _undecided(
             else (f"it is not seen to carry it out any more ({reading.why})")
         )
         station = _put(station, orders.ended(record, Phase.FAILED, now_ns, text))
-    return intents.let_go(station, serial, now_ns)
+    return _command_nothing(station, serial, now_ns)
 
 
-def _since_ns(station: Station, serial: str) -> int:
-    return intents.following_of(station, serial).doubt_since_ns
-
-
-def _let_go_of_nothing(
-    station: Station, serial: str, vehicle: VehicleState, now_ns: int
-) -> Station:
-    """An order that came to nothing before it began is no intent; a landing ends holds and
-    failsafes."""
-    intent, follows = _state(station, serial)
+def _end_stale_intent(station: Station, serial: str, vehicle: VehicleState, now_ns: int) -> Station:
+    """An order that failed before it began is no intent; a landing ends holds and failsafes."""
+    control = station.control(serial)
+    intent, tracking = control.intent, control.tracking
     record = station.orders.records.get(intent.command_id or 0)
-    if serial not in station.trackings:
-        station = intents.let_go(station, serial, now_ns)
-        new = replace(
-            intents.following_of(station, serial), is_unbidden=serial not in station.authorities
-        )
-        return intents.with_following(station, serial, new)
-    if intent.commanded is not Commanded.NOTHING and intent.command_id != follows.command_id:
-        return intents.follow_anew(station, serial)
-    if record is not None and not follows.has_begun and record.phase in _CAME_TO_NOTHING:
-        return intents.let_go(station, serial, now_ns)
+    if tracking is None:
+        station = _command_nothing(station, serial, now_ns)
+        new = replace(tracking_of(station, serial), is_unbidden=not control.is_taken)
+        return _with_tracking(station, serial, new)
+    if intent.commanded is not Commanded.NOTHING and intent.command_id != tracking.command_id:
+        return _start(station, serial, intent, vehicle.flight_mode.value)
+    if record is not None and not tracking.has_begun and record.phase in _FAILED_BEFORE_START:
+        return _command_nothing(station, serial, now_ns)
     is_down = vehicle.is_flying.value is False
-    is_over = intent.commanded is Commanded.HOLD and follows.has_begun
-    if is_down and (is_over or follows.failsafe is not None):
-        return intents.let_go(station, serial, now_ns)
+    is_over = intent.commanded is Commanded.HOLD and tracking.has_begun
+    if is_down and (is_over or tracking.failsafe is not None):
+        return _command_nothing(station, serial, now_ns)
     return station
 
 
-def _led_by_who_flies(station: Station, serial: str, vehicle: VehicleState, now_ns: int) -> Station:
-    """A vehicle that flies about in position mode, with nothing ordered here, is its pilot's.
+def _detect_manual_flight(
+    station: Station, serial: str, vehicle: VehicleState, now_ns: int
+) -> Station:
+    """A vehicle that moves in position mode with nothing ordered is flown by its pilot.
 
-    Other modes tell by the flight table who flies it; one that hovers may be anybody's.
+    Other modes show by the flight table who flies it; a hover shows nothing.
     """
-    intent, follows = _state(station, serial)
+    intent, tracking = station.control(serial).intent, tracking_of(station, serial)
     if intent.commanded is not Commanded.NOTHING or vehicle.is_flying.value is None:
         return station
     if vehicle.is_flying.value is False:
-        if follows.is_unbidden:
+        if tracking.is_unbidden:
             return station
-        return intents.with_following(station, serial, replace(follows, is_unbidden=True))
-    is_flown = follows.is_unbidden and _moves_in_position_mode(vehicle)
-    return authority.flies_unbidden(station, serial, now_ns) if is_flown else station
+        return _with_tracking(station, serial, replace(tracking, is_unbidden=True))
+    is_flown = tracking.is_unbidden and _moves_in_position_mode(vehicle)
+    return authority.on_manual_flight(station, serial, now_ns) if is_flown else station
 
 
 def _moves_in_position_mode(vehicle: VehicleState) -> bool:
@@ -247,29 +295,56 @@ def _moves_in_position_mode(vehicle: VehicleState) -> bool:
     return is_neutral and velocity.speed_mps >= FLOWN_BY_HAND_MPS
 
 
-_CAME_TO_NOTHING = (Phase.TIMED_OUT, Phase.REFUSED_BY_APP, Phase.FAILED, Phase.EXPIRED)
+def _count_passed(station: Station, serial: str, vehicle: VehicleState) -> Station:
+    """Return the station with the waypoints counted that a vehicle has passed by now."""
+    intent, tracking = station.control(serial).intent, tracking_of(station, serial)
+    core_at_ns, position = vehicle.core_received_at_ns, vehicle.position.value
+    if intent.mission is None or not tracking.has_begun or position is None:
+        return station
+    if core_at_ns is None or core_at_ns == tracking.core_at_ns:
+        return station
+    since_ns = tracking.core_at_ns if tracking.core_at_ns is not None else intent.since_ns
+    height_m, since_s = vehicle.height_above_takeoff_m.value, ns_to_seconds(core_at_ns - since_ns)
+    passed = waypoints_passed(intent.mission, intent.passed, position, height_m, since_s)
+    station = _with_tracking(station, serial, replace(tracking, core_at_ns=core_at_ns))
+    return intents.with_passed(station, serial, passed)
 
 
 def _is_steered(station: Station, serial: str) -> bool:
-    """Whether a stream of sticks flies it: nobody else tells when that has begun."""
-    record = _record(station, serial)
+    """Whether a setpoint stream flies it: its order begins without `on_order_begun`."""
+    record = _active_order(station, serial)
     return record is not None and isinstance(record.command.body, STEERED_BODIES)
 
 
+def _start(station: Station, serial: str, intent: Intent, mode: FlightMode | None) -> Station:
+    """Return the station with a vehicle's intent, tracked anew; `mode` is no news of it."""
+    station = intents.with_intent(station, serial, intent)
+    tracking = Tracking(told_at_ns=intent.since_ns, command_id=intent.command_id, mode_before=mode)
+    return _with_tracking(station, serial, tracking)
+
+
+def _command_nothing(
+    station: Station, serial: str, now_ns: int, *, failsafe: str | None = None
+) -> Station:
+    """Return the station with a vehicle commanded nothing; `failsafe`: what it does by itself."""
+    vehicle = station.fleet.vehicles.get(serial)
+    mode = None if vehicle is None else vehicle.flight_mode.value
+    station = intents.with_intent(station, serial, NO_INTENT)
+    tracking = Tracking(told_at_ns=now_ns, mode_before=mode, failsafe=failsafe)
+    return _with_tracking(station, serial, tracking)
+
+
 def _forget(station: Station, serial: str) -> Station:
-    kept = {key: follows for key, follows in station.trackings.items() if key != serial}
-    told = {key: intent for key, intent in station.intents.items() if key != serial}
-    return replace(station, trackings=kept, intents=told)
+    return intents.with_intent(station, serial, NO_INTENT).with_control(serial, tracking=None)
 
 
-def _state(station: Station, serial: str) -> tuple[Intent, Tracking]:
-    return station.intents.get(serial, intents.NOTHING), intents.following_of(station, serial)
+def _with_tracking(station: Station, serial: str, tracking: Tracking) -> Station:
+    return station.with_control(serial, tracking=tracking)
 
 
-def _record(station: Station, serial: str) -> OrderRecord | None:
-    """The order behind what a vehicle does, while it lives."""
-    intent = station.intents.get(serial, intents.NOTHING)
-    record = station.orders.records.get(intent.command_id or 0)
+def _active_order(station: Station, serial: str) -> OrderRecord | None:
+    """The order behind a vehicle's intent, until it has ended."""
+    record = station.orders.records.get(station.control(serial).intent.command_id or 0)
     return None if record is None or record.phase.is_final else record
 
 

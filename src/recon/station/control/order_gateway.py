@@ -31,8 +31,8 @@ from recon.station.state.orders import OrderRecord, PhaseChange
 from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station
 from recon.station.state.stepped import Judge, Stepped
-from recon.station.steering import neutral_setpoint, setpoint_streams
-from recon.station.steering.stream_ends import Driven
+from recon.station.steering import neutral_setpoint, setpoint_streams, stream_ends
+from recon.station.steering.stream_ends import StreamUpdate
 
 
 def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
@@ -47,15 +47,15 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     judged = missions.refusal_of_whole(command, flight_plan, seen) or approve(first, seen)
     if isinstance(judged, Refusal):
         if may_wait(command, judged):
-            station = setpoint_streams.release(station, command.serial, now_ns)
+            station = release_stream(station, command.serial, now_ns)
             station = supersede_older(station, command, now_ns)
             return put(station, waiting_record(station, command, judged, now_ns)), ()
         refused = replace(refused_record(station, command, judged, now_ns), plan=flight_plan)
         station = put(station, refused)
         return _end_stream_for(station, command, now_ns)
     if lane_of(command) is not Lane.CAMERA:
-        station = neutral_setpoint.forget(station, command)
-        station = setpoint_streams.release(station, command.serial, now_ns)
+        station = neutral_setpoint.cancel(station, command.serial)
+        station = release_stream(station, command.serial, now_ns)
     station = supersede_older(station, command, now_ns)
     queued = replace(queued_record(station, command, judged, now_ns), plan=flight_plan)
     return put(station, queued), (SendCommand(judged),)
@@ -64,26 +64,41 @@ def place(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
 def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int) -> Stepped:
     """Judge a steered order as a whole; lease its vehicle to it and send its first stick."""
     refusal = judge(command, situation(station, command, now_ns))
-    refusal = refusal or setpoint_streams.unsteerable(station, order, now_ns)
+    refusal = refusal or setpoint_streams.refusal_to_start(station, order, now_ns)
     if refusal is not None:
         return put(station, refused_record(station, command, refusal, now_ns)), ()
-    station = neutral_setpoint.forget(station, command)
-    station = setpoint_streams.release(station, command.serial, now_ns)
+    station = neutral_setpoint.cancel(station, command.serial)
+    station = release_stream(station, command.serial, now_ns)
     station = supersede_older(station, command, now_ns)
     queued = PhaseChange(Phase.QUEUED, now_ns, "")
     station = put(station, OrderRecord(command, name_of(station, command), (queued,)))
-    station = setpoint_streams.lease_out(station, command, order.owner, now_ns)
+    station, lease = setpoint_streams.start_lease(station, command, order.owner, now_ns)
+    station = intents.with_intent(station, command.serial or "", intents.of_stream(lease))
     return drive_streams(station, now_ns)
 
 
 def drive_streams(station: Station, now_ns: int, serials: Collection[str] | None = None) -> Stepped:
-    """Send the sticks that are due, and end the streams that are over; None: of all vehicles."""
-    return _after(setpoint_streams.drive(station, now_ns, _ask(now_ns), serials), now_ns)
+    """Send the setpoints that are due, and end the streams that are over; None: of all vehicles."""
+    judge, update = _judge_at(now_ns), StreamUpdate(station)
+    for serial in setpoint_streams.due_serials(station, now_ns, serials):
+        update = setpoint_streams.advance(update, serial, now_ns, judge)
+        update = _with_intents(update, now_ns)
+    return _after(update, now_ns)
 
 
-def end_stream(station: Station, serial: str, why: str, now_ns: int) -> Stepped:
-    """End a vehicle's stream as a failure: zero, then hold."""
-    return _after(setpoint_streams.end(station, serial, why, now_ns, _ask(now_ns)), now_ns)
+def end_streams(station: Station, serials: Collection[str], why: str, now_ns: int) -> Stepped:
+    """End the streams of some vehicles as failures: neutral setpoint, then hold."""
+    judge, update = _judge_at(now_ns), StreamUpdate(station)
+    for serial in serials:
+        update = setpoint_streams.abort(update, serial, why, now_ns, judge)
+        update = _with_intents(update, now_ns)
+    return _after(update, now_ns)
+
+
+def release_stream(station: Station, serial: str | None, now_ns: int) -> Station:
+    """Return the station without a vehicle's lease: another order takes over."""
+    update = stream_ends.release(StreamUpdate(station), serial or "")
+    return _with_intents(update, now_ns).station
 
 
 def _end_stream_for(station: Station, refused: Command, now_ns: int) -> Stepped:
@@ -91,24 +106,34 @@ def _end_stream_for(station: Station, refused: Command, now_ns: int) -> Stepped:
     if not refused.is_emergency:
         return station, ()
     why = f"{refused.name.replace('_', ' ')} was ordered, and refused"
-    return end_stream(station, refused.serial or "", why, now_ns)
+    return end_streams(station, (refused.serial or "",), why, now_ns)
 
 
 def owner_disconnected(station: Station, owner: str, now_ns: int) -> Stepped:
-    """End the streams that a connection held: zero, then hold."""
-    return _after(setpoint_streams.end_held_by(station, owner, now_ns, _ask(now_ns)), now_ns)
+    """End the streams that depended on a connection."""
+    station = replace(station, owners=station.owners - {owner})
+    serials = setpoint_streams.owned_by(station, owner)
+    return end_streams(station, serials, "the connection that held the order has gone", now_ns)
 
 
-def _ask(now_ns: int) -> Judge:
+def _judge_at(now_ns: int) -> Judge:
     return lambda station, command: approve(command, situation(station, command, now_ns))
 
 
-def _after(driven: Driven, now_ns: int) -> Stepped:
-    station, outputs = driven.station, driven.outputs
-    for serial, why in driven.pilots:
-        station, withdrawn = authority.pilot_has_it(station, serial, now_ns, why)
+def _with_intents(update: StreamUpdate, now_ns: int) -> StreamUpdate:
+    """Take the ends of streams into their vehicles' intents, before the gate judges another."""
+    station = update.station
+    for serial, command_id, commanded in update.released:
+        station = intents.after_stream(station, serial, command_id, commanded, now_ns)
+    return replace(update, station=station, released=())
+
+
+def _after(update: StreamUpdate, now_ns: int) -> Stepped:
+    station, outputs = update.station, update.outputs
+    for serial, why in update.pilot_takeovers:
+        station, withdrawn = authority.give_to_pilot(station, serial, now_ns, why)
         outputs += withdrawn
-    for order in driven.holds:
+    for order in update.holds:
         station, sent = place(station, order, now_ns)
         outputs += sent
     return station, outputs
@@ -150,7 +175,7 @@ def _sent(station: Station, record: OrderRecord, event: CommandSent, now_ns: int
     if not is_first or target is None or target.serial is None:
         return station
     body = missions.present_part(record.command, record.plan).body
-    return intents.on_sent(station, target.serial, record.command.id, body, context)
+    return mode_tracking.on_order_sent(station, target.serial, record.command.id, body, context)
 
 
 def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None) -> Stepped:
@@ -166,13 +191,13 @@ def watch(station: Station, now_ns: int, serials: tuple[str, ...] | None = None)
         if not isinstance(record.command.body, STEERED_BODIES):  # a stream tells its order's life
             station, sent = _watch_order(station, record, now_ns)
             outputs += sent
-    seen = mode_tracking.silent(station, now_ns) if serials is None else serials
-    station, sent = mode_tracking.follow(station, seen, now_ns, _ask(now_ns))
+    seen = mode_tracking.not_recently_heard(station, now_ns) if serials is None else serials
+    station, sent = mode_tracking.track(station, seen, now_ns, _judge_at(now_ns))
     outputs += sent
     station, zeros = neutral_setpoint.due(station, now_ns)
     for order in zeros:
         station, sent = place(station, order, now_ns)
-        station = neutral_setpoint.forget(station, order)
+        station = neutral_setpoint.cancel(station, order.serial)
         outputs += sent
     return neutral_setpoint.give_up(station, now_ns), outputs
 
@@ -195,7 +220,7 @@ def _watch_order(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
     if updated.is_tracked:
         updated = timed_out_by_now(updated, target, seen, station.settings, now_ns)
     if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
-        updated, outputs = repeat(station, updated, _ask(now_ns), now_ns)
+        updated, outputs = repeat(station, updated, _judge_at(now_ns), now_ns)
     if updated is not record:
         station = intents_after(put(station, updated), record, updated, seen, now_ns)
     return station, outputs
@@ -208,4 +233,4 @@ def _pilot_has_it(
     station = put(station, orders.ended(record, Phase.SUPERSEDED, now_ns, note))
     if target.serial is None:
         return station, ()
-    return mode_tracking.pilot_has_it(station, target.serial, why, now_ns)
+    return mode_tracking.on_pilot_takeover(station, target.serial, why, now_ns)

@@ -5,7 +5,7 @@ from recon.fleet.flight_table import Verdict
 from recon.model.command import CAMERA_BODIES, FlyMission, Phase, VirtualStick
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.station.control import intents, missions
+from recon.station.control import missions, mode_tracking
 from recon.station.control.order_targets import flying_rivals, is_shown, target_of
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
@@ -33,10 +33,10 @@ def intents_after(
         return station
     body = missions.present_part(record.command, record.plan).body
     if isinstance(body, VirtualStick) and record.phase is Phase.DONE:
-        return intents.holds_here(station, target.serial, now_ns)
+        return mode_tracking.hold_here(station, target.serial, now_ns)
     is_news = record.phase is not before.phase or record.alarm is not before.alarm
     if seen >= Progress.CONFIRMED and is_news and not isinstance(body, CAMERA_BODIES):
-        return intents.begun(station, target.serial, record.command.id, body, now_ns)
+        return mode_tracking.on_order_begun(station, target.serial, record.command.id, body, now_ns)
     return station
 
 

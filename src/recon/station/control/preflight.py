@@ -51,22 +51,21 @@ def override(station: Station, event: PreflightOverridden, now_ns: int) -> Stati
     if refusal(station, event) is not None:
         return station
     given = Override(event.by, event.reason.strip(), now_ns)
-    return replace(
-        station, preflight_overrides={**station.preflight_overrides, event.serial: given}
-    )
+    return station.with_control(event.serial, preflight_override=given)
 
 
 def after_packet(before: Station, after: Station, link_id: int) -> Station:
     """Return the station after a packet: with the landing its vehicle's override ends."""
     vehicle = after.fleet.vehicle_of_link(link_id)
-    if vehicle is None or vehicle.serial not in after.preflight_overrides:
+    if vehicle is None or vehicle.serial is None:
         return after
-    was = before.fleet.vehicles.get(vehicle.serial or "")
+    if after.control(vehicle.serial).preflight_override is None:
+        return after
+    was = before.fleet.vehicles.get(vehicle.serial)
     was_up = was is None or was.is_flying.value is not False
     if not was_up or vehicle.is_flying.value is not False:
         return after
-    left = {s: o for s, o in after.preflight_overrides.items() if s != vehicle.serial}
-    return replace(after, preflight_overrides=left)
+    return after.with_control(vehicle.serial, preflight_override=None)
 
 
 def _app_warnings(station: Station, vehicle: VehicleState) -> tuple[str, ...]:

@@ -1,18 +1,14 @@
 """What the gate judges: an order as a command, and the snapshot of the state to judge it by."""
 
-from recon.model.authority import ControlAuthority
 from recon.model.command import Command, FlyMission
 from recon.model.event import OperatorOrder
-from recon.model.intent import Intent
 from recon.model.units import seconds_to_ns
 from recon.safety import ClaimingLink, Situation, Traffic
 from recon.safety.facts import NO_FACTS
 from recon.station.control import preflight
 from recon.station.state.station import Station
+from recon.station.state.vehicle_control import VehicleControl
 from recon.station.traffic.known_traffic import in_the_air, setting_out
-
-_DEFAULT_AUTHORITY = ControlAuthority()
-_NO_INTENT = Intent()
 
 
 def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
@@ -38,6 +34,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
     """
     target = station.target(command.serial, command.link_id)
     serial = "" if target is None or target.serial is None else target.serial
+    control = station.control(serial)
     needs_checklist = isinstance(command.body, FlyMission) or command.takeoff
     return Situation(
         now_ns=now_ns,
@@ -45,24 +42,22 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         claiming_links=_claiming_links(station, command),
         settings=station.settings.safety,
         airspace=station.airspace,
-        authority=station.authorities.get(serial, _DEFAULT_AUTHORITY),
-        intent=station.intents.get(serial, _NO_INTENT),
-        stick_height_above_takeoff_m=_stick_height_m(station, serial),
+        authority=control.authority,
+        intent=control.intent,
+        stick_height_above_takeoff_m=_stick_height_m(control),
         traffic=_traffic(station, command, serial, now_ns) if command.moves else (),
-        preflight_override=station.preflight_overrides.get(serial),
+        preflight_override=control.preflight_override,
         facts=preflight.facts(station, target) if needs_checklist else NO_FACTS,
     )
 
 
-def _stick_height_m(station: Station, serial: str) -> float | None:
-    """The height above takeoff that a vehicle's newest stick asked for."""
-    lease = station.streams.get(serial)
-    if lease is not None:
-        return lease.steered.height_above_takeoff_m
-    pending = station.sticks.get(serial)
-    if pending is not None:
-        return pending.body.height_above_takeoff_m
-    return station.intents.get(serial, _NO_INTENT).target_height_above_takeoff_m
+def _stick_height_m(control: VehicleControl) -> float | None:
+    """The height above takeoff that a vehicle's newest setpoint asked for."""
+    if control.lease is not None:
+        return control.lease.steered.height_above_takeoff_m
+    if control.neutral is not None:
+        return control.neutral.body.height_above_takeoff_m
+    return control.intent.target_height_above_takeoff_m
 
 
 def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tuple[Traffic, ...]:
@@ -73,7 +68,7 @@ def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tu
         if state.serial != serial
     )
     return about_to + tuple(
-        Traffic(state, station.intents.get(state.serial or "", _NO_INTENT))
+        Traffic(state, station.control(state.serial).intent)
         for state, claimed in in_the_air(station)
         if state.serial is None or state.serial != serial
         if claimed is None or claimed != command.serial

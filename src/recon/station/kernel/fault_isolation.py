@@ -25,7 +25,6 @@ from recon.station.state.command_ids import take_id
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
-from recon.station.steering import setpoint_streams
 
 Part = Callable[[Station, int], Stepped]
 
@@ -71,14 +70,15 @@ def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
     come again at every beat.
     """
     outputs: tuple[Output, ...] = ()
-    for serial in tuple(station.streams):
+    for serial in station.leased:
         where = f"steering {serial}"
         try:
             station, more = order_gateway.drive_streams(station, now_ns, (serial,))
         except Exception as fault:
             station = note(station, StationFaulted(where, described(fault)), now_ns)
             station, more = _attempt(where, partial(_end_stream, serial), station, now_ns)
-            if serial in station.streams and station.streams[serial].closing is None:
+            lease = station.control(serial).lease
+            if lease is not None and lease.closing is None:
                 station, more = _attempt(where, partial(_hold, serial), station, now_ns)
         outputs += more
     return station, outputs
@@ -139,12 +139,13 @@ def _attempt(name: str, part: Part, station: Station, now_ns: int) -> Stepped:
 
 
 def _end_stream(serial: str, station: Station, now_ns: int) -> Stepped:
-    return order_gateway.end_stream(station, serial, "a fault in the station's own code", now_ns)
+    why = "a fault in the station's own code"
+    return order_gateway.end_streams(station, (serial,), why, now_ns)
 
 
 def _hold(serial: str, station: Station, now_ns: int) -> Stepped:
     """Hold a vehicle whose stream could not even be ended by a neutral setpoint."""
-    station, number = take_id(setpoint_streams.release(station, serial, now_ns))
+    station, number = take_id(order_gateway.release_stream(station, serial, now_ns))
     order = OperatorOrder(number, Hover(), ISSUER, serial=serial)
     return order_gateway.place(station, order, now_ns)
 

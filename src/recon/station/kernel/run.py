@@ -200,7 +200,11 @@ def _start_auditor(
 
 def _taken_up(station: Station, troubles: tuple[str, ...]) -> str:
     """What the operator must know who starts a station after one that ended in flight."""
-    names = [station.fleet.vehicles[serial].display_name for serial in station.restored_flights]
+    names = [
+        station.fleet.vehicles[serial].display_name
+        for serial, control in station.controls.items()
+        if control.restored is not None
+    ]
     names += [state.display_name for state in station.watchdog_state.lost.values()]
     parts = [f"in flight at last contact: {', '.join(names)}"] if names else []
     if station.orders.records:

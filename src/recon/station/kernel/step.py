@@ -75,7 +75,7 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     if take is not None:
         station, more = take(station, vehicle, event.report, now_ns)
         outputs = (*outputs, *more)
-    if vehicle.serial in station.restored_flights:
+    if station.control(vehicle.serial).restored is not None:
         station = restart.recheck(station, vehicle.serial, now_ns)
     if isinstance(event.report, ImageReport):
         return station, outputs  # it shows nothing of any order

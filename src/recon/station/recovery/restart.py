@@ -21,13 +21,14 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from recon.geo.distance import horizontal_distance_m
-from recon.model.authority import AuthorityHolder, ControlAuthority
+from recon.model.authority import ControlAuthority
 from recon.model.command import BODY_NAMES, Body, Command, Phase
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
+from recon.station.control import authority
 from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
@@ -91,15 +92,15 @@ def restored(station: Station, last_run: LastRun, now_ns: int) -> Station:
     # A vehicle without a named holder is the operator's.
     operator = ControlAuthority()
     holders = dict.fromkeys(flights, (operator.holder, "")) | {
-        serial: (authority.holder, authority.holder_name)
-        for serial, authority in snapshot.authorities.items()
+        serial: (held.holder, held.holder_name) for serial, held in snapshot.authorities.items()
     }
-    authorities = {serial: _authority(*holder, now_ns) for serial, holder in holders.items()}
+    for serial, holder in holders.items():
+        station = authority.restore(station, serial, *holder, now_ns)
+    for serial, flight in flights.items():
+        station = station.with_control(serial, restored=flight)
     return replace(
         station,
         fleet=fleet,
-        authorities={**station.authorities, **authorities},
-        restored_flights=flights,
         restored_at_ns=now_ns,
         watchdog_state=replace(station.watchdog_state, lost=_lost(snapshot, now_ns, settings)),
     )
@@ -107,20 +108,24 @@ def restored(station: Station, last_run: LastRun, now_ns: int) -> Station:
 
 def restart_entries(station: Station) -> Iterator[AuditEntry]:
     """Yield the audit entries of what a restart restored."""
-    for serial in station.restored_flights:
+    for serial, control in station.controls.items():
+        if control.restored is None:
+            continue
         text = f"{_name(station, serial)}: in flight in the last run; lost until telemetry returns"
         yield AuditEntry("vehicle.restored", text, "station", serial, _name(station, serial))
     for key, vehicle in station.watchdog_state.lost.items():
         text = f"{vehicle.display_name}: in flight in the last run, without a serial; lost"
         yield AuditEntry("vehicle.restored", text, details={"name": key})
-    for serial, authority in station.authorities.items():
-        name = _name(station, serial)
+    for serial, control in station.controls.items():
+        if not control.is_taken:
+            continue
+        name, held = _name(station, serial), control.authority
         details: dict[str, str | int] = {
-            "holder": authority.holder.value,
-            "holder_name": authority.holder_name,
-            "reason": authority.reason,
+            "holder": held.holder.value,
+            "holder_name": held.holder_name,
+            "reason": held.reason,
         }
-        text = f"{name}: authority: {authority.holder.value}: {authority.reason}"
+        text = f"{name}: authority: {held.holder.value}: {held.reason}"
         yield AuditEntry("authority.taken", text, "station", serial, name, details)
     for record in station.orders.records.values():
         command, name = record.command, record.vehicle_name
@@ -132,12 +137,11 @@ def restart_entries(station: Station) -> Iterator[AuditEntry]:
 def recheck(station: Station, serial: str | None, now_ns: int) -> Station:
     """Return the station after telemetry of a restored vehicle: keep its takeoff point or not."""
     settings, serial = station.settings.restart, serial or ""
-    last = station.restored_flights.get(serial)
+    last = station.control(serial).restored
     vehicle = station.fleet.vehicles.get(serial)
     if last is None or vehicle is None or vehicle.core_received_at_ns == last.received_at_ns:
         return station
-    left = {key: other for key, other in station.restored_flights.items() if key != serial}
-    station = replace(station, restored_flights=left)
+    station = station.with_control(serial, restored=None)
     mismatch = flight_mismatch(last, vehicle, now_ns, settings)
     if mismatch is None:
         return station
@@ -250,14 +254,6 @@ def _velocity(last: VehicleSnapshot) -> VelocityNed | None:
     north, east = last.velocity_north_mps, last.velocity_east_mps
     down = last.velocity_down_mps
     return None if north is None or east is None or down is None else VelocityNed(north, east, down)
-
-
-def _authority(holder: AuthorityHolder, holder_name: str, now_ns: int) -> ControlAuthority:
-    if holder is AuthorityHolder.GUIDANCE:
-        reason = "guidance had control before the station was restarted"
-        return ControlAuthority(AuthorityHolder.OPERATOR, "", now_ns, reason)
-    reason = f"the {holder.value} had control before the station was restarted"
-    return ControlAuthority(holder, holder_name, now_ns, reason)
 
 
 def _with_interrupted(station: Station, snapshot: RecoverySnapshot, now_ns: int) -> Station:

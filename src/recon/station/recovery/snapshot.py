@@ -160,8 +160,10 @@ def _unidentified(station: Station, now_ns: int) -> Iterable[tuple[str, VehicleS
 
 def _authorities(station: Station) -> Iterator[tuple[str, AuthoritySnapshot]]:
     """Pilots first: they are kept when the limit is reached."""
+    taken = (item for item in station.controls.items() if item[1].is_taken)
     held = sorted(
-        station.authorities.items(), key=lambda item: item[1].holder is not AuthorityHolder.PILOT
+        ((serial, control.authority) for serial, control in taken),
+        key=lambda item: item[1].holder is not AuthorityHolder.PILOT,
     )
     for serial, authority in held:
         yield serial, AuthoritySnapshot(authority.holder, authority.holder_name[:MAX_TEXT])

@@ -117,8 +117,9 @@ class SnapshotWriter:
 
 def is_urgent(before: Station, after: Station) -> bool:
     """Return whether a step changed what a restart must not lose even for half a second."""
-    if after.authorities is not before.authorities:
-        return True
+    for serial, control in after.controls_changed_since(before):
+        if control.authority is not before.control(serial).authority:
+            return True
     watchdogs, watchdogs_before = after.watchdog_state, before.watchdog_state
     if watchdogs.lost is not watchdogs_before.lost:
         return True

@@ -1,15 +1,14 @@
-"""Everything the station knows, as one frozen value."""
+"""The whole state of the station, as one frozen value."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Unpack
 
 from recon.fleet.state import Fleet
-from recon.model.authority import ControlAuthority
-from recon.model.command import Command, VirtualStick
 from recon.model.imagery import Frame
-from recon.model.intent import Intent
+from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
-from recon.safety import OPEN_AIRSPACE, Override, PreparedAirspace
+from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.station.state.alarm_book import AlarmBook
 from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imaging import Imaging, ShadePipeline
@@ -17,18 +16,8 @@ from recon.station.state.orders import OrderBook
 from recon.station.state.setpoint_lease import SetpointLease
 from recon.station.state.settings import StationSettings
 from recon.station.state.survey_record import Surveys
-from recon.station.state.tracking import Tracking
-from recon.station.state.vehicle_snapshot import VehicleSnapshot
+from recon.station.state.vehicle_control import NO_CONTROL, ControlChanges, VehicleControl
 from recon.station.state.watchdog_state import WatchdogState
-
-
-@dataclass(frozen=True, slots=True)
-class PendingNeutral:
-    """A stick that is being held, and when its time is over."""
-
-    command: Command
-    body: VirtualStick
-    due_at_ns: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,36 +61,63 @@ class Station:
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
     airspace: PreparedAirspace = field(default=OPEN_AIRSPACE, repr=False)
-    authorities: Mapping[str, ControlAuthority] = field(default_factory=dict)
-    """Who leads each vehicle, by serial; the default for one that nobody has taken."""
-    intents: Mapping[str, Intent] = field(default_factory=dict)
-    """What each vehicle does on the station's word, by serial."""
-    trackings: Mapping[str, Tracking] = field(default_factory=dict)
-    """How telemetry follows each vehicle's intent, by serial."""
-    preflight_overrides: Mapping[str, Override] = field(default_factory=dict)
-    """By serial, until the vehicle has landed."""
+    controls: Mapping[str, VehicleControl] = field(default_factory=dict)
+    """By serial; read with `control`, changed with `with_control` only."""
+    leased: tuple[str, ...] = ()
+    """Serials of the vehicles with a setpoint lease, kept by `with_control`: asked for with every
+    event, and few of many vehicles."""
+    neutral_pending: tuple[str, ...] = ()
+    """Serials of the vehicles with a pending neutral setpoint, kept likewise."""
     clock: Clock | None = None
     """The computer's clock; None until it was first read."""
-    restored_flights: Mapping[str, VehicleSnapshot] = field(default_factory=dict)
-    """Vehicles that flew when the last run saw them last, by serial, until each is heard."""
     restored_at_ns: int | None = None
     """When this run took up what the last one knew; None when there was nothing."""
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
     next_own_id: int = -1
     """The number of the next command the station gives by itself; see `own_ids`."""
-    streams: Mapping[str, SetpointLease] = field(default_factory=dict)
-    """Steered orders being carried out, by serial; never brought back after a restart."""
     owners: frozenset[str] = frozenset()
     """Open connections that may hold a steered order."""
     fleet_return: FleetReturn | None = None
     """The newest fleet return, until the station is started anew or another one begins."""
-    sticks: Mapping[str, PendingNeutral] = field(default_factory=dict)
-    """Sticks being held, by serial: each ends with a zero from the station."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """What the watchdogs found, held and were told."""
     faults: Mapping[str, Fault] = field(default_factory=dict)
     """Of the station's own code, lately, by what it was doing."""
+
+    def control(self, serial: str | None) -> VehicleControl:
+        """Return the control state of a vehicle; the default for one never commanded."""
+        return self.controls.get(serial or "", NO_CONTROL)
+
+    def with_control(self, serial: str, **changes: Unpack[ControlChanges]) -> "Station":
+        """Return the station with fields of one vehicle's control state changed.
+
+        Only a field's writer changes it, see `VehicleControl`. Without a change nothing is copied.
+        """
+        before = self.control(serial)
+        if all(getattr(before, name) is value for name, value in changes.items()):
+            return self
+        control = replace(before, **changes)
+        return replace(
+            self,
+            controls={**self.controls, serial: control},
+            leased=_with_member(self.leased, serial, control.lease is not None),
+            neutral_pending=_with_member(self.neutral_pending, serial, control.neutral is not None),
+        )
+
+    def leases(self) -> Iterator[tuple[str, SetpointLease]]:
+        """Yield the setpoint leases with their vehicles' serials, the oldest first."""
+        for serial in self.leased:
+            lease = self.control(serial).lease
+            assert lease is not None, "`leased` names the vehicles with a lease"
+            yield serial, lease
+
+    def controls_changed_since(self, before: "Station") -> tuple[tuple[str, VehicleControl], ...]:
+        """Return the control states, by serial, that are not the same values as in `before`."""
+        if self.controls is before.controls:
+            return ()
+        known = before.controls
+        return tuple(item for item in self.controls.items() if known.get(item[0]) is not item[1])
 
     def target(self, serial: str | None, link_id: int | None) -> VehicleState | None:
         """Return the state an order's target has now: a vehicle, or a link without identity.
@@ -114,3 +130,9 @@ class Station:
         if link is None or not link.is_open:
             return None
         return self.fleet.vehicle_of_link(link.id)
+
+
+def _with_member(serials: tuple[str, ...], serial: str, is_member: bool) -> tuple[str, ...]:
+    if (serial in serials) is is_member:
+        return serials
+    return (*serials, serial) if is_member else tuple(s for s in serials if s != serial)

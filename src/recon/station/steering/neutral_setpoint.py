@@ -7,6 +7,7 @@ own stays. Nothing is sent when a newer order came or the vehicle is no longer f
 pilot has it, then, and is not fought).
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from recon.model.command import Command, VirtualStick
@@ -14,7 +15,8 @@ from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.state.command_ids import take_id
-from recon.station.state.station import PendingNeutral, Station
+from recon.station.state.station import Station
+from recon.station.state.vehicle_control import PendingNeutral
 
 ISSUER = "station: end of a stick"
 
@@ -29,26 +31,33 @@ def begin(station: Station, command: Command, now_ns: int) -> Station:
         return station
     if _stands(station, command.serial, body):
         return station
-    pending = PendingNeutral(command, body, now_ns + seconds_to_ns(body.timeout_s))
-    return replace(station, sticks={**station.sticks, command.serial: pending})
+    neutral = PendingNeutral(command, body, now_ns + seconds_to_ns(body.timeout_s))
+    return station.with_control(command.serial, neutral=neutral)
 
 
-def forget(station: Station, newer: Command | OperatorOrder) -> Station:
-    """Return the station after a newer order to move, or the zero itself: nothing is pending."""
-    if newer.serial not in station.sticks:
+def cancel(station: Station, serial: str | None) -> Station:
+    """Return the station without a vehicle's pending neutral setpoint."""
+    if serial is None or serial not in station.neutral_pending:
         return station
-    sticks = {serial: p for serial, p in station.sticks.items() if serial != newer.serial}
-    return replace(station, sticks=sticks)
+    return station.with_control(serial, neutral=None)
+
+
+def pending(station: Station) -> Iterator[tuple[str, PendingNeutral]]:
+    """Yield every pending neutral setpoint with its vehicle's serial."""
+    for serial in station.neutral_pending:
+        neutral = station.control(serial).neutral
+        assert neutral is not None, "`neutral_pending` names the vehicles with one"
+        yield serial, neutral
 
 
 def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ...]]:
-    """Return the zeros that must go now, as orders for the gate; `forget` each once placed."""
+    """Return the zeros that must go now, as orders for the gate; `cancel` each once placed."""
     orders: list[OperatorOrder] = []
-    for serial, pending in station.sticks.items():
-        if now_ns >= pending.due_at_ns and _is_flown_by_sticks(station, pending, now_ns):
+    for serial, neutral in pending(station):
+        if now_ns >= neutral.due_at_ns and _is_flown_by_sticks(station, neutral, now_ns):
             station, number = take_id(station)
-            zero = _zero(pending.body, station.fleet.vehicles[serial])
-            asked_as = pending.command.asked_as
+            zero = _zero(neutral.body, station.fleet.vehicles[serial])
+            asked_as = neutral.command.asked_as
             orders.append(OperatorOrder(number, zero, ISSUER, serial, asked_as=asked_as))
     return station, tuple(orders)
 
@@ -72,13 +81,15 @@ def _stands(station: Station, serial: str, body: VirtualStick) -> bool:
 def give_up(station: Station, now_ns: int) -> Station:
     """Return the station without the zeros that nobody has needed for a while."""
     wait_ns = seconds_to_ns(station.settings.stick_zero_waits_s)
-    sticks = {s: p for s, p in station.sticks.items() if now_ns < p.due_at_ns + wait_ns}
-    return station if len(sticks) == len(station.sticks) else replace(station, sticks=sticks)
+    for serial, neutral in pending(station):
+        if now_ns >= neutral.due_at_ns + wait_ns:
+            station = cancel(station, serial)
+    return station
 
 
-def _is_flown_by_sticks(station: Station, pending: PendingNeutral, now_ns: int) -> bool:
+def _is_flown_by_sticks(station: Station, neutral: PendingNeutral, now_ns: int) -> bool:
     """Whether it is heard, and the newest word on its mode is that sticks fly it (2 Hz)."""
-    vehicle = station.fleet.vehicles.get(pending.command.serial or "")
+    vehicle = station.fleet.vehicles.get(neutral.command.serial or "")
     if vehicle is None or vehicle.flight_mode.value is not FlightMode.JOYSTICK:
         return False
     age_s = vehicle.is_flying.age_s(now_ns)

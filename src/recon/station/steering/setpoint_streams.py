@@ -11,7 +11,6 @@ from collections.abc import Collection
 from recon.guidance.steering import KinematicState, begin, halted, has_arrived, steer
 from recon.model.command import STEERED_BODIES, Command, Phase, Refusal
 from recon.model.event import CommandSent, OperatorOrder
-from recon.model.intent import Commanded, Intent
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
@@ -21,10 +20,15 @@ from recon.station.state.station import Station
 from recon.station.state.stepped import Judge
 from recon.station.steering import stream_ends
 from recon.station.steering.kinematic_state import goal_of, no_faster_than, sight, unseen
-from recon.station.steering.stream_ends import Driven, change_phase, judged, put
+from recon.station.steering.stream_ends import (
+    StreamUpdate,
+    change_phase,
+    judge_setpoint,
+    with_lease,
+)
 
 
-def unsteerable(station: Station, order: OperatorOrder, now_ns: int) -> Refusal | None:
+def refusal_to_start(station: Station, order: OperatorOrder, now_ns: int) -> Refusal | None:
     """Return why a steered order that the gate allows cannot be begun, else None."""
     if order.owner is not None and order.owner not in station.owners:
         return Refusal(
@@ -32,7 +36,7 @@ def unsteerable(station: Station, order: OperatorOrder, now_ns: int) -> Refusal 
             "the connection that was to hold the order is not open (any more): open the stream of "
             "states, and name its owner in the order",
         )
-    steered = [serial for serial in station.streams if serial != order.serial]
+    steered = [serial for serial in station.leased if serial != order.serial]
     most = station.settings.streams.most_at_once
     if len(steered) >= most:
         return Refusal(
@@ -44,19 +48,20 @@ def unsteerable(station: Station, order: OperatorOrder, now_ns: int) -> Refusal 
     return unseen(vehicle, now_ns, station.settings.streams)
 
 
-def lease_out(station: Station, command: Command, owner: str | None, now_ns: int) -> Station:
-    """Return the station with a vehicle leased to an order just judged; a stick is due at once."""
+def start_lease(
+    station: Station, command: Command, owner: str | None, now_ns: int
+) -> tuple[Station, SetpointLease]:
+    """Lease a vehicle to an order just judged; its first setpoint is due at once."""
     serial, settings = command.serial or "", station.settings
     vehicle = station.fleet.vehicles[serial]
     seen = sight(vehicle, now_ns)
-    assert seen is not None, "asked before by `unsteerable`"
+    assert seen is not None, "asked before by `refusal_to_start`"
     assert isinstance(command.body, STEERED_BODIES)
-    goal = goal_of(command.body, seen, settings.steering, settings.streams)
     fastest_mps = station.airspace.airspace.limits.max_speed_mps
     lease = SetpointLease(
         command=command,
         owner=owner,
-        goal=goal,
+        goal=goal_of(command.body, seen, settings.steering, settings.streams),
         steered=begin(no_faster_than(seen, fastest_mps), now_ns),
         link_id=vehicle.link_id,
         started_at_ns=now_ns,
@@ -64,100 +69,83 @@ def lease_out(station: Station, command: Command, owner: str | None, now_ns: int
         seen_at_ns=now_ns - seconds_to_ns(seen.age_s),
         mode_before=vehicle.flight_mode.value,
     )
-    intent = Intent(
-        Commanded.STICK,
-        now_ns,
-        command.id,
-        target=goal.target,
-        target_height_above_takeoff_m=goal.height_above_takeoff_m,
-        speed_mps=goal.speed_mps,
-    )
-    station = replace(station, intents={**station.intents, serial: intent})
-    return put(station, serial, lease)
-
-
-def release(station: Station, serial: str | None, now_ns: int) -> Station:
-    """Return the station without a vehicle's lease: what comes instead has taken over."""
-    return stream_ends.release(station, serial, now_ns)
+    return with_lease(station, serial, lease), lease
 
 
 def next_due_ns(station: Station) -> int | None:
-    """Return when the next stick of any lease is due."""
-    return min((lease.next_due_ns for lease in station.streams.values()), default=None)
+    """Return when the next setpoint of any stream is due."""
+    return min((lease.next_due_ns for _, lease in station.leases()), default=None)
 
 
-def drive(
-    station: Station, now_ns: int, ask: Judge, serials: Collection[str] | None = None
-) -> Driven:
-    """Carry on every lease that is due, or of these vehicles: its next stick, or its end."""
-    driven = Driven(station)
-    for serial, lease in station.streams.items():
-        if now_ns >= lease.next_due_ns and (serials is None or serial in serials):
-            driven = _drive(driven, serial, lease, now_ns, ask)
-    return driven
+def due_serials(
+    station: Station, now_ns: int, serials: Collection[str] | None = None
+) -> tuple[str, ...]:
+    """Return the vehicles whose next setpoint is due, of these vehicles; None: of all."""
+    return tuple(
+        serial
+        for serial, lease in station.leases()
+        if now_ns >= lease.next_due_ns and (serials is None or serial in serials)
+    )
 
 
-def end_held_by(station: Station, owner: str, now_ns: int, ask: Judge) -> Driven:
-    """End the leases of a connection that has gone."""
-    driven = Driven(replace(station, owners=station.owners - {owner}))
-    for serial, lease in station.streams.items():
-        if lease.owner == owner and lease.closing is None:
-            reason = "the connection that held the order has gone"
-            driven = stream_ends.give_up(driven, serial, lease, reason, now_ns, ask)
-    return driven
+def owned_by(station: Station, owner: str) -> tuple[str, ...]:
+    """Return the vehicles whose stream depends on a connection."""
+    return tuple(serial for serial, lease in station.leases() if lease.owner == owner)
 
 
-def end(station: Station, serial: str | None, why: str, now_ns: int, ask: Judge) -> Driven:
-    """End a vehicle's lease, if it has one, as a failure."""
-    lease = station.streams.get(serial or "")
+def abort(update: StreamUpdate, serial: str, why: str, now_ns: int, judge: Judge) -> StreamUpdate:
+    """End a vehicle's stream as a failure, if it has one that is not ending yet."""
+    lease = update.station.control(serial).lease
     if lease is None or lease.closing is not None:
-        return Driven(station)
-    return stream_ends.give_up(Driven(station), serial or "", lease, why, now_ns, ask)
+        return update
+    return stream_ends.abort(update, serial, lease, why, now_ns, judge)
 
 
 def on_sent(station: Station, event: CommandSent, now_ns: int) -> Station:
-    """Count a stick that has left; with the first one its order counts as sent."""
-    for serial, lease in station.streams.items():
+    """Count a setpoint that has left; with the first one its order counts as sent."""
+    for serial, lease in station.leases():
         if lease.last_stick_id == event.command_id:
             sent = replace(lease, packets_sent=lease.packets_sent + 1)
             if lease.first_sent_at_ns is None:
                 sent = replace(sent, first_sent_at_ns=now_ns)
-            station = put(station, serial, sent)
+            station = with_lease(station, serial, sent)
             if lease.first_sent_at_ns is None:
                 return change_phase(station, sent, Phase.SENT, now_ns, "its first stick")
     return station
 
 
-def _drive(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Judge) -> Driven:
-    station = driven.station
-    vehicle = station.fleet.vehicles.get(serial)
-    if vehicle is None:
-        return replace(driven, station=stream_ends.release(station, serial, now_ns))
-    taken = stream_ends.taken(station, lease, vehicle)
-    if taken is not None:
-        return stream_ends.let_go(driven, serial, lease, taken, now_ns)
+def advance(update: StreamUpdate, serial: str, now_ns: int, judge: Judge) -> StreamUpdate:
+    """Send a vehicle's next setpoint, or end its stream."""
+    station = update.station
+    lease, vehicle = station.control(serial).lease, station.fleet.vehicles.get(serial)
+    if lease is None or vehicle is None:
+        return stream_ends.release(update, serial)
+    lost = stream_ends.control_lost(station, lease, vehicle)
+    if lost is not None:
+        return stream_ends.end_silently(update, serial, lease, lost, now_ns)
     if lease.closing is not None:
-        return stream_ends.hold(driven, serial, now_ns)
+        return stream_ends.order_hold(update, serial)
     seen = sight(vehicle, now_ns)
     if seen is not None:
         seen_at_ns = now_ns - seconds_to_ns(seen.age_s)
         lease = replace(lease, seen_at_ns=max(lease.seen_at_ns, seen_at_ns))
     failure = stream_ends.failure(station, lease, vehicle, now_ns)
     if failure is not None:
-        return stream_ends.give_up(driven, serial, lease, failure, now_ns, ask)
+        return stream_ends.abort(update, serial, lease, failure, now_ns, judge)
     if seen is not None and seen.age_s > station.settings.streams.sight_s:
         seen = None
-    station, lease = _followed(station, lease, vehicle, seen, now_ns)
-    driven = replace(driven, station=station)
+    station, lease = _with_progress(station, lease, vehicle, seen, now_ns)
+    update = replace(update, station=station)
     if stream_ends.has_held_long_enough(station, lease, now_ns):
-        return stream_ends.leave_alone(driven, serial, lease, now_ns, ask)
-    return _send(driven, serial, _demanded(station, serial, lease, seen, now_ns), now_ns, ask)
+        return stream_ends.end_held_place(update, serial, lease, now_ns, judge)
+    lease = _with_next_setpoint(station, serial, lease, seen, now_ns)
+    return _send(update, serial, lease, now_ns, judge)
 
 
-def _demanded(
+def _with_next_setpoint(
     station: Station, serial: str, lease: SetpointLease, seen: KinematicState | None, now_ns: int
 ) -> SetpointLease:
-    """Return the lease with its next demand, and the time of the one after. Unseen: zero."""
+    """Return the lease with its next setpoint, and the time of the one after. Unseen: neutral."""
     settings = station.settings
     if seen is None:
         height_m = station.fleet.vehicles[serial].height_above_takeoff_m.value
@@ -165,24 +153,26 @@ def _demanded(
     else:
         steered = steer(lease.steered, lease.goal, seen, now_ns, settings.steering)
     if lease.last_stick_id == 0:
-        others = tuple(x.next_due_ns for s, x in station.streams.items() if s != serial)
+        others = tuple(x.next_due_ns for s, x in station.leases() if s != serial)
         due_ns = first_due_ns(others, now_ns, settings.streams)
     else:
         due_ns = following_due_ns(lease.next_due_ns, now_ns, settings.streams)
     return replace(lease, steered=steered, next_due_ns=due_ns)
 
 
-def _send(driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Judge) -> Driven:
-    station, answer, lease = judged(driven.station, lease, now_ns, ask)
+def _send(
+    update: StreamUpdate, serial: str, lease: SetpointLease, now_ns: int, judge: Judge
+) -> StreamUpdate:
+    station, answer, lease = judge_setpoint(update.station, lease, now_ns, judge)
     if isinstance(answer, Refusal):
         reason = f"the gate refused its stick: {answer.rule}: {answer.reason}"
-        driven = replace(driven, station=station)
-        return stream_ends.give_up(driven, serial, lease, reason, now_ns, ask)
-    station = put(station, serial, lease)
-    return replace(driven, station=station, outputs=(*driven.outputs, SendCommand(answer)))
+        update = replace(update, station=station)
+        return stream_ends.abort(update, serial, lease, reason, now_ns, judge)
+    station = with_lease(station, serial, lease)
+    return replace(update, station=station, outputs=(*update.outputs, SendCommand(answer)))
 
 
-def _followed(
+def _with_progress(
     station: Station,
     lease: SetpointLease,
     vehicle: VehicleState,

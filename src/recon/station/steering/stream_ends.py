@@ -1,13 +1,17 @@
-"""How a stream of sticks ends: let go in silence, or zero and then hold."""
+"""How a setpoint stream ends: without a further packet, or with a neutral setpoint and a hold.
+
+The only writer of `VehicleControl.lease`.
+"""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from recon.fleet.flight_table import Instruction, Place, Verdict, read
 from recon.guidance.steering import halted
-from recon.model.authority import AuthorityHolder, ControlAuthority
+from recon.model.authority import AuthorityHolder
 from recon.model.command import Command, Hover, Phase, Refusal, StickFrame, VirtualStick
 from recon.model.event import OperatorOrder
-from recon.model.intent import Commanded, Intent
+from recon.model.intent import Commanded
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
@@ -23,53 +27,57 @@ from recon.station.state.stepped import Judge
 ISSUER = "station: end of a stream of sticks"
 RULE = "steering_ended"
 
-_DEFAULT_AUTHORITY = ControlAuthority()
+
+class ReleasedStream(NamedTuple):
+    """A stream that has ended, its order, and what its vehicle is commanded to do now."""
+
+    serial: str
+    command_id: int
+    commanded: Commanded
 
 
 @dataclass(frozen=True, slots=True)
-class Driven:
-    """The station after a beat, what is to be sent, and the holds that are to be ordered.
+class StreamUpdate:
+    """The station after streams were updated, and what `control` must do next.
 
-    `pilots` are the vehicles found in their pilots' hands, and how that was seen.
+    `outputs` are packets to send, `holds` orders to place. `pilot_takeovers` are serials with the
+    reason why their pilot is known to fly them.
     """
 
     station: Station
     outputs: tuple[Output, ...] = ()
     holds: tuple[OperatorOrder, ...] = ()
-    pilots: tuple[tuple[str, str], ...] = ()
+    pilot_takeovers: tuple[tuple[str, str], ...] = ()
+    released: tuple[ReleasedStream, ...] = ()
 
 
-def put(station: Station, serial: str, lease: SetpointLease) -> Station:
-    """Return the station with a lease in its newest form."""
-    return replace(station, streams={**station.streams, serial: lease})
+def with_lease(station: Station, serial: str, lease: SetpointLease) -> Station:
+    """Return the station with a vehicle's lease replaced."""
+    return station.with_control(serial, lease=lease)
 
 
 def release(
-    station: Station, serial: str | None, now_ns: int, told: Commanded = Commanded.NOTHING
-) -> Station:
-    """Return the station without a vehicle's lease, which is told something else now.
-
-    Its order keeps the count of its sticks.
-    """
-    lease = station.streams.get(serial or "")
-    if lease is None or serial is None:
-        return station
-    station = replace(station, streams={s: x for s, x in station.streams.items() if s != serial})
-    if station.intents.get(serial, Intent()).command_id == lease.command.id:
-        intents = {**station.intents, serial: Intent(told, now_ns)}
-        station = replace(station, intents=intents)
+    update: StreamUpdate, serial: str, commanded: Commanded = Commanded.NOTHING
+) -> StreamUpdate:
+    """Remove a vehicle's lease, if it has one. Its order keeps the count of its setpoints."""
+    station = update.station
+    lease = station.control(serial).lease
+    if lease is None:
+        return update
+    station = station.with_control(serial, lease=None)
     record = station.orders.records.get(lease.command.id)
-    if record is None:
-        return station
-    counted = replace(record, times_sent=lease.packets_sent)
-    book = orders.put(station.orders, counted, station.settings.orders_kept)
-    return replace(station, orders=book)
+    if record is not None:
+        counted = replace(record, times_sent=lease.packets_sent)
+        book = orders.put(station.orders, counted, station.settings.orders_kept)
+        station = replace(station, orders=book)
+    ended = ReleasedStream(serial, lease.command.id, commanded)
+    return replace(update, station=station, released=(*update.released, ended))
 
 
 def change_phase(
     station: Station, lease: SetpointLease, phase: Phase, now_ns: int, note: str
 ) -> Station:
-    """Return the station with the order's record gone on, as long as it is kept."""
+    """Return the station with the stream's order in another phase, as long as it is kept."""
     record = station.orders.records.get(lease.command.id)
     if record is None:
         return station
@@ -78,10 +86,10 @@ def change_phase(
     return replace(station, orders=orders.put(station.orders, changed, kept))
 
 
-def judged(
-    station: Station, lease: SetpointLease, now_ns: int, ask: Judge
+def judge_setpoint(
+    station: Station, lease: SetpointLease, now_ns: int, judge: Judge
 ) -> tuple[Station, ApprovedCommand | Refusal, SetpointLease]:
-    """Ask the gate about the stick of the lease's present demand."""
+    """Ask the gate about the lease's present setpoint, as a virtual stick command."""
     settings, steered = station.settings.streams, lease.steered
     station, number = take_id(station)
     command = Command(
@@ -97,18 +105,18 @@ def judged(
         ),
         issued_by=lease.command.issued_by,
         issued_at_ns=now_ns,
-        # What waits longer has been replaced by the next one, or its lease is over.
+        # After this the next setpoint has replaced it, or the stream has ended.
         expires_at_ns=now_ns + seconds_to_ns(1.5 * settings.period_s),
         serial=lease.command.serial,
         asked_as=lease.command.asked_as,
     )
-    return station, ask(station, command), replace(lease, last_stick_id=number)
+    return station, judge(station, command), replace(lease, last_stick_id=number)
 
 
-def taken(
+def control_lost(
     station: Station, lease: SetpointLease, vehicle: VehicleState
 ) -> tuple[Phase, str] | None:
-    """Return what took a vehicle out of the station's hands, and what that makes of its order."""
+    """Return the order's final phase and the reason if a pilot or a failsafe flies the vehicle."""
     mode = vehicle.flight_mode
     if mode.received_at_ns is not None and mode.received_at_ns > lease.started_at_ns:
         reading = read(
@@ -122,7 +130,7 @@ def taken(
             return Phase.SUPERSEDED, f"the pilot has taken the sticks: {reading.why}"
         if reading.verdict is Verdict.FAILSAFE:
             return Phase.FAILED, reading.why
-    authority = _authority(station, lease)
+    authority = station.control(lease.command.serial).authority
     if authority.holder is AuthorityHolder.PILOT and mode.value is not FlightMode.JOYSTICK:
         return Phase.SUPERSEDED, f"the pilot leads it ({authority.reason})"
     return None
@@ -131,13 +139,13 @@ def taken(
 def failure(
     station: Station, lease: SetpointLease, vehicle: VehicleState, now_ns: int
 ) -> str | None:
-    """Return why the station must give a lease up, else None."""
+    """Return why the station cannot continue a stream, else None."""
     settings = station.settings.streams
     if vehicle.link_id != lease.link_id:
         return "its connection was lost, and a steered order never goes on after that"
     if now_ns - lease.seen_at_ns > seconds_to_ns(settings.resumes_s):
         return f"its telemetry was incomplete or missing for {settings.resumes_s:g} s"
-    authority = _authority(station, lease)
+    authority = station.control(lease.command.serial).authority
     if authority.holder is not lease.command.asked_as:
         return f"{authority.holder.value} leads the vehicle now ({authority.reason})"
     waited_ns = now_ns - lease.started_at_ns
@@ -152,76 +160,74 @@ def has_held_long_enough(station: Station, lease: SetpointLease, now_ns: int) ->
     return lease.arrived_at_ns is not None and now_ns - lease.arrived_at_ns > hold_ns
 
 
-def let_go(
-    driven: Driven, serial: str, lease: SetpointLease, taken: tuple[Phase, str], now_ns: int
-) -> Driven:
-    """End a lease without a word to the vehicle: somebody else flies it, and is not fought."""
-    phase, why = taken
-    station = release(driven.station, serial, now_ns)
+def end_silently(
+    update: StreamUpdate, serial: str, lease: SetpointLease, end: tuple[Phase, str], now_ns: int
+) -> StreamUpdate:
+    """End a stream and send nothing: the pilot or the aircraft's failsafe flies the vehicle."""
+    phase, why = end
+    update = release(update, serial)
     if phase is Phase.SUPERSEDED:
-        driven = replace(driven, pilots=(*driven.pilots, (serial, why)))
-    if lease.closing is None:
-        ended = phase if lease.arrived_at_ns is None else Phase.DONE
-        station = change_phase(station, lease, ended, now_ns, why)
-        if phase is Phase.FAILED:
-            station = _alarm(station, lease, f"{why}; nothing more is sent", now_ns)
-    return replace(driven, station=station)
+        takeovers = (*update.pilot_takeovers, (serial, why))
+        update = replace(update, pilot_takeovers=takeovers)
+    if lease.closing is not None:
+        return update
+    ended = phase if lease.arrived_at_ns is None else Phase.DONE
+    station = change_phase(update.station, lease, ended, now_ns, why)
+    if phase is Phase.FAILED:
+        station = _alarm(station, lease, f"{why}; nothing more is sent", now_ns)
+    return replace(update, station=station)
 
 
-def give_up(
-    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Judge
-) -> Driven:
-    """End a lease that the station cannot carry on: the order fails, with an alarm."""
+def abort(
+    update: StreamUpdate, serial: str, lease: SetpointLease, why: str, now_ns: int, judge: Judge
+) -> StreamUpdate:
+    """End a stream that cannot continue: its order fails, with an alarm; the vehicle holds."""
     phase = Phase.FAILED if lease.arrived_at_ns is None else Phase.DONE
-    station = change_phase(driven.station, lease, phase, now_ns, why)
+    station = change_phase(update.station, lease, phase, now_ns, why)
     station = _alarm(station, lease, f"{why}; it is stopped and holds", now_ns)
-    return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
+    return _close(replace(update, station=station), serial, lease, why, now_ns, judge)
 
 
-def leave_alone(
-    driven: Driven, serial: str, lease: SetpointLease, now_ns: int, ask: Judge
-) -> Driven:
-    """Leave a vehicle that was held for long to its own position hold; nothing has failed."""
-    held_s = driven.station.settings.streams.hold_at_most_s
+def end_held_place(
+    update: StreamUpdate, serial: str, lease: SetpointLease, now_ns: int, judge: Judge
+) -> StreamUpdate:
+    """End a stream that has held its place long enough: the aircraft's own hold replaces it."""
+    held_s = update.station.settings.streams.hold_at_most_s
     why = f"held for {held_s:g} s; from now on by the aircraft itself"
-    station = change_phase(driven.station, lease, Phase.DONE, now_ns, why)
-    return _close(replace(driven, station=station), serial, lease, why, now_ns, ask)
+    station = change_phase(update.station, lease, Phase.DONE, now_ns, why)
+    return _close(replace(update, station=station), serial, lease, why, now_ns, judge)
 
 
-def hold(driven: Driven, serial: str, now_ns: int) -> Driven:
-    """Order the hold that follows the zero; a vehicle on the ground needs none."""
-    station = release(driven.station, serial, now_ns, Commanded.HOLD)
-    vehicle = station.fleet.vehicles.get(serial)
+def order_hold(update: StreamUpdate, serial: str) -> StreamUpdate:
+    """Order the hold that follows the neutral setpoint; a vehicle on the ground needs none."""
+    update = release(update, serial, Commanded.HOLD)
+    vehicle = update.station.fleet.vehicles.get(serial)
     if vehicle is None or vehicle.is_flying.value is False:
-        return replace(driven, station=station)
-    station, number = take_id(station)
+        return update
+    station, number = take_id(update.station)
     order = OperatorOrder(number, Hover(), ISSUER, serial=serial)
-    return replace(driven, station=station, holds=(*driven.holds, order))
+    return replace(update, station=station, holds=(*update.holds, order))
 
 
 def _close(
-    driven: Driven, serial: str, lease: SetpointLease, why: str, now_ns: int, ask: Judge
-) -> Driven:
-    """Send zero now and hold a little later; hold at once if the gate refuses even the zero."""
-    vehicle = driven.station.fleet.vehicles.get(serial)
+    update: StreamUpdate, serial: str, lease: SetpointLease, why: str, now_ns: int, judge: Judge
+) -> StreamUpdate:
+    """Send a neutral setpoint now and hold a little later; hold at once if the gate refuses it."""
+    vehicle = update.station.fleet.vehicles.get(serial)
     height_m = None if vehicle is None else vehicle.height_above_takeoff_m.value
     lease = replace(lease, steered=halted(lease.steered, height_m, now_ns))
-    station, answer, lease = judged(driven.station, lease, now_ns, ask)
-    driven = replace(driven, station=station)
+    station, answer, lease = judge_setpoint(update.station, lease, now_ns, judge)
+    update = replace(update, station=station)
     if isinstance(answer, Refusal):
-        return hold(driven, serial, now_ns)
+        return order_hold(update, serial)
     due_ns = now_ns + seconds_to_ns(station.settings.streams.zero_to_hold_s)
     closing = replace(lease, closing=why, next_due_ns=due_ns)
-    station = put(station, serial, closing)
-    return replace(driven, station=station, outputs=(*driven.outputs, SendCommand(answer)))
-
-
-def _authority(station: Station, lease: SetpointLease) -> ControlAuthority:
-    return station.authorities.get(lease.command.serial or "", _DEFAULT_AUTHORITY)
+    station = with_lease(station, serial, closing)
+    return replace(update, station=station, outputs=(*update.outputs, SendCommand(answer)))
 
 
 def _alarm(station: Station, lease: SetpointLease, why: str, now_ns: int) -> Station:
-    """Note the end for a person to see; it stays until acknowledged."""
+    """Raise an alarm about the end of a stream; it stays until acknowledged."""
     record = station.orders.records.get(lease.command.id)
     serial = lease.command.serial
     name = serial or "" if record is None else record.vehicle_name

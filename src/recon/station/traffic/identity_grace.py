@@ -56,16 +56,21 @@ def is_settling(station: Station, now_ns: int) -> bool:
 
 def awaited(station: Station, now_ns: int) -> tuple[VehicleState, ...]:
     """Return the vehicles that flew before a restart a moment ago, and are not heard yet."""
-    if not station.restored_flights or not is_settling(station, now_ns):
+    if not is_settling(station, now_ns):
         return ()
     vehicles = station.fleet.vehicles
-    return tuple(vehicles[serial] for serial in station.restored_flights if serial in vehicles)
+    return tuple(
+        vehicles[serial]
+        for serial, control in station.controls.items()
+        if control.restored is not None and serial in vehicles
+    )
 
 
 def is_new(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
     """Return whether it is too early to watch a vehicle: by what is heard next, it is another."""
     if vehicle.serial is not None:
-        return vehicle.serial in station.restored_flights and is_settling(station, now_ns)
+        is_restored = station.control(vehicle.serial).restored is not None
+        return is_restored and is_settling(station, now_ns)
     if vehicle.link_id is None:
         return is_settling(station, now_ns)
     return may_yet_say_its_serial(station, vehicle, now_ns)

@@ -14,7 +14,6 @@ from recon.safety.watchdogs import plane_of
 from recon.station.state.station import Station
 from recon.station.traffic import identity_grace
 
-_NO_INTENT = Intent()
 LOST_KEPT = 16
 """Vehicles that flew without a serial and were lost: an app that connects again and again must not
 fill the air. The rest are one hazard that is nowhere known to be, and so everywhere."""
@@ -51,12 +50,12 @@ def setting_out(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, I
             issued_at_ns, number = record.command.issued_at_ns, record.command.id
             yield vehicle, Intent(Commanded.MISSION, issued_at_ns, number, mission=body.mission)
     starts_ns = seconds_to_ns(station.settings.safety.prediction.start_delay_s)
-    for serial, intent in station.intents.items():
-        vehicle = station.fleet.vehicles.get(serial)
-        is_new = now_ns - intent.since_ns <= starts_ns
-        if vehicle is None or vehicle.is_flying.value is not False or not is_new:
+    for serial, control in station.controls.items():
+        intent = control.intent
+        if intent.commanded is not Commanded.MISSION or now_ns - intent.since_ns > starts_ns:
             continue
-        if intent.commanded is Commanded.MISSION:
+        vehicle = station.fleet.vehicles.get(serial)
+        if vehicle is not None and vehicle.is_flying.value is False:
             yield vehicle, intent
 
 
@@ -69,7 +68,7 @@ def hazard(station: Station, vehicle: VehicleState, now_ns: int) -> HazardArea |
     prediction = station.settings.safety.prediction
     plane = plane_of(station.airspace, (vehicle,))
     seen = flyer(vehicle, station.airspace, plane, now_ns, prediction)
-    intent = station.intents.get(vehicle.serial or "", _NO_INTENT)
+    intent = station.control(vehicle.serial).intent
     return None if seen is None else hazard_area_of(seen, intent, prediction)
 
 

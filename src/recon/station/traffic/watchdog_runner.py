@@ -7,9 +7,7 @@ repeated until telemetry shows them.
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from recon.model.authority import ControlAuthority
 from recon.model.event import SeparationHoldSwitched
-from recon.model.intent import Intent
 from recon.model.replacing import replace
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import VehicleState
@@ -27,9 +25,6 @@ from recon.station.state.station import Station
 from recon.station.state.watchdog_state import HoldRefused, Kept, StickCount
 from recon.station.traffic import identity_grace
 from recon.station.traffic.known_traffic import in_the_air
-
-_DEFAULT_AUTHORITY = ControlAuthority()
-_NO_INTENT = Intent()
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,13 +82,14 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
         if identity_grace.is_new(station, vehicle, now_ns):
             continue
         serial = vehicle.serial or ""
+        control = station.control(serial)
         count = watch.sticks.get(serial)
         refused = watch.holds_refused.get(serial)
         quiet_s = None if count is None else (now_ns - count.changed_at_ns) / NS_PER_S
         yield WatchedVehicle(
             vehicle,
-            station.intents.get(serial, _NO_INTENT),
-            station.authorities.get(serial, _DEFAULT_AUTHORITY).holder,
+            control.intent,
+            control.authority.holder,
             held=watch.held.get(serial),
             before=watch.before.get(serial),
             is_imager=vehicle.serial is not None and vehicle.serial == imager,
@@ -104,10 +100,10 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
 
 def _with_stick_counts(station: Station, now_ns: int) -> Station:
     """Note for each stream of sticks when its last one left."""
-    if not station.streams and not station.watchdog_state.sticks:
+    if not station.leased and not station.watchdog_state.sticks:
         return station
     counts: dict[str, StickCount] = {}
-    for serial, lease in station.streams.items():
+    for serial, lease in station.leases():
         if lease.closing is not None:
             continue
         before = station.watchdog_state.sticks.get(serial)
@@ -149,7 +145,7 @@ def _still_held(station: Station) -> dict[str, Held]:
     return {
         serial: held
         for serial, held in station.watchdog_state.held.items()
-        if held.holds_against(station.intents.get(serial, _NO_INTENT))
+        if held.holds_against(station.control(serial).intent)
         and _may_fly(station.fleet.vehicles.get(serial))
     }
 

@@ -55,8 +55,8 @@ def refusal(station: Station, serial: str) -> Refusal | None:
     name, vehicle = _name(station, serial), station.fleet.vehicles.get(serial)
     if vehicle is not None and frame_for(station.airspace, vehicle) is None:
         return Refusal(RULE, f"{name}: expected a position, it has told none: hold it, or land it")
-    authority = station.authorities.get(serial)
-    if authority is not None and authority.holder is AuthorityHolder.PILOT:
+    authority = station.control(serial).authority
+    if authority.holder is AuthorityHolder.PILOT:
         return Refusal(
             RULE,
             f"{name} is controlled by the pilot ({authority.reason}): ask the "

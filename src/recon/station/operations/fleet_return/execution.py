@@ -63,7 +63,7 @@ def _handed_back(station: Station, now_ns: int) -> Station:
     """
     running = station.fleet_return
     for member in () if running is None else running.at(*ENDED):
-        led_since_ns = authority.authority_of(station, member.serial).since_ns
+        led_since_ns = station.control(member.serial).authority.since_ns
         if member.asked_as is AuthorityHolder.GUIDANCE and led_since_ns <= member.since_ns:
             why = f"its way home has ended: {member.reason or 'it has landed'}"
             station = authority.hand_back(station, member.serial, member.by, why, now_ns)

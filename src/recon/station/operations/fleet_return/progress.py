@@ -6,7 +6,6 @@ from recon.link.outbox import Lane, lane_of
 from recon.model.command import Hover, Phase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
-from recon.station.control.authority import authority_of
 from recon.station.operations.fleet_return.settings import ReturnSettings
 from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, Member, Stage
 from recon.station.state.orders import OrderRecord
@@ -74,7 +73,7 @@ def is_still_left(station: Station, member: Member) -> bool:
 
 def _taken(station: Station, member: Member, now_ns: int) -> Member | None:
     """The pilot, or whoever ordered something newer, has the vehicle."""
-    authority = authority_of(station, member.serial)
+    authority = station.control(member.serial).authority
     if authority.holder is not member.asked_as:
         words = f"it is led by {authority.holder.value} now ({authority.reason})"
         return member.at(Stage.RELEASED, now_ns, words)

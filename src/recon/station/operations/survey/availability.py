@@ -12,7 +12,6 @@ from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import frame_for, home_enu_m, vehicle_enu_m
 from recon.safety.energy import consumption
 from recon.safety.settings import EnergySettings
-from recon.station.control.authority import authority_of
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.state.survey_record import Member, SurveyRecord
@@ -44,7 +43,7 @@ def hindrance(station: Station, member: Member, now_ns: int) -> str | None:
         return member.stopped
     if member.homeward is not None:
         return _homeward(station, member, member.homeward)
-    authority = authority_of(station, member.serial)
+    authority = station.control(member.serial).authority
     if authority.holder is not AuthorityHolder.GUIDANCE:
         return f"it is led by the {authority.holder.value} ({authority.reason})"
     vehicle = station.fleet.vehicles.get(member.serial)

@@ -105,10 +105,7 @@ def stop(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
     outputs: tuple[Output, ...] = ()
     for member in record.members.values():
         is_its = record.is_running or is_under_way(station, member)
-        if (
-            is_its
-            and authority.authority_of(station, member.serial).holder is AuthorityHolder.GUIDANCE
-        ):
+        if is_its and station.control(member.serial).authority.holder is AuthorityHolder.GUIDANCE:
             by = f"{event.by}: survey {record.survey.name} {word}"
             station, sent = _hold(station, member, by, now_ns)
             outputs += sent

@@ -50,10 +50,7 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
     """
     record = station.surveys.records[survey_id]
     member, vehicle = record.members[serial], station.fleet.vehicles.get(serial)
-    if (
-        authority.authority_of(station, serial).holder is not AuthorityHolder.GUIDANCE
-        or vehicle is None
-    ):
+    if station.control(serial).authority.holder is not AuthorityHolder.GUIDANCE or vehicle is None:
         return station, ()
     if vehicle.is_flying.value is False or is_under_way(station, member):
         return station, ()
