@@ -76,7 +76,7 @@ class AppBench:
         return self.received[before:]
 
     def send(self, packet: wire.Packet) -> list[wire.Packet]:
-        """Hand a command to the app and return what it says at that moment."""
+        """Pass a command to the app and return the packets it sends at once."""
         before = len(self.received)
         self.app.receive(wire.encode(packet), self.now_ns)
         self._take()
@@ -88,7 +88,7 @@ class AppBench:
 
     @property
     def mode(self) -> int:
-        """The flight mode as last told."""
+        """The flight mode reported last."""
         return self.last(wire.ExtendedTelemetry).flight_mode
 
     def _take(self) -> None:
@@ -115,8 +115,8 @@ def app_bench() -> Callable[..., AppBench]:
     ) -> AppBench:
         active_mode = Grounded() if height_m == 0.0 else Hold()
         aircraft = Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=active_mode)
-        habits = AppBehaviour(reference, hover_on_ground, bias_m)
-        settings = AppSettings("SIM-7", HOME, seed=4, habits=habits, faults=faults)
+        behaviour = AppBehaviour(reference, hover_on_ground, bias_m)
+        settings = AppSettings("SIM-7", HOME, seed=4, behaviour=behaviour, faults=faults)
         return AppBench(SimulatedApp(settings, aircraft))
 
     return make

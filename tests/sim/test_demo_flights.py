@@ -17,7 +17,7 @@ SIMULATED_S = 600
 
 
 class NoPictures:
-    """A camera whose pictures nobody asks for."""
+    """A camera whose frames are never requested."""
 
     rows, cols = 2, 2
 
@@ -58,7 +58,7 @@ def flown_m(site: Site, seed: int, vehicle_count: int) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("vehicle_count", [4, 8])
-def test_they_stay_inside_the_fences_and_apart(seed: int, vehicle_count: int) -> None:
+def test_wandering_vehicles_stay_inside_fences_and_apart(seed: int, vehicle_count: int) -> None:
     site = load_site(demo_site_folder())
     track = flown_m(site, seed, vehicle_count)
     places, up_m = track[..., :2].reshape(-1, 2), track[..., 2]

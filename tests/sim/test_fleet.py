@@ -22,13 +22,13 @@ def heights(apps: list[SimulatedApp]) -> list[float]:
     return [app.aircraft.motion.height_m for app in apps]
 
 
-def test_the_imager_is_the_first_of_the_number_asked_for() -> None:
+def test_the_imaging_drone_is_the_first_vehicle() -> None:
     assert fleet_serials(CONFIG) == ("SIM-IMAGER", "SIM-1", "SIM-2", "SIM-3")
     assert fleet_serials(replace(CONFIG, imager=None)) == ("SIM-1", "SIM-2", "SIM-3", "SIM-4")
     assert fleet_serials(replace(CONFIG, vehicle_count=1)) == ("SIM-IMAGER",)
 
 
-def test_only_the_imager_starts_in_the_air_unless_told_otherwise() -> None:
+def test_only_the_imaging_drone_starts_in_the_air_by_default() -> None:
     assert heights(build_fleet(CONFIG, 0)) == [130.0, 0.0, 0.0, 0.0]
     assert heights(build_fleet(replace(CONFIG, airborne=Airborne.NONE), 0)) == [0.0] * 4
     in_air = heights(build_fleet(replace(CONFIG, airborne=Airborne.ALL), 0))
@@ -51,11 +51,11 @@ def test_pads_are_kept() -> None:
 
 
 def test_biases_differ_are_large_and_can_be_set() -> None:
-    drawn = [a.settings.habits.altitude_bias_m for a in build_fleet(CONFIG, 0)]
+    drawn = [a.settings.behaviour.altitude_bias_m for a in build_fleet(CONFIG, 0)]
     assert len(set(drawn)) == 4
     assert max(map(abs, drawn)) > 10.0
     fixed = build_fleet(replace(CONFIG, altitude_bias_m=12.5), 0)
-    assert {a.settings.habits.altitude_bias_m for a in fixed} == {12.5}
+    assert {a.settings.behaviour.altitude_bias_m for a in fixed} == {12.5}
 
 
 def test_the_seed_decides_everything() -> None:
@@ -69,7 +69,7 @@ def test_the_seed_decides_everything() -> None:
     assert first_bytes(1) != first_bytes(2)
 
 
-def test_wandering_vehicles_fly_rows_and_obey(flights) -> None:
+def test_wandering_vehicles_fly_rows_until_commanded(flights) -> None:
     apps = build_fleet(replace(CONFIG, wanders=True, airborne=Airborne.ALL), 0)
     assert apps[0].aircraft.motion == flights.fly_on(apps[0].aircraft, 30.0)
     for app in apps[1:]:

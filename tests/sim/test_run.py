@@ -99,7 +99,7 @@ def with_fault(kind: FaultKind, start_s: float, duration_s: float) -> Simulation
     return replace(CONFIG, faults=(InjectedFault(kind, "*", start_s, duration_s),))
 
 
-def test_four_vehicles_connect_speak_and_end() -> None:
+def test_four_vehicles_connect_send_and_end() -> None:
     async def scenario() -> None:
         imager = ImagerSetup(StillFrame(PICTURE), FeedSettings(largest_fps_hz=10.0, latency_s=0.05))
         async with flying(replace(CONFIG, vehicle_count=4, imager=imager)) as station:
@@ -118,7 +118,7 @@ def test_four_vehicles_connect_speak_and_end() -> None:
     asyncio.run(scenario())
 
 
-def test_a_command_is_answered_and_flown() -> None:
+def test_a_command_is_acknowledged_and_flown() -> None:
     async def scenario() -> None:
         async with flying(CONFIG) as station:
             await station.until(lambda: bool(station.links and station.links[0].packets))
@@ -146,7 +146,7 @@ def test_a_command_is_answered_and_flown() -> None:
     asyncio.run(scenario())
 
 
-def test_an_app_comes_back_when_the_station_was_gone() -> None:
+def test_an_app_reconnects_after_the_station_was_gone() -> None:
     async def scenario() -> None:
         async with flying(CONFIG) as station:
             await station.until(lambda: bool(station.links and station.links[0].packets))
@@ -158,7 +158,7 @@ def test_an_app_comes_back_when_the_station_was_gone() -> None:
     asyncio.run(scenario())
 
 
-def test_restart_closes_and_comes_back() -> None:
+def test_restart_closes_and_reconnects() -> None:
     async def scenario() -> None:
         async with flying(with_fault(FaultKind.RESTART, 0.5, 0.1)) as station:
             await station.until(lambda: len(station.links) == 2 and bool(station.links[1].serials))
@@ -173,42 +173,42 @@ def test_half_open_leaves_the_old_socket_silent_and_open() -> None:
         async with flying(with_fault(FaultKind.HALF_OPEN, 0.5, 600.0)) as station:
             await station.until(lambda: len(station.links) == 2)
             old, new = station.links
-            heard = len(old.packets)
+            received = len(old.packets)
             await station.until(lambda: len(new.of(wire.ExtendedTelemetry)) >= 2)
-            assert len(old.packets) == heard
+            assert len(old.packets) == received
             assert not old.is_closed
             assert new.serials == {b"SIM-1"}
 
     asyncio.run(scenario())
 
 
-def test_second_link_speaks_beside_the_first_and_goes() -> None:
+def test_second_link_sends_beside_the_first_and_closes() -> None:
     async def scenario() -> None:
         async with flying(with_fault(FaultKind.SECOND_LINK, 0.5, 1.2)) as station:
             await station.until(lambda: len(station.links) == 2 and bool(station.links[1].serials))
             first, second = station.links
             assert second.serials == {b"SIM-1"}
             await station.until(lambda: second.is_closed)
-            heard = len(first.packets)
-            await station.until(lambda: len(first.packets) > heard)
+            received = len(first.packets)
+            await station.until(lambda: len(first.packets) > received)
             assert not first.is_closed
 
     asyncio.run(scenario())
 
 
-def test_without_a_station_it_waits_and_ends_when_told() -> None:
+def test_without_a_station_it_retries_and_ends_when_cancelled() -> None:
     async def scenario() -> None:
         lines: list[str] = []
-        said = asyncio.Event()
+        logged = asyncio.Event()
 
         def say(line: str) -> None:
             lines.append(line)
             if "no station" in line:
-                said.set()
+                logged.set()
 
         async with asyncio.timeout(LIMIT_S):
             task = asyncio.create_task(run_fleet(replace(CONFIG, station_port=1), say))
-            await said.wait()
+            await logged.wait()
             task.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await task
@@ -226,11 +226,11 @@ class Broken:
         raise FrameSourceError("expected a picture, got none")
 
 
-def test_a_picture_that_cannot_be_rendered_is_told_and_the_flight_goes_on() -> None:
+def test_a_frame_that_cannot_be_rendered_is_reported_and_the_flight_continues() -> None:
     async def scenario() -> None:
         imager = ImagerSetup(Broken(), FeedSettings(largest_fps_hz=10.0))
         async with flying(replace(CONFIG, imager=imager)) as station:
-            await station.until(lambda: sum("picture lost" in x for x in station.lines) > 2)
+            await station.until(lambda: sum("frame lost" in x for x in station.lines) > 2)
             await station.until(lambda: len(station.links[0].packets) > 5)
 
     asyncio.run(scenario())

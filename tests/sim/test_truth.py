@@ -1,4 +1,4 @@
-"""The truth is told right, and only to those who may know it."""
+"""The ground truth is right, and available only to the score and tests."""
 
 import ast
 from pathlib import Path
@@ -132,5 +132,5 @@ def test_transmittance_is_the_skys() -> None:
 
 
 def test_a_world_without_an_imager_has_no_true_pose() -> None:
-    with pytest.raises(SimulationError, match="expected an eye"):
+    with pytest.raises(SimulationError, match="expected an imaging drone"):
         WorldTruth(Sky(SkySettings())).imager_pose(CameraView(0.0, 0, None))

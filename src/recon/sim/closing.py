@@ -1,4 +1,4 @@
-"""Ending a connection politely."""
+"""Closing a connection so that buffered bytes still arrive."""
 
 import asyncio
 
@@ -6,7 +6,7 @@ CLOSING_S = 0.5
 
 
 async def close(writer: asyncio.StreamWriter) -> None:
-    """Close, and wait a moment for what is still buffered."""
+    """Close, and wait at most `CLOSING_S` for buffered bytes; then abort."""
     writer.close()
     try:
         async with asyncio.timeout(CLOSING_S):

@@ -1,25 +1,25 @@
-"""What can be wrong with an order to simulate; each error is one sentence for a person.
+"""Errors of the simulator; each message is one sentence for the operator.
 
 SimulationError
-|-- FaultError         a fault's description cannot be read, or names no vehicle
-|-- ReplayError        a folder to replay holds no usable field
-`-- FrameSourceError   frames cannot be read, or do not fit
+|-- FaultError         a fault's description is invalid, or selects no vehicle
+|-- ReplayError        a replay folder has no usable field
+`-- FrameSourceError   frames cannot be read, or have the wrong size
 """
 
 from recon.model.errors import ReconError
 
 
 class SimulationError(ReconError):
-    """The simulation cannot start or go on as asked."""
+    """The simulation cannot start or continue as configured."""
 
 
 class FaultError(SimulationError):
-    """A fault's description cannot be read, or names no vehicle."""
+    """A fault's description is invalid, or selects no vehicle."""
 
 
 class ReplayError(SimulationError):
-    """A folder to replay holds no usable field."""
+    """A replay folder has no usable field."""
 
 
 class FrameSourceError(SimulationError):
-    """Frames cannot be read, or do not fit."""
+    """Frames cannot be read, or have the wrong size."""

@@ -1,4 +1,4 @@
-"""The simulated fleet: which vehicles there are, where they start, how each is set up."""
+"""The simulated fleet: its vehicles, their start positions and settings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,11 +27,11 @@ IMAGER_SERIAL = "SIM-IMAGER"
 IMAGER_HEIGHT_M = 130.0
 PADS_TO_A_ROW, PAD_SPACING_M = 8, 20.0
 LARGEST_BIAS_M = 40.0
-"""DJI's absolute altitude is off by tens of metres."""
+"""Error of DJI's absolute altitude: tens of metres."""
 
 
 class Airborne(Enum):
-    """Who is in the air at the start."""
+    """Which vehicles are in the air at the start."""
 
     NONE = "none"
     IMAGER = "imager"
@@ -40,7 +40,7 @@ class Airborne(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ImagerSetup:
-    """The imaging vehicle's pictures; with a rig it starts where the rig's marked frame was."""
+    """The imaging drone's frames; with a rig it starts where the rig's marked frame was taken."""
 
     source: FrameSource
     feed: FeedSettings = field(default_factory=FeedSettings)
@@ -60,31 +60,31 @@ class SimulationConfig:
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
     airborne: Airborne = Airborne.IMAGER
     wanders: bool = False
-    """Survey vehicles fly back and forth by themselves until ordered otherwise."""
+    """Survey vehicles fly back and forth by themselves until commanded otherwise."""
     altitude_bias_m: float | None = None
-    """None draws one per vehicle, up to 40 m either way."""
+    """None draws one per vehicle, up to plus or minus 40 m."""
     endurance_s: float = 1500.0
     endurances_s: Mapping[str, float] = field(default_factory=dict)
-    """By serial, of those that last otherwise."""
+    """By serial, where it differs from `endurance_s`."""
     battery_swap_s: float | None = None
-    """How long after a landing somebody has changed the battery; None: nobody does."""
+    """From landing to a full battery; None: batteries are not changed."""
     sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
     wind: WindSettings | None = None
     """None: calm."""
     reports_mission_id: bool = True
-    """False: the apps tell MissionID 0 always."""
+    """False: the apps always report MissionID 0."""
     seed: int = 0
     faults: tuple[InjectedFault, ...] = ()
     chances: tuple[RandomFault, ...] = ()
-    """Faults drawn from the seed for each vehicle."""
+    """Faults at random times, drawn from the seed for each vehicle."""
     pads: Mapping[str, GeoPoint] = field(default_factory=dict)
     """Start positions by serial; the others start in rows beside home."""
     go_home_heights_m: Mapping[str, float] = field(default_factory=dict)
-    """What is set in the aircraft, by serial; the others are set 8 m apart."""
+    """Go-home heights by serial; the others are set 8 m apart."""
 
 
 def fleet_serials(config: SimulationConfig) -> tuple[str, ...]:
-    """Return the serials: the eye first, if there is one, then SIM-1, SIM-2, ..."""
+    """Return the serials: the imaging drone first, if any, then SIM-1, SIM-2, ..."""
     survey_count = config.vehicle_count - (config.imager is not None)
     imager = (IMAGER_SERIAL,) if config.imager is not None else ()
     return imager + tuple(f"SIM-{number}" for number in range(1, survey_count + 1))
@@ -93,7 +93,7 @@ def fleet_serials(config: SimulationConfig) -> tuple[str, ...]:
 def build_fleet(
     config: SimulationConfig, start_ns: int, *, renders_inline: bool = True
 ) -> list[SimulatedApp]:
-    """Return the apps, ready to be connected; raises `FaultError` for a fault of no vehicle."""
+    """Return the apps, ready to be connected; raises `FaultError` for a fault without a vehicle."""
     serials = fleet_serials(config)
     asked: list[InjectedFault | RandomFault] = [*config.faults, *config.chances]
     for fault in asked:
@@ -120,7 +120,7 @@ def _build_app(
         serial=serial,
         home=home,
         seed=config.seed,
-        habits=AppBehaviour(
+        behaviour=AppBehaviour(
             config.altitude_reference,
             config.hover_on_ground,
             drawn_bias_m if config.altitude_bias_m is None else config.altitude_bias_m,
@@ -155,7 +155,7 @@ def _build_app(
 
 
 def _home_of(config: SimulationConfig, serial: str, number: int) -> GeoPoint:
-    """Return the takeoff point: the eye's under its marked position, others in a row of pads."""
+    """Return the takeoff point: the imaging drone's below its marked position, others on pads."""
     rig = config.imager.rig if config.imager is not None and serial == IMAGER_SERIAL else None
     if rig is not None:
         ground_m = rig.frame.origin.ellipsoid_height_m
@@ -170,7 +170,7 @@ def _home_of(config: SimulationConfig, serial: str, number: int) -> GeoPoint:
 
 
 def _go_home_height_m(number: int) -> float:
-    """Return heights 8 m apart, as many as lie under 120 m, then the same again."""
+    """Return a go-home height: 8 m apart, repeating from 40 m before 120 m is reached."""
     return 40.0 + 8.0 * ((number - 1) % 10)
 
 
@@ -190,8 +190,8 @@ def _survey_start(config: SimulationConfig, number: int) -> AircraftMotion:
 
 
 def _survey_height_m(number: int) -> float:
-    # Ten metres apart, because nothing in the air keeps simulated pilots from meeting; never over
-    # the heights that are allowed: from the ninth on somebody else is as high.
+    # Ten metres apart, because nothing separates vehicles that wander; but always below the
+    # permitted ceiling, so that from the ninth vehicle on heights repeat.
     return 40.0 + 10.0 * ((number - 1) % 8)
 
 
@@ -202,10 +202,10 @@ def _wandering(
     random: Random,
     home_m: tuple[float, float],
 ) -> ActiveMode:
-    """Return rows flown to and fro over a field of this vehicle's own.
+    """Return a back-and-forth pattern over a random rectangle.
 
-    The field lies inside the demonstration's boundary and beside its farmyard; `home_m` is how far
-    north and east of the fleet's home the vehicle's own is.
+    The rectangle lies inside the demonstration site's boundary and beside its farmyard. `home_m`
+    is the vehicle's home, metres north and east of the fleet's home.
     """
     north_m = random.uniform(-180.0, 40.0) - home_m[0]
     east_m = random.uniform(-200.0, -40.0) - home_m[1]

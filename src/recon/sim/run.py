@@ -1,4 +1,9 @@
-"""The shell: simulated apps on real TCP connections, until cancelled."""
+"""Runs simulated apps on real TCP connections, until cancelled.
+
+Each app has a task that connects, reconnects with a growing delay, and serves: it reads what the
+app accepts, sends what is due, and starts a thread for each frame to render. Faults that need the
+socket (`LinkOrder`) are carried out here.
+"""
 
 import asyncio
 import contextlib
@@ -20,16 +25,16 @@ FIRST_BACKOFF_S = 0.2
 LONGEST_BACKOFF_S = 2.0
 LONGEST_WAIT_S = 0.1
 WRITE_BUFFER_BYTES = 8 * 1024 * 1024
-"""Beyond this a station that does not read gets no more packets, until it reads again."""
+"""Unsent bytes; beyond this a station that does not read gets no more packets until it reads."""
 
 Say = Callable[[str], None]
 
 
 async def run_fleet(config: SimulationConfig, say: Say = print) -> None:
-    """Fly the fleet until the task is cancelled; every event is one line through `say`.
+    """Fly the fleet until the task is cancelled; `say` gets one line per event.
 
-    Raises `SimulationError` when the configuration is no good. A station that is not there, or
-    goes away, is no error: each app tries again.
+    Raises `SimulationError` for an invalid configuration. A station that is not running, or goes
+    away, is no error: each app reconnects.
     """
     apps = build_fleet(config, time.monotonic_ns(), renders_inline=False)
     serials = ", ".join(app.settings.serial for app in apps)
@@ -41,7 +46,7 @@ async def run_fleet(config: SimulationConfig, say: Say = print) -> None:
 
 @dataclass(slots=True)
 class _AppShell:
-    """One app's connections, and the thread that renders its pictures."""
+    """One app's connections, and the threads that render its frames."""
 
     app: SimulatedApp
     host: str
@@ -60,7 +65,7 @@ class _AppShell:
                     reader, writer = await asyncio.open_connection(self.host, self.port)
                 except OSError as problem:
                     if backoff_s == FIRST_BACKOFF_S:
-                        self._tell(f"no station at {self.host}:{self.port} ({problem}), trying on")
+                        self._log(f"no station at {self.host}:{self.port} ({problem}), retrying")
                     await asyncio.sleep(backoff_s)
                     backoff_s = min(2.0 * backoff_s, LONGEST_BACKOFF_S)
                     continue
@@ -72,26 +77,26 @@ class _AppShell:
             await asyncio.gather(*self._side_tasks, return_exceptions=True)
 
     async def _serve_main(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        self._tell(f"connected to {self.host}:{self.port}")
+        self._log(f"connected to {self.host}:{self.port}")
         order = None
         try:
             order = await self._serve(reader, writer, MAIN_LINK)
         finally:
             self.app.disconnected(MAIN_LINK)
             if order is not None and order.kind is LinkOrderKind.ABANDON:
-                self._aside(_hold_open(writer, order.seconds))
+                self._start(_hold_open(writer, order.seconds))
             else:
                 await close(writer)
         if order is not None and order.kind is LinkOrderKind.RECONNECT:
             await asyncio.sleep(order.seconds)
         elif order is None:
-            self._tell("connection lost")
+            self._log("connection lost")
             await asyncio.sleep(FIRST_BACKOFF_S)
 
     async def _serve(
         self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, link: int
     ) -> LinkOrder | None:
-        """Read and write until the connection ends (None) or a fault wants something of it."""
+        """Read and write until the connection ends (None) or a fault requires an action on it."""
         writer.transport.set_write_buffer_limits(high=WRITE_BUFFER_BYTES)
         self.app.connected(time.monotonic_ns(), link)
         receiving: asyncio.Future[bytes] | None = None
@@ -118,7 +123,7 @@ class _AppShell:
                     await receiving
 
     async def _wait_for(self, receiving: "asyncio.Future[bytes] | None") -> bytes | None:
-        """Return what was read, or None when something else is due first."""
+        """Return the bytes read, or None when a packet is due first."""
         if receiving is None:
             await asyncio.sleep(self._pause_s())
             return None
@@ -126,21 +131,24 @@ class _AppShell:
         return receiving.result() if receiving.done() else None
 
     def _send_due(self, writer: asyncio.StreamWriter, link: int) -> LinkOrder | None:
-        """Write what is due, one packet per send; return what a fault wants of this link."""
+        """Write what is due, one packet per send; return the action a fault requires, if any.
+
+        One packet per send, because some stations take a read for a packet.
+        """
         packets = self.app.advance(time.monotonic_ns(), link)
         if writer.transport.get_write_buffer_size() < WRITE_BUFFER_BYTES:
             for packet in packets:
                 writer.write(packet)
-        for line in self.app.take_lines():
-            self._tell(line)
+        for line in self.app.take_log():
+            self._log(line)
         for shot in self.app.take_shots():
-            self._aside(self._render(shot))
+            self._start(self._render(shot))
         if link != MAIN_LINK:
             return None
         for order in self.app.take_link_orders():
             if order.kind is not LinkOrderKind.SECOND:
                 return order
-            self._aside(self._serve_second(order.seconds))
+            self._start(self._serve_second(order.seconds))
         return None
 
     def _pause_s(self) -> float:
@@ -151,7 +159,7 @@ class _AppShell:
         try:
             packet = await asyncio.to_thread(shot.packet)
         except ReconError as problem:
-            self._tell(f"picture lost: {problem}")
+            self._log(f"frame lost: {problem}")
             self.app.add_image(shot, None)
         else:
             self.app.add_image(shot, packet)
@@ -160,31 +168,31 @@ class _AppShell:
         try:
             reader, writer = await asyncio.open_connection(self.host, self.port)
         except OSError as problem:
-            self._tell(f"no second connection ({problem})")
+            self._log(f"no second connection ({problem})")
             return
-        self._tell("second connection with the same serial")
+        self._log("second connection with the same serial")
         try:
             async with asyncio.timeout(seconds):
                 await self._serve(reader, writer, SECOND_LINK)
         except TimeoutError:
-            self._tell("second connection closed")
+            self._log("second connection closed")
         finally:
             self.app.disconnected(SECOND_LINK)
             await close(writer)
 
-    def _aside(self, work: Coroutine[Any, Any, None]) -> None:
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
         task = asyncio.ensure_future(work)
         self._side_tasks.add(task)
         task.add_done_callback(self._side_tasks.discard)
 
-    def _tell(self, line: str) -> None:
+    def _log(self, line: str) -> None:
         self.say(f"{self.app.settings.serial}: {line}")
 
 
 async def _hold_open(writer: asyncio.StreamWriter, seconds: float) -> None:
     """Keep a socket open without reading from it or writing to it, then close it.
 
-    Nobody takes what arrives, so the stream's own small buffer fills and reading stops.
+    The stream's own small buffer fills, then TCP flow control stops the peer.
     """
     try:
         await asyncio.sleep(seconds)

@@ -1,4 +1,4 @@
-"""The app on its link: what it says, what it answers, what it then does."""
+"""The app on its link: telemetry, acknowledgments, and the actions that follow."""
 
 import random
 from dataclasses import replace
@@ -41,7 +41,7 @@ def stick(**changes) -> wire.VirtualStickCommand:
     return wire.VirtualStickCommand(**(values | changes))
 
 
-def test_it_says_at_once_that_it_is_simulated(app_bench) -> None:
+def test_it_announces_at_once_that_it_is_simulated(app_bench) -> None:
     bench = app_bench()
     first = bench.run(0.01)[0]
     assert isinstance(first, wire.MessageString)
@@ -57,7 +57,7 @@ def test_telemetry_comes_at_10_and_2_hz_with_the_serial(app_bench) -> None:
     assert {p.camera_state for p in extended} == {0}
 
 
-def test_telemetry_tells_the_truth_within_its_sensors_errors(app_bench) -> None:
+def test_telemetry_is_true_within_sensor_errors(app_bench) -> None:
     bench = app_bench(height_m=50.0, bias_m=-23.0)
     bench.send(stick(velocity_x_mps=8.0, height_above_takeoff_m=50.0))
     bench.run(12.0)
@@ -72,7 +72,7 @@ def test_telemetry_tells_the_truth_within_its_sensors_errors(app_bench) -> None:
 
 
 @pytest.mark.parametrize("command", [HOVER, LAND, RETURN, stick()])
-def test_the_answer_comes_before_the_act(app_bench, command) -> None:
+def test_the_acknowledgment_comes_before_the_action(app_bench, command) -> None:
     bench = app_bench()
     before = bench.app.aircraft.active_mode
     (answer,) = of(wire.Acknowledgment, bench.send(command))
@@ -90,7 +90,7 @@ def test_the_answer_comes_before_the_act(app_bench, command) -> None:
         (stick(), FlightMode.JOYSTICK),
     ],
 )
-def test_the_act_shows_in_telemetry_and_hover_ends_it(app_bench, command, mode) -> None:
+def test_the_action_shows_in_telemetry_and_hover_ends_it(app_bench, command, mode) -> None:
     bench = app_bench()
     bench.send(command)
     bench.run(1.0)
@@ -143,7 +143,7 @@ def test_a_mission_that_the_sdk_rejects_is_acknowledged_and_nothing_happens(
     assert answer.positive == 1
     bench.run(2.0)
     assert bench.mode == FlightMode.GPS_ATTI
-    assert any("rejected silently" in line for line in bench.app.take_lines())
+    assert any("rejected silently" in line for line in bench.app.take_log())
 
 
 def test_a_stick_out_of_range_is_acknowledged_and_nothing_happens(app_bench) -> None:
@@ -154,7 +154,7 @@ def test_a_stick_out_of_range_is_acknowledged_and_nothing_happens(app_bench) -> 
     assert bench.mode == FlightMode.GPS_ATTI
 
 
-def test_unknown_actions_and_a_camera_that_is_not_there_are_refused(app_bench) -> None:
+def test_unknown_actions_and_commands_to_a_missing_camera_are_refused(app_bench) -> None:
     bench = app_bench()
     for command in (
         wire.EmergencyCommand(action=7),
@@ -195,7 +195,7 @@ def test_commands_split_over_reads_are_understood(app_bench) -> None:
     assert of(wire.Acknowledgment, bench.run(0.05))
 
 
-def test_a_new_link_starts_afresh(app_bench) -> None:
+def test_a_new_link_starts_with_empty_buffers(app_bench) -> None:
     bench = app_bench()
     bench.run(1.0)
     bench.app.disconnected()
@@ -205,7 +205,7 @@ def test_a_new_link_starts_afresh(app_bench) -> None:
 
 
 @given(st.lists(st.floats(0.001, 0.7), min_size=1, max_size=30))
-def test_the_same_seed_gives_the_same_bytes_however_time_is_cut(app_bench, steps) -> None:
+def test_the_same_seed_gives_the_same_bytes_however_time_advances(app_bench, steps) -> None:
     whole, cut = app_bench(), app_bench()
     end_ns, now_ns, pieces = seconds_to_ns(sum(steps)), 0, []
     expected = b"".join(whole.app.advance(end_ns))
@@ -268,7 +268,7 @@ any_command = (
 
 
 @given(st.lists(any_command, max_size=6))
-def test_whatever_is_ordered_is_answered_and_telemetry_stays_finite(app_bench, orders) -> None:
+def test_any_command_is_acknowledged_and_telemetry_stays_finite(app_bench, orders) -> None:
     bench = app_bench()
     for order in orders:
         answers = of(wire.Acknowledgment, bench.send(order))
@@ -287,17 +287,19 @@ def test_garbage_does_no_harm(app_bench) -> None:
     assert of(wire.Acknowledgment, bench.send(HOVER))
 
 
-@pytest.mark.parametrize("tells", [True, False])
-def test_mission_numbers_are_told_or_always_0(app_bench, mission_packet, tells) -> None:
+@pytest.mark.parametrize("reports", [True, False])
+def test_mission_numbers_are_reported_or_always_0(app_bench, mission_packet, reports) -> None:
     bench = app_bench()
-    bench.app.settings = replace(bench.app.settings, habits=AppBehaviour(reports_mission_id=tells))
+    bench.app.settings = replace(
+        bench.app.settings, behaviour=AppBehaviour(reports_mission_id=reports)
+    )
     bench.send(mission_packet(SQUARE))
     bench.run(1.0)
     assert bench.mode == FlightMode.GPS_WAYPOINT
-    assert bench.last(wire.ExtendedTelemetry).mission_id == int(tells)
+    assert bench.last(wire.ExtendedTelemetry).mission_id == int(reports)
 
 
-def test_limits_set_in_the_aircraft_are_kept_and_told(app_bench, mission_packet) -> None:
+def test_limits_set_in_the_aircraft_are_kept_and_reported(app_bench, mission_packet) -> None:
     bench = app_bench()
     bench.app.aircraft.settings = AircraftSettings(max_height_m=50.0, max_distance_m=120.0)
     bench.send(mission_packet([(0.0, 10.0, 50.1), (60.0, 10.0, 40.0)]))
@@ -307,8 +309,8 @@ def test_limits_set_in_the_aircraft_are_kept_and_told(app_bench, mission_packet)
     bench.send(stick(velocity_x_mps=0.0, height_above_takeoff_m=80.0))
     bench.run(40.0)
     assert bench.app.aircraft.motion.height_m == pytest.approx(50.0, abs=0.1)
-    told = bench.last(wire.ExtendedTelemetry)
-    assert (told.max_height_reached, told.max_distance_reached) == (1, 0)
+    extended = bench.last(wire.ExtendedTelemetry)
+    assert (extended.max_height_reached, extended.max_distance_reached) == (1, 0)
 
 
 def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> None:
@@ -320,14 +322,16 @@ def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> N
         altitude_bias_m=0.0,
         pads={"SIM-1": low, "SIM-2": high},
     )
-    told = []
+    altitudes = []
     for app in build_fleet(config, 0):
         app.connected(0)
         packets = wire.Deframer().feed(b"".join(app.advance(200_000_000)))
         core = of(wire.CoreTelemetry, packets)[-1]
-        told.append((core.altitude_m - core.height_above_takeoff_m, core.height_above_takeoff_m))
-    assert [base for base, _ in told] == pytest.approx([260.0, 291.0])
-    assert [height for _, height in told] == pytest.approx([40.0, 50.0], abs=0.5)
+        altitudes.append(
+            (core.altitude_m - core.height_above_takeoff_m, core.height_above_takeoff_m)
+        )
+    assert [base for base, _ in altitudes] == pytest.approx([260.0, 291.0])
+    assert [height for _, height in altitudes] == pytest.approx([40.0, 50.0], abs=0.5)
 
 
 def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:

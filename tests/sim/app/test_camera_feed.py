@@ -47,7 +47,7 @@ def images(packets: list) -> list:
     return [p for p in packets if isinstance(p, wire.Image | wire.CompressedImage)]
 
 
-def test_raw_pictures_come_at_the_pace_and_after_the_latency(bench) -> None:
+def test_raw_frames_come_at_the_rate_and_after_the_latency(bench) -> None:
     feed = bench(FeedSettings(largest_fps_hz=2.0, latency_s=0.4))
     came = []
     for _ in range(500):
@@ -61,7 +61,7 @@ def test_raw_pictures_come_at_the_pace_and_after_the_latency(bench) -> None:
         assert 0.33 < latency_s < 0.47
 
 
-def test_the_drawn_latency_lies_between_a_fifth_of_a_second_and_one() -> None:
+def test_the_random_latency_is_0_2_to_1_s() -> None:
     latencies = []
     for seed in range(40):
         feed = CameraFeed(StillFrame(PICTURE), FeedSettings(), Random(seed), 0)
@@ -71,7 +71,7 @@ def test_the_drawn_latency_lies_between_a_fifth_of_a_second_and_one() -> None:
     assert 0.8 < max(latencies) <= 1.0
 
 
-def test_jpeg_pictures(bench) -> None:
+def test_jpeg_frames(bench) -> None:
     smooth = cv2.GaussianBlur(PICTURE, (0, 0), 4)
     settings = FeedSettings(latency_s=0.2, image_format=ImageFormat.JPEG)
     packet = images(bench(settings, StillFrame(smooth)).run(1.0))[0]
@@ -80,7 +80,7 @@ def test_jpeg_pictures(bench) -> None:
     assert difference.mean() < 6.0
 
 
-def test_camera_control_starts_stops_and_sets_the_pace(bench) -> None:
+def test_camera_control_starts_stops_and_sets_the_rate(bench) -> None:
     feed = bench(FeedSettings(largest_fps_hz=4.0, latency_s=0.2, starts_on=False))
     assert images(feed.run(3.0)) == []
     assert feed.last(wire.ExtendedTelemetry).camera_state == 1
@@ -98,13 +98,13 @@ def test_camera_control_starts_stops_and_sets_the_pace(bench) -> None:
 
 
 @pytest.mark.parametrize("fps_hz", [0.0, -1.0, float("nan"), float("inf")])
-def test_a_senseless_pace_is_refused(bench, fps_hz: float) -> None:
+def test_an_invalid_rate_is_refused(bench, fps_hz: float) -> None:
     feed = bench(FeedSettings())
     answers = feed.send(wire.CameraControl(action=1, target_fps_hz=fps_hz))
     assert [p.positive for p in answers if isinstance(p, wire.Acknowledgment)] == [0]
 
 
-def test_slow_rendering_skips_pictures_instead_of_piling_up() -> None:
+def test_slow_rendering_skips_frames_instead_of_queueing() -> None:
     feed = CameraFeed(StillFrame(PICTURE), FeedSettings(latency_s=0.2), Random(1), 0)
     for _ in range(50):
         feed.take(None)
@@ -117,7 +117,7 @@ def test_slow_rendering_skips_pictures_instead_of_piling_up() -> None:
     assert len(feed.take_shots()) == 2
 
 
-def test_pictures_ready_after_the_feed_was_stopped_are_dropped() -> None:
+def test_frames_ready_after_the_feed_was_stopped_are_dropped() -> None:
     feed = CameraFeed(StillFrame(PICTURE), FeedSettings(latency_s=0.2), Random(1), 0)
     feed.take(None)
     (shot,) = feed.take_shots()
@@ -126,7 +126,7 @@ def test_pictures_ready_after_the_feed_was_stopped_are_dropped() -> None:
     assert feed.due(10 * NS_PER_S) == []
 
 
-def test_no_pictures_are_taken_while_nobody_is_connected(bench) -> None:
+def test_no_frames_are_taken_without_a_connection(bench) -> None:
     feed = bench(FeedSettings(latency_s=0.2))
     feed.app.disconnected()
     feed.run(10.0)
@@ -140,7 +140,7 @@ def write(folder: Path, name: str, rgb: np.ndarray) -> Path:
     return path
 
 
-def test_a_folder_is_shown_by_name_and_again_from_the_start(tmp_path: Path) -> None:
+def test_a_folder_is_shown_by_name_in_a_loop(tmp_path: Path) -> None:
     for name, level in (("b.png", 20), ("a.png", 10), ("c.png", 30)):
         write(tmp_path, name, np.full((18, 32, 3), level, dtype=np.uint8))
     (tmp_path / "notes.txt").write_text("no image")
@@ -164,7 +164,7 @@ def test_colours_keep_their_order(tmp_path: Path) -> None:
         assert mean == pytest.approx((200, 0, 0), abs=4)
 
 
-def test_what_is_no_frame_is_refused_in_a_sentence(tmp_path: Path) -> None:
+def test_an_invalid_frame_is_refused_with_a_message(tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()
     broken, cut = tmp_path / "x.png", tmp_path / "x.jpg"

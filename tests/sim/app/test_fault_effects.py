@@ -58,7 +58,7 @@ def test_what_is_held_back_is_announced(faulty) -> None:
     assert {ns for ns in sent if ns <= 3 * NS_PER_S} == {1_500_000_000, 3_000_000_000}
 
 
-def test_acknowledgments_come_late_and_the_act_at_once(faulty) -> None:
+def test_acknowledgments_are_late_and_execution_is_not(faulty) -> None:
     bench = faulty(FaultKind.DELAYED_ACKS)
     late_s = []
     for _ in range(40):
@@ -119,7 +119,7 @@ def test_a_slow_reader_has_its_socket_left_unread_and_loses_nothing(faulty) -> N
     assert len(of(wire.Acknowledgment, bench.received)) == 450
 
 
-def test_a_dead_drone_says_nothing_any_more_and_its_link_stays(faulty) -> None:
+def test_a_crashed_drone_sends_nothing_and_its_link_stays_open(faulty) -> None:
     bench = faulty(FaultKind.FALLS_SILENT, start_s=2.0)
     assert bench.run(1.9)
     bench.run(0.2)
@@ -157,7 +157,7 @@ def test_a_stale_takeoff_altitude_jumps_when_it_is_set_right(faulty) -> None:
     assert offsets[-29:] == pytest.approx([275.0 - 23.0] * 29)
 
 
-def test_gusts_push_warn_and_pass(faulty) -> None:
+def test_gusts_push_raise_the_warning_and_end(faulty) -> None:
     bench = faulty(FaultKind.GUSTS, start_s=2.0, duration_s=40.0)
     speeds = [
         np.hypot(p.velocity_north_mps, p.velocity_east_mps)
@@ -218,22 +218,22 @@ def numbers(pictures: list[np.ndarray]) -> list[int]:
     return [int(picture[0, 0, 0]) for picture in pictures]
 
 
-def test_a_camera_that_stops_sends_nothing_and_goes_on(pictures) -> None:
+def test_a_stopped_camera_sends_nothing_and_resumes(pictures) -> None:
     # Taken each half second, sent 0.3 s later: the twentieth is under way at the end.
     assert len(pictures(FaultKind.CAMERA_STOPS)) == 20 - 6
     assert len(pictures(FaultKind.CAMERA_STOPS, inf)) == 6
 
 
-def test_the_picture_of_the_faults_begin_is_repeated(pictures) -> None:
+def test_the_frame_at_the_faults_start_is_repeated(pictures) -> None:
     assert numbers(pictures(FaultKind.FRAMES_REPEATED)) == [*range(6), *[5] * 6, *range(12, 20)]
 
 
-def test_pictures_are_black_for_a_while(pictures) -> None:
+def test_frames_are_black_while_the_fault_is_active(pictures) -> None:
     came = pictures(FaultKind.FRAMES_BLACK)
     assert [not picture.any() for picture in came] == [False] * 6 + [True] * 6 + [False] * 8
 
 
-def test_torn_pictures_are_whole_above_and_shifted_below(pictures) -> None:
+def test_torn_frames_are_intact_above_and_shifted_below(pictures) -> None:
     came = pictures(FaultKind.FRAMES_TORN)
     whole = Numbered().render(CameraView(0.0, 0, None))[1:]
     torn = came[6:12]
@@ -244,7 +244,7 @@ def test_torn_pictures_are_whole_above_and_shifted_below(pictures) -> None:
     assert all(np.array_equal(picture[1:], whole) for picture in came[:6] + came[12:])
 
 
-def test_exposure_jumps_scale_the_whole_picture(pictures) -> None:
+def test_exposure_jumps_scale_the_whole_frame(pictures) -> None:
     came = pictures(FaultKind.EXPOSURE_JUMPS)
     gains = [float(picture[-1, 0, 0]) / 60.0 for picture in came]
     assert gains[:6] == [1.0] * 6
@@ -257,15 +257,15 @@ def test_a_storm_of_all_faults_is_the_same_for_the_same_seed(app_bench, mission_
     def stormy() -> bytes:
         kinds = [k for k in FaultKind if k is not FaultKind.FALLS_SILENT]
         faults = tuple(InjectedFault(kind, "*", 2.0 + n, 6.0) for n, kind in enumerate(kinds))
-        bench, heard = app_bench(faults=faults), []
+        bench, sent = app_bench(faults=faults), []
         for second in range(60):
             if second % 7 == 0:
                 bench.app.receive(wire.encode(mission_packet(MISSION)), bench.now_ns)
             bench.now_ns += NS_PER_S
-            heard += bench.app.advance(bench.now_ns)
+            sent += bench.app.advance(bench.now_ns)
             if bench.app.take_link_orders():
                 bench.app.connected(bench.now_ns)
-        return b"".join(heard)
+        return b"".join(sent)
 
     first = stormy()
     assert len(first) > 10_000

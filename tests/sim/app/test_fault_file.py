@@ -46,7 +46,7 @@ DROPOUTS = RandomFault(
 CONFIG = SimulationConfig(home=GeoPoint(41.9, -93.6, 275.0), vehicle_count=3)
 
 
-def test_a_file_is_read_as_it_says() -> None:
+def test_a_file_is_read() -> None:
     script = read_faults(GOOD, "storm.toml")
     assert script.faults == (
         InjectedFault(FaultKind.GNSS_LOSS, "SIM-2", 30.0, 10.5),
@@ -94,20 +94,20 @@ def test_every_fault_has_its_name_in_a_file() -> None:
         ("[[fault]]\nname = 'no-ack'\nname = 'bursts'", 3, "expected TOML"),
     ],
 )
-def test_a_bad_file_is_told_by_line(text: str, line: int, words: str) -> None:
+def test_a_bad_file_is_reported_by_line(text: str, line: int, words: str) -> None:
     with pytest.raises(FaultError) as caught:
         read_faults(text.encode(), "bad.toml")
-    told = str(caught.value)
-    assert told.startswith(f"bad.toml: line {line}: ")
-    assert words in told
+    message = str(caught.value)
+    assert message.startswith(f"bad.toml: line {line}: ")
+    assert words in message
 
 
-def test_other_bytes_than_text_are_told_by_line() -> None:
+def test_bytes_that_are_not_text_are_reported_by_line() -> None:
     with pytest.raises(FaultError, match=r"x: line 3: expected text in UTF-8"):
         read_faults(b"# one\n# two\n# \xff", "x")
 
 
-def test_a_file_that_is_not_there_or_too_large_is_told(tmp_path: Path) -> None:
+def test_a_missing_or_too_large_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(FaultError, match="expected a readable file"):
         load_faults(tmp_path / "none.toml")
     large = tmp_path / "large.toml"
@@ -125,21 +125,21 @@ lines = words | st.builds("{} = {}".format, keys, values) | st.text(max_size=20)
 
 
 @given(st.lists(lines, max_size=8).map("\n".join).map(str.encode) | st.binary(max_size=80))
-def test_any_file_is_read_or_told(data: bytes) -> None:
-    told = ""
+def test_any_file_is_read_or_reported(data: bytes) -> None:
+    message = ""
     try:
         read_faults(data, "any.toml")
     except FaultError as problem:
-        told = str(problem)
-    assert not told or (told.startswith("any.toml: ") and "expected" in told)
+        message = str(problem)
+    assert not message or (message.startswith("any.toml: ") and "expected" in message)
 
 
-def test_brackets_without_end_are_told() -> None:
+def test_unclosed_brackets_are_reported() -> None:
     with pytest.raises(FaultError, match="expected TOML"):
         read_faults(b"fault = " + b"[" * 100_000, "deep.toml")
 
 
-def test_chance_comes_as_often_and_as_long_as_asked() -> None:
+def test_random_faults_have_the_configured_rate_and_duration() -> None:
     drawn = [draw_faults((DROPOUTS,), seed, "SIM-1", 1) for seed in range(100)]
     faults = [fault for one in drawn for fault in one]
     assert len(faults) / 100 == pytest.approx(60.0, abs=3.0)
@@ -148,7 +148,7 @@ def test_chance_comes_as_often_and_as_long_as_asked() -> None:
     assert sum(fault.duration_s for fault in faults) / len(faults) == pytest.approx(3.0, abs=0.1)
 
 
-def test_chance_is_drawn_from_the_seed_for_each_vehicle() -> None:
+def test_random_faults_depend_on_seed_and_vehicle() -> None:
     def drawn(seed: int) -> list[tuple[InjectedFault, ...]]:
         config = replace(CONFIG, seed=seed, chances=(DROPOUTS,))
         return [app.settings.faults for app in build_fleet(config, 0)]
@@ -158,7 +158,7 @@ def test_chance_is_drawn_from_the_seed_for_each_vehicle() -> None:
     assert len(set(drawn(1))) == 3
 
 
-def test_one_entry_of_chance_does_not_move_another() -> None:
+def test_random_entries_are_independent() -> None:
     other = replace(DROPOUTS, kind=FaultKind.BURSTS)
     alone = draw_faults((DROPOUTS,), 1, "SIM-1", 1)
     beside = draw_faults((DROPOUTS, other), 1, "SIM-1", 1)
@@ -166,7 +166,7 @@ def test_one_entry_of_chance_does_not_move_another() -> None:
 
 
 @pytest.mark.parametrize("kind", ["faults", "chances"])
-def test_a_vehicle_that_is_not_there_is_told_with_its_line(kind: str) -> None:
+def test_an_unknown_vehicle_is_reported_with_its_line(kind: str) -> None:
     script = read_faults(GOOD.replace(b'"SIM-2"', b'"SIM-9"'), "storm.toml")
     asked = {
         "faults": script.faults,

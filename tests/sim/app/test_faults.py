@@ -83,16 +83,14 @@ def test_link_faults_are_ordered_once_and_at_their_time(app_bench, kind, order) 
 
 
 @pytest.mark.parametrize("kind", [FaultKind.RESTART, FaultKind.HALF_OPEN])
-def test_the_old_link_falls_silent(app_bench, kind) -> None:
+def test_the_old_link_sends_nothing(app_bench, kind) -> None:
     bench = faulty(app_bench, kind, start_s=1.0)
     bench.run(1.05)
     assert bench.run(1.0) == []
     assert bench.send(LAND) == []
 
 
-def test_a_restarted_app_knows_nothing_of_before_but_the_aircraft_flies_on(
-    app_bench, mission_packet
-) -> None:
+def test_a_restarted_app_has_no_memory_and_the_aircraft_flies_on(app_bench, mission_packet) -> None:
     bench = faulty(app_bench, FaultKind.RESTART, start_s=2.0)
     bench.run(1.0)
     mission = mission_packet([(0.0, 10.0, 30.0), (400.0, 10.0, 30.0)])
@@ -109,7 +107,7 @@ def test_a_restarted_app_knows_nothing_of_before_but_the_aircraft_flies_on(
     assert bench.last(wire.ExtendedTelemetry).mission_id == 1
 
 
-def test_both_links_speak_and_both_are_heard(app_bench) -> None:
+def test_both_links_send_and_both_are_read(app_bench) -> None:
     bench = faulty(app_bench, FaultKind.SECOND_LINK, start_s=1.0)
     bench.run(1.05)
     bench.app.connected(bench.now_ns, link=1)
@@ -140,7 +138,7 @@ def test_descriptions(text: str, fault: InjectedFault) -> None:
 @pytest.mark.parametrize(
     "text", ["", "nonsense", "no-ack:1:x", "no-ack:1:-3", "no-ack:1:2:nan", "no-ack:1:2:3:4"]
 )
-def test_bad_descriptions_say_what_was_expected(text: str) -> None:
+def test_errors_of_bad_descriptions_name_what_was_expected(text: str) -> None:
     with pytest.raises(FaultError, match="expected"):
         parse_fault(text)
 
@@ -165,20 +163,20 @@ def extended(packets: list) -> list[wire.ExtendedTelemetry]:
     return [packet for packet in packets if isinstance(packet, wire.ExtendedTelemetry)]
 
 
-def test_a_pilot_takes_the_sticks_and_gives_them_back(app_bench) -> None:
+def test_a_pilot_takes_control_and_releases_it(app_bench) -> None:
     bench = faulty(app_bench, FaultKind.PILOT_TAKES, start_s=2.0, duration_s=3.0)
     bench.run(1.5)
     assert bench.mode == FlightMode.GPS_ATTI
     bench.run(1.0)
     assert bench.mode == FlightMode.GPS_SPORT
-    assert bench.app.aircraft.is_pilots
-    assert "fault pilot-takes" in bench.app.take_lines()
+    assert bench.app.aircraft.has_pilot_control
+    assert "fault pilot-takes" in bench.app.take_log()
     bench.run(3.0)
     assert bench.mode == FlightMode.GPS_ATTI
-    assert not bench.app.aircraft.is_pilots
+    assert not bench.app.aircraft.has_pilot_control
 
 
-def test_a_pilot_who_lands_is_not_stopped_by_giving_the_sticks_back(app_bench) -> None:
+def test_releasing_control_does_not_stop_a_landing(app_bench) -> None:
     bench = faulty(app_bench, FaultKind.PILOT_TAKES, start_s=1.0, duration_s=3.0)
     bench.run(2.0)
     bench.app.aircraft.land()
@@ -186,7 +184,7 @@ def test_a_pilot_who_lands_is_not_stopped_by_giving_the_sticks_back(app_bench) -
     assert bench.mode == FlightMode.AUTO_LANDING
 
 
-def test_the_receiver_loses_its_satellites_and_finds_them_again(app_bench) -> None:
+def test_gnss_is_lost_and_regained(app_bench) -> None:
     bench = faulty(app_bench, FaultKind.GNSS_LOSS, start_s=2.0, duration_s=3.0)
     assert {t.gnss_signal_level for t in extended(bench.run(1.9))} == {5}
     lost = extended(bench.run(3.0))

@@ -1,4 +1,4 @@
-"""A lens and poses for the eye's tests."""
+"""A lens and poses for the tests of the imaging drone's camera."""
 
 from collections.abc import Callable
 
@@ -33,7 +33,7 @@ def pose() -> MakePose:
     def make(
         height_m: float = 120.0, east_m: float = 0.0, north_m: float = 0.0, yaw_deg: float = 0.0
     ) -> CameraPose:
-        said = TelemetryReference(0.0, 0.0, height_m, yaw_deg)
-        return level_pose(said, np.array([east_m, north_m, height_m]))
+        reference = TelemetryReference(0.0, 0.0, height_m, yaw_deg)
+        return level_pose(reference, np.array([east_m, north_m, height_m]))
 
     return make

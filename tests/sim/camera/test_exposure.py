@@ -1,4 +1,4 @@
-"""Exposure follows the light, late and in part; its drift and white balance's are bounded."""
+"""Exposure follows the light with a lag and in part; drifts are bounded."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def stops_after(pose, seconds: float, settings: ExposureSettings = FOLLOWING) ->
     )
 
 
-def test_of_two_stops_less_light_half_is_taken_out_by_and_by(pose) -> None:
+def test_half_of_a_drop_by_two_stops_is_compensated_gradually(pose) -> None:
     assert stops_after(pose, -0.1) == 0.0
     assert stops_after(pose, 60.0) == pytest.approx(1.0)
     rising = [stops_after(pose, 0.25 * step) for step in range(40)]

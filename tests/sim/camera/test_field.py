@@ -1,4 +1,4 @@
-"""The made-up land: drawn the same at every resolution, seen as the lens sees it."""
+"""The procedural land: drawn the same at every resolution, rendered through the lens."""
 
 from dataclasses import replace
 

@@ -23,7 +23,7 @@ def leans_deg(level: CameraPose, settings: HoverSettings, seed: int, times: list
     return np.array(leans)
 
 
-def test_a_still_camera_is_where_it_is_believed(pose) -> None:
+def test_without_errors_the_true_pose_is_the_computed_one(pose) -> None:
     level = pose(120.0, 3.0, 4.0, 20.0)
     there = true_pose(level, STILL, 7, 55.0)
     assert np.array_equal(there.rotation_enu_camera, level.rotation_enu_camera)

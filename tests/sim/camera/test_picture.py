@@ -54,7 +54,7 @@ def test_shade_over_sun_is_the_light_models_in_each_colour(frames, pose) -> None
     assert expected[2] > 1.1 * expected[0]
 
 
-def test_pictures_do_not_depend_on_what_was_rendered_before(camera, circle, pose) -> None:
+def test_frames_do_not_depend_on_what_was_rendered_before(camera, circle, pose) -> None:
     def fresh() -> FieldRenderer:
         return FieldRenderer(camera, circle, 5, BROKEN, relief=Relief(ReliefSettings(1)))
 
@@ -71,7 +71,7 @@ def test_pictures_do_not_depend_on_what_was_rendered_before(camera, circle, pose
         assert np.array_equal(one, third)
 
 
-def test_noise_differs_from_picture_to_picture_of_the_same_moment(frames, pose) -> None:
+def test_noise_differs_between_frames_of_the_same_time(frames, pose) -> None:
     noisy = replace(frames, imager=replace(PERFECT, sensor=ImageSensorSettings(full_well=500.0)))
     one, two = (noisy.render(CameraView(3.0, n, pose())).astype(int) for n in (1, 2))
     assert (one != two)[MIDDLE].mean() > 0.5
@@ -103,7 +103,7 @@ def test_the_hot_spot_lies_against_the_sun(frames, camera, pose) -> None:
     assert np.median(ratio[MIDDLE]) < 1.15
 
 
-def test_haze_takes_contrast_from_what_is_far(frames, pose) -> None:
+def test_haze_lowers_contrast_with_distance(frames, pose) -> None:
     hazy = replace(frames, imager=replace(PERFECT, haze_m=2_000.0))
     view = CameraView(0.0, 0, pose(300.0))
     with_it, without = (light_in(f.render(view)) for f in (hazy, frames))
@@ -127,7 +127,7 @@ def test_tiles_lie_side_by_side_as_one_drawing() -> None:
     assert (np.abs(one - four).max(axis=2) > 2).mean() < 2e-4
 
 
-def test_few_tiles_are_kept_however_far_it_flies() -> None:
+def test_the_number_of_tiles_kept_is_bounded() -> None:
     tiles = LandTiles(lay_out(5), 5)
     sun = SunPosition(140.0, 50.0, 1.0)
     first = tiles.square(0, 0.0, 0.0, sun).pixels.copy()
@@ -159,7 +159,7 @@ def test_shadows_fall_away_from_the_sun(azimuth_deg: float, elevation_deg: float
         assert (shadow.mean() > 200) == is_shaded
 
 
-def test_the_land_has_what_land_has() -> None:
+def test_the_land_has_all_kinds_of_objects() -> None:
     land = land_of(5).land
     assert min(len(land.plots), len(land.trees)) > 1_000
     assert min(len(land.tracks), len(land.buildings), len(land.ponds)) > 20
@@ -199,6 +199,6 @@ def test_wet_soil_is_darker_than_dry() -> None:
         lambda: ImageSensorSettings(full_well=0.0),
     ],
 )
-def test_senseless_settings_are_refused(make) -> None:
+def test_invalid_settings_are_refused(make) -> None:
     with pytest.raises(SimulationError, match="expected"):
         make()

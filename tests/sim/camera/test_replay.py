@@ -1,4 +1,4 @@
-"""The eye over a real field: made up here with a known pose, and the three real ones."""
+"""The imaging drone over a real field: one constructed with a known pose, and three real ones."""
 
 from pathlib import Path
 
@@ -46,7 +46,7 @@ def make_field(folder: Path) -> None:
     assert cv2.imwrite(str(folder / "RefFrame.jpeg"), picture)
 
 
-def test_the_imager_hangs_where_the_frame_was_taken(tmp_path: Path) -> None:
+def test_the_imaging_drone_starts_where_the_frame_was_taken(tmp_path: Path) -> None:
     make_field(tmp_path / "field")
     rig, still = load_replay(tmp_path / "field")
     config = SimulationConfig(home=ORIGIN, vehicle_count=1, imager=ImagerSetup(still, rig=rig))
@@ -69,7 +69,7 @@ def test_the_frame_is_scaled_to_the_camera(tmp_path: Path) -> None:
     assert picture[100, 650, 0] < 10
 
 
-def test_what_is_no_field_is_refused_in_a_sentence(tmp_path: Path) -> None:
+def test_an_invalid_folder_is_refused_with_a_message(tmp_path: Path) -> None:
     with pytest.raises(ReplayError, match="expected a folder with RefFrame"):
         load_replay(tmp_path)
     make_field(tmp_path / "field")

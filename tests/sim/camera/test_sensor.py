@@ -22,7 +22,7 @@ def test_noise_is_shot_and_read_noise(light: float) -> None:
     assert found.std() == pytest.approx(expected, rel=0.05)
 
 
-def test_noise_is_a_function_of_the_pictures_number() -> None:
+def test_noise_is_a_function_of_the_frame_number() -> None:
     first, again, second = noise_of(1, 5, SHAPE), noise_of(1, 5, SHAPE), noise_of(1, 6, SHAPE)
     assert np.array_equal(first, again)
     assert abs(np.corrcoef(first.ravel(), second.ravel())[0, 1]) < 0.01
@@ -38,13 +38,13 @@ def test_without_noise_values_come_back() -> None:
     assert np.abs(found[0].astype(int) - values)[8:].max() <= 1
 
 
-def test_light_beyond_white_is_white_and_below_black_black() -> None:
+def test_light_is_clipped_at_white_and_black() -> None:
     settings = ImageSensorSettings()
     assert (read(7.0, settings) == 255).all()
     assert (read(-7.0, ImageSensorSettings(full_well=1e12)) == 0).all()
 
 
-def test_dark_values_are_told_apart() -> None:
+def test_dark_values_are_distinct() -> None:
     steps = np.diff(value_of_light().astype(int))
     assert steps.max() <= 2
     assert steps.min() >= 0

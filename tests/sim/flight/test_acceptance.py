@@ -38,7 +38,7 @@ def test_ordinary_missions_are_accepted() -> None:
         ({"north_m": 2_101.0, "east_m": 0.0}, "apart"),
     ],
 )
-def test_what_does_not_fit_is_named(change: dict, words: str) -> None:
+def test_the_reason_of_a_rejection_is_named(change: dict, words: str) -> None:
     problem = mission_problem((A, replace(B, **change), C), False, LIMITS)
     assert problem is not None
     assert words in problem

@@ -53,7 +53,7 @@ def flown_s(flights, aircraft: Aircraft, north_m: float, speed_mps: float) -> fl
     return flights.fly_until(aircraft, lambda a: a.flight_mode is FlightMode.GPS_ATTI)
 
 
-def test_a_steady_wind_moves_nothing_that_is_held_and_is_leaned_against(flights) -> None:
+def test_a_steady_wind_is_compensated_by_tilt(flights) -> None:
     aircraft = in_wind(STEADY)
     motion = flights.fly_on(aircraft, 60.0)
     assert hypot(motion.north_m, motion.east_m) < 1e-6
@@ -62,7 +62,7 @@ def test_a_steady_wind_moves_nothing_that_is_held_and_is_leaned_against(flights)
     assert aircraft.air.warning_level == 1
 
 
-def test_against_the_wind_it_is_slower_and_with_it_as_fast_as_asked(flights) -> None:
+def test_it_is_slower_against_the_wind_and_not_faster_with_it(flights) -> None:
     aircraft = in_wind(STEADY)
     against_s = flown_s(flights, aircraft, 500.0, 15.0)
     with_s = flown_s(flights, aircraft, 0.0, 15.0)
@@ -73,7 +73,7 @@ def test_against_the_wind_it_is_slower_and_with_it_as_fast_as_asked(flights) -> 
     assert with_s > 500.0 / 15.0
 
 
-def test_a_wind_that_is_faster_than_the_aircraft_carries_it_along() -> None:
+def test_a_wind_faster_than_the_aircraft_carries_it_along() -> None:
     motion, demand = AircraftMotion(), VelocityDemand(velocity_north_mps=10.0)
     for _ in range(400):
         motion = step(motion, demand, 0.05, Limits(), (-20.0, 0.0))
@@ -96,7 +96,7 @@ def test_a_course_is_kept_within_the_airspeed(asked, wind) -> None:
         assert north * asked[0] + east * asked[1] >= -1e-6
 
 
-def test_gusts_push_within_metres_and_what_is_held_comes_back(flights) -> None:
+def test_gusts_displace_by_metres_and_the_aircraft_returns(flights) -> None:
     aircraft = in_wind(replace(GUSTY, speed_10m_mps=8.0))
     away = [hypot(m.north_m, m.east_m) for m in flights.fly(aircraft, 600.0)]
     assert 0.2 < max(away) < 4.0
@@ -111,7 +111,7 @@ def test_gusts_are_the_same_for_the_same_seed(flights) -> None:
     assert track(3) != track(4)
 
 
-def test_how_often_it_is_asked_changes_nothing_in_gusts(flights) -> None:
+def test_gusts_do_not_depend_on_how_often_it_is_advanced(flights) -> None:
     often, seldom = in_wind(GUSTY), in_wind(GUSTY)
     for now_ns in range(0, 20 * NS_PER_S, 7_000_000):
         often.advance(now_ns)
@@ -143,7 +143,7 @@ def test_an_aircraft_on_the_ground_stays_where_it_stands(flights) -> None:
     assert aircraft.motion.north_m == 0.0
 
 
-def test_without_gnss_the_wind_carries_it_along_until_it_knows_its_place(flights) -> None:
+def test_without_gnss_it_drifts_with_the_wind(flights) -> None:
     aircraft = in_wind(STEADY)
     aircraft.fly_mission(out_to(300.0, 8.0), False, False)
     flights.fly_on(aircraft, 10.0)
@@ -193,7 +193,7 @@ def gates_view(aircraft: Aircraft) -> Consumption:
     [(w, s) for w in (0.0, 4.9, 6.9, 9.9) for s in (2.0, 5.0, 8.0, 10.0) if s <= 8.0 or w < 7.0],
 )
 @pytest.mark.parametrize("leg_m", [15.0, 60.0, 400.0])
-def test_the_gates_energy_model_is_dearer_than_a_flight(
+def test_the_gates_energy_model_is_more_pessimistic_than_a_flight(
     flights, wind_mps: float, speed_mps: float, leg_m: float
 ) -> None:
     for north_m in (leg_m, -leg_m):
@@ -203,19 +203,22 @@ def test_the_gates_energy_model_is_dearer_than_a_flight(
         before = aircraft.battery.fraction
         flown_s(flights, aircraft, north_m, speed_mps)
         # The mission starts where it is: that waypoint costs the leg's start and stop once more.
-        foreseen = uses.leg(start, start, speed_mps) + uses.leg(start, end, speed_mps)
-        assert before - aircraft.battery.fraction <= foreseen
+        predicted = uses.leg(start, start, speed_mps) + uses.leg(start, end, speed_mps)
+        assert before - aircraft.battery.fraction <= predicted
 
 
 @pytest.mark.parametrize("wind_mps", [0.0, 4.9, 7.9, 9.9])
 @pytest.mark.parametrize("height_m", [10.0, 90.0])
-def test_the_gates_way_home_is_dearer_than_the_flown_one(
+def test_the_gates_way_home_is_more_pessimistic_than_the_flown_one(
     flights, wind_mps: float, height_m: float
 ) -> None:
     aircraft = in_wind(replace(STEADY, speed_10m_mps=wind_mps), -400.0, height_m)
     aircraft.settings = AircraftSettings(go_home_height_m=50.0)
     flights.fly_on(aircraft, 0.1)
-    before, foreseen = aircraft.battery.fraction, gates_view(aircraft).home((-400.0, 0.0, height_m))
+    before, predicted = (
+        aircraft.battery.fraction,
+        gates_view(aircraft).home((-400.0, 0.0, height_m)),
+    )
     aircraft.go_home()
     flights.fly_until(aircraft, lambda a: a.is_on_ground)
-    assert before - aircraft.battery.fraction <= foreseen
+    assert before - aircraft.battery.fraction <= predicted

@@ -1,4 +1,4 @@
-"""Each thing an aircraft can be told to do."""
+"""Each command an aircraft accepts."""
 
 import pytest
 
@@ -172,7 +172,7 @@ def test_battery_drains_warns_and_lands_the_aircraft(flights) -> None:
     assert 0.0 <= aircraft.battery.fraction < 0.06
 
 
-def test_somebody_changes_the_battery_a_while_after_the_landing(flights) -> None:
+def test_the_battery_is_changed_some_time_after_landing(flights) -> None:
     aircraft = flights.hovering(height_m=5.0)
     aircraft.settings = AircraftSettings(battery_swap_s=30.0)
     aircraft.battery = Battery(0.4, endurance_s=1500.0)
@@ -185,7 +185,7 @@ def test_somebody_changes_the_battery_a_while_after_the_landing(flights) -> None
 
 
 @pytest.mark.parametrize("swap_s", [None, 30.0])
-def test_nobody_changes_the_battery_of_one_that_crashed_or_has_not_flown(flights, swap_s) -> None:
+def test_the_battery_is_not_changed_after_a_crash_or_before_a_flight(flights, swap_s) -> None:
     for aircraft in (flights.hovering(), Aircraft(0)):
         aircraft.settings = AircraftSettings(battery_swap_s=swap_s)
         aircraft.battery = Battery(0.4, endurance_s=1500.0)
@@ -194,7 +194,7 @@ def test_nobody_changes_the_battery_of_one_that_crashed_or_has_not_flown(flights
         assert aircraft.battery.fraction < 0.4
 
 
-def test_motion_does_not_depend_on_how_often_it_is_asked(flights) -> None:
+def test_motion_does_not_depend_on_how_often_it_is_advanced(flights) -> None:
     often, seldom = flights.hovering(), flights.hovering()
     for aircraft in (often, seldom):
         aircraft.stick(stick(velocity_x_mps=9.0, velocity_y_mps=4.0, yaw_deg=33.0))
@@ -217,7 +217,7 @@ def test_wind_drifts_an_aircraft_under_sticks_and_not_in_position_mode(flights) 
     assert flights.fly_on(aircraft, 5.0).ground_speed_mps == pytest.approx(0.0, abs=0.01)
 
 
-def test_a_pilot_keeps_the_apps_sticks_and_missions_out(flights) -> None:
+def test_the_apps_sticks_and_missions_are_ignored_under_pilot_control(flights) -> None:
     aircraft = flights.hovering()
     aircraft.stick(stick(velocity_x_mps=5.0, timeout_s=60.0))
     flights.fly_on(aircraft, 3.0)
@@ -228,7 +228,7 @@ def test_a_pilot_keeps_the_apps_sticks_and_missions_out(flights) -> None:
     assert flights.fly_on(aircraft, 5.0).ground_speed_mps == pytest.approx(0.0, abs=0.01)
 
 
-def test_a_pilot_takes_no_aircraft_off_by_the_mode_switch() -> None:
+def test_the_mode_switch_does_not_start_a_takeoff() -> None:
     aircraft = Aircraft(0)
     aircraft.pilot_takes()
     assert aircraft.is_on_ground

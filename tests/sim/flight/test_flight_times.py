@@ -29,7 +29,7 @@ def test_ten_metres_a_second_take_four_seconds_and_twenty_metres(flights) -> Non
 
 
 @pytest.mark.parametrize(("target_m", "rate_mps"), [(230.0, 2.6), (30.0, 3.2)])
-def test_hundred_metres_up_or_down_take_as_long_as_the_rate_says(
+def test_a_hundred_metres_up_or_down_take_as_long_as_the_rate_implies(
     flights, target_m: float, rate_mps: float
 ) -> None:
     aircraft = flights.hovering(height_m=130.0)
@@ -65,7 +65,7 @@ def test_a_leg_with_stops_takes_its_length_over_speed_and_its_start_and_stop(
     assert ideal_s - 0.2 <= taken_s <= ideal_s + 2.5
 
 
-def test_a_way_home_is_its_climb_its_way_and_its_landing(flights) -> None:
+def test_a_return_takes_its_climb_leg_and_landing(flights) -> None:
     aircraft = Aircraft(
         0,
         AircraftSettings(go_home_height_m=62.0),

@@ -157,7 +157,7 @@ def test_the_gimbal_is_waited_for(flights) -> None:
     assert flights.fly_until(aircraft, lambda a: a.motion.north_m > 0.1, 20.0) >= 3.0
 
 
-def test_a_mission_lands_at_its_end_when_told_to(flights) -> None:
+def test_a_mission_lands_at_its_end_when_requested(flights) -> None:
     aircraft = flights.hovering(height_m=20.0)
     mission = (MissionPoint(10.0, 0.0, 15.0, 5.0), MissionPoint(30.0, 10.0, 15.0, 5.0))
     aircraft.fly_mission(mission, is_curved=False, lands_at_end=True)

@@ -1,4 +1,4 @@
-"""What a channel does to a stream: late, in order, changed as often as told, and never lost."""
+"""A channel delays bytes, keeps their order, changes the configured share, and loses none."""
 
 from math import inf
 
@@ -29,7 +29,7 @@ def test_a_good_link_passes_reads_as_they_are() -> None:
     assert channel.next_due_ns is None
 
 
-def test_a_delay_is_as_long_as_told() -> None:
+def test_a_delay_is_as_long_as_configured() -> None:
     channel = Channel(Damage(delay_s=0.25), "s", 0)
     channel.push(b"late", 1_000)
     assert channel.pop_due(250_000_999) == []
@@ -61,7 +61,7 @@ def test_stalls_take_their_share_of_the_time() -> None:
 
 
 @pytest.mark.parametrize("per_mb", [100.0, 20_000.0, 1_000_000.0])
-def test_as_many_bytes_are_changed_as_told(per_mb: float) -> None:
+def test_the_configured_share_of_bytes_is_changed(per_mb: float) -> None:
     channel, size = Channel(Damage(corrupted_per_mb=per_mb), "s", 0), 1_000_000
     for _ in range(size // 1_000):
         channel.push(bytes(1_000), 0)

@@ -180,11 +180,11 @@ def test_its_end_closes_what_is_open() -> None:
     asyncio.run(scenario())
 
 
-def test_a_place_that_is_taken_is_told() -> None:
+def test_an_address_in_use_is_reported() -> None:
     async def scenario() -> None:
         async with proxied(Damage()) as bench:
             config = ProxyConfig(listen=(HERE, bench.port), station=(HERE, 1))
-            with pytest.raises(SimulationError, match="expected a free place"):
+            with pytest.raises(SimulationError, match="expected a free address"):
                 await run_proxy(config)
 
     asyncio.run(scenario())

@@ -50,7 +50,7 @@ def test_a_sharp_straight_edge_becomes_as_wide_as_the_ellipse(along) -> None:
 
 
 def test_the_axes_may_be_turned() -> None:
-    """Whatever axes a field is told in, its spread is the same."""
+    """The spread of a field does not depend on its axes."""
     edge = penumbra([SunPosition(75.0, 30.0, 1.0)], 2_000.0)
     east, north = 0.002, -0.003
     found = []

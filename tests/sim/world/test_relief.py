@@ -34,6 +34,6 @@ def test_gentle_relief_is_gentle() -> None:
 @pytest.mark.parametrize(
     "wrong", [{"height_m": -1.0}, {"shortest_m": 2_000.0}, {"longest_m": float("nan")}]
 )
-def test_senseless_relief_is_refused(wrong) -> None:
+def test_invalid_relief_is_refused(wrong) -> None:
     with pytest.raises(SimulationError, match=r"relief: .*expected"):
         ReliefSettings(**wrong)

@@ -50,7 +50,7 @@ def test_a_point_has_one_value_to_the_bit(points) -> None:
     assert at_once[k] == together[k]
 
 
-def test_a_sky_made_anew_with_nothing_remembered_is_the_same(ground) -> None:
+def test_a_new_sky_with_empty_caches_is_the_same(ground) -> None:
     first = sky(LOW, HIGH).transmittance(*ground, 1234.5)
     fractal_field.tile.cache_clear()
     assert np.array_equal(first, sky(LOW, HIGH).transmittance(*ground, 1234.5))
@@ -67,7 +67,7 @@ def test_the_number_of_threads_changes_nothing(ground) -> None:
     assert np.array_equal(*found)
 
 
-def test_many_points_are_as_few(ground) -> None:
+def test_values_do_not_depend_on_the_number_of_points(ground) -> None:
     above = sky(LOW)
     east, north = (np.repeat(axis.ravel(), 7).reshape(7, -1) for axis in ground)
     assert np.array_equal(
@@ -185,7 +185,7 @@ def test_the_fields_slopes_are_its_differences() -> None:
         assert np.std((forth - back) / 4.0) == pytest.approx(np.std(slope), rel=0.06)
 
 
-def test_cover_is_what_was_asked_over_many_skies() -> None:
+def test_cover_has_its_configured_mean_over_many_skies() -> None:
     east = np.arange(400.0) * 7_001.0
     covers = (0.1, 0.3, 0.6, 0.9)
     shares = np.zeros((24, len(covers)))
@@ -217,7 +217,7 @@ def test_two_layers_multiply(ground) -> None:
     assert (both < low - 0.1).mean() > 0.02
 
 
-def test_the_threshold_wanders_slowly() -> None:
+def test_the_threshold_varies_slowly() -> None:
     """Unit deviation over long times, and hardly any change within a minute."""
     times = np.arange(0.0, 4_000_000.0, 600.0)
     wandering = gaussian((3, 0, 1), times, 2_400.0)
@@ -253,7 +253,7 @@ def test_the_beam_weakens_with_the_field() -> None:
         ({"lifetime_s": 0.0}, "lifetime_s: expected 1 to inf, got 0"),
     ],
 )
-def test_settings_that_make_no_sky_are_refused(change, expected) -> None:
+def test_invalid_settings_are_refused(change, expected) -> None:
     with pytest.raises(SimulationError, match=expected):
         replace(LOW, **change)
 

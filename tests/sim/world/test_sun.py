@@ -15,7 +15,7 @@ PLACES = [(45.0, -93.0), (-33.0, 18.0), (66.0, 25.0), (0.0, 0.0), (20.0, 179.9)]
 
 
 @pytest.mark.parametrize(("latitude_deg", "longitude_deg"), PLACES)
-def test_the_sun_stands_where_pvlib_has_it(latitude_deg: float, longitude_deg: float) -> None:
+def test_the_suns_position_agrees_with_pvlib(latitude_deg: float, longitude_deg: float) -> None:
     times = pd.date_range("2024-01-01", "2030-01-01", freq="61h17min", tz="UTC")
     truth = pvlib.solarposition.spa_python(times, latitude_deg, longitude_deg, altitude=0)
     found = [sun_position(LatLon(latitude_deg, longitude_deg), t.timestamp()) for t in times]
@@ -36,7 +36,7 @@ def test_the_sun_is_farthest_in_july() -> None:
     assert found == pytest.approx(truth, abs=2e-4)
 
 
-def test_air_lifts_the_setting_sun_by_its_own_width_and_the_zenith_by_nothing() -> None:
+def test_refraction_is_a_sun_diameter_at_the_horizon_and_0_at_the_zenith() -> None:
     assert 0.45 < refraction_deg(0.0) < 0.6
     assert refraction_deg(90.0) == pytest.approx(0.0, abs=1e-4)
     assert refraction_deg(-20.0) == 0.0
@@ -45,7 +45,7 @@ def test_air_lifts_the_setting_sun_by_its_own_width_and_the_zenith_by_nothing() 
 @pytest.mark.parametrize(
     ("place", "utc_s"), [(LatLon(91.0, 0.0), 0.0), (LatLon(0.0, 0.0), float("nan"))]
 )
-def test_no_place_or_no_time_is_refused(place: LatLon, utc_s: float) -> None:
+def test_an_invalid_place_or_time_is_refused(place: LatLon, utc_s: float) -> None:
     with pytest.raises(SimulationError, match="expected a place on the globe and a time"):
         sun_position(place, utc_s)
 

@@ -24,7 +24,7 @@ def test_the_mean_wind_grows_by_its_power_and_turns_right() -> None:
     assert wind.mean_mps(5_000.0)[0] == pytest.approx(wind.mean_mps(600.0)[0])
 
 
-def test_gusts_are_as_strong_as_asked_and_even_out() -> None:
+def test_gusts_have_the_configured_strength_and_mean_0() -> None:
     wind = Wind(BREEZE)
     found = np.array([wind.at(0.0, 0.0, 10.0, t) for t in np.arange(0.0, 40_000.0, 7.3)])
     gusts = found - np.array(wind.mean_mps(10.0))
@@ -42,7 +42,7 @@ def test_gusts_come_and_go_within_seconds_not_at_once() -> None:
 
 
 def test_gusts_drift_downwind() -> None:
-    """Who is 100 m east has, in a wind of 5 m/s to the east, the same gust 20 s later."""
+    """In a wind of 5 m/s to the east a place 100 m east has the same gust 20 s later."""
     wind = Wind(BREEZE)
     for time_s in (0.0, 12.3, 456.7):
         assert wind.at(100.0, 0.0, 10.0, time_s + 20.0) == pytest.approx(
@@ -72,6 +72,6 @@ def test_calm_is_calm() -> None:
         ({"seed": -1}, "wind: expected a seed from 0 upwards, got -1"),
     ],
 )
-def test_settings_that_make_no_wind_are_refused(change, expected) -> None:
+def test_invalid_settings_are_refused(change, expected) -> None:
     with pytest.raises(SimulationError, match=expected):
         WindSettings(**change)

@@ -309,7 +309,7 @@ class TestEnds:
         s = steered()
         order = s.goto(200.0)
         s.run_for(6.0)
-        s.aircraft.is_pilots = True  # its failsafe takes no sticks either
+        s.aircraft.has_pilot_control = True  # in failsafe sticks are ignored too
         s.aircraft.go_home()
         s.run_for(2.0)
         seen_s = s.now_s

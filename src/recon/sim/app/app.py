@@ -1,8 +1,24 @@
 """One simulated companion app and its aircraft, without sockets or clock.
 
-A driver opens links (`connected`), hands over what it reads (`receive`) and sends what `advance`
-returns. What the app does depends on the times of these calls only through what it received: its
-own clock runs in exact steps, so the same seed and orders give the same bytes.
+A driver (`recon.sim.run` on sockets, or a test in virtual time) opens links (`connected`), passes
+in the bytes it reads (`receive`) and sends the packets that `advance` returns.
+
+Theory of operation
+-------------------
+The app is a timetable. Each kind of work has the time at which it is due next: commands that were
+acknowledged and wait for the SDK call, one-off faults, slow reads, core telemetry (10 Hz), extended
+telemetry (2 Hz), frames to take, rendered frames to send. Every call first runs all that is due up
+to `now_ns`, in order of time (ties: in the order of `_timetable`), and moves the aircraft to each
+of these times. So the result does not depend on when the driver calls, only on what it passed in:
+the same seed and commands give the same bytes.
+
+A command is acknowledged at once and acts `ACTION_DELAY_NS` later, as with real apps: a positive
+acknowledgment promises nothing. What DJI's SDK would reject is dropped silently after the positive
+acknowledgment.
+
+Faults act in three places: on what is sent (`FaultSchedule`: held back, damaged), on the aircraft
+(`AircraftFaults`), and on the connection itself, which only the driver can close or open; those
+come out as `LinkOrder`s.
 """
 
 from collections import deque
@@ -42,7 +58,7 @@ from recon.sim.flight.aircraft import Aircraft
 CORE_PERIOD_NS = 100_000_000
 EXTENDED_PERIOD_NS = 500_000_000
 ACTION_DELAY_NS = 120_000_000
-"""Between the acknowledgment and the act: the app's call of the SDK takes its time."""
+"""From the acknowledgment to the effect: the duration of a call of DJI's SDK."""
 
 HELLO = b"recon-sim simulated vehicle"
 MESSAGE_INFO = 1
@@ -50,19 +66,19 @@ MAIN_LINK = 0
 
 
 class LinkOrderKind(Enum):
-    """What a driver is asked to do with the app's connection."""
+    """What the driver must do with the app's connection."""
 
     RECONNECT = "reconnect"
     """Close it; after `seconds` open it again."""
     ABANDON = "abandon"
-    """Leave it open for `seconds` without reading or writing, and open a new one at once."""
+    """Keep it open for `seconds` without reading or writing, and open a new one at once."""
     SECOND = "second"
     """Open another one beside it, for `seconds`."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinkOrder:
-    """One thing to do with the connection."""
+    """One action on the connection, and its duration."""
 
     kind: LinkOrderKind
     seconds: float
@@ -78,12 +94,12 @@ _LINK_ORDERS = {
 
 @dataclass(frozen=True, slots=True)
 class AppSettings:
-    """What one simulated app is."""
+    """Identity, home and behaviour of one simulated app."""
 
     serial: str
     home: GeoPoint
     seed: int = 0
-    habits: AppBehaviour = field(default_factory=AppBehaviour)
+    behaviour: AppBehaviour = field(default_factory=AppBehaviour)
     faults: tuple[InjectedFault, ...] = ()
     sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
     renders_inline: bool = True
@@ -98,7 +114,7 @@ class _Link:
 
 
 class SimulatedApp:
-    """A companion app: telemetry out, commands in, pictures if it has a feed."""
+    """A companion app: telemetry out, commands in, frames if it has a camera feed."""
 
     def __init__(
         self,
@@ -112,16 +128,16 @@ class SimulatedApp:
         self.feed = feed
         self.rig = rig
         self._start_ns = aircraft.now_ns
-        home, habits = settings.home, settings.habits
-        self._altitude = HomeAltitude(home.ellipsoid_height_m, habits.altitude_bias_m)
+        home, behaviour = settings.home, settings.behaviour
+        self._altitude = HomeAltitude(home.ellipsoid_height_m, behaviour.altitude_bias_m)
         random = Random(f"{settings.seed}/{settings.serial}/sensors")
         slow_random = Random(f"{settings.seed}/{settings.serial}/drift")
         self._sensors = TelemetrySensors(
             home, self._altitude, settings.sensors, random, slow_random
         )
-        self._commands = CommandHandler(home, aircraft, feed, habits, self._altitude)
+        self._commands = CommandHandler(home, aircraft, feed, behaviour, self._altitude)
         self._links: dict[int, _Link] = {}
-        self._acts: deque[tuple[int, CommandResponse]] = deque()
+        self._pending: deque[tuple[int, CommandResponse]] = deque()
         self._link_orders: deque[LinkOrder] = deque()
         name = f"{settings.seed}/{settings.serial}/faults"
         self._plan = FaultSchedule(settings.faults, name, self._start_ns)
@@ -129,28 +145,28 @@ class SimulatedApp:
         self._aircraft_faults = AircraftFaults(aircraft, self._altitude, name)
         self._is_silent = False
         self._now_ns = self._start_ns
-        self._fault_moments = sorted(self._moments_of_faults(), key=lambda moment: moment[0])
-        self._lines: deque[str] = deque(maxlen=64)
-        # Apps do not speak in step: each starts at its own part of the first period.
+        self._fault_events = sorted(self._one_off_events(), key=_DUE_NS)
+        self._log: deque[str] = deque(maxlen=64)
+        # Real apps are not synchronised: telemetry starts at a random phase of the first period.
         phase_ns = random.randrange(CORE_PERIOD_NS)
         self._next_core_ns = self._start_ns + phase_ns
         self._next_extended_ns = self._start_ns + phase_ns
 
     def connected(self, now_ns: int, link: int = MAIN_LINK) -> None:
-        """A connection is open: say hello on it. An older one of this number is forgotten."""
+        """Start a connection with the greeting; it replaces an older one of this number."""
         self._run_until(now_ns)
         self._links[link] = _Link()
         if self.feed is not None and link == MAIN_LINK:
-            # Nobody takes pictures for nobody: those of the time without a link are left out.
+            # No frames were taken while there was no link to send them on.
             self.feed.skip_to(now_ns)
         self._send(wire.encode(wire.MessageString(type=MESSAGE_INFO, text=HELLO)), link, now_ns)
 
     def disconnected(self, link: int = MAIN_LINK) -> None:
-        """A connection is gone."""
+        """Drop a connection and what it still had to send."""
         self._links.pop(link, None)
 
     def receive(self, data: bytes, now_ns: int, link: int = MAIN_LINK) -> None:
-        """Take what was read from a connection: answer now, act a little later."""
+        """Take bytes read from a connection: acknowledge now, act a little later."""
         self._run_until(now_ns)
         if link not in self._links or self._is_silent:
             return
@@ -159,7 +175,7 @@ class SimulatedApp:
             self._read(link, now_ns)
 
     def advance(self, now_ns: int, link: int = MAIN_LINK) -> list[bytes]:
-        """Let time pass and return the packets to send on a connection, in order."""
+        """Advance to a time and return the packets to send on a connection, in order."""
         self._run_until(now_ns)
         waiting = self._links.get(link)
         if waiting is None:
@@ -167,23 +183,23 @@ class SimulatedApp:
         return waiting.outbox.pop_due(now_ns)
 
     def takes_more(self, link: int = MAIN_LINK) -> bool:
-        """Return whether a connection is to be read on; if not, TCP makes the station wait."""
+        """Return whether to read on; if not, TCP flow control stops the station."""
         waiting = self._links.get(link)
         return waiting is None or (not self._is_silent and waiting.inbox.has_room)
 
     @property
     def next_due_ns(self) -> int:
-        """When `advance` has something to do next, as far as is known."""
+        """When `advance` has work next, if nothing is received before."""
         held = (link.outbox.next_after_ns(self._now_ns) for link in self._links.values())
         dues = [due_ns for due_ns, _ in self._timetable()]
         return min([*dues, *(due_ns for due_ns in held if due_ns is not None)])
 
     def take_shots(self) -> list[Shot]:
-        """Return the shots to render (only when not rendered inline); see `add_image`."""
+        """Return frames taken but not rendered (unless rendered inline); see `add_image`."""
         return [] if self.feed is None else self.feed.take_shots()
 
     def add_image(self, shot: Shot, packet: bytes | None) -> None:
-        """Take a rendered shot's packet, or None when rendering failed."""
+        """Take back a rendered shot's packet; None when rendering failed."""
         if self.feed is None:
             return
         if packet is None:
@@ -192,19 +208,19 @@ class SimulatedApp:
             self.feed.add(shot, packet)
 
     def take_link_orders(self) -> list[LinkOrder]:
-        """Return what faults ask the driver to do with the connection."""
+        """Return what faults require of the connection since the last call."""
         orders = list(self._link_orders)
         self._link_orders.clear()
         return orders
 
-    def take_lines(self) -> list[str]:
-        """Return what happened since the last call, one line each, for the console."""
-        lines = list(self._lines)
-        self._lines.clear()
+    def take_log(self) -> list[str]:
+        """Return log lines since the last call."""
+        lines = list(self._log)
+        self._log.clear()
         return lines
 
     def true_reference(self) -> TelemetryReference:
-        """Return where the aircraft truly is, in the terms of telemetry."""
+        """Return the true position and attitude, in the units of telemetry."""
         motion = self.aircraft.motion
         latitude, longitude = position_deg(self.settings.home, motion.north_m, motion.east_m)
         return TelemetryReference(
@@ -217,31 +233,31 @@ class SimulatedApp:
         )
 
     def _timetable(self) -> list[tuple[int, Callable[[int], None]]]:
-        """Return what comes next of each kind, with its time; earlier rows go first on a tie."""
+        """Return (due time, action) of each kind of work; on a tie the earlier row runs first."""
         rows: list[tuple[int, Callable[[int], None]]] = []
-        if self._acts:
-            rows.append((self._acts[0][0], self._act))
-        if self._fault_moments:
-            rows.append((self._fault_moments[0][0], self._happen))
+        if self._pending:
+            rows.append((self._pending[0][0], self._execute))
+        if self._fault_events:
+            rows.append((self._fault_events[0][0], self._run_fault_event))
         for number, link in self._links.items():
             if link.inbox.next_read_ns is not None:
                 rows.append((link.inbox.next_read_ns, partial(self._read_on, number)))
-        rows.append((self._next_core_ns, self._say_core))
-        rows.append((self._next_extended_ns, self._say_extended))
+        rows.append((self._next_core_ns, self._send_core))
+        rows.append((self._next_extended_ns, self._send_extended))
         feed = self.feed
         if feed is not None and feed.is_on and MAIN_LINK in self._links:
             rows.append((feed.next_shot_ns, partial(self._take_picture, feed)))
         if feed is not None and feed.next_send_ns is not None:
-            rows.append((feed.next_send_ns, partial(self._say_images, feed)))
+            rows.append((feed.next_send_ns, partial(self._send_images, feed)))
         return rows
 
     def _run_until(self, now_ns: int) -> None:
         while True:
-            due_ns, happen = min(self._timetable(), key=_DUE_NS)
+            due_ns, action = min(self._timetable(), key=_DUE_NS)
             if due_ns > now_ns:
                 break
             self._advance_aircraft(due_ns)
-            happen(due_ns)
+            action(due_ns)
         self._now_ns = max(self._now_ns, now_ns)
         self._advance_aircraft(now_ns)
 
@@ -249,52 +265,52 @@ class SimulatedApp:
         mode = self.aircraft.flight_mode
         self.aircraft.advance(now_ns)
         if self.aircraft.flight_mode is not mode:
-            self._lines.append(f"mode {self.aircraft.flight_mode.name}")
+            self._log.append(f"mode {self.aircraft.flight_mode.name}")
 
     def _read_on(self, link: int, now_ns: int) -> None:
-        """Read a little of what waits, or all of it once the fault is over."""
+        """Read a few of the waiting bytes, or all of them once the fault is over."""
         self._read(link, now_ns, self._plan.has(FaultKind.SLOW_READER, now_ns))
 
     def _read(self, link: int, now_ns: int, slowly: bool = False) -> None:
         waiting = self._links[link]
         for packet in waiting.deframer.feed(waiting.inbox.read(slowly), now_ns):
-            self._answer(packet, link, now_ns)
+            self._respond(packet, link, now_ns)
 
-    def _answer(self, packet: wire.Packet, link: int, now_ns: int) -> None:
-        reaction = self._commands.reaction(packet)
-        if reaction is None:
-            self._lines.append(f"ignored a {type(packet).__name__}")
+    def _respond(self, packet: wire.Packet, link: int, now_ns: int) -> None:
+        response = self._commands.response(packet)
+        if response is None:
+            self._log.append(f"ignored a {type(packet).__name__}")
             return
         refuses = self._has(FaultKind.NEGATIVE_ACK, now_ns)
         if not self._has(FaultKind.NO_ACK, now_ns):
-            positive = reaction.is_positive and not refuses
-            answer = wire.Acknowledgment(positive=int(positive), source_pid=reaction.source_pid)
-            self._send(wire.encode(answer), link, now_ns, self._plan.answered_ns(now_ns))
+            positive = response.is_positive and not refuses
+            answer = wire.Acknowledgment(positive=int(positive), source_pid=response.source_pid)
+            self._send(wire.encode(answer), link, now_ns, self._plan.ack_time_ns(now_ns))
         is_mission = isinstance(packet, wire.ExecuteWaypointMission)
         ignores = is_mission and self._has(FaultKind.IGNORED_MISSIONS, now_ns)
         if refuses or ignores or self._has(FaultKind.ACK_THEN_NOTHING, now_ns):
-            self._lines.append(f"command {reaction.source_pid}: not carried out (fault)")
+            self._log.append(f"command {response.source_pid}: not executed (fault)")
         else:
-            self._acts.append((now_ns + ACTION_DELAY_NS, reaction))
+            self._pending.append((now_ns + ACTION_DELAY_NS, response))
 
-    def _act(self, now_ns: int) -> None:
-        _, reaction = self._acts.popleft()
+    def _execute(self, now_ns: int) -> None:
+        _, response = self._pending.popleft()
         mode = self.aircraft.flight_mode
-        self._lines.append(reaction.act(now_ns))
+        self._log.append(response.act(now_ns))
         if self.aircraft.flight_mode is not mode:
-            self._lines.append(f"mode {self.aircraft.flight_mode.name}")
+            self._log.append(f"mode {self.aircraft.flight_mode.name}")
 
-    def _say_core(self, now_ns: int) -> None:
+    def _send_core(self, now_ns: int) -> None:
         self._next_core_ns = now_ns + CORE_PERIOD_NS
         packet = self._sensors.core(self.aircraft, CORE_PERIOD_NS / NS_PER_S)
         self._broadcast(packet, now_ns)
 
-    def _say_extended(self, now_ns: int) -> None:
+    def _send_extended(self, now_ns: int) -> None:
         self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
         is_placeholder = self._has(FaultKind.PLACEHOLDER_SERIAL, now_ns)
         serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
-        tells_id = self.settings.habits.reports_mission_id
-        packet = self._sensors.extended(self.aircraft, self.feed, serial, tells_id)
+        reports_id = self.settings.behaviour.reports_mission_id
+        packet = self._sensors.extended(self.aircraft, self.feed, serial, reports_id)
         self._broadcast(packet, now_ns)
 
     def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
@@ -308,7 +324,7 @@ class SimulatedApp:
                 feed.add(shot, shot.packet())
 
     def _flaw(self, now_ns: int) -> FrameFlaw | None:
-        """Return what is wrong with a picture of this moment."""
+        """Return the defect of a frame taken now, None without a fault."""
         if self._has(FaultKind.FRAMES_BLACK, now_ns):
             return Black()
         if self._has(FaultKind.FRAMES_TORN, now_ns):
@@ -318,14 +334,14 @@ class SimulatedApp:
     def _camera_pose(self) -> CameraPose | None:
         return None if self.rig is None else self.rig.pose_at(self.true_reference())
 
-    def _say_images(self, feed: CameraFeed, now_ns: int) -> None:
+    def _send_images(self, feed: CameraFeed, now_ns: int) -> None:
         packets = feed.due(now_ns)
         if MAIN_LINK in self._links and not self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
             for packet in packets:
                 self._send(packet, MAIN_LINK, now_ns)
 
-    def _moments_of_faults(self) -> Iterator[tuple[int, Callable[[], None]]]:
-        """Return when faults that happen once do so, and what they then do."""
+    def _one_off_events(self) -> Iterator[tuple[int, Callable[[], None]]]:
+        """Yield begin and end times of one-off faults, each with its action."""
         for fault in self.settings.faults:
             begin_ns = self._start_ns + seconds_to_ns(fault.start_s)
             if fault.kind in LINK_FAULTS:
@@ -336,23 +352,23 @@ class SimulatedApp:
                 if end_ns is not None:
                     yield end_ns, partial(self._aircraft_faults.end, fault.kind)
 
-    def _happen(self, now_ns: int) -> None:
-        _due_ns, happen = self._fault_moments.pop(0)
-        happen()
+    def _run_fault_event(self, now_ns: int) -> None:
+        _due_ns, action = self._fault_events.pop(0)
+        action()
 
     def _begin_aircraft_fault(self, fault: InjectedFault) -> None:
-        self._lines.append(f"fault {fault.kind.value}")
+        self._log.append(f"fault {fault.kind.value}")
         self._aircraft_faults.begin(fault.kind)
         self._is_silent = self._is_silent or fault.kind is FaultKind.FALLS_SILENT
 
     def _begin_link_fault(self, fault: InjectedFault) -> None:
-        self._lines.append(f"fault {fault.kind.value}")
+        self._log.append(f"fault {fault.kind.value}")
         self._link_orders.append(LinkOrder(_LINK_ORDERS[fault.kind], fault.duration_s))
         if fault.kind is FaultKind.SECOND_LINK:
             return
         self.disconnected()
         if fault.kind is FaultKind.RESTART:
-            self._acts.clear()
+            self._pending.clear()
             self.aircraft.forget_mission_numbers()
 
     def _has(self, kind: FaultKind, now_ns: int) -> bool:
@@ -366,8 +382,8 @@ class SimulatedApp:
             self._send(encoded, link, now_ns)
 
     def _send(self, packet: bytes, link: int, now_ns: int, due_ns: int | None = None) -> None:
-        """Send a packet at a time, by default now; in whole or damaged, as the faults want it."""
+        """Queue a packet for `due_ns`, by default now; active faults may delay or damage it."""
         if self._is_silent:
             return
-        due_ns = self._plan.sent_ns(now_ns) if due_ns is None else due_ns
-        self._links[link].outbox.add(self._plan.on_the_way(packet, now_ns), due_ns)
+        due_ns = self._plan.send_time_ns(now_ns) if due_ns is None else due_ns
+        self._links[link].outbox.add(self._plan.damaged(packet, now_ns), due_ns)

@@ -1,7 +1,7 @@
-"""The app's video feed: when a picture is taken, and when it is sent.
+"""The app's video feed: when a frame is taken, and when it is sent.
 
-Taking, rendering and sending are apart, because rendering is slow and the shell does it in a
-thread: the feed hands out `Shot`s, gets packets back, and sends each at its own time.
+Taking, rendering and sending are separate steps, because rendering is slow and `recon.sim.run` does
+it in a thread: the feed hands out `Shot`s, gets packets back, and sends each at its own time.
 """
 
 from collections import deque
@@ -19,18 +19,18 @@ from recon.sim.camera.frames import CameraView, FrameFlaw, FrameSource
 from recon.sim.errors import FrameSourceError
 
 MOST_SHOTS_IN_HAND = 4
-"""Slower rendering than this skips pictures, as a phone does."""
+"""With more unrendered frames than this new ones are skipped, as a busy phone does."""
 
 SHORTEST_LATENCY_S = 0.2
 LONGEST_LATENCY_S = 1.0
 JITTER_S = 0.05
-"""Either way of a vehicle's own latency, with each picture: the phone's encoder and its queue."""
+"""Plus or minus, for each frame: the phone's encoder and its queue."""
 CAPTURES_KEPT = 4096
-"""An hour at a picture a second."""
+"""An hour at one frame per second."""
 
 
 class ImageFormat(Enum):
-    """How pictures travel: Image packets (PID 2) or Compressed Image packets (PID 5)."""
+    """Packet type of frames: Image (PID 2) or Compressed Image (PID 5)."""
 
     RAW = "raw"
     JPEG = "jpeg"
@@ -38,7 +38,7 @@ class ImageFormat(Enum):
 
 @dataclass(frozen=True, slots=True)
 class FeedSettings:
-    """How the feed behaves. `latency_s` None draws one per vehicle between 0.2 and 1 s."""
+    """Rate, format and latency; `latency_s` None draws one per vehicle between 0.2 and 1 s."""
 
     largest_fps_hz: float = 1.0
     image_format: ImageFormat = ImageFormat.RAW
@@ -49,7 +49,7 @@ class FeedSettings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shot:
-    """A picture taken and not yet rendered."""
+    """A frame taken and not yet rendered."""
 
     view: CameraView
     target_fps_hz: float
@@ -59,7 +59,7 @@ class Shot:
     flaw: FrameFlaw | None = None
 
     def packet(self) -> bytes:
-        """Render and encode: the slow part. Depends on nothing but this shot."""
+        """Render and encode: the slow part. Safe in any thread: depends on this shot only."""
         rgb = self.source.render(self.view)
         if self.flaw is not None:
             rgb = self.flaw.applied(rgb)
@@ -71,7 +71,7 @@ class Shot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CaptureTimes:
-    """When a picture was truly taken and when it goes out: for the score and for tests."""
+    """When a frame was truly taken and when it is sent: for the score and for tests."""
 
     view: CameraView
     taken_at_ns: int
@@ -80,7 +80,7 @@ class CaptureTimes:
 
 @dataclass(slots=True)
 class CameraFeed:
-    """A feed that is on or off, its pace, and the pictures on their way."""
+    """The feed's state: on or off, frame rate, and frames being rendered or waiting."""
 
     source: FrameSource
     settings: FeedSettings
@@ -93,7 +93,7 @@ class CameraFeed:
     _latency_s: float = 0.0
     _jitter_seed: int = 0
     _shot_count: int = 0
-    _shown: CameraView | None = None
+    _last_view: CameraView | None = None
     _taken: deque[Shot] = field(default_factory=deque)
     _in_hand: int = 0
     _ready: list[tuple[int, int, bytes]] = field(default_factory=list)
@@ -106,7 +106,10 @@ class CameraFeed:
             self.switch_on(self.settings.largest_fps_hz, self.start_ns)
 
     def switch_on(self, fps_hz: float, now_ns: int) -> None:
-        """Send pictures at this rate, or the fastest the app can; the rate must be positive."""
+        """Send frames at this rate, capped at the app's own.
+
+        Raises `FrameSourceError` unless the rate is positive and finite.
+        """
         if not (isfinite(fps_hz) and fps_hz > 0.0):
             raise FrameSourceError(f"expected a positive frame rate, got {fps_hz}")
         self.target_fps_hz = min(fps_hz, self.settings.largest_fps_hz)
@@ -116,7 +119,7 @@ class CameraFeed:
         self.is_on = True
 
     def switch_off(self) -> None:
-        """Send no more pictures; those on their way are lost."""
+        """Send no more frames; those taken and not yet sent are lost."""
         self.is_on = False
         self._in_hand -= len(self._taken)
         self._taken.clear()
@@ -128,7 +131,7 @@ class CameraFeed:
         flaw: FrameFlaw | None = None,
         is_repeated: bool = False,
     ) -> None:
-        """Take the picture that is due at `next_shot_ns`, or send the last one once more."""
+        """Take the frame due at `next_shot_ns`, or queue the last one again."""
         now_ns = self.next_shot_ns
         self.next_shot_ns = self._after(now_ns)
         if self._in_hand >= MOST_SHOTS_IN_HAND:
@@ -138,32 +141,36 @@ class CameraFeed:
         self._in_hand += 1
         send_at_ns = now_ns + seconds_to_ns(self._latency_at(now_ns))
         self.captures.append(CaptureTimes(view, now_ns, send_at_ns))
-        self._shown = self._shown if is_repeated and self._shown is not None else view
+        self._last_view = self._last_view if is_repeated and self._last_view is not None else view
         self._taken.append(
-            Shot(self._shown, self.target_fps_hz, send_at_ns, self.source, self.settings, flaw)
+            Shot(self._last_view, self.target_fps_hz, send_at_ns, self.source, self.settings, flaw)
         )
 
     def _latency_at(self, taken_at_ns: int) -> float:
-        """Return the seconds from taking to sending: a function of the time it was taken at."""
+        """Return seconds from taking to sending.
+
+        Drawn from the time of taking, not from a running generator: skipped frames must not change
+        the latency of later ones.
+        """
         jitter = Random(f"{self._jitter_seed}/{taken_at_ns - self.start_ns}")
         return max(0.0, self._latency_s + jitter.uniform(-JITTER_S, JITTER_S))
 
     def miss(self) -> None:
-        """Leave out the picture that is due at `next_shot_ns`."""
+        """Skip the frame due at `next_shot_ns`."""
         self.next_shot_ns = self._after(self.next_shot_ns)
 
     def skip_to(self, now_ns: int) -> None:
-        """Take the next picture at this moment, and none before."""
+        """Take the next frame at this time, and none before."""
         self.next_shot_ns = max(self.next_shot_ns, now_ns)
 
     def take_shots(self) -> list[Shot]:
-        """Hand out the shots to render; each comes back by `add`."""
+        """Return the shots to render; each comes back by `add` or `lose`."""
         shots = list(self._taken)
         self._taken.clear()
         return shots
 
     def add(self, shot: Shot, packet: bytes) -> None:
-        """Take back a rendered picture."""
+        """Take back a rendered frame."""
         self._in_hand -= 1
         if self.is_on:
             self._ready.append((shot.send_at_ns, shot.view.number, packet))
@@ -175,11 +182,11 @@ class CameraFeed:
 
     @property
     def next_send_ns(self) -> int | None:
-        """When the next picture goes out, None while there is none."""
+        """When the next frame is sent, None without one."""
         return self._ready[0][0] if self._ready else None
 
     def due(self, now_ns: int) -> list[bytes]:
-        """Return the packets whose time has come."""
+        """Return the packets due by now."""
         packets = []
         while self._ready and self._ready[0][0] <= now_ns:
             packets.append(self._ready.pop(0)[2])
@@ -193,5 +200,5 @@ def _jpeg(rgb: RgbImage, quality: int) -> bytes:
     bgr = cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR)
     is_done, data = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])
     if not is_done:
-        raise FrameSourceError(f"expected a picture that JPEG can hold, got {rgb.shape}")
+        raise FrameSourceError(f"expected an image that fits JPEG, got {rgb.shape}")
     return data.tobytes()

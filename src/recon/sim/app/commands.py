@@ -1,6 +1,7 @@
-"""What an app makes of each command packet: an answer, and an act that follows it.
+"""How an app handles each command packet: the acknowledgment, and the action that follows it.
 
-The answer is sent before acting (as apps in the field do), so a positive one promises nothing.
+The acknowledgment is sent before the action (as apps in the field do), so a positive one promises
+nothing.
 """
 
 from collections.abc import Callable
@@ -21,7 +22,7 @@ from recon.sim.flight.mission import MissionPoint
 
 
 class HoverOnGround(Enum):
-    """What hover and return do to an aircraft on the ground."""
+    """Effect of hover and return on an aircraft on the ground."""
 
     NOTHING = "nothing"
     TAKEOFF = "takeoff"
@@ -30,20 +31,20 @@ class HoverOnGround(Enum):
 
 @dataclass(frozen=True, slots=True)
 class AppBehaviour:
-    """How this app reads commands."""
+    """In what this app differs from others: every variant exists in the field."""
 
     altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
     altitude_bias_m: float = 0.0
-    """Added to every absolute altitude the app knows, its home's included."""
+    """Added to every absolute altitude in the app, the home altitude included."""
     reports_mission_id: bool = True
-    """False: telemetry's MissionID is always 0, as some apps in the field send it."""
+    """False: MissionID in telemetry is always 0, as from some apps in the field."""
     sdk: SdkLimits = field(default_factory=SdkLimits)
 
 
 @dataclass(frozen=True, slots=True)
 class CommandResponse:
-    """An app's answer to one command packet, and what it then does (returning a line of text)."""
+    """The acknowledgment of one command packet, and the action (returning a log line)."""
 
     source_pid: int
     is_positive: bool
@@ -52,14 +53,14 @@ class CommandResponse:
 
 
 class CommandHandler:
-    """Turns command packets into reactions of one app."""
+    """Turns command packets into the responses of one app."""
 
     def __init__(
         self,
         home: GeoPoint,
         aircraft: Aircraft,
         feed: CameraFeed | None,
-        habits: AppBehaviour,
+        behaviour: AppBehaviour,
         altitude: HomeAltitude,
     ) -> None:
         self._home = home
@@ -67,10 +68,10 @@ class CommandHandler:
         self._frame = LocalFrame(home)
         self._aircraft = aircraft
         self._feed = feed
-        self._habits = habits
+        self._behaviour = behaviour
 
-    def reaction(self, packet: wire.Packet) -> CommandResponse | None:
-        """Return the reaction, or None for what is no command."""
+    def response(self, packet: wire.Packet) -> CommandResponse | None:
+        """Return the response, or None for a packet that is not a command."""
         match packet:
             case wire.EmergencyCommand():
                 return self._emergency(packet)
@@ -91,25 +92,25 @@ class CommandHandler:
         return CommandResponse(packet.PID, True, lambda now_ns: act())
 
     def _hover(self) -> str:
-        if self._aircraft.is_on_ground and self._takes_off_when_told_to_hover:
+        if self._aircraft.is_on_ground and self._takes_off_on_hover:
             self._aircraft.take_off()
             return "hover: takes off"
         self._aircraft.hover()
-        return "hover" if not self._aircraft.is_on_ground else "hover: nothing, on the ground"
+        return "hover" if not self._aircraft.is_on_ground else "hover: ignored on the ground"
 
     def _land(self) -> str:
         self._aircraft.land()
-        return "land" if not self._aircraft.is_on_ground else "land: nothing, on the ground"
+        return "land" if not self._aircraft.is_on_ground else "land: ignored on the ground"
 
     def _go_home(self) -> str:
-        if self._aircraft.is_on_ground and not self._takes_off_when_told_to_hover:
-            return "return home: nothing, on the ground"
+        if self._aircraft.is_on_ground and not self._takes_off_on_hover:
+            return "return home: ignored on the ground"
         self._aircraft.take_off_and_go_home()
         return "return home"
 
     @property
-    def _takes_off_when_told_to_hover(self) -> bool:
-        return self._habits.hover_on_ground is HoverOnGround.TAKEOFF
+    def _takes_off_on_hover(self) -> bool:
+        return self._behaviour.hover_on_ground is HoverOnGround.TAKEOFF
 
     def _camera(self, packet: wire.CameraControl) -> CommandResponse:
         feed = self._feed
@@ -125,14 +126,14 @@ class CommandHandler:
     def _fly(self, packet: wire.ExecuteWaypointMission) -> str:
         points = self.mission_points(packet)
         is_curved = packet.curved_flight == 1
-        problem = mission_problem(points, is_curved, self._limits()) or self._deafness()
+        problem = mission_problem(points, is_curved, self._limits()) or self._no_app_control()
         if problem is not None:
             return f"mission rejected silently: {problem}"
         self._aircraft.fly_mission(points, is_curved, packet.land_at_end == 1)
         return f"mission of {len(points)} waypoints"
 
     def _stick(self, packet: wire.VirtualStickCommand) -> str:
-        problem = stick_problem(packet, self._habits.sdk) or self._deafness()
+        problem = stick_problem(packet, self._behaviour.sdk) or self._no_app_control()
         if problem is not None:
             return f"stick rejected silently: {problem}"
         self._aircraft.stick(
@@ -148,30 +149,31 @@ class CommandHandler:
                 drift_east_mps=self._aircraft.settings.stick_drift_east_mps,
             )
         )
-        return "stick" if not self._aircraft.is_on_ground else "stick: nothing, on the ground"
+        return "stick" if not self._aircraft.is_on_ground else "stick: ignored on the ground"
 
     def _limits(self) -> SdkLimits:
         """Return the SDK's limits and, where they are lower, those set in the aircraft."""
-        sdk, own = self._habits.sdk, self._aircraft.settings
+        sdk, own = self._behaviour.sdk, self._aircraft.settings
         return replace(
             sdk,
             highest_m=min(sdk.highest_m, own.max_height_m),
             farthest_m=min(sdk.farthest_m, own.max_distance_m),
         )
 
-    def _deafness(self) -> str | None:
-        """Return why the flight controller takes neither missions nor sticks now, else None."""
-        if self._aircraft.is_pilots:
-            return "the pilot's mode switch"
+    def _no_app_control(self) -> str | None:
+        """Return why the flight controller ignores missions and sticks now, else None."""
+        if self._aircraft.has_pilot_control:
+            return "the pilot has control (mode switch)"
         return None if self._aircraft.has_gnss else "no GNSS"
 
     def mission_points(self, packet: wire.ExecuteWaypointMission) -> tuple[MissionPoint, ...]:
-        """Return a mission's waypoints in home metres, its altitudes read as this app does.
+        """Return a mission's waypoints in home metres.
 
-        An app built to the first issue of the ICD subtracts the home altitude it believes in.
+        An app built to the first issue of the ICD reads altitudes as WGS84 and subtracts its own
+        estimate of the home altitude, which may be wrong (`HomeAltitude`).
         """
         subtracted_m = 0.0
-        if self._habits.altitude_reference is AltitudeReference.WGS84:
+        if self._behaviour.altitude_reference is AltitudeReference.WGS84:
             subtracted_m = self._altitude.believed_m
         return tuple(self._point(waypoint, subtracted_m) for waypoint in packet.waypoints)
 
@@ -183,13 +185,13 @@ class CommandHandler:
             height_m=waypoint.altitude_m - subtracted_m,
             speed_mps=waypoint.speed_mps,
             corner_radius_m=waypoint.corner_radius_m,
-            loiter_s=_unless_nan(waypoint.loiter_time_s),
-            gimbal_pitch_deg=_unless_nan(waypoint.gimbal_pitch_deg),
+            loiter_s=_none_if_nan(waypoint.loiter_time_s),
+            gimbal_pitch_deg=_none_if_nan(waypoint.gimbal_pitch_deg),
         )
 
     def _place(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
-        """Return north and east of home; NaN for what is no place on the globe."""
-        # The sine of infinity is an error, that of 1e30 is noise.
+        """Return metres north and east of home; NaN for coordinates off the globe."""
+        # math.sin raises on infinity and returns noise for 1e30: check before converting.
         if not (abs(latitude_deg) <= 90.0 and abs(longitude_deg) <= 360.0):
             return nan, nan
         height_m = self._home.ellipsoid_height_m
@@ -211,5 +213,5 @@ def _switch_off(feed: CameraFeed) -> str:
     return "camera off"
 
 
-def _unless_nan(value: float) -> float | None:
+def _none_if_nan(value: float) -> float | None:
     return None if isnan(value) else value

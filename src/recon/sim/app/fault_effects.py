@@ -11,16 +11,16 @@ from recon.sim.flight.air import Squall
 from recon.sim.flight.aircraft import Aircraft
 
 BURST_S = 1.5
-"""Telemetry in the field comes in bursts, with a second and more of nothing while video runs."""
+"""Telemetry in the field comes in bursts, with gaps of a second and more while video runs."""
 ACK_DELAY_S = (0.5, 3.0)
-"""Longer than the station waits before it sends an order again, now and then."""
+"""The upper end is longer than the station's retry interval, so that retries are exercised."""
 CORRUPTED_SHARE = 0.1
-"""Of packets; each has then one to three bytes changed."""
+"""Share of packets; each of these has one to three bytes changed."""
 MOST_CHANGED_BYTES = 3
 
 
 class FaultSchedule:
-    """The faults of one vehicle, since `start_ns`."""
+    """Which faults of one vehicle are active when, and what they do to its packets."""
 
     def __init__(self, faults: Iterable[InjectedFault], seed: str, start_ns: int) -> None:
         self._by_kind: dict[FaultKind, list[InjectedFault]] = {}
@@ -31,7 +31,7 @@ class FaultSchedule:
         self._changes = Random(f"{seed}/changes")
 
     def active(self, kind: FaultKind, now_ns: int) -> InjectedFault | None:
-        """Return the fault of a kind that is on, the last told of several, else None."""
+        """Return the active fault of a kind (the last listed of several), else None."""
         faults = self._by_kind.get(kind) if self._by_kind else None
         if faults is None:
             return None
@@ -40,11 +40,11 @@ class FaultSchedule:
         return on[-1] if on else None
 
     def has(self, kind: FaultKind, now_ns: int) -> bool:
-        """Return whether a fault of a kind is on."""
+        """Return whether a fault of a kind is active."""
         return self.active(kind, now_ns) is not None
 
-    def sent_ns(self, now_ns: int) -> int:
-        """Return when what is said now goes out: at once, or with its burst."""
+    def send_time_ns(self, now_ns: int) -> int:
+        """Return when a packet made now is sent: at once, or with the next burst."""
         fault = self.active(FaultKind.BURSTS, now_ns)
         if fault is None:
             return now_ns
@@ -55,14 +55,14 @@ class FaultSchedule:
         due_ns = begin_ns + whole * burst_ns
         return due_ns if ends_ns is None else min(due_ns, ends_ns)
 
-    def answered_ns(self, now_ns: int) -> int:
-        """Return when an acknowledgment of now goes out."""
+    def ack_time_ns(self, now_ns: int) -> int:
+        """Return when an acknowledgment made now is sent."""
         if not self.has(FaultKind.DELAYED_ACKS, now_ns):
-            return self.sent_ns(now_ns)
-        return self.sent_ns(now_ns) + seconds_to_ns(self._delays.uniform(*ACK_DELAY_S))
+            return self.send_time_ns(now_ns)
+        return self.send_time_ns(now_ns) + seconds_to_ns(self._delays.uniform(*ACK_DELAY_S))
 
-    def on_the_way(self, packet: bytes, now_ns: int) -> bytes:
-        """Return a packet's bytes as they leave, in whole or damaged."""
+    def damaged(self, packet: bytes, now_ns: int) -> bytes:
+        """Return a packet's bytes as sent: intact or damaged."""
         if not self.has(FaultKind.CORRUPTED_BYTES, now_ns):
             return packet
         if self._changes.random() >= CORRUPTED_SHARE:
@@ -74,7 +74,7 @@ class FaultSchedule:
 
 
 class AircraftFaults:
-    """Begins and ends the faults of one aircraft; how many of a kind overlap does not matter."""
+    """Starts and ends the faults of one aircraft; overlapping ones of a kind act as one."""
 
     def __init__(self, aircraft: Aircraft, altitude: HomeAltitude, seed: str) -> None:
         self._aircraft = aircraft
@@ -87,24 +87,24 @@ class AircraftFaults:
             FaultKind.GNSS_LOSS: aircraft.lose_gnss,
             FaultKind.GUSTS: self._begin_squall,
             FaultKind.FALLS_SILENT: aircraft.crash,
-            FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._mistake(nan),
-            FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._mistake(STALE_BY_M),
+            FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._set_altitude_fault(nan),
+            FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._set_altitude_fault(STALE_BY_M),
         }
         self._ends: dict[FaultKind, Callable[[], None]] = {
             FaultKind.PILOT_TAKES: aircraft.pilot_releases,
             FaultKind.GNSS_LOSS: aircraft.find_gnss,
             FaultKind.GUSTS: aircraft.air.end_squall,
-            FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._mistake(0.0),
-            FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._mistake(0.0),
+            FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._set_altitude_fault(0.0),
+            FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._set_altitude_fault(0.0),
         }
 
     def begin(self, kind: FaultKind) -> None:
-        """Let a fault begin."""
+        """Start a fault."""
         self._running[kind] = self._running.get(kind, 0) + 1
         self._begins[kind]()
 
     def end(self, kind: FaultKind) -> None:
-        """Let a fault end, unless another of its kind is still on."""
+        """End a fault, unless another of its kind is still active."""
         self._running[kind] -= 1
         if self._running[kind] == 0 and kind in self._ends:
             self._ends[kind]()
@@ -113,5 +113,5 @@ class AircraftFaults:
         squall = Squall(self._headings.uniform(0.0, 360.0))
         self._aircraft.air.begin_squall(squall, self._aircraft.now_ns)
 
-    def _mistake(self, error_m: float) -> None:
+    def _set_altitude_fault(self, error_m: float) -> None:
         self._altitude.fault_m = error_m

@@ -1,6 +1,6 @@
-"""Faults from a file: by script (`[[fault]]`) and by chance (`[[chance]]`), in TOML.
+"""Faults from a TOML file: scripted (`[[fault]]`) and random (`[[chance]]`).
 
-Whatever is wrong with a file is said with its line, and nothing is started.
+Each error names the line, and nothing is started.
 """
 
 import re
@@ -30,7 +30,7 @@ KEYS = {
 
 @dataclass(frozen=True, slots=True)
 class FaultScript:
-    """What a file asks for."""
+    """The content of a fault file."""
 
     faults: tuple[InjectedFault, ...] = ()
     chances: tuple[RandomFault, ...] = ()
@@ -48,7 +48,7 @@ def load_faults(path: Path) -> FaultScript:
 
 
 def read_faults(data: bytes, name: str) -> FaultScript:
-    """Return the faults of a file's bytes; `name` is the file's, for messages."""
+    """Return the faults in `data`; `name` is the file's name for messages. Raises `FaultError`."""
     try:
         text = data.decode("utf-8")
         tables = tomllib.loads(text)
@@ -68,7 +68,7 @@ def read_faults(data: bytes, name: str) -> FaultScript:
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """One table of the file, and where it stands."""
+    """One table of the file, and its line."""
 
     kind: str
     values: Mapping[str, object]
@@ -77,7 +77,7 @@ class _Entry:
     key_lines: Mapping[str, int]
 
     def fault(self) -> InjectedFault:
-        """Return the fault that the table describes."""
+        """Return the scripted fault."""
         kind = self._kind()
         start_s, duration_s = default_times_s(kind)
         if "duration_s" in self.values:
@@ -86,13 +86,13 @@ class _Entry:
         return InjectedFault(kind, self._vehicle(), start_s, duration_s, self._place())
 
     def chance(self) -> RandomFault:
-        """Return the faults by chance that the table describes."""
+        """Return the random fault."""
         if "per_hour" not in self.values:
             raise self._wrong("per_hour", f"a number above 0, {MOST_PER_HOUR:g} at most", "nothing")
         shortest_s, longest_s = self._durations_s()
         from_s, until_s = self._seconds("from_s", 0.0), self._seconds("until_s", 3_600.0)
         if until_s < from_s:
-            raise self._wrong("until_s", f"{from_s:g} or more, as from_s", f"{until_s:g}")
+            raise self._wrong("until_s", f"{from_s:g} or more (from_s)", f"{until_s:g}")
         return RandomFault(
             kind=self._kind(),
             vehicle=self._vehicle(),
@@ -105,7 +105,7 @@ class _Entry:
         )
 
     def check_keys(self) -> None:
-        """Refuse what no table of this kind has; raises `FaultError`."""
+        """Refuse unknown keys; raises `FaultError`."""
         known = KEYS[self.kind]
         for key in self.values:
             if key not in known:
@@ -117,14 +117,14 @@ class _Entry:
             if name == kind.value:
                 return kind
         known = ", ".join(kind.value for kind in FaultKind)
-        raise self._wrong("name", f"one of {known}", _said(name))
+        raise self._wrong("name", f"one of {known}", _quoted(name))
 
     def _vehicle(self) -> str:
         vehicle = self.values.get("vehicle", ALL_VEHICLES)
         if isinstance(vehicle, int) and not isinstance(vehicle, bool):
             return str(vehicle)
         if not isinstance(vehicle, str):
-            raise self._wrong("vehicle", "a serial, a vehicle's number or '*'", _said(vehicle))
+            raise self._wrong("vehicle", "a serial, a vehicle's number or '*'", _quoted(vehicle))
         return vehicle
 
     def _durations_s(self) -> tuple[float, float]:
@@ -138,7 +138,7 @@ class _Entry:
         elif value is not None:
             duration_s = self._seconds("duration_s", 0.0)
             return duration_s, duration_s
-        raise self._wrong("duration_s", "seconds, or [least, most]", _said(value))
+        raise self._wrong("duration_s", "seconds, or [least, most]", _quoted(value))
 
     def _seconds(self, key: str, default_s: float) -> float:
         return self._number(key, 0.0, LATEST_S) if key in self.values else default_s
@@ -147,7 +147,7 @@ class _Entry:
         number = _number(self.values.get(key))
         if number is None or not lowest <= number <= highest:
             wanted = f"a number of {lowest:g} to {highest:g}"
-            raise self._wrong(key, wanted, _said(self.values.get(key)))
+            raise self._wrong(key, wanted, _quoted(self.values.get(key)))
         return number
 
     def _place(self) -> str:
@@ -178,7 +178,10 @@ def _entries(tables: Mapping[str, object], text: str, name: str) -> Iterator[_En
 
 
 def _places(text: str) -> dict[str, list[tuple[int, dict[str, int]]]]:
-    """Return for each kind of table where each stands: its line, and the line of each key."""
+    """Return, per kind of table, the line of each table and of each of its keys.
+
+    `tomllib` gives no positions, so the text is searched again for headers and keys.
+    """
     places: dict[str, list[tuple[int, dict[str, int]]]] = {}
     key_lines: dict[str, int] = {}
     for line, words in enumerate(text.split("\n"), 1):
@@ -193,13 +196,13 @@ def _places(text: str) -> dict[str, list[tuple[int, dict[str, int]]]]:
 
 
 def _line_of(word: str, text: str) -> int:
-    """Return the first line that names a word, as well as can be told."""
+    """Return the first line that contains a word, 1 without any."""
     lines = (number for number, line in enumerate(text.split("\n"), 1) if word in line)
     return next(lines, 1)
 
 
 def _no_toml(name: str, problem: str, text: str) -> str:
-    """Return the sentence for a file that is no TOML, with the line that tomllib names."""
+    """Return the message for a file that is not TOML, with the line that tomllib reports."""
     found = re.search(r"\(at line (\d+), column \d+\)", problem)
     line = int(found[1]) if found is not None else text.count("\n") + 1
     what = problem.partition(" (at ")[0]
@@ -215,7 +218,7 @@ def _number(value: object) -> float | None:
         return None
 
 
-def _said(value: object) -> str:
+def _quoted(value: object) -> str:
     if value is None:
         return "nothing"
     text = ascii(value)

@@ -1,4 +1,4 @@
-"""Faults by name: what companion apps, links and aircraft in the field get wrong, on order.
+"""Faults by name: failures of companion apps, links and aircraft that occur in the field.
 
 A fault is written `NAME[:vehicle[:start_s[:duration_s]]]`; the vehicle is a serial, its number in
 the fleet (1 is the first), or `*` for all; times count from the start of the simulation.
@@ -15,71 +15,70 @@ from recon.sim.errors import FaultError
 
 
 class FaultKind(Enum):
-    """What goes wrong. Each says what its duration means."""
+    """What fails. "While active": from the fault's start for its duration."""
 
     ACK_THEN_NOTHING = "ack-then-nothing"
-    """Commands are acknowledged and not carried out, as long as the fault lasts."""
+    """Commands are acknowledged and not executed, while active."""
     NO_ACK = "no-ack"
-    """Commands are carried out and not acknowledged, as long as the fault lasts."""
+    """Commands are executed and not acknowledged, while active."""
     NEGATIVE_ACK = "negative-ack"
-    """Commands are refused (Positive = 0) and not carried out, as long as the fault lasts."""
+    """Commands are refused (Positive = 0) and not executed, while active."""
     TELEMETRY_DROPOUT = "telemetry-dropout"
-    """No telemetry and no images; commands are still acknowledged and carried out."""
+    """No telemetry and no images, while active; commands are still acknowledged and executed."""
     HALF_OPEN = "half-open"
-    """The app neither reads nor writes any more, but its socket stays open for the duration,
-    while the app comes back at once on a new one: a phone that changed its network."""
+    """The app stops reading and writing, but its socket stays open for the duration; it reconnects
+    at once on a new one: a phone that changed its network."""
     SECOND_LINK = "second-link"
     """A second connection with the same serial and telemetry, for the duration."""
     RESTART = "restart"
-    """The app closes and comes back after the duration, knowing nothing of before: mission
-    numbers begin anew, orders not yet carried out are lost. The aircraft flies on."""
+    """The app closes and reconnects after the duration without its memory: mission numbers restart
+    and commands not yet executed are lost. The aircraft flies on."""
     PLACEHOLDER_SERIAL = "placeholder-serial"
-    """The serial is `00000`, as apps send it before they know, as long as the fault lasts."""
+    """The serial is `00000`, as apps send it before they know the aircraft, while active."""
 
     BURSTS = "bursts"
-    """What the app says is held back and goes out all at once, every one and a half seconds."""
+    """All packets are held back and sent together every 1.5 seconds, while active."""
     DELAYED_ACKS = "delayed-acks"
-    """Acknowledgments come half a second to three seconds late; the acts come at once."""
+    """Acknowledgments are 0.5 to 3 seconds late, while active; execution is not delayed."""
     IGNORED_MISSIONS = "ignored-missions"
-    """Missions are acknowledged and not flown; everything else works."""
+    """Missions are acknowledged and not flown, while active; everything else works."""
     CORRUPTED_BYTES = "corrupted-bytes"
-    """One in ten of the app's packets has one to three bytes changed."""
+    """One in ten of the app's packets has one to three bytes changed, while active."""
     SLOW_READER = "slow-reader"
-    """The app reads 32 bytes each tenth of a second: commands wait, then the socket is full."""
+    """The app reads 32 bytes every 0.1 s, while active: commands queue until the socket is full."""
     FALLS_SILENT = "falls-silent"
-    """The drone falls from the sky and its app says nothing any more; the socket stays open. It
-    does not end."""
+    """The aircraft crashes and its app sends nothing more; the socket stays open. Permanent."""
     TAKEOFF_ALTITUDE_LOST = "takeoff-altitude-lost"
-    """DJI tells no takeoff altitude: absolute altitudes are NaN, as long as the fault lasts."""
+    """DJI gives no takeoff altitude: absolute altitudes are NaN, while active."""
     TAKEOFF_ALTITUDE_STALE = "takeoff-altitude-stale"
-    """DJI tells another flight's takeoff altitude, 47 m higher: it jumps at begin and end."""
+    """DJI gives another flight's takeoff altitude, 47 m higher: a step at start and end."""
 
     CAMERA_STOPS = "camera-stops"
-    """No pictures come, though the feed says that it is on, as long as the fault lasts."""
+    """No frames are sent although the feed is reported as on, while active."""
     FRAMES_REPEATED = "frames-repeated"
-    """The picture of the fault's begin is sent again and again."""
+    """The frame taken at the fault's start is sent again and again, while active."""
     FRAMES_BLACK = "frames-black"
-    """Pictures are black."""
+    """Frames are black, while active."""
     FRAMES_TORN = "frames-torn"
-    """Pictures are parts of two, one shifted sideways."""
+    """Frames are torn: from one row down they are shifted sideways, while active."""
     EXPOSURE_JUMPS = "exposure-jumps"
-    """Each picture is exposed for another scene."""
+    """Exposure jumps from frame to frame, while active."""
 
     GUSTS = "gusts"
-    """A squall on top of the wind: gusts up to 9 m/s every 8 s, from a direction of its own."""
+    """Gusts up to 9 m/s every 8 s on top of the wind, from a random direction, while active."""
     PILOT_TAKES = "pilot-takes"
-    """The pilot flips the mode switch to sport and holds; missions and sticks of the app do nothing
-    until he flips it back, after the duration."""
+    """The pilot switches to sport mode and holds; the app's missions and sticks are ignored until
+    the pilot switches back, after the duration."""
     GNSS_LOSS = "gnss-loss"
-    """The receiver has 3 satellites and no signal worth the name, as long as the fault lasts: the
-    aircraft ends what it flies (mode ATTI), and the wind carries it along."""
+    """The receiver has 3 satellites and signal level 0, while active: the aircraft aborts what it
+    flies (mode ATTI) and drifts with the wind."""
     LOW_BATTERY = "low-battery"
-    """A cell fails: from the start on a fifth of the charge is left at most. It does not end."""
+    """A cell fails: from the start on at most 20 % of the charge is left. Permanent."""
 
 
 PLACEHOLDER_SERIAL = b"00000"
 FAILED_CELL_FRACTION = 0.2
-"""What a battery has left at most when a cell fails: under every reserve worth the name."""
+"""Most that is left when a cell fails: below every reserve a site would set."""
 
 _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
     FaultKind.ACK_THEN_NOTHING: (0.0, inf),
@@ -111,7 +110,7 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
 """Start and duration when the description leaves them out."""
 
 LINK_FAULTS = (FaultKind.HALF_OPEN, FaultKind.SECOND_LINK, FaultKind.RESTART)
-"""Faults that happen once, to the connection."""
+"""One-off faults of the connection."""
 AIRCRAFT_FAULTS = (
     FaultKind.PILOT_TAKES,
     FaultKind.LOW_BATTERY,
@@ -121,9 +120,9 @@ AIRCRAFT_FAULTS = (
     FaultKind.TAKEOFF_ALTITUDE_LOST,
     FaultKind.TAKEOFF_ALTITUDE_STALE,
 )
-"""Faults that begin and end once, and do something to the aircraft then."""
+"""Faults that change the aircraft at their start and at their end."""
 STALE_BY_M = 47.0
-"""Two pads of one farm's valley and hill."""
+"""Difference between two pads of one farm, in the valley and on the hill."""
 
 ALL_VEHICLES = "*"
 
@@ -137,25 +136,25 @@ class InjectedFault:
     start_s: float = 0.0
     duration_s: float = inf
     source: str = field(default="", compare=False)
-    """Where it stands in a file, for messages: `FILE: line N: `."""
+    """Position in the fault file, as a prefix for messages: `FILE: line N: `."""
 
     def is_for(self, serial: str, number: int) -> bool:
-        """Return whether the vehicle with this serial, `number` of the fleet, has the fault."""
+        """Return whether the vehicle with this serial, or number in the fleet, has the fault."""
         return is_for(self.vehicle, serial, number)
 
     def end_ns(self, start_ns: int) -> int | None:
-        """Return when it ends in a simulation that started then; None: never."""
+        """Return when it ends in a simulation that started at `start_ns`; None: never."""
         end_s = self.start_s + self.duration_s
         return start_ns + seconds_to_ns(end_s) if isfinite(end_s) else None
 
     def is_active(self, since_start_ns: int) -> bool:
-        """Return whether the fault is on at a time since the simulation's start."""
+        """Return whether the fault is active, this long after the simulation's start."""
         elapsed_s = since_start_ns / NS_PER_S
         return self.start_s <= elapsed_s < self.start_s + self.duration_s
 
 
 def parse_fault(text: str) -> InjectedFault:
-    """Return the fault a description names; raises `FaultError`."""
+    """Return the fault described by `text` (see the module); raises `FaultError`."""
     name, *rest = text.split(":")
     kind = _kind(name)
     if len(rest) > 3:
@@ -174,7 +173,7 @@ def parse_fault(text: str) -> InjectedFault:
 
 
 def is_for(vehicle: str, serial: str, number: int) -> bool:
-    """Return whether a fault's `vehicle` means the one with this serial, `number` of the fleet."""
+    """Return whether a fault's `vehicle` selects this serial, or this number in the fleet."""
     return vehicle in (ALL_VEHICLES, serial, str(number))
 
 
@@ -199,7 +198,7 @@ def _seconds(word: str, default: float, what: str, text: str) -> float:
     except ValueError:
         value = -1.0
     if not (isfinite(value) and value >= 0.0):
-        raise FaultError(f"fault {text!r}: expected a {what} in seconds from 0, got {word!r}")
+        raise FaultError(f"fault {text!r}: expected a {what} of 0 seconds or more, got {word!r}")
     return value
 
 
@@ -208,26 +207,26 @@ S_PER_HOUR = 3_600.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RandomFault:
-    """A fault that comes now and then to each vehicle that it is for."""
+    """A fault that occurs at random times (Poisson process), drawn for each vehicle it selects."""
 
     kind: FaultKind
     vehicle: str
     per_hour: float
-    """On average; the times between two begins are exponential."""
+    """Mean rate; the times between two starts are exponentially distributed."""
     shortest_s: float
     longest_s: float
-    """Each lasts as long as is drawn evenly between the two."""
+    """Durations are uniform between the two."""
     from_s: float
     until_s: float
-    """The last begins before this."""
+    """No fault starts after this time."""
     source: str = ""
 
     def is_for(self, serial: str, number: int) -> bool:
-        """Return whether the vehicle with this serial, `number` of the fleet, may have it."""
+        """Return whether the vehicle with this serial, or number in the fleet, may have it."""
         return is_for(self.vehicle, serial, number)
 
     def drawn(self, random: Random) -> Iterator[InjectedFault]:
-        """Yield one vehicle's faults, in order of time."""
+        """Yield the faults of one vehicle, in order of time."""
         if self.per_hour < 1e-6:
             return
         start_s = self.from_s
@@ -239,7 +238,7 @@ class RandomFault:
 def draw_faults(
     chances: tuple[RandomFault, ...], seed: int, serial: str, number: int
 ) -> tuple[InjectedFault, ...]:
-    """Return all that chance has for one vehicle; one entry's draws do not move another's."""
+    """Return all random faults of one vehicle; each entry has its own random generator."""
     return tuple(
         fault
         for row, chance in enumerate(chances)

@@ -5,33 +5,33 @@ from heapq import heappop, heappush
 
 READ_EVERY_NS = 100_000_000
 SLOW_BYTES = 32
-"""A slow reader reads so much each time: ten sticks a second are more than it keeps up with."""
+"""Read per period by a slow reader: less than ten stick commands per second need."""
 MOST_UNREAD_BYTES = 4_096
-"""Beyond, the socket is not read any more, and TCP makes the station wait."""
+"""With more unread bytes the socket is not read, so that TCP flow control stops the station."""
 MOST_KEPT_BYTES = 1_048_576
-"""Where nobody can make the station wait (no socket), what is beyond this is lost."""
+"""Without a socket there is no flow control: bytes beyond this are lost."""
 
 
 @dataclass(slots=True)
 class AppInbox:
-    """Bytes of a link in their order, read at once or a few at a time."""
+    """Received bytes of a link in order, read all at once or a few at a time."""
 
     _unread: bytearray = field(default_factory=bytearray)
     next_read_ns: int | None = None
 
     @property
     def has_room(self) -> bool:
-        """Whether more should be read from the socket."""
+        """Whether to read more from the socket."""
         return len(self._unread) < MOST_UNREAD_BYTES
 
     def keep(self, data: bytes, now_ns: int) -> None:
-        """Take what came, to be read later."""
+        """Add received bytes, to be read later."""
         self._unread += data[: MOST_KEPT_BYTES - len(self._unread)]
         if self.next_read_ns is None:
             self.next_read_ns = now_ns + READ_EVERY_NS
 
     def read(self, slowly: bool) -> bytes:
-        """Return what is read now, all of it or a little."""
+        """Return the bytes read now: all of them, or `SLOW_BYTES`."""
         size = SLOW_BYTES if slowly else len(self._unread)
         data = bytes(self._unread[:size])
         del self._unread[:size]
@@ -41,32 +41,32 @@ class AppInbox:
 
 
 MOST_PACKETS_WAITING = 256
-"""Per link; then the one that is due first is dropped: nobody reads."""
+"""Per link; beyond it the packet that is due first is dropped: the peer does not read."""
 
 
 @dataclass(slots=True)
 class AppOutbox:
-    """Packets in the order of their times, and of their writing where times are equal."""
+    """Packets waiting to be sent, ordered by due time, then by the order they were added."""
 
     _waiting: list[tuple[int, int, bytes]] = field(default_factory=list)
     _count: int = 0
 
     def add(self, packet: bytes, due_ns: int) -> None:
-        """Send a packet at a time."""
+        """Queue a packet for a time."""
         heappush(self._waiting, (due_ns, self._count, packet))
         self._count += 1
         if len(self._waiting) > MOST_PACKETS_WAITING:
             heappop(self._waiting)
 
     def pop_due(self, now_ns: int) -> list[bytes]:
-        """Return the packets whose time has come."""
+        """Return the packets due by now."""
         packets = []
         while self._waiting and self._waiting[0][0] <= now_ns:
             packets.append(heappop(self._waiting)[2])
         return packets
 
     def next_after_ns(self, now_ns: int) -> int | None:
-        """Return when the next packet is due that is held back, None without one."""
+        """Return when the next packet after `now_ns` is due, None without one."""
         if not self._waiting or self._waiting[0][0] > now_ns:
             return self._waiting[0][0] if self._waiting else None
         return min((due_ns for due_ns, _, _ in self._waiting if due_ns > now_ns), default=None)

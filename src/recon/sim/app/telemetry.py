@@ -1,4 +1,4 @@
-"""What the app says of its aircraft: the truth, as GNSS and barometer would tell it."""
+"""Telemetry packets: the aircraft's true state with the errors of GNSS and barometer."""
 
 from dataclasses import dataclass, field
 from math import exp, sqrt
@@ -12,48 +12,48 @@ from recon.sim.app.camera_feed import CameraFeed
 from recon.sim.flight.aircraft import Aircraft
 
 FEW_SATELLITES = 3
-"""One fewer than a position takes."""
+"""One fewer than a position fix needs."""
 
 
 @dataclass(frozen=True, slots=True)
 class TelemetrySensorSettings:
-    """How wrong the sensors are; each wander is a random walk that is pulled back to 0.
+    """Standard deviations and time constants of sensor errors (first-order Gauss-Markov).
 
-    Errors count from takeoff, where the home point is recorded with the same ones.
+    Errors count from takeoff: the home point is recorded with the same ones.
     """
 
     position_sigma_m: float = 0.15
     height_sigma_m: float = 0.10
     wander_time_s: float = 30.0
-    """Of the two above: satellites come and go, gusts press on the barometer."""
+    """Time constant of both: satellites change, gusts change the static pressure."""
     position_drift_m: float = 0.0
-    """As satellites move on and the ionosphere changes."""
+    """Slow part: satellite geometry and ionosphere."""
     position_drift_time_s: float = 400.0
     height_drift_m: float = 0.0
-    """As the air pressure changes and the barometer warms up."""
+    """Slow part: air pressure, and the barometer warming up."""
     height_drift_time_s: float = 900.0
 
 
 FIELD_SENSORS = TelemetrySensorSettings(position_drift_m=0.7, height_drift_m=0.8)
-"""Good to metres, as outside: twice these within a quarter of an hour is nothing unusual."""
+"""Metres, as outdoors: twice these values within a quarter of an hour is common."""
 
 
 @dataclass(slots=True)
 class HomeAltitude:
-    """The takeoff altitude that the app believes in: DJI's is tens of metres off, or worse.
+    """The takeoff altitude in the app: DJI's is tens of metres off, or worse.
 
-    An app adds it to heights it tells, and subtracts it from waypoints' altitudes (ICD 3.1.1,
-    3.2.3), so that a constant error cancels and one that changes in between does not.
+    An app adds it to the heights it reports and subtracts it from waypoint altitudes (ICD 3.1.1,
+    3.2.3): a constant error cancels, one that changes in between does not.
     """
 
     true_m: float
     bias_m: float = 0.0
     fault_m: float = 0.0
-    """What a fault adds: NaN where DJI tells none, a jump where it tells that of another flight."""
+    """Added by a fault: NaN when DJI gives none, a step when it gives another flight's."""
 
     @property
     def believed_m(self) -> float:
-        """WGS84, in metres; NaN when unknown."""
+        """The app's takeoff altitude, WGS84, in metres; NaN when unknown."""
         return self.true_m + self.bias_m + self.fault_m
 
 
@@ -66,7 +66,8 @@ class GaussMarkov:
     value: float = 0.0
 
     def step(self, seconds: float, random: Random) -> float:
-        """Go on for `seconds` and return the value."""
+        """Advance by `seconds` and return the value."""
+        # The noise term keeps the variance at sigma squared for any step length.
         keep = exp(-seconds / self.time_s)
         self.value = keep * self.value + sqrt(1.0 - keep * keep) * random.gauss(0.0, self.sigma)
         return self.value
@@ -74,26 +75,26 @@ class GaussMarkov:
 
 @dataclass(slots=True)
 class SensorError:
-    """What one sensor is off by: something quick and something slow."""
+    """The error of one sensor: a fast and a slow process added."""
 
-    quick: GaussMarkov
+    fast: GaussMarkov
     slow: GaussMarkov
 
     def step(self, seconds: float, random: Random, slow_random: Random) -> float:
-        """Go on for `seconds` and return the sum."""
-        return self.quick.step(seconds, random) + self.slow.step(seconds, slow_random)
+        """Advance by `seconds` and return the sum."""
+        return self.fast.step(seconds, random) + self.slow.step(seconds, slow_random)
 
 
 @dataclass(slots=True)
 class TelemetrySensors:
-    """Turns an aircraft's true state into telemetry packets."""
+    """Makes telemetry packets from an aircraft's true state."""
 
     home: GeoPoint
     altitude: HomeAltitude
     settings: TelemetrySensorSettings
     random: Random
     slow_random: Random
-    """Of the slow errors, which go on however often the quick ones are drawn."""
+    """For the slow errors: separate, so that the telemetry rate does not change them."""
     _north: "SensorError" = field(init=False)
     _east: "SensorError" = field(init=False)
     _height: "SensorError" = field(init=False)
@@ -104,13 +105,13 @@ class TelemetrySensors:
         level = (s.position_sigma_m, s.position_drift_m, s.position_drift_time_s)
         upright = (s.height_sigma_m, s.height_drift_m, s.height_drift_time_s)
         self._north, self._east, self._height = (
-            SensorError(GaussMarkov(quick, s.wander_time_s), GaussMarkov(slow, slow_s))
-            for quick, slow, slow_s in (level, level, upright)
+            SensorError(GaussMarkov(fast, s.wander_time_s), GaussMarkov(slow, slow_s))
+            for fast, slow, slow_s in (level, level, upright)
         )
         self._satellites = self.random.randint(14, 19)
 
     def core(self, aircraft: Aircraft, seconds: float) -> wire.CoreTelemetry:
-        """Return core telemetry, `seconds` after the last one."""
+        """Return core telemetry (ICD 3.1.1), `seconds` after the previous packet."""
         motion = aircraft.motion
         latitude, longitude = position_deg(
             self.home,
@@ -140,7 +141,7 @@ class TelemetrySensors:
         serial: bytes,
         reports_mission_id: bool = True,
     ) -> wire.ExtendedTelemetry:
-        """Return extended telemetry."""
+        """Return extended telemetry (ICD, ExtendedTelemetry)."""
         return wire.ExtendedTelemetry(
             gnss_satellite_count=self._satellites if aircraft.has_gnss else FEW_SATELLITES,
             gnss_signal_level=5 if aircraft.has_gnss else 0,
@@ -157,7 +158,7 @@ class TelemetrySensors:
 
 
 def position_deg(home: GeoPoint, north_m: float, east_m: float) -> tuple[float, float]:
-    """Return latitude and longitude of a place in home metres."""
+    """Return latitude and longitude, degrees, of a point in metres from home."""
     latitude_deg, longitude_deg, _ = tangent_plane(LocalFrame(home)).place(east_m, north_m, 0.0)
     return latitude_deg, longitude_deg
 

@@ -1,4 +1,9 @@
-"""From the land's colours to pixel values: light, haze, exposure, sensor noise, display curve."""
+"""From the land's colours to pixel values: light, haze, exposure, sensor noise, display curve.
+
+For each channel: colour of the land (undone display curve) x light on the ground x transmission of
+the air, plus haze; x exposure and white balance; plus shot and read noise; display curve. Pixel
+values are light to the power 1/2.2; 1.0 of light is white.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,18 +21,18 @@ from recon.sim.world.keyframes import FloatArray, FloatImage, gaussian
 from recon.sim.world.light import GroundLight
 
 HAZE = (0.48, 0.55, 0.61)
-"""Light of far air over white in full sun, red, green, blue: what the horizon fades to."""
+"""Light of distant air in full sun, relative to white: the colour (RGB) of the horizon."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """What falls on the sensor of one picture."""
+    """All that determines the light on the sensor for one frame."""
 
-    seen: GroundRays
+    rays: GroundRays
     land: LandImage
     light: GroundLight
     beam: FloatImage
-    """Share of the sun's beam at the lattice's points, what the ground's tilt does included."""
+    """Transmittance of the beam at the lattice's points, times the effect of the ground's slope."""
     gains: FloatArray
     """Exposure and white balance (3,)."""
     number: int
@@ -37,7 +42,7 @@ def develop(lens: Lens, imager: CameraSettings, scene: Scene) -> RgbImage:
     """Return the pixel values of the lens's window, (rows, cols, 3)."""
     beam = lens.full(scene.beam * _hot_spot(imager, scene))
     beam *= light_free_of_shadow(scene.land[:, :, 3])
-    clear = np.exp(-scene.seen.distance_m / np.float32(imager.haze_m)) * scene.seen.sees_ground
+    clear = np.exp(-scene.rays.distance_m / np.float32(imager.haze_m)) * scene.rays.sees_ground
     clear_share = lens.full(clear.astype(np.float32))
     air = (1.0 - clear_share) * lens.vignette
     clear_share *= lens.vignette
@@ -57,15 +62,15 @@ def develop(lens: Lens, imager: CameraSettings, scene: Scene) -> RgbImage:
 
 
 def light_free_of_shadow(shadow: LandImage) -> FloatImage:
-    """Return the beam's share beside trees and roofs, from shadows of 0 to 255."""
+    """Return the share of the beam that trees and roofs let pass, from shadows of 0 to 255."""
     share: FloatImage = 1.0 - shadow.astype(np.float32) * np.float32(1.0 / 255.0)
     return share
 
 
 def _hot_spot(imager: CameraSettings, scene: Scene) -> FloatImage:
-    """Return the beam's factor by the angle between looking and shining (Hapke's opposition)."""
-    # A ray that goes where the light goes sees what the sun sees.
-    cosine = -(scene.seen.rays @ scene.light.toward_sun.astype(np.float32))
+    """Return the factor of the opposition effect (Hapke), by the angle between view and beam."""
+    # Looking along the sun's rays no shadows between leaves are visible: the hot spot.
+    cosine = -(scene.rays.directions @ scene.light.toward_sun.astype(np.float32))
     angle_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
     factor: FloatImage = 1.0 + np.float32(imager.hot_spot) * np.exp(
         -angle_deg / np.float32(imager.hot_spot_deg)
@@ -74,29 +79,33 @@ def _hot_spot(imager: CameraSettings, scene: Scene) -> FloatImage:
 
 
 def _mean_beam(scene: Scene) -> float:
-    """Return the beam's share on the ground in view: haze is lit like the land around."""
+    """Return the mean transmittance in view: haze is lit like the land around."""
     return float(np.mean(scene.beam, dtype=np.float64))
 
 
 EXPOSURE, RED, BLUE = 130, 131, 132
-"""Streams of the eye's random numbers."""
+"""Random streams of the imaging drone's camera."""
 
 Metered = Callable[[npt.ArrayLike, npt.ArrayLike, float], float]
 """(east (N,), north (N,), time_s) -> mean light on the ground there over the reference's."""
 
 METERED_ACROSS = 5
 METERED_REACH = 0.8
-"""Of the height: the middle of the picture counts, as in most cameras."""
+"""Half width of the metered area, relative to the height: centre-weighted, as in most cameras."""
 LOOKS_BACK = 5
 LEAST_LIGHT = 1e-4
 LARGEST_DEVIATION = 3.0
-"""Drifts are held within three standard deviations: a camera's drift is bounded."""
+"""Drifts are clipped to three standard deviations: a camera's drift is bounded."""
 
 
 def exposure_stops(
     settings: ExposureSettings, seed: int, pose: CameraPose, time_s: float, metered: Metered
 ) -> float:
-    """Return by how many stops the exposure differs from that of full sun."""
+    """Return the exposure in stops relative to that of full sun.
+
+    A camera's exposure depends on earlier light. Here the sky is evaluated again for the moments
+    before, so that exposure is a function of time and place, whatever was rendered before.
+    """
     stops = settings.drift_stops * _drift((seed, EXPOSURE), time_s, settings.drift_s)
     if settings.follows > 0.0:
         seen = _followed_light(settings, pose, time_s, metered)
@@ -116,12 +125,12 @@ def white_balance(settings: ExposureSettings, seed: int, time_s: float) -> Float
 def _followed_light(
     settings: ExposureSettings, pose: CameraPose, time_s: float, metered: Metered
 ) -> float:
-    """Return the light beneath the camera, the last moments weighing as the lag has it."""
+    """Return the light below the camera, averaged over the last moments (exponential lag)."""
     reach_m = METERED_REACH * max(1.0, float(pose.position_enu_m[2]))
     steps = np.linspace(-reach_m, reach_m, METERED_ACROSS)
     east, north = (grid.ravel() for grid in np.meshgrid(steps, steps))
     east, north = east + pose.position_enu_m[0], north + pose.position_enu_m[1]
-    # The quantiles of an exponential: each moment stands for an equal part of its weight.
+    # Quantiles of the exponential distribution: all moments have equal weight.
     parts = (np.arange(LOOKS_BACK) + 0.5) / LOOKS_BACK
     ages_s = -settings.lag_s * np.log(1.0 - parts)
     return float(np.mean([metered(east, north, time_s - float(age)) for age in ages_s]))
@@ -134,7 +143,7 @@ def _drift(stream: tuple[int, ...], time_s: float, lifetime_s: float) -> float:
 
 DISPLAY_GAMMA = 2.2
 STEPS = 65_535
-"""Of light: dark pixel values are 1 to 2 apart only with so many."""
+"""Levels of light in the lookup table: with fewer, dark pixel values would be missing."""
 NOISE_STREAM = 140
 
 
@@ -147,7 +156,7 @@ def light_of_value() -> FloatImage:
 
 @lru_cache(maxsize=1)
 def value_of_light() -> npt.NDArray[np.uint8]:
-    """Return the pixel value (65536,) of each step of light."""
+    """Return the pixel value (65536,) of each level of light."""
     light = np.arange(STEPS + 1, dtype=np.float64) / STEPS
     return np.rint(255.0 * light ** (1.0 / DISPLAY_GAMMA)).astype(np.uint8)
 
@@ -157,7 +166,7 @@ def read_out(
 ) -> npt.NDArray[np.uint8]:
     """Return the pixel values of one channel's light (N, M); overwrites both arrays.
 
-    `noise` is of mean 0 and deviation 1; where it is 0 there is none.
+    `noise` has mean 0 and standard deviation 1; 0 outside the image circle.
     """
     noise *= np.sqrt(
         np.float32(settings.read_noise**2) + light * np.float32(1.0 / settings.full_well)
@@ -170,6 +179,6 @@ def read_out(
 
 
 def noise_of(seed: int, number: int, shape: tuple[int, ...]) -> FloatImage:
-    """Return a picture's noise of mean 0 and deviation 1: a function of its number."""
+    """Return the noise of a frame, mean 0 and standard deviation 1: a function of its number."""
     random = np.random.Generator(np.random.SFC64((seed, NOISE_STREAM, number)))
     return random.standard_normal(shape, dtype=np.float32)

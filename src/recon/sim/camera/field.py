@@ -1,7 +1,7 @@
-"""The farmland as the eye's camera sees it, under a sky of clouds.
+"""Renders the farmland as rays by the imaging drone's camera, under a sky of clouds.
 
-A picture is a function of its view (pose, time, number) and the settings, to the bit. Ground
-places and light are worked out on a coarse lattice of pixels and interpolated between.
+A frame is a function of its view (pose, time, number) and the settings, to the bit. Ground points
+and light are computed on a coarse lattice of pixels and interpolated.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from recon.camera import ImageCircle, OmnidirectionalCamera
 from recon.model.imagery import CameraPose, RgbImage
 from recon.sim.camera.development import Scene, develop, exposure_stops, white_balance
 from recon.sim.camera.frames import CameraView
-from recon.sim.camera.lens import LATTICE_PX, GroundRays, Lens, look
+from recon.sim.camera.lens import LATTICE_PX, GroundRays, Lens, ground_rays
 from recon.sim.camera.rig import true_pose
 from recon.sim.camera.settings import CameraSettings
 from recon.sim.errors import FrameSourceError
@@ -32,9 +32,9 @@ def _clear_sky() -> Sky:
 
 @dataclass(slots=True)
 class FieldRenderer:
-    """Renders views of the land; needs views with a pose.
+    """Renders views of the land; each view needs a pose.
 
-    The ground's height 0 is that of the pose's frame; with relief it rolls about it.
+    Height 0 of the ground is that of the pose's local frame; relief varies about it.
     """
 
     camera: OmnidirectionalCamera
@@ -46,17 +46,17 @@ class FieldRenderer:
     _lens: Lens | None = field(default=None, init=False)
 
     def render(self, view: CameraView) -> RgbImage:
-        """Return the picture (rows, cols, 3); may be called from several threads."""
+        """Return the frame (rows, cols, 3) uint8 RGB; thread-safe."""
         pose, time_s = self.true_pose(view), view.elapsed_s
         lens, land, sun = self.lens, land_of(self.seed), self.sky.sun_at(time_s)
-        seen = look(lens, pose, self.relief)
+        rays = ground_rays(lens, pose, self.relief)
         light = light_under(self.sky, time_s)
         east_m, north_m = (float(part) for part in pose.position_enu_m[:2])
         scene = Scene(
-            seen,
-            land_picture(lens, seen, lambda level: land.square(level, east_m, north_m, sun)),
+            rays,
+            land_picture(lens, rays, lambda level: land.square(level, east_m, north_m, sun)),
             light,
-            beam_share(self.sky, light, self.relief, seen.east_m, seen.north_m, time_s),
+            beam_share(self.sky, light, self.relief, rays.east_m, rays.north_m, time_s),
             self._gains(pose, time_s),
             view.number,
         )
@@ -65,24 +65,24 @@ class FieldRenderer:
         return frame
 
     def prepare(self) -> None:
-        """Draw the land around the origin, and the clouds of the first moment."""
+        """Draw the land around the origin and the first clouds, so that the first frame is fast."""
         for level in range(len(CELLS_M)):
             land_of(self.seed).square(level, 0.0, 0.0, self.sky.sun_at(0.0))
         self.sky.transmittance(0.0, 0.0, 0.0)
 
     def true_pose(self, view: CameraView) -> CameraPose:
-        """Return where the camera truly was; `FrameSourceError` for a view without a pose."""
+        """Return the camera's true pose; raises `FrameSourceError` for a view without a pose."""
         if view.pose is None:
             raise FrameSourceError("expected a camera pose to render a field from, got none")
         return true_pose(view.pose, self.imager.hover, self.imager.seed, view.elapsed_s)
 
     def gains(self, view: CameraView) -> FloatArray:
-        """Return exposure and white balance of a view: light's factors (3,), 1 in full sun."""
+        """Return exposure times white balance of a view, factors (3,), 1 in full sun."""
         return self._gains(self.true_pose(view), view.elapsed_s)
 
     @property
     def lens(self) -> Lens:
-        """The lens, worked out at the first call."""
+        """The lens, computed at the first call."""
         if self._lens is None:
             self._lens = Lens(self.camera, self.image_circle, self.imager.lens)
         return self._lens
@@ -97,24 +97,24 @@ class FieldRenderer:
 
 
 Squares = Callable[[int], LandSquare]
-"""Level -> the land's pixels of that level around the camera."""
+"""Level -> the land's pixels at that level around the camera."""
 
 FADE_M = 20.0
-"""Towards the edge of a level's square the next coarser one takes over."""
+"""Width over which a level fades into the next coarser one at the edge of its square."""
 
 
-def land_picture(lens: Lens, seen: GroundRays, squares: Squares) -> LandImage:
-    """Return red, green, blue and shadow (rows, cols, 4) of the lens's window.
+def land_picture(lens: Lens, rays: GroundRays, squares: Squares) -> LandImage:
+    """Return red, green, blue and shadow (rows, cols, 4) of the lens's window, before light.
 
-    From coarse to fine, each level where its pixels are called for.
+    Levels are blended from coarse to fine, each where the footprint of a pixel asks for it.
     """
-    east, north = lens.full(seen.east_m), lens.full(seen.north_m)
+    east, north = lens.full(rays.east_m), lens.full(rays.north_m)
     picture = _sample(squares(len(CELLS_M) - 1), east, north)
     for level in range(len(CELLS_M) - 2, -1, -1):
-        if seen.footprint_m.min() >= CELLS_M[level + 1]:
+        if rays.footprint_m.min() >= CELLS_M[level + 1]:
             break
         square = squares(level)
-        weight = _weight(seen, square, CELLS_M[level + 1])
+        weight = _weight(rays, square, CELLS_M[level + 1])
         if (box := _box(weight, picture.shape)) is not None:
             fine = _sample(square, east[box], north[box])
             share = np.clip(lens.full(weight)[box], 0.0, 1.0)
@@ -124,22 +124,22 @@ def land_picture(lens: Lens, seen: GroundRays, squares: Squares) -> LandImage:
     return picture
 
 
-def _weight(seen: GroundRays, square: LandSquare, coarser_m: float) -> FloatImage:
-    """Return the share of a level on the lattice: 1 where its pixels are as fine as the lens's."""
-    wanted = (coarser_m - seen.footprint_m) / (coarser_m - square.cell_m)
+def _weight(rays: GroundRays, square: LandSquare, coarser_m: float) -> FloatImage:
+    """Return the weight of a level on the lattice: 1 where its pixels are as fine as the lens's."""
+    wanted = (coarser_m - rays.footprint_m) / (coarser_m - square.cell_m)
     east_m, north_m = square.centre_m
-    reach = np.maximum(np.abs(seen.east_m - east_m), np.abs(seen.north_m - north_m))
+    reach = np.maximum(np.abs(rays.east_m - east_m), np.abs(rays.north_m - north_m))
     covered = (square.half_width_m - reach) / FADE_M
     weight: FloatImage = np.clip(np.minimum(wanted, covered), 0.0, 1.0).astype(np.float32)
     return weight
 
 
 def _box(weight: FloatImage, shape: tuple[int, ...]) -> tuple[slice, slice] | None:
-    """Return the window's rows and columns where a weight on the lattice counts."""
+    """Return rows and columns of the window where a lattice weight is not 0; None without any."""
     rows, cols = np.flatnonzero(weight.any(axis=1)), np.flatnonzero(weight.any(axis=0))
     if rows.size == 0:
         return None
-    # One block more on each side: interpolation reaches into it.
+    # One more block on each side: interpolation reaches into it.
     return (
         slice(max(0, (rows[0] - 1) * LATTICE_PX), min(shape[0], (rows[-1] + 2) * LATTICE_PX)),
         slice(max(0, (cols[0] - 1) * LATTICE_PX), min(shape[1], (cols[-1] + 2) * LATTICE_PX)),

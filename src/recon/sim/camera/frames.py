@@ -19,7 +19,7 @@ LARGEST_FILE_BYTES = 64 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraView:
-    """What a picture is taken of: time since the simulation's start, number, camera pose."""
+    """What a frame is taken of: time since the simulation's start, number, camera pose."""
 
     elapsed_s: float
     number: int
@@ -27,34 +27,34 @@ class CameraView:
 
 
 class FrameSource(Protocol):
-    """Where pictures come from."""
+    """A source of frames."""
 
     def prepare(self) -> None:
-        """Do what the first picture would wait for; may take seconds, once."""
+        """Do work that the first frame would wait for; may take seconds, once."""
         ...
 
     def render(self, view: CameraView) -> RgbImage:
-        """Return (rows, cols, 3) uint8 RGB; may take long, may be called from any thread."""
+        """Return (rows, cols, 3) uint8 RGB; may be slow, may be called from any thread."""
         ...
 
 
 class StillFrame:
-    """The same picture for ever."""
+    """The same frame forever."""
 
     def __init__(self, rgb: RgbImage) -> None:
         self.rgb = rgb
 
     def prepare(self) -> None:
-        """Nothing is left to do."""
+        """Do nothing: the frame is loaded."""
 
     def render(self, view: CameraView) -> RgbImage:
-        """Return the picture."""
+        """Return the frame."""
         return self.rgb
 
 
 @dataclass(slots=True)
 class FolderFrames:
-    """The pictures of a folder by name, again from the start after the last."""
+    """The frames of a folder in order of name, in a loop."""
 
     paths: tuple[Path, ...]
     rows: int
@@ -62,11 +62,11 @@ class FolderFrames:
     _last: tuple[int, RgbImage] | None = field(default=None)
 
     def prepare(self) -> None:
-        """Read the first picture."""
+        """Read the first frame."""
         self.render(CameraView(0.0, 0, None))
 
     def render(self, view: CameraView) -> RgbImage:
-        """Return the picture that is next."""
+        """Return the frame of the view's number, read once in a row."""
         index = view.number % len(self.paths)
         last = self._last
         if last is None or last[0] != index:
@@ -78,7 +78,7 @@ class FolderFrames:
 def folder_frames(folder: Path, rows: int = 720, cols: int = 1280) -> FolderFrames:
     """Return the frames of a folder, scaled to a size; raises `FrameSourceError`.
 
-    The first one is read at once, so that a wrong folder shows before the flight.
+    The first one is read at once, so that a wrong folder is reported before the flight.
     """
     if not folder.is_dir():
         raise FrameSourceError(f"{folder}: expected a folder of images, got no folder")
@@ -91,9 +91,9 @@ def folder_frames(folder: Path, rows: int = 720, cols: int = 1280) -> FolderFram
 
 
 def read_frame(path: Path, rows: int, cols: int) -> RgbImage:
-    """Return a file's picture (rows, cols, 3) RGB at this size; raises `FrameSourceError`.
+    """Return a file's image (rows, cols, 3) RGB, scaled to this size; raises `FrameSourceError`.
 
-    Shrinking averages areas, so pixel u of the file lies at (u + 0.5) s - 0.5 exactly.
+    Shrinking averages areas, so that pixel u of the file maps to (u + 0.5) s - 0.5 exactly.
     """
     try:
         if path.stat().st_size > LARGEST_FILE_BYTES:
@@ -125,40 +125,40 @@ def _decode(path: Path, data: bytes) -> RgbImage:
     flags = cv2.IMREAD_COLOR_RGB | cv2.IMREAD_IGNORE_ORIENTATION
     pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
     if pixels is None:
-        raise FrameSourceError(f"{path}: expected a PNG image, got something unreadable")
+        raise FrameSourceError(f"{path}: expected a PNG image, got an unreadable file")
     return pixels.astype(np.uint8, copy=False)
 
 
 EXPOSURE_GAINS = (0.35, 0.6, 1.7, 2.6)
-"""Up to one and a half stops: what a bright cloud or a dark wood does to the exposure."""
+"""Up to one and a half stops: the effect of a bright cloud or a dark wood on auto exposure."""
 
 
 class FrameFlaw(Protocol):
-    """One thing that is wrong with one picture."""
+    """A defect of one frame."""
 
     def applied(self, rgb: RgbImage) -> RgbImage:
-        """Return the picture, (rows, cols, 3) uint8, with the flaw; the one given stays whole."""
+        """Return a copy of the image, (rows, cols, 3) uint8, with the defect."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Black:
-    """Nothing but black, as when the video stream starts anew."""
+    """All black, as when the video stream restarts."""
 
     def applied(self, rgb: RgbImage) -> RgbImage:
-        """Return black."""
+        """Return a black image."""
         return np.zeros_like(rgb)
 
 
 @dataclass(frozen=True, slots=True)
 class Torn:
-    """From one row down the picture is shifted sideways: parts of two."""
+    """Shifted sideways from one row down, as when two frames are mixed."""
 
     row_share: float
     shift_share: float
 
     def applied(self, rgb: RgbImage) -> RgbImage:
-        """Return the torn picture."""
+        """Return the torn image."""
         row = int(self.row_share * rgb.shape[0])
         shift = max(1, int(self.shift_share * rgb.shape[1]))
         return np.concatenate([rgb[:row], np.roll(rgb[row:], shift, axis=1)])
@@ -166,18 +166,18 @@ class Torn:
 
 @dataclass(frozen=True, slots=True)
 class Exposed:
-    """All of it brighter or darker; what is too bright is white."""
+    """Brighter or darker by a factor, clipped at white."""
 
     gain: float
 
     def applied(self, rgb: RgbImage) -> RgbImage:
-        """Return the picture at another exposure."""
+        """Return the image at another exposure."""
         brighter: RgbImage = np.clip(np.rint(rgb * self.gain), 0.0, 255.0).astype(np.uint8)
         return brighter
 
 
 def torn(random: Random) -> Torn:
-    """Draw where a picture is torn."""
+    """Draw the row and the shift of a tear."""
     return Torn(random.uniform(0.1, 0.9), random.uniform(0.1, 0.5))
 
 

@@ -14,12 +14,12 @@ from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.relief import Relief
 
 LATTICE_PX = 4
-"""Ground places are worked out for blocks of so many pixels, and interpolated between."""
+"""Ground points are computed for blocks of this many pixels and interpolated."""
 
 
 @dataclass(frozen=True)
 class Lens:
-    """What does not depend on the pose."""
+    """Everything about the lens that does not depend on the pose."""
 
     camera: OmnidirectionalCamera
     image_circle: ImageCircle | None
@@ -27,7 +27,7 @@ class Lens:
 
     @cached_property
     def window(self) -> tuple[slice, slice]:
-        """Rows and columns that can be lit: the frame's part around the image circle."""
+        """Rows and columns that can be lit: the box around the image circle."""
         rows, cols, circle = self.camera.rows, self.camera.cols, self.image_circle
         if circle is None:
             return slice(0, rows), slice(0, cols)
@@ -51,12 +51,12 @@ class Lens:
 
     @cached_property
     def radians_per_px(self) -> float:
-        """Of a pixel's step in the middle of the picture."""
+        """Angle of one pixel in the middle of the frame."""
         return 1.0 / abs(float(self.camera.profile.depth_px(np.zeros(1))[0]))
 
     @cached_property
     def vignette(self) -> FloatImage:
-        """Light's share over the window: falling outwards, none outside the circle."""
+        """Relative light over the window: falls towards the rim, 0 outside the image circle."""
         camera = self.camera
         rows, cols = self.window
         col, row = np.meshgrid(np.arange(cols.start, cols.stop), np.arange(rows.start, rows.stop))
@@ -73,7 +73,7 @@ class Lens:
 
     @cached_property
     def is_lit(self) -> FloatImage:
-        """1 in the image circle, 0 outside: what is dark, the video link's encoder smooths."""
+        """1 in the image circle, 0 outside: the video encoder smooths noise where it is dark."""
         return (self.vignette > 0.0).astype(np.float32)
 
     def full(self, lattice: FloatImage) -> FloatImage:
@@ -89,26 +89,26 @@ def _between(low: float, high: float, size: int) -> slice:
 
 
 STEEPEST_TANGENT = 60.0
-"""Rays flatter than 1 in 60 meet no ground: there is haze only."""
+"""Rays flatter than 1 in 60 show haze only."""
 LEAST_HEIGHT_M = 0.1
-"""A camera on the ground looks from here."""
+"""Lowest camera height used."""
 RELIEF_STEPS = 4
-"""Of the iteration from the level plane to the ground: slopes are gentle, so few are enough."""
+"""Iterations from the level plane to the relief: slopes are gentle, so few are enough."""
 RELIEF_TANGENT = 8.0
-"""Flatter rays meet the ground as if it were level: hills hide each other there."""
+"""Flatter rays use level ground: hills would hide each other there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroundRays:
-    """What the lattice's rays meet, (r, c) each."""
+    """Where the lattice's rays meet the ground, (r, c) each."""
 
     east_m: FloatImage
     north_m: FloatImage
     distance_m: FloatImage
     """Along the ray; infinite where there is no ground."""
     footprint_m: FloatImage
-    """Length on the ground of one pixel's step, along the steeper direction."""
-    rays: FloatImage
+    """Length of a pixel's footprint on the ground, along its longer direction."""
+    directions: FloatImage
     """Unit vectors (r, c, 3), east, north, up."""
 
     @property
@@ -117,8 +117,8 @@ class GroundRays:
         return np.isfinite(self.distance_m).astype(np.float32)
 
 
-def look(lens: Lens, pose: CameraPose, relief: Relief | None) -> GroundRays:
-    """Return where the lens's lattice looks from a pose."""
+def ground_rays(lens: Lens, pose: CameraPose, relief: Relief | None) -> GroundRays:
+    """Return where the lens's lattice meets the ground from a pose."""
     rays = lens.rays @ pose.rotation_enu_camera.T.astype(np.float32)
     across = np.hypot(rays[:, :, 0], rays[:, :, 1])
     tangent = np.where(rays[:, :, 2] < -1e-6, across / np.maximum(-rays[:, :, 2], 1e-6), np.inf)
@@ -149,7 +149,7 @@ def _places(
 def _heights_m(
     pose: CameraPose, tangent: FloatImage, towards: FloatImage, relief: Relief | None
 ) -> FloatImage:
-    """Return how high the camera is above the ground that each ray meets."""
+    """Return the camera's height above the ground point of each ray."""
     above_m = np.full_like(tangent, max(float(pose.position_enu_m[2]), LEAST_HEIGHT_M))
     if relief is None:
         return above_m

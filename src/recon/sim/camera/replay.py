@@ -1,7 +1,7 @@
-"""A real field as the eye's world: one real frame, seen from where it was really taken.
+"""A real field in the simulator: one real frame, with the pose it was taken from.
 
-The folder holds `RefFrame.jpeg` and `GCPs.txt`; the lens is `camera-model.txt` there or one folder
-up. The frame shows what it shows however the simulated vehicle then moves.
+The folder holds `RefFrame.jpeg` and `GCPs.txt`; the camera is `camera-model.txt` there or one
+folder up. The frame does not change when the simulated aircraft moves.
 """
 
 from pathlib import Path
@@ -31,7 +31,7 @@ CAMERA_FILE = "camera-model.txt"
 
 
 def load_replay(folder: Path) -> tuple[CameraRig, StillFrame]:
-    """Return where the eye hangs over a real field, and what it sees; raises `ReplayError`."""
+    """Return the imaging drone's rig over a real field, and its frame; raises `ReplayError`."""
     for name in (FRAME_FILE, POINTS_FILE):
         if not (folder / name).is_file():
             raise ReplayError(f"{folder}: expected a folder with {name}, got none")
@@ -57,7 +57,7 @@ def _rig(
     points: tuple[ControlPoint, ...],
     marked_size_px: tuple[int, int],
 ) -> CameraRig:
-    """Return the rig: the frame's origin is the middle of the control points, on the ground."""
+    """Return the rig; the local frame's origin is the mean of the control points, on the ground."""
     origin = GeoPoint(
         float(np.mean([p.latitude_deg for p in points])),
         float(np.mean([p.longitude_deg for p in points])),
@@ -72,7 +72,7 @@ def _rig(
 def rig_over(camera: OmnidirectionalCamera, frame: LocalFrame, pose: CameraPose) -> CameraRig:
     """Return a rig whose marked frame was taken from `pose`, the aircraft pointing north.
 
-    Any heading would do: only changes of it turn the camera.
+    Any heading would do: only changes of heading turn the camera.
     """
     latitude, longitude, _ = geo_from_enu(frame, (*pose.position_enu_m[:2], 0.0))
     height_m = float(pose.position_enu_m[2])

@@ -1,4 +1,4 @@
-"""Where the imaging drone's camera is: the pose that telemetry gives, and the true one."""
+"""The pose of the imaging drone's camera: as telemetry gives it, and the true one."""
 
 from dataclasses import dataclass
 from math import radians
@@ -16,9 +16,9 @@ from recon.sim.world.keyframes import FloatArray, gaussian, number
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraRig:
-    """A lens, and the pose it has when the aircraft is at `marked`, in `frame`.
+    """A camera, and its pose in `frame` when the aircraft is at `marked`.
 
-    `frame`'s origin lies on the (flat) ground; everywhere else the pose moves with the aircraft.
+    The origin of `frame` lies on the (flat) ground; the pose moves with the aircraft.
     """
 
     camera: OmnidirectionalCamera
@@ -34,11 +34,14 @@ class CameraRig:
 
 
 WOBBLE, MOUNT, DRIFT = 100, 110, 120
-"""Streams of the eye's random numbers: three axes from each."""
+"""Random streams of the imaging drone's camera; each has three axes."""
 
 
 def true_pose(pose: CameraPose, settings: HoverSettings, seed: int, time_s: float) -> CameraPose:
-    """Return the true pose at a time; `pose` is where aircraft and marking put the camera."""
+    """Return the true pose at a time; `pose` is the one computed from telemetry and marking.
+
+    They differ by the gimbal's residual motion, its levelling error, and GNSS and barometer drift.
+    """
     lean_rad = np.array(
         [
             radians(settings.mount_error_deg) * number((seed, MOUNT + axis), 0)
@@ -57,7 +60,7 @@ def _value(stream: tuple[int, ...], time_s: float, lifetime_s: float) -> float:
 
 
 def _rotation(vector_rad: FloatArray) -> FloatArray:
-    """Return the rotation about a vector by its length (Rodrigues)."""
+    """Return the rotation about a vector by its length in radians (Rodrigues' formula)."""
     angle = float(np.linalg.norm(vector_rad))
     if angle == 0.0:
         return np.eye(3)

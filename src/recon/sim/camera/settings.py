@@ -1,4 +1,4 @@
-"""What the eye's camera does to its pictures; a reason stands beside each number."""
+"""Settings of the imaging drone's camera, each with its reason."""
 
 from dataclasses import dataclass, field
 from typing import Self
@@ -8,20 +8,20 @@ from recon.sim.world.settings import expect
 
 @dataclass(frozen=True, slots=True)
 class HoverSettings:
-    """How the camera hangs: what its pose differs by from the one its aircraft believes in."""
+    """Differences between the camera's true pose and the one computed from telemetry."""
 
     wobble_deg: float = 0.12
     """Standard deviation about each axis; a three-axis gimbal in a light wind."""
     wobble_s: float = 1.5
-    """After which wobble has changed to 1/e: gusts push, the gimbal follows."""
+    """Time in which its correlation falls to 1/e: gusts push, the gimbal follows."""
     mount_error_deg: float = 0.25
-    """Standard deviation about each axis, drawn once: the gimbal's level after each power-up."""
+    """Standard deviation about each axis, drawn once: gimbal calibration at power-up."""
     drift_m: float = 0.5
-    """Standard deviation to each side; GNSS holds a hover within a metre or two."""
+    """Standard deviation per axis; GNSS holds a hover within a metre or two."""
     drift_up_m: float = 0.3
-    """Standard deviation up and down: the barometer."""
+    """Standard deviation of the height: the barometer."""
     drift_s: float = 40.0
-    """After which drift has changed to 1/e."""
+    """Time in which its correlation falls to 1/e."""
 
     def __post_init__(self) -> None:
         for name in ("wobble_deg", "mount_error_deg"):
@@ -34,12 +34,12 @@ class HoverSettings:
 
 @dataclass(frozen=True, slots=True)
 class LensSettings:
-    """What the lens does to the light."""
+    """Vignetting of the lens."""
 
     rim_falloff: float = 0.42
-    """Part of the light lost at the image circle's rim; it grows with the radius to the fourth."""
+    """Share of light lost at the image circle's rim; grows with the radius to the fourth."""
     soft_rim_px: float = 1.0
-    """Over which the image circle's edge fades."""
+    """Width over which the edge of the image circle fades."""
 
     def __post_init__(self) -> None:
         expect("lens: rim_falloff", self.rim_falloff, 0.0, 0.95)
@@ -48,22 +48,22 @@ class LensSettings:
 
 @dataclass(frozen=True, slots=True)
 class ExposureSettings:
-    """How the camera sets exposure and white balance by itself."""
+    """Automatic exposure and white balance."""
 
     follows: float = 0.7
-    """Part of the scene's brightness, in stops, that it takes out: cameras keep some of it."""
+    """Share of a brightness change, in stops, that auto exposure compensates."""
     lag_s: float = 1.5
-    """After which a change of the scene is followed to 1/e."""
+    """Time constant of auto exposure."""
     most_stops: float = 2.5
-    """Further than this it does not go from the exposure of full sun."""
+    """Largest deviation from the exposure of full sun."""
     drift_stops: float = 0.05
-    """Standard deviation of what it drifts by without reason (metering of grass against soil)."""
+    """Standard deviation of exposure drift from other causes (metering of grass against soil)."""
     drift_s: float = 45.0
-    """After which drift has changed to 1/e."""
+    """Time in which its correlation falls to 1/e."""
     white_balance: float = 0.015
-    """Standard deviation of red's and blue's drift over green, as a share."""
+    """Standard deviation of the gains of red and blue relative to green."""
     white_balance_s: float = 90.0
-    """After which white balance has changed to 1/e: cameras turn it slowly."""
+    """Time in which its correlation falls to 1/e: cameras adjust it slowly."""
 
     def __post_init__(self) -> None:
         expect("exposure: follows", self.follows, 0.0, 1.0)
@@ -76,12 +76,12 @@ class ExposureSettings:
 
 @dataclass(frozen=True, slots=True)
 class ImageSensorSettings:
-    """What the sensor adds."""
+    """Sensor noise."""
 
     full_well: float = 6_000.0
-    """Electrons of a pixel at white: a small sensor's; shot noise is the root of their number."""
+    """Electrons per pixel at white, of a small sensor; shot noise is the square root of it."""
     read_noise: float = 0.0008
-    """Standard deviation over white: some five electrons."""
+    """Standard deviation relative to white: about five electrons."""
 
     def __post_init__(self) -> None:
         expect("sensor: full_well", self.full_well, 50.0, 1e12)
@@ -90,7 +90,7 @@ class ImageSensorSettings:
 
 @dataclass(frozen=True, slots=True)
 class CameraSettings:
-    """All that makes the eye's pictures less than perfect."""
+    """All effects that make the imaging drone's frames less than perfect."""
 
     seed: int = 0
     hover: HoverSettings = field(default_factory=HoverSettings)
@@ -98,21 +98,21 @@ class CameraSettings:
     exposure: ExposureSettings = field(default_factory=ExposureSettings)
     sensor: ImageSensorSettings = field(default_factory=ImageSensorSettings)
     haze_m: float = 9_000.0
-    """After which 1/e of what is seen is left; a clear summer day's air (30 km of sight)."""
+    """Distance at which contrast falls to 1/e; clear summer air (visibility about 30 km)."""
     hot_spot: float = 0.28
-    """How much brighter crops are against the sun's direction: leaves hide their shadows."""
+    """Gain of brightness exactly opposite the sun: leaves hide their own shadows."""
     hot_spot_deg: float = 7.0
-    """After which the hot spot has fallen to 1/e."""
+    """Angle at which the hot spot falls to 1/e."""
 
     def __post_init__(self) -> None:
-        expect("eye: seed", self.seed, 0, 2**63)
-        expect("eye: haze_m", self.haze_m, 100.0, 1e12)
-        expect("eye: hot_spot", self.hot_spot, 0.0, 2.0)
-        expect("eye: hot_spot_deg", self.hot_spot_deg, 0.1, 90.0)
+        expect("camera: seed", self.seed, 0, 2**63)
+        expect("camera: haze_m", self.haze_m, 100.0, 1e12)
+        expect("camera: hot_spot", self.hot_spot, 0.0, 2.0)
+        expect("camera: hot_spot_deg", self.hot_spot_deg, 0.1, 90.0)
 
     @classmethod
     def perfect(cls) -> Self:
-        """Return a camera without any fault in clean air: light and lens's geometry are left."""
+        """Return a camera without defects, in clean air: only light and lens geometry remain."""
         return cls(
             hover=HoverSettings(wobble_deg=0.0, mount_error_deg=0.0, drift_m=0.0, drift_up_m=0.0),
             lens=LensSettings(rim_falloff=0.0),

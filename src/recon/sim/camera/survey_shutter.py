@@ -1,8 +1,7 @@
-"""Survey cameras: an interval timer that nobody hears, and what each photo shows.
+"""Survey cameras: an interval timer without telemetry, and the footprint of each photo.
 
-The pilot starts the timer by hand some time before the flight, so where in the interval it fires is
-unknown to the station. Here it is a function of the seed and the serial; only the score and tests
-may know it.
+The pilot starts the timer by hand before the flight, so its phase is unknown to the station. Here
+it is a function of seed and serial; only the score and tests may use it.
 """
 
 from collections.abc import Callable
@@ -20,15 +19,15 @@ from recon.sim.flight.kinematics import AircraftMotion
 
 FloatArray = npt.NDArray[np.float64]
 TruePath = Callable[[int], AircraftMotion | None]
-"""Time in ns -> where the aircraft truly is, None while it does not fly."""
+"""Time in ns -> the aircraft's true motion, None while it is not flying."""
 
 LATEST_S = 0.08
-"""A photo is up to so much late: the app waits for the card."""
+"""Largest delay of a photo, uniform from 0: writing to the memory card."""
 
 
 @dataclass(frozen=True, slots=True)
 class IntervalTimer:
-    """A camera that takes a photo each interval, at a phase of its own."""
+    """A camera that takes a photo each interval, at an unknown phase."""
 
     seed: int
     serial: str
@@ -42,7 +41,7 @@ class IntervalTimer:
 
     @property
     def phase_s(self) -> float:
-        """When within each interval it fires."""
+        """Phase within the interval, in seconds."""
         return Random(f"{self.seed}/{self.serial}/shutter").uniform(0.0, self.interval_s)
 
     def capture_ns(self, number: int) -> int:
@@ -51,7 +50,7 @@ class IntervalTimer:
         return seconds_to_ns(self.phase_s + number * self.interval_s + late_s)
 
     def between(self, start_ns: int, end_ns: int) -> list[tuple[int, int]]:
-        """Return number and time of the photos from `start_ns` up to before `end_ns`."""
+        """Return (number, time in ns) of the photos in [start_ns, end_ns)."""
         interval_ns = seconds_to_ns(self.interval_s)
         first = (start_ns - seconds_to_ns(self.phase_s + LATEST_S)) // interval_ns
         last = ceil((end_ns - seconds_to_ns(self.phase_s)) / interval_ns)
@@ -61,7 +60,7 @@ class IntervalTimer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyPhoto:
-    """One photo as it truly was taken."""
+    """One photo, with its true position."""
 
     serial: str
     number: int
@@ -71,7 +70,7 @@ class SurveyPhoto:
     height_m: float
     """Above the ground."""
     corners_m: FloatArray
-    """(4, 2) east, north of what it shows: front left, front right, back right, back left."""
+    """(4, 2) east, north of its footprint: front left, front right, back right, back left."""
 
 
 def photos(
@@ -81,7 +80,7 @@ def photos(
     span_ns: tuple[int, int],
     home_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> list[SurveyPhoto]:
-    """Return the photos taken in flight over level ground, the camera looking straight down.
+    """Return the photos taken in flight over level ground, the camera pointing straight down.
 
     `path` is relative to a home that lies `home_m` east, north, up of the site's origin; photos
     are in the site's frame.
@@ -100,7 +99,7 @@ def photos(
 
 
 def footprint_m(motion: AircraftMotion, camera: SurveyCamera) -> FloatArray:
-    """Return the corners (4, 2) east, north that a level camera shows, its top to the yaw."""
+    """Return the footprint's corners (4, 2) east, north; the top of the image points to the yaw."""
     ahead_m = camera.along_m(motion.height_m) / 2.0
     aside_m = camera.across_m(motion.height_m) / 2.0
     yaw = radians(motion.yaw_deg)

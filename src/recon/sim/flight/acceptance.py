@@ -1,4 +1,8 @@
-"""What DJI's SDK accepts. What does not fit is rejected silently: acknowledged, then nothing."""
+"""What DJI's Mobile SDK 4 accepts of missions and sticks.
+
+Everything else is rejected silently: the app acknowledges the packet, and nothing happens
+(decisions on the ICD, "What DJI accepts").
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,13 +35,13 @@ class SdkLimits:
 
 
 RADIUS_TOLERANCE_M = 1e-3
-"""The wire's 0.2 is a 32-bit float."""
+"""0.2 as a 32-bit float on the wire is not 0.2."""
 
 
 def mission_problem(
     points: Sequence[MissionPoint], is_curved: bool, limits: SdkLimits
 ) -> str | None:
-    """Return why the SDK would reject a mission, else None. Distances are from home at (0, 0)."""
+    """Return why the SDK would reject a mission, else None. Home is at (0, 0)."""
     if not 2 <= len(points) <= limits.max_waypoints:
         return f"{len(points)} waypoints, accepted are 2 to {limits.max_waypoints}"
     for number, point in enumerate(points, 1):
@@ -83,6 +87,7 @@ def _point_problem(point: MissionPoint, limits: SdkLimits) -> str | None:
 
 def _spacing_problem(points: Sequence[MissionPoint], limits: SdkLimits) -> str | None:
     lengths = [_distance_m(a, b) for a, b in pairwise(points)]
+    # The SDK checks the way from the last waypoint to the first as well, though it is not flown.
     for length in (*lengths, _distance_m(points[-1], points[0])):
         if not limits.least_spacing_m <= length <= limits.largest_spacing_m:
             return f"waypoints {length:.2f} m apart"

@@ -1,8 +1,9 @@
-"""The air an aircraft flies in, and how it is pushed about by it.
+"""The wind at one aircraft, and how it displaces the aircraft.
 
-The flight controller leans against the wind it knows, and learns of a change within seconds. What
-it does not know yet pushes: the aircraft gives way and comes back. A steady wind therefore moves
-nothing that is held; it costs airspeed, and so time and battery.
+The flight controller compensates the wind it has estimated, and its estimate follows the true wind
+within seconds. The rest is unknown to it and pushes the aircraft off its velocity, which it then
+corrects. So a steady wind displaces nothing that holds position; it costs airspeed, and thereby
+time and battery.
 """
 
 from dataclasses import dataclass, field
@@ -13,33 +14,34 @@ from recon.sim.flight.kinematics import DRAG_PER_S, AircraftMotion
 from recon.sim.world.wind import Wind
 
 Velocity = tuple[float, float, float]
-"""North, east, up, where the air goes, in m/s."""
+"""North, east, up components of the air's motion, in m/s."""
 STILL: Velocity = (0.0, 0.0, 0.0)
 
 LOOK_NS = 250_000_000
-"""The wind is looked up so often: its smallest gusts last a second."""
+"""Interval between evaluations of the wind: its shortest gusts last about a second."""
 LEARNS_WITHIN_S = 1.5
-"""The flight controller's estimate of the wind follows it with this lag."""
+"""Time constant of the flight controller's wind estimate."""
 COMES_BACK_WITHIN_S = 1.0
+"""Time constant with which the controller takes out a velocity error."""
 GROUND_EFFECT_M = 10.0
-"""Towards the ground there is less and less room for gusts up or down."""
+"""Below this height vertical gusts fade linearly to zero at the ground."""
 WARNS_OF_S = 10.0
-"""The wind that is warned of is a mean of about so long."""
+"""Averaging time of the wind speed that warnings are based on."""
 WARNING_MPS = (5.0, 8.0)
-"""Above these the aircraft warns of wind, and of strong wind (half and most of what it can fly in):
-low enough that the station's energy model is on the careful side."""
+"""Above these the aircraft reports wind, and strong wind (half and most of what it can fly in).
+Low values, so that the station's energy model errs on the safe side."""
 
 
 @dataclass(frozen=True, slots=True)
 class Squall:
-    """Gusts on top of the wind, one after the other, from one direction: the fault `gusts`."""
+    """Periodic gusts on top of the wind, from one direction: the fault `gusts`."""
 
     heading_deg: float
     peak_mps: float = 9.0
     period_s: float = 8.0
 
     def at(self, elapsed_s: float) -> Velocity:
-        """Return what it adds so long after its begin: nothing at first, the peak half-way."""
+        """Return the velocity it adds: sine squared, from 0 to the peak and back each period."""
         speed_mps = self.peak_mps * sin(pi * elapsed_s / self.period_s) ** 2
         heading = radians(self.heading_deg)
         return speed_mps * cos(heading), speed_mps * sin(heading), 0.0
@@ -47,14 +49,14 @@ class Squall:
 
 @dataclass(slots=True)
 class Air:
-    """The wind at one aircraft: `felt` now, and `push` by which it is off what it was asked for."""
+    """The wind at one aircraft: `felt` is the wind now, `push` the velocity error it causes."""
 
     wind: Wind | None = None
     home_north_m: float = 0.0
     home_east_m: float = 0.0
-    """Where the aircraft's own metres begin, in the frame of the wind."""
+    """The aircraft's home in the frame of the wind."""
     start_ns: int = 0
-    """When the wind's own time begins."""
+    """Time 0 of the wind."""
     felt: Velocity = STILL
     push: Velocity = STILL
     _squall: tuple[int, Squall] | None = None
@@ -65,27 +67,28 @@ class Air:
 
     @property
     def horizontal(self) -> tuple[float, float]:
-        """The felt wind north and east."""
+        """North and east components of the wind now."""
         return self.felt[0], self.felt[1]
 
     @property
     def warning_level(self) -> int:
-        """0 none, 1 wind, 2 strong wind: what telemetry tells."""
+        """0 none, 1 wind, 2 strong wind, as in extended telemetry."""
         return sum(self._steady_mps > limit for limit in WARNING_MPS)
 
     def begin_squall(self, squall: Squall, now_ns: int) -> None:
-        """Add gusts from now on."""
+        """Start gusts."""
         self._squall = (now_ns, squall)
 
     def end_squall(self) -> None:
-        """Take the added gusts away."""
+        """End the gusts."""
         self._squall = None
 
     def step(self, motion: AircraftMotion, now_ns: int, seconds: float) -> None:
-        """Feel the wind where the aircraft is, and give way to what is new in it."""
+        """Advance by `seconds`: wind at the aircraft, estimate, and velocity error."""
         if self.wind is None and self._squall is None and self.push == self._known == STILL:
             self.felt = STILL
             return
+        # At the first step the estimate is already settled: the aircraft has been hovering here.
         is_first = self._looked_ns is None
         self._look(motion, now_ns)
         if is_first:

@@ -1,4 +1,19 @@
-"""One simulated aircraft: its flight controller's modes, battery, home and gimbal."""
+"""One simulated aircraft: flight controller, battery, home point and gimbal.
+
+Theory of operation
+-------------------
+The aircraft is always in one `ActiveMode` (`flight_modes`, `mission`). Every 50 ms the mode gives a
+velocity demand, wind and limits are applied, kinematics move the aircraft, and the mode may name
+its successor: TakeOff -> what follows it, MissionFlight -> Hold or Land, GoHome -> Land,
+Land -> Grounded. Everything else changes the mode from outside:
+
+- commands of the app (`hover`, `land`, `go_home`, `fly_mission`, `stick`), which are ignored on the
+  ground, while the pilot has control, or without GNSS, as each method states;
+- the pilot (`pilot_takes`), loss of GNSS (Hold in ATTI, drifting with the wind), a crash;
+- the battery: below `FORCED_LANDING_FRACTION` the aircraft lands where it is, whatever it flies.
+
+Home is set at each takeoff. `MissionID` counts missions started, and is 0 while none is flown.
+"""
 
 from dataclasses import dataclass, field
 from math import hypot
@@ -18,33 +33,33 @@ from recon.sim.flight.kinematics import (
 from recon.sim.flight.mission import Gimbal, MissionFlight, MissionPoint
 
 TICK_NS = 50_000_000
-"""Motion advances in steps of 50 ms, so that it does not depend on how often it is asked."""
+"""Fixed integration step: the result must not depend on how often `advance` is called."""
 
 FLYING_ABOVE_M = 0.02
 AT_LIMIT_WITHIN_M = 0.5
 STICK_DRIFT_SHARE = 0.08
-"""Of the wind: under sticks the controller holds a velocity, no place, and not quite that one."""
+"""Share of the wind: under sticks the controller holds a velocity, imperfectly, and no position."""
 
 
 @dataclass(frozen=True, slots=True)
 class AircraftSettings:
-    """What is set in an aircraft before the flight."""
+    """Settings of an aircraft, made before the flight."""
 
     limits: Limits = field(default_factory=Limits)
     go_home_height_m: float = 30.0
     endurance_s: float = 1500.0
     stick_drift_north_mps: float = 0.0
     stick_drift_east_mps: float = 0.0
-    """What wind pushes the aircraft past the velocity that a virtual stick asks for. In position
-    mode and in missions the flight controller holds against it."""
+    """Constant velocity error under virtual stick. In position mode and in missions the flight
+    controller compensates it."""
     landing_confirmation_s: float = 1.0
-    """The app confirms a landing this long after the aircraft stopped at 0.3 m."""
+    """Delay until the app confirms a landing, after the aircraft stopped at 0.3 m."""
     max_height_m: float = 500.0
-    """Above takeoff: the aircraft climbs no higher, and tells when it is there."""
+    """Above takeoff: the aircraft climbs no higher, and reports reaching it."""
     max_distance_m: float = 5_000.0
-    """From home: told when it is reached; missions that lead farther are rejected."""
+    """From home: reported when reached; missions that lead farther are rejected."""
     battery_swap_s: float | None = None
-    """So long after a landing somebody has put in a fresh battery; None: nobody does."""
+    """From landing to a full battery; None: batteries are not changed."""
 
 
 @dataclass(slots=True)
@@ -57,15 +72,15 @@ class Aircraft:
     active_mode: ActiveMode = field(default_factory=Grounded)
     gimbal: Gimbal = field(default_factory=Gimbal)
     battery: Battery = field(default_factory=lambda: Battery(1.0, 1500.0))
-    is_pilots: bool = False
-    """Whether the pilot's mode switch keeps the app's missions and sticks out."""
+    has_pilot_control: bool = False
+    """Whether the pilot has control by the mode switch: missions and sticks are ignored."""
     air: Air = field(default_factory=Air)
     has_gnss: bool = True
     home_north_m: float = 0.0
     home_east_m: float = 0.0
     _mission_count: int = 0
     _landed_at_ns: int | None = None
-    """Since when a battery that has flown waits on the ground for somebody to change it."""
+    """Time of the last landing, until its battery is changed."""
 
     @property
     def is_on_ground(self) -> bool:
@@ -74,14 +89,14 @@ class Aircraft:
 
     @property
     def is_flying(self) -> bool:
-        """What the flight controller says: lifted off, and the motors not stopped since."""
+        """The flight controller's in-air flag: lifted off, and motors not stopped since."""
         if isinstance(self.active_mode, TakeOff):
             return self.motion.height_m > FLYING_ABOVE_M
         return not self.is_on_ground
 
     @property
     def flight_mode(self) -> FlightMode:
-        """The flight mode."""
+        """The flight mode that telemetry reports."""
         return self.active_mode.mode
 
     @property
@@ -91,35 +106,35 @@ class Aircraft:
 
     @property
     def is_at_max_height(self) -> bool:
-        """Whether it is as high as its settings let it."""
+        """Whether it has reached the height limit of its settings."""
         return self.motion.height_m >= self.settings.max_height_m - AT_LIMIT_WITHIN_M
 
     @property
     def is_at_max_distance(self) -> bool:
-        """Whether it is as far from home as its settings let it."""
+        """Whether it has reached the distance limit of its settings."""
         away_m = hypot(
             self.motion.north_m - self.home_north_m, self.motion.east_m - self.home_east_m
         )
         return away_m >= self.settings.max_distance_m - AT_LIMIT_WITHIN_M
 
     @property
-    def obeys_the_app(self) -> bool:
-        """Whether missions, sticks and returns do anything: not for lack of GNSS, or a pilot."""
-        return self.has_gnss and not self.is_pilots
+    def accepts_app_control(self) -> bool:
+        """Whether missions and sticks are accepted: GNSS available, pilot not in control."""
+        return self.has_gnss and not self.has_pilot_control
 
     def advance(self, now_ns: int) -> None:
-        """Move on in whole ticks, up to `now_ns`."""
+        """Advance in whole ticks, up to `now_ns`."""
         while self.now_ns + TICK_NS <= now_ns:
             self._tick(TICK_NS / NS_PER_S)
             self.now_ns += TICK_NS
 
     def hover(self) -> None:
-        """Stop and hold; on the ground nothing."""
+        """Stop and hold; ignored on the ground."""
         if not self.is_on_ground:
             self.active_mode = Hold()
 
     def take_off(self, then: ActiveMode | None = None) -> None:
-        """Start from the ground, which is from now on home, and go on with `then`."""
+        """Take off from the ground, which becomes home, and continue with `then`."""
         if self.is_on_ground:
             self._set_home()
             self.active_mode = TakeOff(self.settings.limits, then or Hold())
@@ -132,26 +147,26 @@ class Aircraft:
             self.active_mode = Land(self.settings.landing_confirmation_s)
 
     def go_home(self) -> None:
-        """Return and land; on the ground, or not knowing where it is, nothing."""
+        """Return and land; ignored on the ground or without GNSS."""
         if not self.is_on_ground and self.has_gnss:
-            self.active_mode = self._way_home()
+            self.active_mode = self._go_home_mode()
 
     def take_off_and_go_home(self) -> None:
-        """What some apps make of a return order on the ground."""
+        """Take off first when on the ground, as some apps do on a return command."""
         if not self.has_gnss:
             return
         if self.is_on_ground:
             self._set_home()
-        self.take_off(self._way_home())
+        self.take_off(self._go_home_mode())
 
     def fly_mission(
         self, points: tuple[MissionPoint, ...], is_curved: bool, lands_at_end: bool
     ) -> None:
-        """Fly a mission in place of whatever is flown now; from the ground take off first.
+        """Fly a mission in place of the current mode; from the ground take off first.
 
-        While the pilot has it, or without GNSS, nothing.
+        Ignored while the pilot has control or without GNSS.
         """
-        if not self.obeys_the_app:
+        if not self.accepts_app_control:
             return
         self._mission_count = self._mission_count % 0xFFFF + 1
         settings = self.settings
@@ -166,48 +181,48 @@ class Aircraft:
         self.take_off(flight)
 
     def forget_mission_numbers(self) -> None:
-        """Count missions from the start again, as an app does that was restarted."""
+        """Restart mission numbers, as a restarted app does."""
         self._mission_count = 0
 
     def stick(self, stick: Stick) -> None:
-        """Fly a stick command; on the ground, for a pilot's, or without GNSS, nothing."""
-        if not self.is_on_ground and self.obeys_the_app:
+        """Fly a stick command; ignored on the ground, under pilot control or without GNSS."""
+        if not self.is_on_ground and self.accepts_app_control:
             self.active_mode = stick
 
     def pilot_takes(self, mode: FlightMode = FlightMode.GPS_SPORT) -> None:
-        """The pilot flips the mode switch, and for now holds."""
-        self.is_pilots = True
+        """The pilot takes control by the mode switch, and holds."""
+        self.has_pilot_control = True
         if not self.is_on_ground:
             self.active_mode = Hold(mode)
 
     def pilot_releases(self) -> None:
-        """The pilot flips the mode switch back; the aircraft holds until it is told something."""
-        self.is_pilots = False
+        """The pilot switches back; the aircraft holds until commanded."""
+        self.has_pilot_control = False
         if isinstance(self.active_mode, Hold):
             self.active_mode = Hold()
 
     def lose_gnss(self) -> None:
-        """Know no longer where it is: whatever was flown ends, and the wind carries it along."""
+        """Lose the position: the current mode ends and the aircraft drifts with the wind."""
         self.has_gnss = False
         if not self.is_on_ground and not isinstance(self.active_mode, Land | TakeOff):
             self.active_mode = Hold(FlightMode.ATTI)
 
     def find_gnss(self) -> None:
-        """Know again where it is, and hold there."""
+        """Regain the position, and hold there."""
         self.has_gnss = True
         if self.flight_mode is FlightMode.ATTI:
             self.active_mode = Hold()
 
     def crash(self) -> None:
-        """Fall from where it is, and lie there."""
+        """Fall to the ground at once, and stay there."""
         self.active_mode = Grounded()
-        self._lie_still()
+        self._come_to_rest()
         self._landed_at_ns = None
 
     def _set_home(self) -> None:
         self.home_north_m, self.home_east_m = self.motion.north_m, self.motion.east_m
 
-    def _way_home(self) -> GoHome:
+    def _go_home_mode(self) -> GoHome:
         return GoHome(
             self.home_north_m,
             self.home_east_m,
@@ -219,12 +234,12 @@ class Aircraft:
     def _tick(self, seconds: float) -> None:
         self.air.step(self.motion, self.now_ns, seconds)
         if not self.is_on_ground:
-            demand = self._carried(self.active_mode.demand(self.motion, seconds))
+            demand = self._disturbed(self.active_mode.demand(self.motion, seconds))
             wind = self.air.horizontal
             self.motion = _kept_above_ground(
                 step(self.motion, demand, seconds, self.settings.limits, wind)
             )
-            self._go_on()
+            self._switch_mode()
         else:
             self._change_battery()
         self.gimbal.step(seconds)
@@ -233,8 +248,8 @@ class Aircraft:
         if self.battery.fraction < FORCED_LANDING_FRACTION:
             self.land()
 
-    def _carried(self, demand: VelocityDemand) -> VelocityDemand:
-        """Return what is flown of a demand: the wind adds its part, the height limit takes its."""
+    def _disturbed(self, demand: VelocityDemand) -> VelocityDemand:
+        """Return a demand with the wind's drift added and the height limit applied."""
         north, east, up = self._drift() if self.is_flying else (0.0, 0.0, 0.0)
         limits = self.settings.limits
         highest = hold_height_mps(self.motion.height_m, self.settings.max_height_m, limits)
@@ -246,7 +261,7 @@ class Aircraft:
         )
 
     def _drift(self) -> tuple[float, float, float]:
-        """Return the velocity that the air adds to what is asked for."""
+        """Return the velocity (north, east, up) that the air adds to the demand."""
         north, east, up = self.air.push
         if not self.has_gnss:
             return *self.air.horizontal, up
@@ -255,13 +270,13 @@ class Aircraft:
             return north + STICK_DRIFT_SHARE * wind_north, east + STICK_DRIFT_SHARE * wind_east, up
         return north, east, up
 
-    def _go_on(self) -> None:
+    def _switch_mode(self) -> None:
         following = self.active_mode.successor(self.motion)
         if following is None:
             return
         self.active_mode = following
         if isinstance(following, Grounded):
-            self._lie_still()
+            self._come_to_rest()
             self._landed_at_ns = self.now_ns
 
     def _change_battery(self) -> None:
@@ -272,7 +287,7 @@ class Aircraft:
             self.battery = Battery(1.0, self.settings.endurance_s)
             self._landed_at_ns = None
 
-    def _lie_still(self) -> None:
+    def _come_to_rest(self) -> None:
         motion = self.motion
         self.motion = AircraftMotion(
             north_m=motion.north_m, east_m=motion.east_m, yaw_deg=motion.yaw_deg

@@ -1,6 +1,20 @@
-"""What a flight controller does in each mode: every manoeuvre turns motion into a demand.
+"""The modes of the flight controller: each turns the aircraft's motion into a velocity demand.
 
-A manoeuvre lives while it is flown: it may keep timers, and says by `successor` what follows it.
+Theory of operation
+-------------------
+A mode object lives while the mode is flown, and may keep timers. Each tick the aircraft calls
+`demand`, moves, and then calls `successor`: None keeps the mode, anything else replaces it.
+
+    Grounded --(command)--> TakeOff --(1.1 m reached)--> Hold | MissionFlight | GoHome
+    Hold, Stick, BackAndForth: stay until commanded otherwise
+    GoHome --(above home and at rest, 2 s at least)--> Land
+    MissionFlight --(last waypoint)--> Hold | Land
+    Land --(0.3 m, confirmed, touchdown)--> Grounded
+
+Land reports AUTO_LANDING, and CONFIRM_LANDING while it waits at 0.3 m: DJI's firmware stops there
+until the app confirms. A virtual stick outlives its timeout: its velocity becomes zero, and the
+mode stays JOYSTICK, as with DJI's SDK. Arrival is judged by position and speed together, so that a
+mode does not end while the aircraft shoots past its target.
 """
 
 from dataclasses import dataclass, field
@@ -20,10 +34,10 @@ from recon.sim.flight.kinematics import (
 TAKEOFF_HEIGHT_M = 1.2
 SPIN_UP_S = 1.5
 CONFIRM_HEIGHT_M = 0.3
-"""DJI firmware stops here and waits until the app confirms that the ground is fit to land on."""
+"""DJI's firmware stops here until the app confirms that the ground is fit to land on."""
 
 SHORTEST_GO_HOME_S = 2.0
-"""The mode lasts this long even above home, so that telemetry at 2 Hz shows it."""
+"""The mode lasts this long even above home, so that telemetry at 2 Hz reports it."""
 
 LANDING_FAST_MPS = 3.0
 LANDING_SLOW_MPS = 0.8
@@ -31,19 +45,19 @@ LANDING_SLOW_BELOW_M = 6.0
 
 
 class ActiveMode(Protocol):
-    """One thing a vehicle does."""
+    """A flight mode being flown."""
 
     @property
     def mode(self) -> FlightMode:
-        """The flight mode telemetry reports meanwhile."""
+        """The flight mode that telemetry reports."""
         ...
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Return what the next `seconds` ask of the airframe."""
+        """Return the velocity demand for the next `seconds`."""
         ...
 
     def successor(self, motion: AircraftMotion) -> "ActiveMode | None":
-        """Return what follows when this is done, else None."""
+        """Return the next mode when this one is complete, else None."""
         ...
 
 
@@ -54,11 +68,11 @@ class Grounded:
     mode: FlightMode = FlightMode.GPS_ATTI
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for nothing."""
+        """Return zero velocity."""
         return VelocityDemand()
 
     def successor(self, motion: AircraftMotion) -> ActiveMode | None:
-        """Stay until ordered otherwise."""
+        """Stay until commanded otherwise."""
         return None
 
 
@@ -69,17 +83,17 @@ class Hold:
     mode: FlightMode = FlightMode.GPS_ATTI
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for standstill."""
+        """Return zero velocity."""
         return VelocityDemand()
 
     def successor(self, motion: AircraftMotion) -> ActiveMode | None:
-        """Stay until ordered otherwise."""
+        """Stay until commanded otherwise."""
         return None
 
 
 @dataclass(slots=True)
 class TakeOff:
-    """Start the motors, rise to takeoff height, then do `then`."""
+    """Start the motors, climb to takeoff height, continue with `then`."""
 
     limits: Limits
     then: ActiveMode = field(default_factory=Hold)
@@ -87,7 +101,7 @@ class TakeOff:
     _elapsed_s: float = 0.0
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for a climb once the motors run."""
+        """Climb once the motors have spun up."""
         self._elapsed_s += seconds
         if self._elapsed_s < SPIN_UP_S:
             return VelocityDemand()
@@ -96,13 +110,13 @@ class TakeOff:
         )
 
     def successor(self, motion: AircraftMotion) -> ActiveMode | None:
-        """Go on once the height is reached."""
+        """Continue once the height is reached."""
         return self.then if motion.height_m > TAKEOFF_HEIGHT_M - 0.1 else None
 
 
 @dataclass(slots=True)
 class Land:
-    """Come down, wait at 0.3 m for the app's confirmation, touch down."""
+    """Descend, wait at 0.3 m for the app's confirmation, touch down."""
 
     confirmation_s: float = 1.0
     _waited_s: float = 0.0
@@ -114,7 +128,7 @@ class Land:
         return FlightMode.CONFIRM_LANDING if waiting else FlightMode.AUTO_LANDING
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for a descent straight down, after the horizontal speed is gone."""
+        """Stop horizontally, then descend straight down."""
         if motion.ground_speed_mps > 0.5:
             return VelocityDemand()
         if self._waited_s >= self.confirmation_s:
@@ -122,7 +136,7 @@ class Land:
         if motion.height_m <= CONFIRM_HEIGHT_M + 0.05:
             self._waited_s += seconds
             return VelocityDemand()
-        # Half a metre above the stop the descent is a crawl, so that braking ends at 0.3 m.
+        # Slow down over the last half metre, so that braking ends at 0.3 m and not below.
         above_m = motion.height_m - CONFIRM_HEIGHT_M
         fast = LANDING_SLOW_MPS if motion.height_m < LANDING_SLOW_BELOW_M else LANDING_FAST_MPS
         return VelocityDemand(velocity_up_mps=-min(fast, 0.1 + braking_speed_mps(above_m, 0.8)))
@@ -147,7 +161,7 @@ class GoHome:
     _elapsed_s: float = 0.0
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for the climb first, then for the way home."""
+        """Climb first, then fly home."""
         self._elapsed_s += seconds
         if self._height_m is None:
             self._height_m = max(self.go_home_height_m, motion.height_m)
@@ -183,7 +197,7 @@ class Stick:
     _elapsed_s: float = 0.0
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for the stick's velocity; after the timeout for standstill, the rest kept."""
+        """Return the stick's velocity; after the timeout zero, heading and height still held."""
         self._elapsed_s += seconds
         x, y = self.velocity_x_mps, self.velocity_y_mps
         if self._elapsed_s > self.timeout_s:
@@ -194,13 +208,13 @@ class Stick:
         return VelocityDemand(north, east, up, self.yaw_deg)
 
     def successor(self, motion: AircraftMotion) -> ActiveMode | None:
-        """Stay in this mode until ordered otherwise."""
+        """Stay in this mode until commanded otherwise."""
         return None
 
 
 @dataclass(slots=True)
 class BackAndForth:
-    """Fly back and forth over a rectangle as if a pilot did, in position mode, for ever."""
+    """Fly a back-and-forth pattern endlessly, in position mode, as a pilot would."""
 
     corners_m: tuple[tuple[float, float], ...]
     height_m: float
@@ -210,7 +224,7 @@ class BackAndForth:
     _next: int = 0
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for the next corner, once the height is there."""
+        """Fly to the next corner, once half the height is reached."""
         up = hold_height_mps(motion.height_m, self.height_m, self.limits)
         if motion.height_m < 0.5 * self.height_m:
             return VelocityDemand(velocity_up_mps=up)
@@ -220,12 +234,12 @@ class BackAndForth:
         return _towards(motion, north_m, east_m, self.speed_mps, up)
 
     def successor(self, motion: AircraftMotion) -> ActiveMode | None:
-        """Stay until ordered otherwise."""
+        """Stay until commanded otherwise."""
         return None
 
 
 def heading_deg(north_m: float, east_m: float) -> float:
-    """Return the compass heading of a horizontal vector."""
+    """Return the compass heading, in degrees, of a horizontal vector."""
     return degrees(atan2(east_m, north_m))
 
 
@@ -240,7 +254,7 @@ def _from_body(forward: float, right: float, yaw_deg: float) -> tuple[float, flo
 def _towards(
     motion: AircraftMotion, north_m: float, east_m: float, speed_mps: float, up_mps: float
 ) -> VelocityDemand:
-    """Return the demand that flies level to a point, nose first, and stops there."""
+    """Return the demand that flies level to a point, nose forward, and stops there."""
     north, east = north_m - motion.north_m, east_m - motion.east_m
     distance = hypot(north, east)
     if distance < 1e-6:

@@ -1,4 +1,4 @@
-"""How a multirotor moves: velocities that follow demands within limits.
+"""Kinematics of a multirotor: velocities follow demands within limits.
 
 Positions are north and east metres of the tangent plane at the vehicle's home point; heights are
 above that point. A step is pure: (motion, demand, seconds) -> motion.
@@ -13,23 +13,23 @@ from recon.model.units import wrap_degrees
 GRAVITY_MPS2 = 9.80665
 
 DRAG_PER_S = 0.22
-"""Horizontal deceleration by drag per m/s of airspeed: about 18 degrees of tilt at 15 m/s."""
+"""Deceleration by drag per m/s of airspeed: gives about 18 degrees of tilt at 15 m/s."""
 
 BRAKING_MPS2 = 2.0
-"""What approaches brake with: a fifth of the acceleration is kept for wind and for steering."""
+"""Deceleration of approaches: a fifth of the acceleration is kept for wind and steering."""
 
 Wind = tuple[float, float]
-"""North and east, where the air goes, in m/s."""
+"""North and east components of the air's motion, in m/s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What the airframe and its flight controller allow."""
+    """Limits of the airframe and its flight controller."""
 
     speed_mps: float = 15.0
-    """Over the ground, as the flight controller allows it."""
+    """Ground speed, limited by the flight controller."""
     airspeed_mps: float = 17.0
-    """Through the air: a wind of 10 m/s leaves 7 against it."""
+    """Against a wind of 10 m/s, 7 m/s of ground speed are left."""
     acceleration_mps2: float = 2.5
     climb_mps: float = 2.6
     descent_mps: float = 3.2
@@ -38,7 +38,7 @@ class Limits:
 
 
 class AircraftMotion(NamedTuple):
-    """Where the vehicle is, how fast, and which way it points."""
+    """Position, velocity and attitude of an aircraft."""
 
     north_m: float = 0.0
     east_m: float = 0.0
@@ -57,7 +57,7 @@ class AircraftMotion(NamedTuple):
 
 
 class VelocityDemand(NamedTuple):
-    """What a pilot or autopilot asks for; `yaw_deg` None keeps the present heading."""
+    """Requested velocity; `yaw_deg` None keeps the present heading."""
 
     velocity_north_mps: float = 0.0
     velocity_east_mps: float = 0.0
@@ -72,10 +72,10 @@ def step(
     limits: Limits,
     wind: Wind = (0.0, 0.0),
 ) -> AircraftMotion:
-    """Return the motion `seconds` later, with every limit kept.
+    """Return the motion `seconds` later, within all limits. Pure.
 
-    `wind` is the air's velocity north and east. The airframe leans against it, and where it would
-    have to fly faster through the air than it can, it flies slower over the ground.
+    The airframe tilts against `wind`, and where the airspeed limit is reached it flies slower over
+    the ground, on the same course.
     """
     north, east = _follow_horizontally(motion, demand, seconds, limits, wind)
     up = _follow_vertically(motion.velocity_up_mps, demand.velocity_up_mps, seconds, limits)
@@ -97,8 +97,8 @@ def step(
 def braking_speed_mps(distance_m: float, deceleration_mps2: float) -> float:
     """Return the speed from which a stop within `distance_m` is possible.
 
-    Near the target the square root is replaced by a line that goes on from it smoothly, so that the
-    approach settles instead of overshooting by a step.
+    Near the target the square root is replaced by its tangent: its slope grows without bound at 0,
+    and with a finite time step the approach would oscillate about the target.
     """
     settling_m = deceleration_mps2
     if distance_m < settling_m:
@@ -107,7 +107,7 @@ def braking_speed_mps(distance_m: float, deceleration_mps2: float) -> float:
 
 
 def hold_height_mps(height_m: float, target_m: float, limits: Limits) -> float:
-    """Return the vertical velocity that brings the vehicle to a height and keeps it there."""
+    """Return the vertical velocity that brings the aircraft to a height and holds it."""
     error_m = target_m - height_m
     speed = braking_speed_mps(abs(error_m), 0.4 * limits.vertical_acceleration_mps2)
     return min(speed, limits.climb_mps) if error_m > 0.0 else -min(speed, limits.descent_mps)
@@ -141,9 +141,9 @@ def _turn(yaw_deg: float, wanted_deg: float | None, seconds: float, rate_dps: fl
 
 
 def _against(asked: tuple[float, float], wind: Wind, fastest_mps: float) -> tuple[float, float]:
-    """Return the velocity over the ground that is left of `asked` in a wind: the course is kept.
+    """Return the part of the ground velocity `asked` that the airspeed limit leaves; course kept.
 
-    A wind that is faster than the airframe carries it along.
+    In a wind faster than the airspeed limit the aircraft drifts with the wind.
     """
     through = asked[0] - wind[0], asked[1] - wind[1]
     if hypot(*through) <= fastest_mps:
@@ -151,7 +151,7 @@ def _against(asked: tuple[float, float], wind: Wind, fastest_mps: float) -> tupl
     if hypot(*wind) >= fastest_mps:
         north, east = _clip(-wind[0], -wind[1], fastest_mps)
         return wind[0] + north, wind[1] + east
-    # The share k of what is asked with |k asked - wind| = fastest.
+    # Solve |k asked - wind| = fastest for the larger k: a quadratic equation.
     square = asked[0] ** 2 + asked[1] ** 2
     along = asked[0] * wind[0] + asked[1] * wind[1]
     rest = fastest_mps**2 - wind[0] ** 2 - wind[1] ** 2
@@ -173,7 +173,7 @@ def _tilt(
     heading = radians(yaw_deg)
     forward = push_north * cos(heading) + push_east * sin(heading)
     right = push_east * cos(heading) - push_north * sin(heading)
-    # The tilt follows with a quarter second's lag, as an airframe does.
+    # First-order lag of 0.25 s, about that of an airframe's attitude.
     share = min(1.0, seconds / 0.25)
     pitch = degrees(atan2(-forward, GRAVITY_MPS2))
     roll = degrees(atan2(right, GRAVITY_MPS2))

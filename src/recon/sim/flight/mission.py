@@ -1,4 +1,9 @@
-"""Flying a waypoint mission (ICD 3.2.3): stopping at waypoints, or round their corners."""
+"""Flying a waypoint mission (ICD 3.2.3): stopping at waypoints, or rounding their corners.
+
+A straight mission climbs to the first waypoint's height, flies to it, and then leg by leg, with
+loiter and gimbal action at each stop. A curved mission does the same up to the first waypoint and
+then follows the rounded path without stopping; the SDK ignores its actions.
+"""
 
 from dataclasses import dataclass
 from math import hypot, sqrt
@@ -19,8 +24,11 @@ ARRIVED_WITHIN_M = 0.5
 ARRIVED_BELOW_MPS = 0.4
 GIMBAL_RATE_DPS = 30.0
 PATH_GAIN_PER_S = 0.8
+"""Velocity correction per metre off the path: corrects within about a second, without overshoot."""
 LEAST_PATH_SPEED_MPS = 0.3
+"""Speeds along a path are 0 at its ends: without this the target point would never start."""
 LONGEST_LAG_M = 4.0
+"""The target point slows down linearly with the aircraft's lag and waits at this distance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +46,7 @@ class MissionPoint:
 
 @dataclass(slots=True)
 class Gimbal:
-    """The survey camera's gimbal: turns at a limited rate towards what was asked last."""
+    """The survey camera's gimbal: turns at a limited rate to the pitch commanded last."""
 
     pitch_deg: float = -90.0
     wanted_deg: float = -90.0
@@ -50,13 +58,13 @@ class Gimbal:
 
     @property
     def has_arrived(self) -> bool:
-        """Whether it points where it was asked to."""
+        """Whether the commanded pitch is reached."""
         return abs(self.wanted_deg - self.pitch_deg) < 0.1
 
 
 @dataclass(slots=True)
 class MissionFlight:
-    """A mission being flown, leg after leg; with `is_curved` round the corners after the first."""
+    """A mission being flown; with `is_curved` the corners after the first are rounded."""
 
     points: tuple[MissionPoint, ...]
     is_curved: bool
@@ -71,7 +79,7 @@ class MissionFlight:
     _curve: "CurveFollower | None" = None
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for the way to the next waypoint, or for standstill while its action runs."""
+        """Fly to the next waypoint, or stand still while its action runs."""
         if self._curve is not None:
             return self._curve.demand(motion, seconds)
         if self.next_index >= len(self.points):
@@ -96,7 +104,7 @@ class MissionFlight:
         return Land(self.confirmation_s) if self.lands_at_end else Hold()
 
     def _rise(self, motion: AircraftMotion, target: MissionPoint) -> VelocityDemand:
-        """Climb to the first waypoint's height before going there, as DJI's safe start does."""
+        """Climb to the first waypoint's height before flying there (DJI's safe start)."""
         if motion.height_m >= target.height_m - 1.0:
             self._has_risen = True
         return VelocityDemand(
@@ -112,7 +120,7 @@ class MissionFlight:
             self.gimbal.wanted_deg = point.gimbal_pitch_deg
 
     def _act(self, seconds: float) -> VelocityDemand:
-        """Stay until both the loiter time and the gimbal's turn are over."""
+        """Stay until both the loiter time and the gimbal's turn are complete."""
         left_s = (self._loiter_left_s or 0.0) - seconds
         self._loiter_left_s = max(0.0, left_s)
         if left_s <= 0.0 and self.gimbal.has_arrived:
@@ -122,7 +130,7 @@ class MissionFlight:
 
 
 class CurveFollower:
-    """Follows a point that runs along a rounded path and waits when the vehicle falls behind."""
+    """Follows a target point on a rounded path; the point waits when the aircraft lags behind."""
 
     def __init__(self, points: tuple[MissionPoint, ...], limits: Limits) -> None:
         corners = [
@@ -133,11 +141,11 @@ class CurveFollower:
 
     @property
     def is_flown(self) -> bool:
-        """Whether the point has reached the end."""
+        """Whether the target point has reached the end."""
         return self._along_m >= self.path.length_m
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Ask for the point's velocity, corrected towards where it is."""
+        """Return the target point's velocity plus a correction towards it."""
         place = self.path.place_at(self._along_m)
         behind = [
             wanted - is_at
@@ -169,14 +177,14 @@ def _has_arrived(motion: AircraftMotion, point: MissionPoint) -> bool:
 def _pursue(
     motion: AircraftMotion, target: MissionPoint, speed_mps: float, limits: Limits
 ) -> VelocityDemand:
-    """Return the demand that flies straight at a waypoint in 3D and stops there."""
+    """Return the demand that flies straight to a waypoint in 3D and stops there."""
     north, east = target.north_m - motion.north_m, target.east_m - motion.east_m
     up = target.height_m - motion.height_m
     distance = sqrt(north * north + east * east + up * up)
     if distance < 1e-6:
         return VelocityDemand()
     share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
-    # A steep leg is flown as fast as the climb or descent limit lets it.
+    # On a steep leg the climb or descent limit sets the speed.
     steepest = limits.climb_mps if up > 0.0 else limits.descent_mps
     if abs(up) * share > steepest:
         share = steepest / abs(up)

@@ -1,9 +1,9 @@
-"""A curved mission's path: straight legs joined by quadratic curves, and how fast it may be flown.
+"""A curved mission's path: straight legs joined by quadratic curves, with the speed along it.
 
-The path is held as dense samples, because following, speed limits and braking are then three short
-loops. `CornerRadius` (ICD 3.2.3) is how far before its waypoint the path leaves the leg and how far
-after it joins the next, as in `geo.path`: this reading fits the SDK's rule that the radii of two
-neighbours must be less than their distance, at any angle.
+The path is densely sampled: following, speed limits and braking are then three short loops.
+`CornerRadius` (ICD 3.2.3) is the distance before its waypoint at which the path leaves the leg, and
+after it at which it joins the next, as in `geo.path`. This reading fits the SDK's rule that the
+radii of two neighbours must add to less than their distance, at any angle.
 """
 
 from collections.abc import Sequence
@@ -20,16 +20,16 @@ FloatArray = npt.NDArray[np.float64]
 
 SPACING_M = 0.5
 SIDEWAYS_SHARE = 0.6
-"""Of the acceleration, spent on a corner's curve; the rest is for speed and for steering."""
+"""Share of the acceleration used in curves; the rest is for speed changes and steering."""
 SHARPEST = 0.1
-"""Where the curve doubles back on itself within so much of its length, it is crept through."""
+"""Tangent length, relative, under which a curve doubles back on itself: flown at least speed."""
 LEAST_SPEED_MPS = 0.5
-"""Tight corners are crept through rather than stopped at."""
+"""Tight corners are flown slowly rather than stopped at."""
 
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """One waypoint in home metres; `speed_mps` holds from here to the next."""
+    """One waypoint in home metres; `speed_mps` applies from here to the next."""
 
     north_m: float
     east_m: float
@@ -40,7 +40,7 @@ class Corner:
 
 @dataclass(frozen=True, slots=True)
 class PathPlace:
-    """A place on a path: its point, the unit direction onwards, how fast it is flown."""
+    """A point on a path, the unit direction along it, and the speed there."""
 
     point_m: tuple[float, float, float]
     direction: tuple[float, float, float]
@@ -60,11 +60,11 @@ class FlightPath:
 
     @property
     def length_m(self) -> float:
-        """From end to end."""
+        """Total length."""
         return float(self.along_m[-1])
 
     def place_at(self, along_m: float) -> PathPlace:
-        """Return the place at a distance along the path, within its ends."""
+        """Return the place at a distance along the path, clamped to its ends."""
         after = int(np.searchsorted(self.along_m, along_m, side="right"))
         after = max(1, min(after, len(self.along_m) - 1))
         start, end = self.points_m[after - 1], self.points_m[after]
@@ -113,7 +113,7 @@ def _extend(
 
 
 def _curve(waypoints: FloatArray, reach_m: float, limits: Limits) -> list[tuple[FloatArray, float]]:
-    """Return points of the curve that cuts a corner, each with the speed it can be flown at."""
+    """Return points of the curve that cuts a corner, each with its speed limit."""
     corner = waypoints[1]
     back, ahead = _unit(waypoints[0] - corner), _unit(waypoints[2] - corner)
     if reach_m < 1e-6:
@@ -131,7 +131,7 @@ def _curve(waypoints: FloatArray, reach_m: float, limits: Limits) -> list[tuple[
 def _speed_round(
     back: FloatArray, ahead: FloatArray, t: float, reach_m: float, limits: Limits
 ) -> float:
-    """Return the speed at which the curve at `t` takes no more than its share of acceleration."""
+    """Return the speed at which the curve at `t` uses its share of the acceleration."""
     # The derivative at t is 2 reach (t ahead - (1 - t) back); its length and the constant cross
     # product with the second derivative give the curvature.
     tangent = t * ahead - (1.0 - t) * back
@@ -151,14 +151,14 @@ def _unit(offset: FloatArray) -> FloatArray:
 
 
 def _within_limits(points: FloatArray, wanted_mps: FloatArray, limits: Limits) -> FloatArray:
-    """Return speeds that can be reached from rest, keep the vertical limits, and end at rest."""
+    """Return speeds (N,) from rest to rest that keep the vertical and acceleration limits."""
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     slopes = np.abs(steps[:, 2]) / np.maximum(lengths, 1e-9)
     steepest = 0.8 * min(limits.climb_mps, limits.descent_mps)
     speeds = wanted_mps.copy()
     speeds[:-1] = np.minimum(speeds[:-1], steepest / np.maximum(slopes, 1e-9))
-    # Half of the acceleration is left for turning and for coming back to the path.
+    # v^2 = v0^2 + 2 a s with half the acceleration: the rest is for turning and path correction.
     speeds[0] = speeds[-1] = 0.0
     for i in range(len(speeds) - 2, -1, -1):
         braked = sqrt(speeds[i + 1] ** 2 + limits.acceleration_mps2 * lengths[i])

@@ -1,7 +1,7 @@
 """Procedural farmland seen from above: plots with crop rows, roads, tracks, water, trees, farms.
 
 The land is described once (rectangles, lines, points in east-north metres) and drawn at any
-resolution, so that coarse rasters of the distance agree with the fine one below the eye.
+resolution, so that coarse rasters of the distance agree with the fine ones below the camera.
 """
 
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ Box = tuple[float, float, float, float]
 """West, south, east, north in metres."""
 
 SECTION_M = 805.0
-"""Half a mile between roads."""
+"""Half a mile between roads, as in the corn belt's survey grid."""
 ROAD_EAST_M, ROAD_NORTH_M = 236.0, -287.0
-"""Where one crossing lies, so that roads pass the origin at some distance."""
+"""Position of one crossing: roads pass the origin at a distance."""
 LARGEST_PLOT_M = 240.0
 SMALLEST_PLOT_M = 80.0
 
@@ -32,31 +32,31 @@ CROPS: tuple[tuple[str, Colour, float], ...] = (
     ("soil", (127, 108, 86), 0.07),
     ("pasture", (112, 126, 76), 0.09),
 )
-"""Name, colour (RGB, muted as from a hundred metres up), share; the rest is meadow."""
+"""Name, colour (RGB, muted as seen from 100 m), share of plots; the rest is meadow."""
 MEADOW: Colour = (120, 130, 84)
 BARENESS = {"soil": 1.0, "stubble": 0.6, "maize": 0.25, "soybean": 0.25, "wheat": 0.3}
-"""Share of soil seen between plants; the rest is grass."""
+"""Share of bare soil visible between plants; 0.1 for crops not listed."""
 ROOFS: tuple[Colour, ...] = ((176, 178, 180), (134, 66, 54), (92, 94, 98), (188, 180, 164))
 """Sheet metal, red barn, slate, old metal."""
 
 FIRST_FARM_M = (154.0, 66.0)
-"""South-west corner of a farm near the origin: where the demonstration keeps out of a farmyard."""
+"""South-west corner of a farm near the origin: the keep-out zone of the demonstration site."""
 YARD_M = 50.0
 CREEK_FROM_FARM_M = 95.0
 CREEK_BEND_M = 160.0
-"""Over which a creek bends around the farm."""
+"""Length along the creek of its bend around the farm (Gaussian)."""
 FARMS_PER_CROSSING = 0.4
 PONDS = 60
 POND_EDGE_M = 5.0
-"""Of grass around water."""
+"""Width of grass around water."""
 NO_POND_WITHIN_M = 500.0
-"""The fields around the origin are fields."""
+"""No ponds in the fields that are surveyed, around the origin."""
 HEIGHT_PER_RADIUS = 2.6
 
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """A field: its rectangle in metres, colour, and crop rows."""
+    """A field: rectangle in metres, colour, and crop rows."""
 
     west_m: float
     south_m: float
@@ -68,7 +68,7 @@ class Plot:
     rows_run_north: bool
     patchiness: float
     bareness: float
-    """Share of soil among the crop, 0 to 1: where the ground is wet, soil darkens most."""
+    """Share of bare soil, 0 to 1: wet ground darkens by this share, as soil darkens most."""
 
     @property
     def box_m(self) -> Box:
@@ -78,7 +78,7 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """A crown from above."""
+    """A tree's crown."""
 
     east_m: float
     north_m: float
@@ -87,13 +87,13 @@ class Tree:
 
     @property
     def height_m(self) -> float:
-        """Of the top: broad crowns stand on tall trees."""
+        """Height of the top, in proportion to the crown."""
         return HEIGHT_PER_RADIUS * self.radius_m
 
 
 @dataclass(frozen=True, slots=True)
 class Building:
-    """A roof from above, its ridge along the longer side; walls as high as `height_m`."""
+    """A building: roof ridge along the longer side; shadows are those of a box of `height_m`."""
 
     west_m: float
     south_m: float
@@ -121,7 +121,7 @@ class Pond:
 
     @property
     def box_m(self) -> Box:
-        """A box around it, meadow's edge included, however it is turned."""
+        """A box that holds it, grass edge included, at any rotation."""
         reach_m = max(self.across_m, self.along_m) + POND_EDGE_M
         east, north = self.east_m, self.north_m
         return east - reach_m, north - reach_m, east + reach_m, north + reach_m
@@ -129,7 +129,7 @@ class Pond:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Farmland:
-    """What lies on the land within `half_width_m` of the origin."""
+    """Everything on the land within `half_width_m` of the origin."""
 
     plots: tuple[Plot, ...]
     tracks: tuple[Box, ...]
@@ -141,7 +141,7 @@ class Farmland:
     roads_north_m: tuple[float, ...]
     half_width_m: float
     yards: tuple[Box, ...] = ()
-    """Rectangles of gravel that farms stand on."""
+    """Gravel yards of farms."""
     buildings: tuple[Building, ...] = ()
     ponds: tuple[Pond, ...] = ()
 
@@ -159,7 +159,7 @@ def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
             _divide(random, (west + 9, south + 9, east - 9, north - 9), plots, tracks)
     creek = _creek(random, half_width_m)
     grown = (*_creek_trees(random, creek), *_hedges(random, plots), *_groves(random))
-    # Farms and ponds have numbers of their own, so that more of them move no field.
+    # A random generator of their own: changing farms or ponds must not change the fields.
     farms = np.random.default_rng((seed, 1))
     yards, buildings = _farms(farms, roads_east, roads_north)
     trees = _beside(yards, grown)
@@ -180,7 +180,7 @@ def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
 def _farms(
     random: np.random.Generator, roads_east: tuple[float, ...], roads_north: tuple[float, ...]
 ) -> tuple[tuple[Box, ...], tuple[Building, ...]]:
-    """Return gravel yards and what stands on them: one by the origin, others at crossings."""
+    """Return gravel yards and buildings of farms: one by the origin, others at crossings."""
     corners = [FIRST_FARM_M] + [
         (east + 16.0, north + 16.0)
         for east in roads_east
@@ -192,7 +192,7 @@ def _farms(
 
 
 def _farm(random: np.random.Generator, east_m: float, north_m: float) -> list[Building]:
-    """Return a barn, a shed and a house around a yard, seen from its south-west corner."""
+    """Return a barn, a shed and a house around a yard with this south-west corner."""
     roofs = [ROOFS[int(k)] for k in random.integers(0, len(ROOFS), 3)]
     barn = (east_m + 2.0, north_m + 2.0, east_m + 18.0, north_m + 40.0, 9.0)
     shed = (east_m + 26.0, north_m + 34.0, east_m + 46.0, north_m + 46.0, 6.0)
@@ -221,7 +221,7 @@ def _divide(
     plots: list[Plot],
     tracks: list[Box],
 ) -> None:
-    """Split a rectangle until it is a plot's size; some of the splits become dirt tracks."""
+    """Split a rectangle until it has a plot's size; some of the splits become dirt tracks."""
     west, south, east, north = box
     width, height = east - west, north - south
     is_wide = width >= height
@@ -279,7 +279,7 @@ def _creek(random: np.random.Generator, half_width_m: float) -> FloatArray:
 
 
 def _around_the_first_farm(creek_m: FloatArray) -> FloatArray:
-    """Return the creek, bent away from the farm near the origin where it would run through."""
+    """Return the creek, bent away from the farm near the origin if it would cross it."""
     east_m, north_m = (corner + YARD_M / 2.0 for corner in FIRST_FARM_M)
     passes_m = float(np.interp(east_m, creek_m[:, 0], creek_m[:, 1])) - north_m
     if abs(passes_m) >= CREEK_FROM_FARM_M:
@@ -290,7 +290,7 @@ def _around_the_first_farm(creek_m: FloatArray) -> FloatArray:
 
 
 def _beside(yards: tuple[Box, ...], trees: tuple[Tree, ...]) -> tuple[Tree, ...]:
-    """Return the trees that stand on no yard."""
+    """Return the trees outside all yards."""
     places = np.array([(tree.east_m, tree.north_m, tree.radius_m) for tree in trees])
     stands = np.ones(len(trees), dtype=bool)
     for west, south, east, north in yards:

@@ -1,4 +1,8 @@
-"""Draw farmland and its shadows into pixels: part by part, each the same whatever else is drawn."""
+"""Draws farmland and its shadows into pixels.
+
+A part's pixels depend on the land, the seed and the part only: noise is sampled from periodic tiles
+fixed to the ground, and each part is drawn with a margin, so that neighbours fit without seams.
+"""
 
 from functools import lru_cache
 from math import cos, radians, sin, tan
@@ -26,8 +30,8 @@ from recon.sim.land.land_part import (
     fixed_point,
     index_of,
     is_near,
-    seen_trees,
     slices,
+    visible_trees,
 )
 from recon.sim.world import SunPosition
 from recon.sim.world.keyframes import FloatImage
@@ -41,15 +45,15 @@ CROWN = (58.0, 76.0, 44.0)
 HEADLAND_M = 16.0
 TRAMLINE_M = 24.0
 PLANT_ROW_M = 0.75
-"""Between rows of maize or soybeans; seen from low only."""
+"""Between rows of maize or soybeans; visible from low heights only."""
 WETTEST_DARKENS = 0.34
-"""Soil that is wet through, over dry soil, in screen brightness: about half of the light."""
+"""Loss of pixel value from dry to saturated soil: about half of the light."""
 WET_ABOVE, WET_OVER = 0.5, 1.1
-"""Deviations of a field 400 m coarse: where the ground begins to be wet, and until it is wet."""
+"""Start and width of wetness, in standard deviations of a noise field with 400 m structures."""
 
 POND_CORNERS = 40
 DARKER_SLOPE = 0.88
-"""Of a roof: the slope that faces away from the noon's sun."""
+"""Brightness of the roof slope that faces away from the noon sun."""
 NOISE_CELLS = 512
 
 
@@ -72,14 +76,14 @@ def draw(land: Farmland, part: LandPart, seed: int) -> RgbImage:
     canvas.add_grain()
     for building in index.buildings.within(box):
         canvas.draw_roof(building)
-    canvas.draw_trees(seen_trees(index, canvas.part))
+    canvas.draw_trees(visible_trees(index, canvas.part))
     inner = canvas.pixels[MARGIN_PX:-MARGIN_PX, MARGIN_PX:-MARGIN_PX]
     return np.clip(inner, 0.0, 255.0).astype(np.uint8)
 
 
 @lru_cache(maxsize=32)
 def _noise_tile(seed: int, smallest_cells: float, slope: float, blur_px: int) -> FloatImage:
-    """Return noise; details finer than a pixel average out."""
+    """Return a noise tile; details finer than a pixel are averaged out."""
     tile = tileable_noise(NOISE_CELLS, seed, smallest_cells, slope)
     if blur_px <= 1:
         return tile
@@ -103,7 +107,7 @@ class _Canvas:
             self._grain += 0.8 * self._noise(seed + 4, NOISE_CELLS * 0.25, 1.0, 0.6)
 
     def _noise(self, seed: int, tile_m: float, smallest_cells: float, slope: float) -> FloatImage:
-        """Return noise fixed to the ground, at this part's pixels."""
+        """Return noise (size, size), fixed to the ground, at this part's pixels."""
         per_m = NOISE_CELLS / tile_m
         tile = _noise_tile(seed, smallest_cells, slope, max(1, round(self.cell_m * per_m)))
         cols, rows = np.meshgrid(
@@ -136,7 +140,7 @@ class _Canvas:
         area *= (1.0 - WETTEST_DARKENS * plot.bareness * wet)[:, :, np.newaxis]
 
     def _crop_rows(self, plot: Plot, east: FloatImage, north: FloatImage) -> FloatImage:
-        """Return the light and dark of crop rows: across on the headlands, tramlines between."""
+        """Return the brightness pattern of crop rows: across on headlands, with tramlines."""
         u, v = (east, north) if plot.rows_run_north else (north, east)
         low, high = (
             (plot.south_m, plot.north_m) if plot.rows_run_north else (plot.west_m, plot.east_m)
@@ -156,7 +160,7 @@ class _Canvas:
     def _stripes(
         self, spacing_m: float, u: FloatImage, v: FloatImage, is_headland: npt.NDArray[np.bool_]
     ) -> FloatImage:
-        """Return waves of a spacing, as far as the pixels are fine enough for them."""
+        """Return waves of a spacing; they fade out as pixels become too coarse (no aliasing)."""
         visible = max(0.0, 1.0 - 2.0 * self.cell_m / spacing_m)
         if visible == 0.0:
             return np.zeros((1, 1), dtype=np.float32)
@@ -195,7 +199,7 @@ class _Canvas:
             cv2.fillConvexPoly(self.pixels, outline, colour, cv2.LINE_8, FRACTION_BITS)
 
     def draw_roof(self, building: Building) -> None:
-        """Draw two slopes; the one to the north or west is a little darker from above."""
+        """Draw two slopes; the north or west one is darker."""
         at, colour = building, np.array(building.colour)
         self.fill((at.west_m, at.south_m, at.east_m, at.north_m), tuple(colour))
         east, north = (at.west_m + at.east_m) / 2.0, (at.south_m + at.north_m) / 2.0
@@ -213,7 +217,7 @@ class _Canvas:
         self.pixels += cover[:, :, np.newaxis] * (crowns - self.pixels)
 
     def _discs(self, trees: list[Tree], shades: bool = False) -> FloatImage:
-        """Return an image with a disc per crown, of 1 or of its shade."""
+        """Return an image with a disc per crown, of value 1 or of the crown's shade."""
         image = np.zeros((self.part.size, self.part.size), dtype=np.float32)
         points = fixed_point(self.part, np.array([(t.east_m, t.north_m) for t in trees]))
         for tree, point in zip(trees, points.tolist(), strict=True):
@@ -227,24 +231,24 @@ class _Canvas:
 
 
 LOWEST_SHADOW_SUN_DEG = 12.0
-"""Shadows of trees are drawn as if the sun stood here at least: lower, they cover all."""
+"""Shadows are drawn for at least this elevation: lower, they would cover everything."""
 CROWN_SHADES_ITSELF = 70
-"""Of 255: leaves shade leaves."""
+"""Of 255: shade of leaves on leaves."""
 
 
 def draw_shadows(land: Farmland, part: LandPart, sun: SunPosition) -> npt.NDArray[np.uint8]:
-    """Return how much of the sun's beam trees and roofs keep off the ground, (size, size), /255."""
+    """Return the share of the beam blocked by trees and roofs, (size, size) uint8, of 255."""
     index, wide = index_of(land), part.with_margin()
     image = np.zeros((wide.size, wide.size), dtype=np.uint8)
     elevation = radians(max(sun.elevation_deg, LOWEST_SHADOW_SUN_DEG))
     azimuth = radians(sun.azimuth_deg)
     per_height = np.array([-sin(azimuth), -cos(azimuth)]) / tan(elevation)
-    buildings, trees = index.buildings.within(wide.box_m), seen_trees(index, wide)
+    buildings, trees = index.buildings.within(wide.box_m), visible_trees(index, wide)
     for building in buildings:
         _shade_of_roof(image, wide, building, per_height)
     for tree in trees:
         _shade_of_tree(image, wide, tree, per_height)
-    # What is seen of a roof or a crown from above is its lit top.
+    # Roofs and crowns lie above the shadows on the ground: draw their lit tops last.
     for building in buildings:
         rows, cols = slices(wide, building.box_m)
         image[rows, cols] = 0
@@ -269,7 +273,7 @@ def _shade_of_roof(
 def _shade_of_tree(
     image: npt.NDArray[np.uint8], part: LandPart, tree: Tree, per_height: FloatArray
 ) -> None:
-    """Draw a crown's shadow: a disc from the crown's foot to its top."""
+    """Draw a crown's shadow: a thick line, the disc swept over the crown's height."""
     foot = np.array([tree.east_m, tree.north_m])
     shifts = np.outer([0.3, 0.7], tree.height_m * per_height)
     points = fixed_point(part, foot + shifts)

@@ -1,4 +1,4 @@
-"""A square of the land's pixels, and where things lie in it.
+"""A square of the land's pixels, and an index of the objects in it.
 
 Pixels of a size `cell_m` are numbered over the whole land: column j covers east from j to j + 1
 cells, row i covers north from -i - 1 to -i cells, so the origin is a corner of four.
@@ -15,37 +15,37 @@ import numpy.typing as npt
 from recon.sim.land.farmland import Box, Building, Farmland, FloatArray, Plot, Pond, Tree
 
 LONGEST_SHADOW_M = 75.0
-"""Of the tallest tree or barn under the lowest sun that shadows are drawn for."""
+"""Longest shadow of a tree or barn at `LOWEST_SHADOW_SUN_DEG`."""
 
-Thing = TypeVar("Thing")
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Placed(Generic[Thing]):
-    """Things, and the boxes (N, 4) that they may be seen in, as west, south, east, north."""
+class PlacedItems(Generic[Item]):
+    """Objects, and the boxes (N, 4) they may be visible in: west, south, east, north."""
 
-    things: Sequence[Thing]
+    items: Sequence[Item]
     boxes_m: FloatArray
 
-    def within(self, box: Box) -> list[Thing]:
-        """Return what touches a box, in the land's order."""
+    def within(self, box: Box) -> list[Item]:
+        """Return the objects that touch a box, in drawing order."""
         west, south, east, north = box
         boxes = self.boxes_m
         touches = (boxes[:, 0] < east) & (boxes[:, 2] > west)
         touches &= (boxes[:, 1] < north) & (boxes[:, 3] > south)
-        return [self.things[number] for number in np.flatnonzero(touches).tolist()]
+        return [self.items[number] for number in np.flatnonzero(touches).tolist()]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LandIndex:
-    """The land's things by place; trees and buildings with their shadows."""
+    """The land's objects by place; boxes of trees and buildings include their shadows."""
 
-    plots: Placed[Plot]
-    tracks: Placed[Box]
-    yards: Placed[Box]
-    buildings: Placed[Building]
-    ponds: Placed[Pond]
-    trees: Placed[Tree]
+    plots: PlacedItems[Plot]
+    tracks: PlacedItems[Box]
+    yards: PlacedItems[Box]
+    buildings: PlacedItems[Building]
+    ponds: PlacedItems[Pond]
+    trees: PlacedItems[Tree]
 
 
 @lru_cache(maxsize=2)
@@ -62,17 +62,17 @@ def index_of(land: Farmland) -> LandIndex:
     )
 
 
-def _placed(things: Sequence[Thing], boxes: Sequence[Box], wider_m: float = 0.0) -> Placed[Thing]:
+def _placed(items: Sequence[Item], boxes: Sequence[Box], wider_m: float = 0.0) -> PlacedItems[Item]:
     around = np.array(boxes, dtype=np.float64).reshape(-1, 4)
-    return Placed(things, around + wider_m * np.array([-1.0, -1.0, 1.0, 1.0]))
+    return PlacedItems(items, around + wider_m * np.array([-1.0, -1.0, 1.0, 1.0]))
 
 
 MARGIN_PX = 6
-"""Blurred edges look this far beyond a part's own pixels."""
+"""Reach of blurred edges beyond a part's own pixels."""
 FRACTION_BITS = 4
 """OpenCV draws at sixteenths of a pixel."""
 SMALLEST_CROWN_PX = 0.6
-"""Smaller crowns are not drawn: coarse pixels are the mean of what is in them."""
+"""Smaller crowns are not drawn: they would be larger than their share of a coarse pixel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class LandPart:
     cell_m: float
 
     def with_margin(self) -> "LandPart":
-        """Return the part with what lies around it."""
+        """Return the part widened by `MARGIN_PX` on each side."""
         return LandPart(
             self.row - MARGIN_PX, self.col - MARGIN_PX, self.size + 2 * MARGIN_PX, self.cell_m
         )
@@ -97,8 +97,8 @@ class LandPart:
         return west, north - self.size * self.cell_m, west + self.size * self.cell_m, north
 
 
-def seen_trees(index: LandIndex, part: LandPart) -> list[Tree]:
-    """Return the trees large enough for a pixel that stand in a part or shade it."""
+def visible_trees(index: LandIndex, part: LandPart) -> list[Tree]:
+    """Return the trees large enough to draw that stand in a part or may shade it."""
     trees = index.trees.within(part.box_m)
     return [tree for tree in trees if tree.radius_m > SMALLEST_CROWN_PX * part.cell_m]
 

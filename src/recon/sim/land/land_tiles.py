@@ -1,7 +1,7 @@
-"""The land's pixels where they are looked at: tiles drawn on demand, few kept.
+"""The land's pixels around a camera: tiles drawn on demand, a bounded number kept.
 
-Each tile is a function of seed and place (its shadows also of the sun's position), so what was
-looked at before changes nothing but the time it takes.
+Each tile is a function of seed and place (its shadows also of the sun's position), so the cache
+changes nothing but the time a frame takes.
 """
 
 from collections import OrderedDict
@@ -21,14 +21,14 @@ from recon.sim.land.land_part import LandPart
 from recon.sim.world import SunPosition
 
 CELLS_M = (0.25, 1.0, 4.0, 16.0)
-"""The finest serves what is near, the coarsest the horizon."""
+"""Pixel sizes of the levels: the finest for the ground below, the coarsest for the horizon."""
 TILE_PX = 256
 TILES_ACROSS = 6
-"""Of the square of tiles around the camera: what is further off is seen coarser anyway."""
+"""Side of the square of tiles around the camera; beyond it a coarser level is fine enough."""
 TILES_KEPT = 320
-"""80 MB with their shadows; four squares have 144 tiles."""
+"""80 MB with shadows; the squares of four levels have 144 tiles."""
 SUN_STEP_DEG = 2.0
-"""Shadows are drawn for the nearest of so many positions: a ten-metre tree's is right to 0.5 m."""
+"""Sun positions are rounded to this for shadows: a 10 m tree's shadow is right to 0.5 m."""
 
 Value = TypeVar("Value")
 LandImage = npt.NDArray[np.uint8]
@@ -57,7 +57,7 @@ class LandSquare:
 
 @dataclass(slots=True)
 class LandTiles:
-    """Draws the land of a seed by tiles; several threads may ask."""
+    """Draws the land of a seed by tiles; thread-safe."""
 
     land: Farmland
     seed: int
@@ -116,7 +116,7 @@ def _sun_step(sun: SunPosition) -> tuple[int, int]:
 def _kept(
     store: "OrderedDict[Hashable, Value]", key: Hashable, most: int, make: Callable[[], Value]
 ) -> Value:
-    """Return what is kept under a key, made if it is not; the longest unused goes."""
+    """Return the value of a key, made if missing; the least recently used one is dropped."""
     if key in store:
         store.move_to_end(key)
         return store[key]

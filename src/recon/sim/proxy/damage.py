@@ -1,7 +1,8 @@
-"""What a bad link does to a stream: its settings, and when and where it does it.
+"""Damage to one direction of a link: settings, stalls, changed bytes, and the channel.
 
-Every draw is from a generator of its own, so that how long a stall lasts does not move the next
-flipped byte. Times count from the connection's start; positions count bytes.
+Each effect has its own random generator, so that the length of a stall does not change which byte
+is flipped next. Times are arguments that never decrease; memory is bounded if the caller reads
+only while there is room.
 """
 
 from collections import deque
@@ -16,55 +17,55 @@ from recon.sim.errors import SimulationError
 BYTES_PER_MB = 1_000_000
 S_PER_MIN = 60.0
 NEVER = 1e12
-"""More bytes, or more seconds, than any link lives."""
+"""Bytes or seconds: more than any connection lasts. Stands for infinity in draws."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Damage:
-    """How bad a link is; as it stands: a good one. Raises `SimulationError` for what cannot be."""
+    """How bad a link is; the defaults are a perfect one. Raises `SimulationError` out of range."""
 
     delay_s: float = 0.0
     jitter_s: float = 0.0
-    """Each read is late by up to so much more, drawn evenly; order is kept, as TCP keeps it."""
+    """Extra delay of each read, uniform from 0 to this; order is kept, as TCP does."""
     rate_bytes_per_s: float = inf
     stalls_per_min: float = 0.0
     stall_s: float = 2.0
-    """Nothing passes for so long; then all of it at once."""
+    """Duration of a stall; then everything held back passes at once."""
     resets_per_min: float = 0.0
-    """A reset ends the connection hard on both sides (RST, no FIN)."""
+    """A reset ends the connection on both sides with RST, not FIN."""
     corrupted_per_mb: float = 0.0
-    """Bytes changed in a million."""
+    """Bytes changed per million."""
 
     def __post_init__(self) -> None:
         _expect("delay", self.delay_s, 0.0, 60.0, "seconds")
         _expect("jitter", self.jitter_s, 0.0, 60.0, "seconds")
-        _expect("rate", self.rate_bytes_per_s, 10.0, inf, "bytes a second")
-        _expect("stalls", self.stalls_per_min, 0.0, 600.0, "a minute")
+        _expect("rate", self.rate_bytes_per_s, 10.0, inf, "bytes per second")
+        _expect("stalls", self.stalls_per_min, 0.0, 600.0, "per minute")
         _expect("stall", self.stall_s, 0.0, 600.0, "seconds")
-        _expect("resets", self.resets_per_min, 0.0, 600.0, "a minute")
-        _expect("corruption", self.corrupted_per_mb, 0.0, BYTES_PER_MB, "bytes in a million")
+        _expect("resets", self.resets_per_min, 0.0, 600.0, "per minute")
+        _expect("corruption", self.corrupted_per_mb, 0.0, BYTES_PER_MB, "bytes per million")
 
     def reset_after_s(self, random: Random) -> float:
-        """Draw how long a connection lasts; infinity where none is reset."""
+        """Draw the time until a connection is reset; infinity without resets."""
         return _drawn_s(self.resets_per_min, random)
 
 
 class Stalls:
-    """The stretches of time in which nothing passes; asked in order of time."""
+    """The intervals in which nothing passes; query in order of time."""
 
     def __init__(self, damage: Damage, random: Random, start_ns: int) -> None:
-        self._stretches = _stretches(damage, random, start_ns)
-        self._begin_ns, self._end_ns = next(self._stretches)
+        self._intervals = _intervals(damage, random, start_ns)
+        self._begin_ns, self._end_ns = next(self._intervals)
 
     def passes_ns(self, wanted_ns: float) -> float:
-        """Return when what wants to pass then does; times asked must not fall."""
+        """Return when bytes due at `wanted_ns` pass; times must not decrease."""
         while wanted_ns >= self._end_ns:
-            self._begin_ns, self._end_ns = next(self._stretches)
+            self._begin_ns, self._end_ns = next(self._intervals)
         return self._end_ns if wanted_ns >= self._begin_ns else wanted_ns
 
 
 class Flips:
-    """Which bytes of a stream are changed, and into what."""
+    """Changes random bytes of a stream."""
 
     def __init__(self, damage: Damage, random: Random) -> None:
         self._share = damage.corrupted_per_mb / BYTES_PER_MB
@@ -72,7 +73,7 @@ class Flips:
         self._untouched = self._gap()
 
     def through(self, data: bytes) -> bytes:
-        """Return the next bytes of the stream as they come out; never more, never fewer."""
+        """Return the next bytes of the stream, some changed; the length is kept."""
         if self._untouched >= len(data):
             self._untouched -= len(data)
             return data
@@ -85,7 +86,7 @@ class Flips:
         return bytes(changed)
 
     def _gap(self) -> float:
-        """Draw how many bytes stay as they are before the next change."""
+        """Draw how many bytes stay unchanged before the next change (geometric distribution)."""
         if self._share <= 0.0:
             return inf
         if self._share >= 1.0:
@@ -94,8 +95,8 @@ class Flips:
         return float(floor(gap)) if gap < NEVER else inf
 
 
-def _stretches(damage: Damage, random: Random, start_ns: int) -> Iterator[tuple[float, float]]:
-    """Yield begin and end of each stall, in order; at last one that never comes."""
+def _intervals(damage: Damage, random: Random, start_ns: int) -> Iterator[tuple[float, float]]:
+    """Yield start and end of each stall in order; at last one at infinity."""
     at_ns: float = start_ns
     while damage.stall_s > 0.0 and (sound_s := _drawn_s(damage.stalls_per_min, random)) < NEVER:
         at_ns += seconds_to_ns(sound_s)
@@ -116,14 +117,14 @@ def _expect(what: str, value: float, lowest: float, highest: float, unit: str) -
 
 
 MOST_HELD_BYTES = 4 * 1024 * 1024
-"""Under way in one direction: two and a half raw frames. Beyond it reading waits, and so TCP makes
-the sender wait. One read more may come on top."""
+"""In flight in one direction: two and a half raw frames. Beyond it the caller stops reading, and
+TCP flow control stops the sender. One more read may come on top."""
 PIECE_BYTES = 1_400
-"""A slow link passes segments of this size on, one after the other."""
+"""A rate-limited link passes segments of this size, about one Ethernet frame, one by one."""
 
 
 class Channel:
-    """What is under way in one direction of one connection."""
+    """One direction of a connection: bytes go in, and come out later, in order, and damaged."""
 
     def __init__(self, damage: Damage, seed: str, start_ns: int) -> None:
         self._damage = damage
@@ -142,11 +143,11 @@ class Channel:
 
     @property
     def next_due_ns(self) -> int | None:
-        """When the next bytes come out, None while none are under way."""
+        """When the next piece comes out, None when empty."""
         return self._under_way[0][0] if self._under_way else None
 
     def push(self, data: bytes, now_ns: int) -> None:
-        """Take what was read."""
+        """Add bytes read."""
         late_s = self._damage.delay_s + self._jitter.uniform(0.0, self._damage.jitter_s)
         for piece in self._pieces(self._flips.through(data)):
             sent_ns = self._sent_ns(len(piece), now_ns)
@@ -156,7 +157,7 @@ class Channel:
             self._held_bytes += len(piece)
 
     def pop_due(self, now_ns: int) -> list[bytes]:
-        """Return what has come through by now, each piece as it is to be written."""
+        """Return the pieces due by now, each to be written by itself."""
         pieces = []
         while self._under_way and self._under_way[0][0] <= now_ns:
             pieces.append(self._under_way.popleft()[1])
@@ -164,13 +165,13 @@ class Channel:
         return pieces
 
     def _pieces(self, data: bytes) -> list[bytes]:
-        # A fast link keeps reads whole: there are apps that take a read for a packet.
+        # Without a rate limit reads stay whole: some apps take a read for a packet.
         if not isfinite(self._damage.rate_bytes_per_s):
             return [data]
         return [data[i : i + PIECE_BYTES] for i in range(0, len(data), PIECE_BYTES)]
 
     def _sent_ns(self, size: int, now_ns: int) -> int:
-        """Return when the last of so many bytes has gone down the line, after those before."""
+        """Return when the last of `size` bytes has left a rate-limited line, after those before."""
         if not isfinite(self._damage.rate_bytes_per_s):
             return now_ns
         on_line_ns = round(size / self._damage.rate_bytes_per_s * NS_PER_S)

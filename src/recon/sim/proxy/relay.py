@@ -1,4 +1,16 @@
-"""The proxy's shell: it listens for apps, connects each to the station, and passes bytes on."""
+"""The proxy's sockets: listen for apps, connect each to the station, and relay bytes.
+
+Theory of operation
+-------------------
+Each accepted connection gets one of its own to the station, and two pumps, one per direction. A
+pump reads while its `Channel` has room, and writes pieces when they are due; delay, rate, stalls
+and changed bytes are all decided in the channel, which is pure and seeded. Without room the pump
+does not read, so TCP flow control reaches the sender, as on a real slow link.
+
+A connection ends in one of three ways. An orderly end of one side is passed on after the bytes
+before it (half close). An error on one side, or a drawn reset, ends both sides with RST, as a lost
+link does. When the station does not answer within `STATION_ANSWERS_WITHIN_S`, the app gets RST.
+"""
 
 import asyncio
 import contextlib
@@ -19,14 +31,14 @@ READ_BYTES = 65_536
 MOST_CONNECTIONS = 64
 STATION_ANSWERS_WITHIN_S = 5.0
 RESET_ON_CLOSE = struct.pack("ii", 1, 0)
-"""SO_LINGER on, for 0 s: closing sends RST, and what is not sent is lost."""
+"""SO_LINGER on with 0 s: closing sends RST and discards unsent bytes."""
 
 Say = Callable[[str], None]
 Place = tuple[str, int]
 
 
 class Towards(Enum):
-    """Which direction is damaged; resets concern both."""
+    """Which direction is damaged; a reset always ends both."""
 
     BOTH = "both"
     STATION = "station"
@@ -35,7 +47,7 @@ class Towards(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProxyConfig:
-    """Where the proxy listens and leads to, and what it does to what passes."""
+    """Where the proxy listens, where the station is, and the damage."""
 
     listen: Place
     station: Place
@@ -44,17 +56,17 @@ class ProxyConfig:
     seed: int = 0
 
     def damage_towards(self, direction: Towards) -> Damage:
-        """Return what happens to the bytes that go there."""
+        """Return the damage to bytes in a direction."""
         return self.damage if self.towards in (Towards.BOTH, direction) else Damage()
 
 
 async def run_proxy(
     config: ProxyConfig, say: Say = print, started: Callable[[int], None] | None = None
 ) -> None:
-    """Pass bytes on until the task is cancelled; then every connection is closed.
+    """Relay bytes until the task is cancelled; then close every connection.
 
-    `started` is told the port. Raises `SimulationError` when it cannot listen. A station that is
-    not there is no error: the app's connection ends, as with a station that is not there.
+    `started` gets the port. Raises `SimulationError` when it cannot listen. A station that is not
+    running is no error: the app's connection is reset, as without a proxy.
     """
     relay = _Relay(config, say)
     host, port = config.listen
@@ -62,7 +74,7 @@ async def run_proxy(
         server = await asyncio.start_server(relay.serve, host, port, limit=READ_BYTES)
     except OSError as problem:
         raise SimulationError(
-            f"--listen: expected a free place, got {host}:{port} ({problem.strerror})"
+            f"--listen: expected a free address, got {host}:{port} ({problem.strerror})"
         ) from None
     port = server.sockets[0].getsockname()[1]
     say(f"listening on {host}:{port} for the station at {config.station[0]}:{config.station[1]}")
@@ -77,7 +89,7 @@ async def run_proxy(
 
 @dataclass(slots=True)
 class _Relay:
-    """All connections, by number."""
+    """The open connections."""
 
     config: ProxyConfig
     say: Say
@@ -92,7 +104,7 @@ class _Relay:
             self.say(f"connection {number}: refused, {MOST_CONNECTIONS} are open")
             _reset(writer)
             return
-        task = asyncio.ensure_future(self._pass_on(number, reader, writer))
+        task = asyncio.ensure_future(self._relay(number, reader, writer))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
         with contextlib.suppress(asyncio.CancelledError):
@@ -104,7 +116,7 @@ class _Relay:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    async def _pass_on(
+    async def _relay(
         self, number: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
     ) -> None:
         host, port = self.config.station
@@ -125,7 +137,7 @@ class _Relay:
 
 @dataclass(slots=True)
 class _Connection:
-    """An app's connection and the one to the station that belongs to it."""
+    """An app's connection paired with its connection to the station."""
 
     config: ProxyConfig
     number: int
@@ -133,7 +145,7 @@ class _Connection:
     station: tuple[asyncio.StreamReader, asyncio.StreamWriter]
 
     async def run(self) -> str:
-        """Pass on until an end comes, and return what it was."""
+        """Relay until the connection ends; return how it ended, for the log."""
         random = Random(f"{self.config.seed}/{self.number}/reset")
         after_s = self.config.damage.reset_after_s(random)
         up = self._pump(Towards.STATION, self.app[0], self.station[1])
@@ -165,7 +177,7 @@ class _Connection:
 
 @dataclass(slots=True)
 class _Pump:
-    """Reads at one end while the channel has room, writes at the other what comes through."""
+    """Reads from one end while the channel has room, writes to the other what is due."""
 
     reader: asyncio.StreamReader
     writer: asyncio.StreamWriter
@@ -173,7 +185,7 @@ class _Pump:
     passed_bytes: int = 0
 
     async def run(self) -> None:
-        """Go on until the reader's end has been passed on; raises `OSError` when a side breaks."""
+        """Run until the reader's end was passed on; raises `OSError` when a side breaks."""
         reading: asyncio.Future[bytes] | None = asyncio.ensure_future(self._read())
         is_ended = False
         try:
@@ -194,13 +206,13 @@ class _Pump:
         return await self.reader.read(READ_BYTES)
 
     def _take(self, data: bytes) -> bool:
-        """Take what was read; return whether it was the end."""
+        """Push bytes read into the channel; return whether it was the end of the stream."""
         if data:
             self.channel.push(data, time.monotonic_ns())
         return not data
 
     async def _wait(self, reading: "asyncio.Future[bytes] | None") -> None:
-        """Wait for something read, or for the next bytes to come through."""
+        """Wait until bytes are read or the next piece is due."""
         due_ns = self.channel.next_due_ns
         pause_s = None if due_ns is None else max(0.0, (due_ns - time.monotonic_ns()) / NS_PER_S)
         if reading is not None:
@@ -216,7 +228,7 @@ class _Pump:
 
 
 async def _both(up: _Pump, down: _Pump) -> None:
-    """Run both directions to their ends; the first that breaks breaks the other."""
+    """Run both directions to their ends; an error in one cancels the other."""
     tasks = [asyncio.ensure_future(up.run()), asyncio.ensure_future(down.run())]
     try:
         await asyncio.gather(*tasks)
@@ -235,7 +247,7 @@ async def _end_reading(reading: "asyncio.Future[bytes] | None") -> None:
 
 
 def _reset(writer: asyncio.StreamWriter) -> None:
-    """End a connection hard: its other side reads an error, not an end."""
+    """End a connection with RST: the peer reads an error, not an end of stream."""
     raw = writer.get_extra_info("socket")
     if raw is not None:
         with contextlib.suppress(OSError):

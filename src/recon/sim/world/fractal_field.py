@@ -22,15 +22,15 @@ ComplexImage = npt.NDArray[np.complex64]
 BAND_RATIO = 4.0
 TILE_CELLS = 256
 CELLS_PER_WAVE = 32.0
-"""At a band's middle; its strongest have 16 and more."""
+"""At a band's middle; its strongest waves have 16 cells and more."""
 SHORTEST_CELLS = 8
-"""Of a band's shortest waves: neighbours in scale are one band ratio off."""
+"""Of a band's shortest waves: the window ends one band ratio from the middle."""
 PADDING = 2
-"""Columns and rows repeated at a tile's end, so that no point lies between its two edges."""
+"""Columns and rows repeated at a tile's end, so that interpolation never crosses its edge."""
 TILES_KEPT = 64
 """A megabyte each; two layers of five bands need 20 at any moment."""
 COLUMNS = TILE_CELLS // SHORTEST_CELLS + 1
-"""Of half a spectrum, from the longest waves on: beyond, a band has none."""
+"""Columns of half a spectrum that are not zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,10 +112,12 @@ def _sides() -> FloatArray:
 
 IndexArray = npt.NDArray[np.int64]
 AT_ONCE: IndexArray = np.zeros(1, dtype=np.int64)
-"""In place of the number of each point's moment where all have the first."""
+"""Index for `moment` where all points share one time."""
 ROW_POINTS = 256
-"""Points are sampled in rows of this many, the last one filled up: all go the same way."""
+"""Points are sampled in rows of this length, the last one padded: the rest of a row may take
+another code path in OpenCV, and a value must not depend on what else is asked for."""
 FIRST_ZERO_SQUARED = 3.8317**2
+"""First zero of the Bessel function J1."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,7 +162,7 @@ class FractalField:
 
     @property
     def period_m(self) -> float:
-        """After which the field repeats along its axes."""
+        """Distance after which the field repeats along its axes."""
         return self.outer_scale_m * TILE_CELLS / CELLS_PER_WAVE
 
     def sample(
@@ -199,7 +201,7 @@ class FractalField:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _BandColumns:
-    """What bands are, (bands, 1) each: all are worked out at once."""
+    """Parameters of the bands as columns (bands, 1), to compute all bands at once."""
 
     scale_m: FloatArray
     strength: FloatArray
@@ -208,7 +210,7 @@ class _BandColumns:
 
 
 class _Places:
-    """Points by rows, the last one filled up, in parts of the present band's tile."""
+    """Points in padded rows, as fractions of the current band's tile."""
 
     def __init__(self, x_tiles: FloatArray, y_tiles: FloatArray) -> None:
         self._tiles = [_filled(tiles) for tiles in (x_tiles, y_tiles)]
@@ -218,19 +220,19 @@ class _Places:
         """In cells."""
 
     def enter_tile(self) -> None:
-        """Keep the part beyond the last whole tile: no digit is lost by this."""
+        """Reduce to the part beyond the last whole tile; exact in floating point."""
         for tiles, cells in zip(self._tiles, (self.cols, self.rows), strict=True):
             np.subtract(tiles, np.floor(tiles, out=self._spare), out=tiles)
             np.multiply(tiles, TILE_CELLS, out=cells, casting="same_kind")
 
     def refine(self) -> None:
-        """Go on to the next band."""
+        """Move on to the next finer band."""
         for tiles in self._tiles:
             tiles *= BAND_RATIO
 
 
 def disk_weight(wave_m: float | FloatArray, blur_m2: FloatArray) -> FloatArray:
-    """Return what is left of a wave averaged over disks of diameter squared `blur_m2`.
+    """Return the attenuation of a wave averaged over disks of diameter squared `blur_m2`.
 
     That is 2 J1(x) / x of x = pi diameter / wave, by its series up to its first zero, then nothing.
     Waves and blurs are broadcast together.

@@ -1,6 +1,6 @@
 """Gaussian values that change in time, as a pure function of it: blended between seeded keyframes.
 
-Independent keyframes stand one period apart; in between, two are blended so that the variance stays
+Independent keyframes are one period apart; in between, two are blended so that the variance stays
 one. Only operations that round the same in every order are used, so a value does not depend on what
 else is asked in the same call.
 """
@@ -16,14 +16,14 @@ FloatArray = npt.NDArray[np.float64]
 FloatImage = npt.NDArray[np.float32]
 
 PERIODS_PER_LIFETIME = 1.0 / 0.90017
-"""Blended like this the correlation falls to 1/e after 0.90017 of a period (solved numerically)."""
+"""With this blending the correlation falls to 1/e after 0.90017 periods (solved numerically)."""
 NUMBERS = 2**32
 NUMBERS_KEPT = 4096
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
-    """Between which keyframes each time lies, and their shares; arrays of the times' shape."""
+    """For each time the keyframe before it, and the weights of that one and the next."""
 
     number: npt.NDArray[np.int64]
     share: FloatArray
@@ -66,5 +66,5 @@ def number(stream: tuple[int, ...], key: int) -> float:
 
 @lru_cache(maxsize=NUMBERS_KEPT)
 def phase(stream: tuple[int, ...]) -> float:
-    """Return a stream's own shift of its keyframes, in 0..1: not all change at one moment."""
+    """Return a stream's shift of its keyframes, 0 to 1, so that streams do not change in step."""
     return float(generator(stream, -1).random())

@@ -1,4 +1,4 @@
-"""One layer of clouds: where it drifts and what it lets through."""
+"""One layer of clouds: its drift and its transmittance."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,14 +19,14 @@ OCTAVES, MODULATION, AXES = 0, 1, 2
 
 @dataclass(frozen=True)
 class CloudLayer:
-    """A layer; `stream` makes its clouds, everything else is in the settings."""
+    """A layer; its clouds are drawn from `stream`, all else is in the settings."""
 
     stream: tuple[int, ...]
     settings: LayerSettings
 
     @cached_property
     def field(self) -> FractalField:
-        """The field that is cloud where it exceeds the threshold."""
+        """The field: cloud where it exceeds the threshold."""
         at = self.settings
         return FractalField(
             (*self.stream, OCTAVES),
@@ -63,11 +63,11 @@ class CloudLayer:
 
     @property
     def _even_share(self) -> float:
-        """What a layer without edges lets through: all, or what its thickest cloud does."""
+        """Transmittance of a layer without edges: 1, or that of its thickest cloud."""
         return 1.0 if self.settings.cover == 0.0 else float(self._table[-1, 0])
 
     def _offset_m(self, time_s: FloatArray, edge: Penumbra) -> tuple[FloatArray, FloatArray]:
-        """Return how far from a point on the ground the cloud that shades it lay at time 0."""
+        """Return the offset from a ground point to where the cloud that shades it was at time 0."""
         drift_east_m, drift_north_m = drift_m(self.settings, time_s)
         return (
             edge.offset_m * edge.toward_east - drift_east_m,
@@ -75,12 +75,13 @@ class CloudLayer:
         )
 
     def _field_place(self, east: FloatArray, north: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the place along the field's own axes, which are turned."""
+        """Return coordinates along the field's own axes, which have a random direction: the
+        periodic tiles must not repeat along north or east."""
         to_x, to_y = cos(self._axes_rad), sin(self._axes_rad)
         return east * to_x - north * to_y, east * to_y + north * to_x
 
     def _threshold(self, time_s: FloatArray) -> FloatArray:
-        """Return the field's value at the clouds' edges, which wanders slowly."""
+        """Return the field's value at cloud edges; it varies slowly, so that the cover does."""
         at = self.settings
         middle = NormalDist().inv_cdf(1.0 - at.cover) * (1.0 + at.modulation**2) ** 0.5
         wandering = gaussian((*self.stream, MODULATION), time_s, at.modulation_s)
@@ -110,7 +111,7 @@ def drift_m(layer: LayerSettings, time_s: FloatArray) -> tuple[FloatArray, Float
     east_m, north_m = east_mps * time_s, north_mps * time_s
     for shift in layer.shifts:
         to_east, to_north = velocity(shift.speed_mps, shift.heading_deg)
-        # The change comes in evenly: its integral is a parabola, then a straight line.
+        # The velocity changes linearly: its integral is a parabola, then a straight line.
         during_s = np.clip(time_s - shift.start_s, 0.0, shift.duration_s)
         after_s = np.maximum(time_s - shift.start_s - shift.duration_s, 0.0)
         lasting_s = during_s * during_s / (2.0 * shift.duration_s) + after_s

@@ -1,7 +1,10 @@
-"""The light of a clear sky: the direct beam and what the sky scatters.
+"""Light on the ground: clear-sky irradiance, its colours, and the beam under clouds.
 
 The model of the European Solar Radiation Atlas (Rigollier, Bauer, Wald, Solar Energy 68, 2000) with
-Kasten's thickness of clean air (1996): all that dims is one number, Linke's turbidity.
+Kasten's thickness of clean air (1996): all extinction is one number, Linke's turbidity.
+
+Colours are relative to a bright summer day's full sun, in which a camera shows white as white; the
+light of the sky, which shade leaves, is bluer than the beam.
 """
 
 from dataclasses import dataclass, replace
@@ -19,7 +22,7 @@ from recon.sim.world.sun import SunPosition
 SOLAR_CONSTANT_W_M2 = 1361.0
 SCALE_HEIGHT_M = 8434.5
 LEAST_SCATTERED = 2e-3
-"""The atlas's bound for a low sun."""
+"""The atlas's lower bound for a low sun."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,18 +34,18 @@ class ClearSkyLight:
 
     @property
     def global_w_m2(self) -> float:
-        """All of it."""
+        """Direct and diffuse together."""
         return self.direct_w_m2 + self.diffuse_w_m2
 
     @property
     def diffuse_share(self) -> float:
-        """Part of the light that shade leaves; all of it when the sun is down."""
+        """Diffuse over global irradiance; 1 when the sun is below the horizon."""
         return self.diffuse_w_m2 / self.global_w_m2 if self.direct_w_m2 > 0.0 else 1.0
 
     def index(self, transmittance: FloatImage, brightening: float = 1.0) -> FloatImage:
         """Return the clear-sky index: light on the ground over what a clear sky would give.
 
-        `brightening` is what clouds around make of the diffuse light.
+        `brightening` multiplies the diffuse light: broken clouds scatter more than clear sky.
         """
         diffuse = self.diffuse_share
         index = brightening * diffuse + (1.0 - diffuse) * transmittance
@@ -50,7 +53,7 @@ class ClearSkyLight:
 
 
 def clear_sky_light(sun: SunPosition, settings: LightSettings) -> ClearSkyLight:
-    """Return the light on level ground; none from a sun below the horizon."""
+    """Return the irradiance of level ground; zero with the sun below the horizon."""
     if sun.elevation_deg <= 0.0:
         return ClearSkyLight(0.0, 0.0)
     outside = SOLAR_CONSTANT_W_M2 / sun.distance_au**2
@@ -63,7 +66,7 @@ def clear_sky_light(sun: SunPosition, settings: LightSettings) -> ClearSkyLight:
 
 
 def _air_mass(elevation_deg: float, altitude_m: float) -> float:
-    """Return how much air the beam crosses, over that straight up from the sea (Kasten, Young)."""
+    """Return the relative optical air mass (Kasten and Young 1989), corrected for altitude."""
     straight = sin(radians(elevation_deg)) + 0.50572 * (elevation_deg + 6.07995) ** -1.6364
     return float(exp(-altitude_m / SCALE_HEIGHT_M) / straight)
 
@@ -76,7 +79,7 @@ def _clean_thickness(mass: float) -> float:
 
 
 def _scattered(turbidity: float, height: float) -> float:
-    """Return the diffuse light over that outside the air; `height` is the elevation's sine."""
+    """Return diffuse over extraterrestrial irradiance; `height` is the sine of the elevation."""
     zenith = -1.5843e-2 + 3.0543e-2 * turbidity + 3.797e-4 * turbidity**2
     even = 2.6463e-1 - 6.1581e-2 * turbidity + 3.1408e-3 * turbidity**2
     even = max(even, LEAST_SCATTERED / zenith)
@@ -86,9 +89,9 @@ def _scattered(turbidity: float, height: float) -> float:
 
 
 REFERENCE_W_M2 = 850.0
-"""Full sun on level ground in which the land's colours are what they are drawn with."""
+"""Irradiance at which the land shows the colours it is drawn with."""
 SKY_COLOUR = (0.72, 0.95, 1.33)
-"""A clear sky's light over the sun's, red, green, blue, of mean 1: 12 000 K beside 5 500 K."""
+"""Sky light over sun light in red, green, blue, of mean 1: 12 000 K against 5 500 K."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,14 +99,14 @@ class GroundLight:
     """Light on level ground in red, green, blue (3,)."""
 
     beam: FloatArray
-    """Of the sun, unclouded."""
+    """Light of the unclouded sun."""
     sky: FloatArray
-    """Of the sky and the clouds."""
+    """Light of sky and clouds."""
     toward_sun: FloatArray
     """Unit vector, east, north, up."""
 
     def at(self, transmittance: FloatImage) -> FloatImage:
-        """Return light (..., 3) where this share of the beam comes through."""
+        """Return light (..., 3) at this transmittance of the beam."""
         share = np.asarray(transmittance, dtype=np.float32)[..., np.newaxis]
         light: FloatImage = self.sky.astype(np.float32) + share * self.beam.astype(np.float32)
         return light
@@ -112,9 +115,9 @@ class GroundLight:
 def ground_light(
     sun: SunPosition, settings: LightSettings, reference_w_m2: float = REFERENCE_W_M2
 ) -> GroundLight:
-    """Return the light under broken clouds; in the mean of the colours it is `light.index`.
+    """Return the light under broken clouds; its mean over colours is `ClearSkyLight.index`.
 
-    What clouds add to the sky's light is white.
+    The light that clouds add is white.
     """
     clear = clear_sky_light(sun, settings)
     strength = clear.global_w_m2 / reference_w_m2
@@ -132,12 +135,12 @@ def toward(sun: SunPosition) -> FloatArray:
 
 
 LEAST_SUN_HEIGHT = 0.08
-"""Sine of the lowest sun for which slopes are worked out: 5 degrees."""
+"""Sine of the lowest sun elevation used for slopes: 5 degrees."""
 GREEN = 1
 
 
 def light_under(sky: Sky, time_s: float, settings: LightSettings | None = None) -> GroundLight:
-    """Return the light of a moment; without clouds nothing brightens the sky."""
+    """Return the light at a time; without cloud layers the sky is not brightened."""
     settings = settings or LightSettings()
     if not sky.settings.layers:
         settings = replace(settings, cloud_brightening=1.0)
@@ -145,7 +148,7 @@ def light_under(sky: Sky, time_s: float, settings: LightSettings | None = None) 
 
 
 def metered_light(sky: Sky, east_m: npt.ArrayLike, north_m: npt.ArrayLike, time_s: float) -> float:
-    """Return the mean light at points, in green, over the reference's full sun."""
+    """Return the mean light at points, in green, relative to the reference."""
     light = light_under(sky, time_s)
     share = float(np.mean(sky.transmittance(east_m, north_m, time_s), dtype=np.float64))
     return float(light.sky[GREEN] + share * light.beam[GREEN])
@@ -159,7 +162,7 @@ def beam_share(
     north_m: FloatImage,
     time_s: float,
 ) -> FloatImage:
-    """Return the sun's beam on the ground over that on level ground in clear sky."""
+    """Return the beam on the (sloping) ground over that on level ground under clear sky."""
     share = sky.transmittance(east_m, north_m, time_s)
     if relief is None:
         return share

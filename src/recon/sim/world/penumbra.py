@@ -1,8 +1,8 @@
-"""The soft edge of shadows: the sun is a disk, so a cloud's edge shades the ground by and by.
+"""Penumbra: the sun is a disk, so the edge of a cloud shades the ground gradually.
 
-From a point on the ground the disk covers an ellipse of the cloud layer. What passes through it is
-the extinction averaged over that ellipse. The field whose height makes the extinction is taken as
-even across the ellipse, so only its slope matters: a straight edge comes out exact.
+From a point on the ground the disk covers an ellipse of the cloud layer. The transmittance is the
+extinction averaged over that ellipse. The field that determines the extinction is taken as linear
+across the ellipse, so only its slope matters: a straight edge comes out exact.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from recon.sim.world.sun import SunPosition
 
 SUN_DIAMETER_RAD = 0.0093
 LOWEST_ELEVATION_DEG = 5.0
-"""Below, shadows would reach to the horizon: the sun counts as standing here."""
+"""Lower elevations are taken as this one: shadows would reach to the horizon."""
 
 MOST_EXCESS = 18.0
 EXCESS_STEP = 0.05
@@ -31,10 +31,10 @@ DISK_POINTS = 33
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Penumbra:
-    """The ellipse the sun covers on a layer, and where its rays cross that; (N,) or (1,) each."""
+    """The ellipse that the sun's disk covers on a layer, and its offset; (N,) or (1,) each."""
 
     across_m: FloatArray
-    """Its width across the sun's azimuth."""
+    """Width across the sun's azimuth."""
     along_m: FloatArray
     toward_east: FloatArray
     toward_north: FloatArray
@@ -63,7 +63,7 @@ def _ellipse(sun: SunPosition, height_m: float) -> tuple[float, ...]:
 
 
 def spread(edge: Penumbra, axes_rad: float, field: FieldSample) -> FloatImage:
-    """Return how far the field lies above its mean at the ellipse's one end, (N,).
+    """Return the field's rise from the ellipse's middle to its end, (N,).
 
     The field's y axis points to azimuth `axes_rad`, its x axis to the right of it.
     """
@@ -103,7 +103,7 @@ def extinction_table(largest_depth: float) -> FloatImage:
     weights = np.sin(angles) ** 2 / np.sum(np.sin(angles) ** 2)
     excess = np.linspace(-MOST_EXCESS, MOST_EXCESS, rows)[:, np.newaxis, np.newaxis]
     spreads = np.linspace(0.0, MOST_SPREAD, cols)[np.newaxis, :, np.newaxis]
-    # No row or column looks beyond the table: there the share is as good as 0 or 1.
+    # The table is not extended for lookups beyond it: there the share is practically 0 or 1.
     shares = extinction(excess + spreads * np.cos(angles), largest_depth)
     table: FloatImage = (shares @ weights).astype(np.float32)
     return table

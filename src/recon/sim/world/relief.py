@@ -1,4 +1,4 @@
-"""Gentle relief: rolling ground as a sum of long waves, with its slopes, anywhere."""
+"""Gentle relief: ground heights as a sum of long waves, and their slopes."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,14 +14,14 @@ WAVES = 9
 
 @dataclass(frozen=True, slots=True)
 class ReliefSettings:
-    """How the ground rolls."""
+    """Amplitude and wavelengths of the relief."""
 
     seed: int = 0
     height_m: float = 4.0
     """Standard deviation; till plains of the corn belt rise and fall by ten metres."""
     shortest_m: float = 250.0
     longest_m: float = 1_400.0
-    """Between crests; shorter ones are ploughed flat, longer ones are hills."""
+    """Wavelengths; shorter ones are levelled by ploughing, longer ones are hills."""
 
     def __post_init__(self) -> None:
         expect("relief: seed", self.seed, 0, 2**63)
@@ -37,7 +37,7 @@ class Relief:
     settings: ReliefSettings
 
     def height_m(self, east_m: npt.ArrayLike, north_m: npt.ArrayLike) -> FloatImage:
-        """Return how high ground points (broadcast together) lie above the origin."""
+        """Return heights above the origin at ground points (broadcast together)."""
         phase = self._phase(east_m, north_m)
         at_origin = float(np.sum(self._amplitudes_m * np.sin(self._phases)))
         return (np.sin(phase) @ self._amplitudes_m - at_origin).astype(np.float32)
@@ -72,7 +72,7 @@ class Relief:
 
     @cached_property
     def _amplitudes_m(self) -> FloatArray:
-        """Longer waves are higher; together they have the deviation asked for."""
+        """Longer waves are higher; their sum has the standard deviation of the settings."""
         raw = self._lengths_m**1.2
         together = float(np.sqrt(0.5 * np.sum(raw * raw)))
         return raw * (self.settings.height_m / together)

@@ -1,4 +1,4 @@
-"""What the made-up sky, wind and light are like; a reason stands beside each number."""
+"""Settings of sky, wind and light, each with its reason."""
 
 from dataclasses import dataclass
 from math import inf, isfinite
@@ -12,18 +12,18 @@ LOW_SPEED_MPS = (5.0, 11.0)
 HIGH_SPEED_MPS = (10.0, 18.0)
 """Clouds 3 to 6 km up."""
 BETWEEN_LAYERS_DEG = (25.0, 70.0)
-"""Wind turns with height; two layers that move alike are one to a forecaster."""
+"""Wind turns with height; a forecaster cannot distinguish two layers that move alike."""
 
 
 def expect(name: str, value: float, lowest: float, highest: float) -> None:
-    """Refuse what is not a number within the bounds (infinity only where it is a bound)."""
+    """Raise `SimulationError` for NaN or a value outside the bounds."""
     if not lowest <= value <= highest:
         raise SimulationError(f"{name}: expected {lowest:g} to {highest:g}, got {value:g}")
 
 
 @dataclass(frozen=True, slots=True)
 class SunSettings:
-    """Where and when the scenario plays."""
+    """Place and start time of the scenario."""
 
     place: LatLon = DEMO_FIELD
     start_utc_s: float = 1_750_435_200.0
@@ -39,7 +39,7 @@ class SunSettings:
 
 @dataclass(frozen=True, slots=True)
 class WindShift:
-    """The clouds' velocity turns evenly into another one."""
+    """A linear change of the clouds' velocity to another one."""
 
     start_s: float
     duration_s: float
@@ -62,28 +62,28 @@ class LayerSettings:
     speed_mps: float = 7.5
     """In the middle of `LOW_SPEED_MPS`."""
     heading_deg: float = 70.0
-    """Where the clouds go, clockwise from north."""
+    """Direction the clouds move to, clockwise from north."""
     cover: float = 0.4
     """Share of the ground in the layer's shade (less than half of the beam), over long times."""
     spectral_slope: float = 3.4
     """Power of the field falls with wave number to this power; 3.0 gives more ragged clouds."""
     outer_scale_m: float = 12_000.0
-    """The largest structures: with them an hour's cover differs from the next hour's."""
+    """The largest structures: they make the cover differ from hour to hour."""
     finest_scale_m: float = 40.0
-    """Details below are lost in the penumbra of a cloud 1.4 km up."""
+    """Smaller details are lost in the penumbra of a cloud at 1.4 km."""
     softness: float = 0.28
     """Optical depth grows e-fold over this part of the field's deviation: edges of 20 to 200 m.
     Measured days have 0.02 to 1 (docs/world.md)."""
     largest_optical_depth: float = 20.0
-    """Of thick cumulus, along the beam; below 0.7 (thin cirrus) the layer never makes shade."""
+    """Of thick cumulus, along the beam; below 0.7 (thin cirrus) the layer never casts shade."""
     lifetime_s: float = 900.0
-    """After which a structure of 1 km has changed to 1/e; inf: frozen."""
+    """Time in which the correlation of a 1 km structure falls to 1/e; inf: frozen."""
     lifetime_exponent: float = 2.0 / 3.0
     """Lifetime grows with scale to this power, as eddies' turnover does."""
     modulation: float = 0.5
-    """How far the threshold wanders, in deviations of the field: the day's ups and downs."""
+    """Slow variation of the threshold, in standard deviations of the field: the cover varies."""
     modulation_s: float = 2_400.0
-    """After which the wandering has changed to 1/e."""
+    """Time in which the correlation of that variation falls to 1/e."""
     shifts: tuple[WindShift, ...] = ()
     """In order, each after the end of the one before."""
 
@@ -130,7 +130,7 @@ class WindSettings:
     speed_10m_mps: float = 3.5
     """Ten metres up; a light breeze, as with fair-weather cumulus."""
     heading_deg: float = 50.0
-    """Where the air goes, clockwise from north: left of the clouds, as friction turns it."""
+    """Direction the air moves to, clockwise from north: left of the clouds, because of friction."""
     shear_exponent: float = 0.16
     """Power law over crops by day."""
     veer_deg_per_100m: float = 3.0
@@ -138,7 +138,7 @@ class WindSettings:
     gust_intensity: float = 0.2
     """Standard deviation over mean speed at 10 m, along the wind, over open farmland by day."""
     gust_scale_m: float = 150.0
-    """Length of the largest gusts that fly by with the mean wind."""
+    """Length of the largest gusts, carried by the mean wind."""
 
     def __post_init__(self) -> None:
         if self.seed < 0:
@@ -153,10 +153,10 @@ class WindSettings:
 
 @dataclass(frozen=True, slots=True)
 class LightSettings:
-    """The air the light comes through."""
+    """The atmosphere that light passes."""
 
     linke_turbidity: float = 3.5
-    """How many clean dry atmospheres dim as much; summer farmland in the middle latitudes."""
+    """Number of clean dry atmospheres of equal extinction; mid-latitude farmland in summer."""
     altitude_m: float = 250.0
     """Above the sea: thinner air dims less."""
     cloud_brightening: float = 1.7

@@ -1,4 +1,4 @@
-"""The sky: how much of the sun's direct beam reaches the ground, anywhere, at any time.
+"""The sky: transmittance of the sun's direct beam, at any place and time.
 
 A pure function of its settings (seed, place, time, layers): the same point at the same time has
 the same value to the bit, whatever was asked before or is asked with it.
@@ -19,7 +19,7 @@ from recon.sim.world.settings import SkySettings
 from recon.sim.world.sun import SunPosition, sun_position
 
 POINTS_AT_ONCE = 65_536
-"""What is worked on at once stays in the processor's cache."""
+"""Points computed together: their arrays fit the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -37,16 +37,16 @@ class Sky:
         )
 
     def sun_at(self, time_s: float) -> SunPosition:
-        """Return where the sun stands, `time_s` after the scenario's start."""
+        """Return the sun's position, `time_s` after the scenario's start."""
         sun = self.settings.sun
         return sun_position(sun.place, sun.start_utc_s + time_s)
 
     def transmittance(
         self, east_m: npt.ArrayLike, north_m: npt.ArrayLike, time_s: npt.ArrayLike
     ) -> FloatImage:
-        """Return the direct beam's share, 0 to 1, at ground points and times, broadcast together.
+        """Return the transmittance, 0 to 1, at ground points and times (broadcast together).
 
-        Where there is one time for all points, give a number: that is fastest.
+        A single number for the time is fastest.
         """
         east, north, time = (np.asarray(v, dtype=np.float64) for v in (east_m, north_m, time_s))
         shape = np.broadcast_shapes(east.shape, north.shape, time.shape)
@@ -60,7 +60,7 @@ class Sky:
         return found.reshape(shape)
 
     def _piece(self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray) -> FloatImage:
-        """Return the direct beam's share (N,) at N points; times are (N,) or (1,)."""
+        """Return the transmittance (N,) at N points; times are (N,) or (1,)."""
         times_s, moment = _moments(time_s)
         suns = [self.sun_at(float(one_s)) for one_s in times_s]
         share = np.ones(east_m.size, dtype=np.float32)
@@ -70,7 +70,7 @@ class Sky:
         return share
 
     def on_grid(self, grid: GroundGrid, time_s: float) -> FloatImage:
-        """Return the direct beam's share at the centres of a raster's cells, (rows, cols)."""
+        """Return the transmittance at the centres of a grid's cells, (rows, cols)."""
         east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
         north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
         return self.transmittance(east_m[np.newaxis, :], north_m[:, np.newaxis], time_s)
@@ -80,7 +80,7 @@ def _moments(time_s: FloatArray) -> tuple[FloatArray, IndexArray]:
     """Return the moments (K,) among times (N,), and for each time the number of its moment."""
     if time_s.size == 1:
         return time_s, AT_ONCE
-    # Most who ask for many times ask for many points at each: those lie in a row.
+    # Callers with many times have runs of points with equal time: look up one per run.
     heads = np.flatnonzero(np.diff(time_s, prepend=np.nan) != 0.0)
     moments, of_head = np.unique(time_s[heads], return_inverse=True)
     return moments, np.repeat(of_head, np.diff(heads, append=time_s.size))

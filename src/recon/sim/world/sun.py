@@ -1,7 +1,7 @@
-"""Where the sun stands: the Astronomical Almanac's short formulas.
+"""The sun's position by the Astronomical Almanac's low-precision formulas.
 
-They are Michalsky's (Solar Energy 40, 1988), good to 0.01 degrees between 1950 and 2050: a
-cloud's shadow from 2 km up is right within a metre.
+As given by Michalsky (Solar Energy 40, 1988), good to 0.01 degrees between 1950 and 2050: the
+shadow of a cloud at 2 km is right within a metre.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ POSITIONS_KEPT = 16_384
 
 @dataclass(frozen=True, slots=True)
 class SunPosition:
-    """The direction the light comes from; refraction is in it."""
+    """Direction of the sun, refraction included."""
 
     azimuth_deg: float
     """Clockwise from north."""
@@ -36,7 +36,7 @@ class _Ecliptic:
 
 @lru_cache(maxsize=POSITIONS_KEPT)
 def sun_position(place: LatLon, utc_s: float) -> SunPosition:
-    """Return where the sun stands at a place, `utc_s` seconds after 1970-01-01 00:00 UTC."""
+    """Return the sun's position at a place, `utc_s` seconds after 1970-01-01 00:00 UTC."""
     if not (place.is_valid() and isfinite(utc_s)):
         raise SimulationError(f"expected a place on the globe and a time, got {place} at {utc_s}")
     days = (utc_s - J2000_UNIX_S) / DAY_S
@@ -55,7 +55,7 @@ def sun_position(place: LatLon, utc_s: float) -> SunPosition:
 
 
 def refraction_deg(elevation_deg: float) -> float:
-    """Return by how much air lifts what stands there (Saemundsson); none well below the horizon."""
+    """Return the refraction in degrees (Saemundsson 1986); 0 well below the horizon."""
     if elevation_deg < -1.0:
         return 0.0
     return 1.02 / tan(radians(elevation_deg + 10.3 / (elevation_deg + 5.11))) / 60.0

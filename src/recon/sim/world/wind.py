@@ -1,7 +1,7 @@
-"""The wind a vehicle flies in: a mean that grows and turns with height, and gusts.
+"""Wind: a mean that grows and turns with height, and gusts.
 
-Gusts are octaves of noise that fly by with the mean wind (frozen turbulence): who is farther
-downwind has them later. A pure function of seed, place and time.
+Gusts are octaves of noise carried by the mean wind (Taylor's frozen turbulence): places farther
+downwind have them later. A pure function of seed, place and time.
 """
 
 from dataclasses import dataclass
@@ -12,30 +12,30 @@ from recon.sim.world.settings import WindSettings
 
 REFERENCE_M = 10.0
 LOWEST_M = 1.0
-"""Below, in the crop, the profile no longer holds."""
+"""Below, in the crop, the power law does not apply."""
 HIGHEST_M = 600.0
-"""Above, the power law would let the wind grow for ever."""
+"""Above, the wind is taken as constant."""
 OCTAVES = 6
-"""From the largest gusts to those of a second or two: a drone answers nothing faster."""
+"""From the largest gusts down to those of a second or two: drones do not react to faster ones."""
 OCTAVE_RATIO = 0.5
 KOLMOGOROV = 2.0 / 3.0
-"""Power of velocity at a scale grows with the scale to this power."""
+"""Exponent of velocity variance over scale (Kolmogorov 1941)."""
 POWERS = tuple(OCTAVE_RATIO ** (k * KOLMOGOROV) for k in range(OCTAVES))
 WEIGHTS = tuple(sqrt(power / sum(POWERS)) for power in POWERS)
 ACROSS_SHARE = 0.8
 UP_SHARE = 0.5
-"""Deviations across the wind and upwards over that along it, in the lowest hundred metres."""
+"""Standard deviations across the wind and vertically over that along it, below 100 m."""
 STREAM = 1_000
-"""Random numbers of the wind: none of the sky's, which count layers from 0."""
+"""Random streams of the wind start here: those of the sky count layers from 0."""
 SLOWEST_MPS = 1.0
-"""In calm air gusts come by with the draught of the thermals."""
+"""Speed that carries gusts in calm air: the draught of thermals."""
 
 Velocity = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Wind:
-    """Wind velocity (east, north, up) in m/s: where the air goes."""
+    """Wind velocity (east, north, up) in m/s, the direction the air moves to."""
 
     settings: WindSettings
 
@@ -59,7 +59,7 @@ class Wind:
         )
 
     def _gust(self, passing_s: float, passing_mps: float) -> Velocity:
-        """Return gusts along, to the right of and above the mean wind."""
+        """Return gusts along the mean wind, to its right, and upwards."""
         scale_s = self.settings.gust_scale_m / passing_mps
         deviation_mps = self.settings.gust_intensity * self.settings.speed_10m_mps
         parts = (
@@ -83,13 +83,13 @@ class Wind:
 
 
 def velocity(speed_mps: float, heading_deg: float) -> tuple[float, float]:
-    """Return the parts to the east and to the north."""
+    """Return the east and north components."""
     heading = radians(heading_deg)
     return speed_mps * sin(heading), speed_mps * cos(heading)
 
 
 def _noise(seed: int, axis: int, time_s: float, scale_s: float) -> float:
-    """Return a value of mean 0 and deviation 1 that changes on scales from `scale_s` down."""
+    """Return noise of mean 0 and standard deviation 1 on time scales from `scale_s` down."""
     value = 0.0
     position = time_s / (scale_s * PERIODS_PER_LIFETIME)
     for k, weight in enumerate(WEIGHTS):
@@ -99,7 +99,7 @@ def _noise(seed: int, axis: int, time_s: float, scale_s: float) -> float:
 
 
 def _between_keys(stream: tuple[int, ...], position: float) -> float:
-    """Blend a stream's two neighbouring numbers so that the variance stays one."""
+    """Blend the two neighbouring keyframes so that the variance stays one."""
     key = floor(position)
     along = position - key
     rest = 1.0 - along
