@@ -15,5 +15,10 @@ export default defineConfig({
     environment: "happy-dom",
     include: ["src/**/*.test.{ts,tsx}"],
     restoreMocks: true,
+    // Each file in a context of its own, as with processes, at a sixth of their time.
+    pool: "vmThreads",
+    // Only a broken test takes this long; a busy machine must not fail one.
+    testTimeout: 60_000,
+    hookTimeout: 60_000,
   },
 });
