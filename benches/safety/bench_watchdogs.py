@@ -26,10 +26,10 @@ from recon.model.stamped import Stamped
 from recon.model.vehicle import FlightMode, VehicleProfile, VehicleState, VelocityNed
 from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import ClaimingLink, PreparedAirspace, SafetySettings, Situation, Traffic
-from recon.safety.prediction.sampling import Samples
+from recon.safety.prediction.trajectory import Samples
 from recon.safety.rules.separation import separation as rule
-from recon.safety.watchdogs import WATCHDOGS, Picture, WatchedVehicle, take_picture
-from recon.safety.watchdogs.closeness import closeness, near_pairs
+from recon.safety.watchdogs import WATCHDOGS, TrafficPicture, WatchedVehicle, build_traffic_picture
+from recon.safety.watchdogs.closest_approach import closeness, near_pairs
 from recon.station.kernel.driver import spare_what_is_loaded
 
 VEHICLES = 64
@@ -136,7 +136,7 @@ def timed_ms(work: Callable[[], object], times: int) -> np.ndarray:
     return np.array(found)
 
 
-def naive(picture: Picture) -> int:
+def naive(picture: TrafficPicture) -> int:
     """How many pairs come too near, asked one by one."""
     flies, need, count = (
         picture.ahead.as_it_flies,
@@ -158,7 +158,7 @@ def _track(flies: Samples, number: int) -> list[tuple[float, float, float]]:
     return list(zip(*(column.tolist() for column in columns), strict=True))
 
 
-def vectorised(picture: Picture) -> int:
+def vectorised(picture: TrafficPicture) -> int:
     flies, need = (
         picture.ahead.as_it_flies,
         picture.minima,
@@ -181,8 +181,8 @@ def main() -> int:
     rng = Random(7)
     air, watched = airspace(rng), fleet(rng)
 
-    def take() -> Picture:
-        return take_picture(watched, air, SETTINGS, NOW, {})
+    def take() -> TrafficPicture:
+        return build_traffic_picture(watched, air, SETTINGS, NOW, {})
 
     def look() -> int:
         picture = take()

@@ -19,7 +19,7 @@ from recon.model.vehicle import (
     VelocityNed,
 )
 from recon.safety import ApprovedCommand, ClaimingLink, PreparedAirspace, Situation
-from recon.safety.facts import ClockReading, StationFacts
+from recon.safety.situation import ClockReading, StationFacts
 
 S = 1_000_000_000
 NOW = 100 * S

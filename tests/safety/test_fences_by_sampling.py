@@ -4,7 +4,7 @@ from studies.fences import RULES, compare
 
 from recon.geo import Footprints
 from recon.model.command import Command, Refusal
-from recon.safety.path.departure import UnknownPath
+from recon.safety.path.pieces import UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 

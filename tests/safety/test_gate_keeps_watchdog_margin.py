@@ -15,12 +15,11 @@ from recon.model.intent import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import Traffic
-from recon.safety.prediction import Course, Follower
-from recon.safety.prediction.course import END_S, PART, FloatArray
-from recon.safety.prediction.sampling import sample
+from recon.safety.prediction import Predictor, Trajectory
+from recon.safety.prediction.trajectory import END_S, PART, FloatArray, sample
 from recon.safety.separation_minima import gate_minima, watchdog_minima
 from recon.safety.settings import SafetySettings
-from recon.safety.watchdogs import Finding, WatchedVehicle, take_picture
+from recon.safety.watchdogs import Finding, WatchedVehicle, build_traffic_picture
 from recon.safety.watchdogs.separation import separation as separation_watchdog
 
 Place = tuple[float, float, float]
@@ -34,9 +33,9 @@ class Member:
 
     def __init__(self, state: VehicleState, mission: Mission, rng: Random) -> None:
         self.state, self.mission = state, mission
-        follower = Follower(seen(state), SETTINGS, exactly=True)
-        follower.fly_mission(mission, 0)
-        self.course: Course = follower.writer.course(state.display_name, state.serial)
+        predictor = Predictor(seen(state), SETTINGS, exactly=True)
+        predictor.fly_mission(mission, 0)
+        self.trajectory: Trajectory = predictor.writer.trajectory(state.display_name, state.serial)
         self.starts_s = rng.choice((0.0, rng.uniform(0.0, 6.0)))
         self.off_m = [rng.uniform(-OFF_TRACK_M, OFF_TRACK_M) for _ in range(2)]
         self.off_m.append(rng.uniform(-0.2, 0.2))
@@ -46,7 +45,7 @@ class Member:
         flown_s = max(0.0, now_s - self.starts_s)
         place, after = self._at(flown_s), self._at(flown_s + 0.01)
         velocity = (after - place) / 0.01 if now_s >= self.starts_s else np.zeros(3)
-        rows = self.course.rows
+        rows = self.trajectory.rows
         passed = int(rows[np.searchsorted(rows[:, END_S], flown_s, side="right"), PART])
         passed = passed if passed >= 0 else len(self.mission.waypoints)
         north_m, east_m, up_m = place + self.off_m
@@ -62,7 +61,7 @@ class Member:
         return WatchedVehicle(state, Intent(Commanded.MISSION, mission=self.mission, passed=passed))
 
     def _at(self, flown_s: float) -> FloatArray:
-        found = sample([self.course.rows], [flown_s])
+        found = sample([self.trajectory.rows], [flown_s])
         up_m = 0.5 * (found.low_m + found.high_m)
         return np.array([found.north_m[0, 0], found.east_m[0, 0], up_m[0, 0]])
 
@@ -114,7 +113,7 @@ def _place_of(mission: Mission) -> object:
 
 def findings(members: list[Member], now_s: float) -> list[Finding]:
     watched = [member.watched(now_s) for member in members]
-    picture = take_picture(watched, AIR, SafetySettings(), NOW + round(now_s * S), {})
+    picture = build_traffic_picture(watched, AIR, SafetySettings(), NOW + round(now_s * S), {})
     return list(separation_watchdog(picture))
 
 
@@ -135,7 +134,7 @@ def test_approved_missions_fly_without_a_finding(kind: str) -> None:
 
 def test_the_gate_keeps_more_than_the_watchdog_watches_for() -> None:
     limits, settings = AIR.airspace.limits, SafetySettings()
-    gate, watchdog = gate_minima(limits, settings), watchdog_minima(limits, settings.watch)
+    gate, watchdog = gate_minima(limits, settings), watchdog_minima(limits, settings.watchdogs)
     assert (watchdog.horizontal_m, watchdog.vertical_m) == (17.0, 7.0)
     assert (gate.horizontal_m, gate.vertical_m) == (18.0, 7.5)
 

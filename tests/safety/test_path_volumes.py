@@ -23,8 +23,7 @@ from recon.model.command import (
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Attitude, Failsafe, VehicleState
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
-from recon.safety.path.departure import UnknownPath
-from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.pieces import Kind, PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
 
 FLAT = airspace()

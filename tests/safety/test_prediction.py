@@ -1,4 +1,4 @@
-"""Courses: where vehicles will be and when, against constructions and an integrator of its own."""
+"""Trajectories in space and time, against constructions and an independent integrator."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -29,27 +29,26 @@ from recon.model.mission import Mission
 from recon.model.vehicle import Failsafe, TrackPoint, VehicleState
 from recon.safety import PreparedAirspace, Traffic
 from recon.safety.prediction import (
-    Follower,
-    Part,
+    FlightPart,
     Plane,
-    foresee_order,
-    foresee_traffic,
+    Predictor,
     hazard_area_of,
-    hazard_courses,
-    part_words,
+    hazard_trajectories,
+    part_text,
+    predict_order,
+    predict_traffic,
 )
-from recon.safety.prediction import flyer as placed
-from recon.safety.prediction.course import ALL_HEIGHTS_M, FOREVER_S
+from recon.safety.prediction import vehicle_motion as placed
+from recon.safety.prediction.conflicts import segments_apart_m
 from recon.safety.prediction.legs import corner_bulge_m
-from recon.safety.prediction.meetings import segments_apart_m
-from recon.safety.prediction.sampling import Samples, sample
+from recon.safety.prediction.trajectory import ALL_HEIGHTS_M, FOREVER_S, Samples, sample
 
 
 def where(state: VehicleState, intent: Intent, *times_s: float) -> Samples:
     """Where a vehicle that does as it was told is at these moments, phases and all."""
-    follower = Follower(seen(state), SETTINGS, exactly=True)
-    follower.follow(intent)
-    return sample([follower.writer.rows], times_s)
+    predictor = Predictor(seen(state), SETTINGS, exactly=True)
+    predictor.follow(intent)
+    return sample([predictor.writer.rows], times_s)
 
 
 class TestLegs:
@@ -117,7 +116,7 @@ class TestLegs:
 
     def test_no_more_is_written_than_is_asked_for(self) -> None:
         legs = route(*((20.0 * n, 0.0) for n in range(1, 90)))
-        short = Follower(seen(aircraft()), SETTINGS, until_s=10.0)
+        short = Predictor(seen(aircraft()), SETTINGS, until_s=10.0)
         short.follow(flies(legs))
         assert 2 <= len(short.writer.rows) <= 3
 
@@ -257,15 +256,17 @@ class TestOtherIntents:
 class TestOrders:
     def end(self, body: object, state: VehicleState | None = None) -> tuple[float, ...]:
         """East, north, low and high at an order's end, and its last row's radius."""
-        course = foresee_order(seen(state or aircraft()), body, SETTINGS)  # type: ignore[arg-type]
-        last = course.rows[-1]
+        trajectory = predict_order(seen(state or aircraft()), body, SETTINGS)  # type: ignore[arg-type]
+        last = trajectory.rows[-1]
         return tuple(last[[4, 5, 8, 9, 11]])
 
     def test_a_mission_begins_with_stopping(self) -> None:
         moving = aircraft(velocity=(5.0, 0.0, 0.0))
-        course = foresee_order(seen(moving), FlyMission(route((0.0, 0.0), (50.0, 0.0))), SETTINGS)
-        assert course.rows[0, 13] == Part.STOPPING
-        assert course.rows[1, 5] == pytest.approx(10.0)
+        trajectory = predict_order(
+            seen(moving), FlyMission(route((0.0, 0.0), (50.0, 0.0))), SETTINGS
+        )
+        assert trajectory.rows[0, 13] == FlightPart.STOPPING
+        assert trajectory.rows[1, 5] == pytest.approx(10.0)
 
     def test_steered_orders_end_where_they_lead(self) -> None:
         assert self.end(GoTo(at(0.0, 80.0), 50.0, 5.0))[:4] == pytest.approx(
@@ -387,21 +388,21 @@ class TestHazards:
         old = hazard_area_of(seen(aircraft(home=None, age_s=500.0)), Intent(), SETTINGS)
         assert young is not None
         assert old is not None
-        assert [len(course.rows) for course in hazard_courses(young)] == [2, 1, 1]
-        assert [len(course.rows) for course in hazard_courses(old)] == [1]
+        assert [len(trajectory.rows) for trajectory in hazard_trajectories(young)] == [2, 1, 1]
+        assert [len(trajectory.rows) for trajectory in hazard_trajectories(old)] == [1]
 
     def test_one_with_a_mission_is_foreseen_to_fly_it_on(self) -> None:
         stale = seen(aircraft(age_s=5.0))
-        assert len(foresee_traffic(stale, Intent(), SETTINGS, FOREVER_S)) == 3
+        assert len(predict_traffic(stale, Intent(), SETTINGS, FOREVER_S)) == 3
         assert (
-            len(foresee_traffic(stale, flies(route((0.0, 0.0), (9.0, 0.0))), SETTINGS, 60.0)) == 4
+            len(predict_traffic(stale, flies(route((0.0, 0.0), (9.0, 0.0))), SETTINGS, 60.0)) == 4
         )
 
 
 def test_every_part_of_a_flight_has_words() -> None:
-    words = {part_words(part) for part in (*Part, 0, 1, 2)}
-    assert len(words) == len(Part) + 3
-    assert part_words(3) == "between waypoints 3 and 4"
+    words = {part_text(part) for part in (*FlightPart, 0, 1, 2)}
+    assert len(words) == len(FlightPart) + 3
+    assert part_text(3) == "between waypoints 3 and 4"
 
 
 class TestAgainstAnIntegrator:

@@ -17,7 +17,7 @@ from recon.model.command import Hover, VirtualStick
 from recon.model.stamped import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety import Situation, Traffic, approve
-from recon.safety.standstill import is_stop
+from recon.safety.path.order_path import is_stop
 
 POOR: dict[str, object] = {
     "battery_fraction": 0.03,

@@ -16,7 +16,7 @@ from recon.model.vehicle import (
     VelocityNed,
 )
 from recon.safety import ClaimingLink, PreparedAirspace, Situation, Traffic
-from recon.safety.prediction import Flyer, Plane, PredictionSettings, flyer
+from recon.safety.prediction import Plane, PredictionSettings, VehicleMotion, vehicle_motion
 from recon.safety.rules.separation import separation
 
 S = 1_000_000_000
@@ -94,9 +94,9 @@ def flies(mission: Mission, passed: int = 0) -> Intent:
     return Intent(Commanded.MISSION, mission=mission, passed=passed)
 
 
-def seen(state: VehicleState) -> Flyer:
+def seen(state: VehicleState) -> VehicleMotion:
     """The vehicle in the plane; it must have told where it is."""
-    found = flyer(state, AIR, PLANE, NOW, SETTINGS)
+    found = vehicle_motion(state, AIR, PLANE, NOW, SETTINGS)
     assert found is not None
     return found
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from recon.model.vehicle import VehicleState
 from recon.safety.check import Check
-from recon.safety.checks import aircraft, go_home, place, site_facts
+from recon.safety.checks import aircraft, place, site_facts
 from recon.safety.situation import Situation
 
 _CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
@@ -20,7 +20,7 @@ _CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
     aircraft.gnss,
     aircraft.wind,
     site_facts.altitude_reference,
-    go_home.go_home_height,
+    site_facts.go_home_height,
     site_facts.failsafe,
     place.home_place,
     place.pad_altitude,

@@ -32,7 +32,7 @@ def watchdog_minima(limits: FlightLimits, settings: WatchdogSettings) -> Separat
 
 def gate_minima(limits: FlightLimits, settings: SafetySettings) -> SeparationMinima:
     """Return the minima that the gate keeps along a whole predicted path."""
-    watchdog, prediction = watchdog_minima(limits, settings.watch), settings.prediction
+    watchdog, prediction = watchdog_minima(limits, settings.watchdogs), settings.prediction
     return SeparationMinima(
         watchdog.horizontal_m + prediction.track_error_horizontal_m,
         watchdog.vertical_m + prediction.track_error_vertical_m,

@@ -171,7 +171,7 @@ class PredictionSettings:
     """A body-frame stick that turns the vehicle by more than this sweeps a disc, not a line."""
 
     stick_horizon_s: float = 5.0
-    """A stick without a known target is foreseen this far: no app holds one longer."""
+    """A stick without a known target is predicted this far: no app holds one longer."""
 
     free_s: float = 5.0
     """A vehicle that the station has told nothing may be flown by a pilot. It may use its speed in
@@ -305,7 +305,7 @@ class SafetySettings:
 
     fresh_telemetry_s: float = LATE_UNDER_S
     """Telemetry this old still tells whether a vehicle flies: running video causes dropouts of a
-    second or two, and within three no aircraft lands and disarms unseen."""
+    second or two, and within three no aircraft lands and disarms lost."""
 
     motion_telemetry_s: float = LIVE_UNDER_S
     """Motion is ordered on core telemetry this young at most: at 15 m/s a second is 15 m, as far as
@@ -371,7 +371,7 @@ class SafetySettings:
     """What the rules about places and heights need besides the site's limits."""
 
     prediction: PredictionSettings = field(default_factory=PredictionSettings)
-    """How far and how surely vehicles' paths are foreseen."""
+    """How far and how surely vehicles' paths are predicted."""
 
-    watch: WatchdogSettings = field(default_factory=WatchdogSettings)
-    """When the watchdogs bark and when they act."""
+    watchdogs: WatchdogSettings = field(default_factory=WatchdogSettings)
+    """Watchdog alarm and intervention thresholds."""

@@ -10,10 +10,34 @@ from recon.model.intent import Intent
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
-from recon.safety.facts import NO_FACTS, StationFacts
 from recon.safety.settings import SafetySettings
 
 T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class ClockReading:
+    """What the computer's clock said last, and by how much it was set since the station began.
+
+    The station's own time never jumps; the computer's may.
+    """
+
+    wall_ns: int
+    set_by_ns: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class StationFacts:
+    """`others` are all other vehicles that are connected or may be in the air; `app_warnings` what
+    the vehicle's app has said and nobody has seen."""
+
+    clock: ClockReading | None = None
+    others: tuple[VehicleState, ...] = ()
+    app_warnings: tuple[str, ...] = ()
+
+
+NO_FACTS = StationFacts()
+"""Nothing is known: no mission is flown."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from recon.model.vehicle import VehicleState
 from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.check import Check, CheckState
-from recon.safety.checks.go_home import go_home_height
+from recon.safety.checks.site_facts import go_home_height
 
 ORIGIN = GeoPoint(42.0, -93.6, 270.0)
 WIDE = PreparedAirspace(replace(AIRSPACE.airspace, limits=FlightLimits(500.0)))

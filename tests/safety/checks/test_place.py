@@ -15,7 +15,7 @@ from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.check import CheckState
 from recon.safety.checks.place import clock, fence, ground, home_place, pad_altitude
-from recon.safety.facts import NO_FACTS, ClockReading
+from recon.safety.situation import NO_FACTS, ClockReading
 
 ORIGIN = GeoPoint(42.0, -93.6, 270.0)
 SET_S = 1_780_000_000

@@ -9,8 +9,8 @@ from recon.model.command import Body, FlyMission, GoTo, HoldPosition, Hover, Nud
 from recon.model.geo import LatLon
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, Override, Situation
-from recon.safety.facts import NO_FACTS
 from recon.safety.rules.preflight import preflight
+from recon.safety.situation import NO_FACTS
 
 HOMEWARDS = FlyMission(replace(mission(waypoint(50.0), waypoint(0.0)).mission, land_at_end=True))
 OVERRIDE = Override("Ann", "the fence comes tomorrow", 5)

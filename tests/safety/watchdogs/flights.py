@@ -15,7 +15,14 @@ from recon.model.intent import Commanded, Intent
 from recon.model.vehicle import FlightMode
 from recon.safety import PreparedAirspace
 from recon.safety.settings import SafetySettings
-from recon.safety.watchdogs import WATCHDOGS, Finding, Held, Watchdog, WatchedVehicle, take_picture
+from recon.safety.watchdogs import (
+    WATCHDOGS,
+    CommandedHold,
+    Finding,
+    Watchdog,
+    WatchedVehicle,
+    build_traffic_picture,
+)
 from recon.safety.watchdogs.separation import separation
 
 STEP_S = 0.01
@@ -74,7 +81,7 @@ class Aircraft:
         intent, held = self.intent, None
         if self.held_at_s is not None:
             speed = hypot(*self.velocity[:2])
-            held = Held(round(self.held_at_s * S), speed)
+            held = CommandedHold(round(self.held_at_s * S), speed)
         return WatchedVehicle(state, intent, self.holder, held=held)
 
 
@@ -107,7 +114,7 @@ class Air:
 
     def looks(self) -> list[Finding]:
         now_ns = round(self.now_s * S)
-        picture = take_picture(
+        picture = build_traffic_picture(
             [one.watched(self.now_s, self.rng) for one in self.fleet],
             self.airspace,
             SETTINGS,

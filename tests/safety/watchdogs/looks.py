@@ -12,12 +12,12 @@ from recon.safety import PreparedAirspace
 from recon.safety.settings import SafetySettings
 from recon.safety.watchdogs import (
     WATCHDOGS,
+    CommandedHold,
     Finding,
-    Held,
-    Picture,
+    TrafficPicture,
     Watchdog,
     WatchedVehicle,
-    take_picture,
+    build_traffic_picture,
 )
 
 SETTINGS = SafetySettings()
@@ -29,9 +29,9 @@ def picture(
     airspace: PreparedAirspace = AIR,
     since_ns: Mapping[str, int] = LONG_AGO,
     is_hold_on: bool = True,
-) -> Picture:
+) -> TrafficPicture:
     watched = [v if isinstance(v, WatchedVehicle) else WatchedVehicle(v) for v in vehicles]
-    return take_picture(watched, airspace, SETTINGS, NOW, since_ns, is_hold_on=is_hold_on)
+    return build_traffic_picture(watched, airspace, SETTINGS, NOW, since_ns, is_hold_on=is_hold_on)
 
 
 def looks(
@@ -53,8 +53,8 @@ def told(state: VehicleState, **changes: object) -> WatchedVehicle:
     return replace(WatchedVehicle(state), **changes)  # type: ignore[arg-type]
 
 
-def held(seconds_ago: float, speed_mps: float = 0.0) -> Held:
-    return Held(NOW - round(seconds_ago * S), speed_mps)
+def held(seconds_ago: float, speed_mps: float = 0.0) -> CommandedHold:
+    return CommandedHold(NOW - round(seconds_ago * S), speed_mps)
 
 
 __all__ = [

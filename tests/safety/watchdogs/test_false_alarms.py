@@ -13,7 +13,7 @@ from tests.safety.watchdogs.flights import SETTINGS
 
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
-from recon.safety.watchdogs import WatchedVehicle, take_picture
+from recon.safety.watchdogs import WatchedVehicle, build_traffic_picture
 from recon.safety.watchdogs.separation import separation
 
 LINE_M, LINES = 300.0, 2
@@ -100,7 +100,9 @@ def alarms_and_holds(apart_m: float) -> tuple[int, int]:
         now_ns = 100 * S + round(step * LOOK_S * S)
         for one in fleet:
             one.flies_on(LOOK_S)
-        picture = take_picture([v.watched(now_ns) for v in fleet], AIR, SETTINGS, now_ns, since)
+        picture = build_traffic_picture(
+            [v.watched(now_ns) for v in fleet], AIR, SETTINGS, now_ns, since
+        )
         found = list(separation(picture))
         began += sum(f.key not in since for f in found)
         since = {f.key: since.get(f.key, now_ns) for f in found}

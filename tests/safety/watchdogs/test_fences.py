@@ -276,10 +276,10 @@ class TestHeights:
 
 def test_one_that_may_fly_its_mission_on_unheard_is_not_asked_and_others_are() -> None:
     mission = route((0.0, 0.0), (0.0, 400.0))
-    unseen = told(aircraft("G", age_s=10.0), intent=flies(mission, 1))
+    lost = told(aircraft("G", age_s=10.0), intent=flies(mission, 1))
     outside = aircraft("A", (520.0, 0.0))
-    assert [f.serial for f in looks(fences, unseen, outside, airspace=SITE)] == ["A"]
-    assert looks(fences, unseen, airspace=SITE) == []
+    assert [f.serial for f in looks(fences, lost, outside, airspace=SITE)] == ["A"]
+    assert looks(fences, lost, airspace=SITE) == []
 
 
 def test_no_vehicle_is_asked_that_is_not_heard_flying() -> None:

@@ -16,25 +16,27 @@ APART_M = 2_500.0
 MEETS_AFTER_S = 14.0
 
 
-def _level(speed_mps: float, course: float) -> Vector:
-    return speed_mps * cos(course), speed_mps * sin(course), 0.0
+def _level(speed_mps: float, trajectory: float) -> Vector:
+    return speed_mps * cos(trajectory), speed_mps * sin(trajectory), 0.0
 
 
 def head_on(rng: Random) -> tuple[Vector, Vector]:
-    course = rng.uniform(0.0, 2.0 * pi)
-    off = course + pi + rng.uniform(-0.1, 0.1)
-    return _level(rng.uniform(2.0, 15.0), course), _level(rng.uniform(2.0, 15.0), off)
+    trajectory = rng.uniform(0.0, 2.0 * pi)
+    off = trajectory + pi + rng.uniform(-0.1, 0.1)
+    return _level(rng.uniform(2.0, 15.0), trajectory), _level(rng.uniform(2.0, 15.0), off)
 
 
 def crossing(rng: Random) -> tuple[Vector, Vector]:
-    course = rng.uniform(0.0, 2.0 * pi)
+    trajectory = rng.uniform(0.0, 2.0 * pi)
     turn = rng.choice((-1.0, 1.0)) * rng.uniform(0.5, 2.6)
-    return _level(rng.uniform(3.0, 15.0), course), _level(rng.uniform(3.0, 15.0), course + turn)
+    return _level(rng.uniform(3.0, 15.0), trajectory), _level(
+        rng.uniform(3.0, 15.0), trajectory + turn
+    )
 
 
 def overtaking(rng: Random) -> tuple[Vector, Vector]:
-    course, slow = rng.uniform(0.0, 2.0 * pi), rng.uniform(0.0, 8.0)
-    return _level(slow + rng.uniform(4.0, 7.0), course), _level(slow, course)
+    trajectory, slow = rng.uniform(0.0, 2.0 * pi), rng.uniform(0.0, 8.0)
+    return _level(slow + rng.uniform(4.0, 7.0), trajectory), _level(slow, trajectory)
 
 
 def climbing_into(rng: Random) -> tuple[Vector, Vector]:
@@ -45,13 +47,13 @@ def climbing_into(rng: Random) -> tuple[Vector, Vector]:
 def pair(rng: Random, number: int, kind: object) -> tuple[Aircraft, Aircraft]:
     """Two that would be at the same place, or metres from it, at the same time."""
     one, other = kind(rng)  # type: ignore[operator]
-    meeting = ((number % 6) * APART_M, (number // 6) * APART_M, 60.0)
+    conflict = ((number % 6) * APART_M, (number // 6) * APART_M, 60.0)
     meets_s = MEETS_AFTER_S + rng.uniform(0.0, 4.0)
     found = []
     for name, velocity in (("A", one), ("B", other)):
         miss = (rng.uniform(-4.0, 4.0), rng.uniform(-4.0, 4.0), rng.uniform(-1.5, 1.5))
         place = tuple(
-            at - meets_s * v + off for at, v, off in zip(meeting, velocity, miss, strict=True)
+            at - meets_s * v + off for at, v, off in zip(conflict, velocity, miss, strict=True)
         )
         is_mission = rng.random() < 0.5
         flown = Aircraft(

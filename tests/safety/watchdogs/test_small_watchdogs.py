@@ -18,12 +18,9 @@ from tests.safety.watchdogs.looks import (
 from recon.model.severity import Severity
 from recon.model.stamped import Stamped
 from recon.model.vehicle import AltitudeReference, VehicleState
-from recon.safety.watchdogs import Before, Finding
+from recon.safety.watchdogs import Finding, PreviousPosition
 from recon.safety.watchdogs.battery_home import battery_home
-from recon.safety.watchdogs.heights import heights
-from recon.safety.watchdogs.jumps import jumps
-from recon.safety.watchdogs.link import link
-from recon.safety.watchdogs.sticks import sticks
+from recon.safety.watchdogs.telemetry import heights, jumps, link, sticks
 
 
 def severities(findings: list[Finding]) -> list[Severity]:
@@ -130,7 +127,7 @@ class TestHeights:
 class TestJumps:
     def moved(self, metres: float, seconds: float, speed_mps: float = 0.0) -> list[Finding]:
         state = aircraft("A", (metres, 0.0), velocity=(speed_mps, 0.0, 0.0))
-        before = Before(at(0.0, 0.0), speed_mps, NOW - round(seconds * S))
+        before = PreviousPosition(at(0.0, 0.0), speed_mps, NOW - round(seconds * S))
         return looks(jumps, told(state, before=before))
 
     @pytest.mark.parametrize(
@@ -154,7 +151,7 @@ class TestJumps:
         assert "jumped by 80 m" in found.text
 
     def test_the_same_position_or_none_is_no_jump(self) -> None:
-        far = Before(at(500.0, 0.0), 0.0, NOW)
+        far = PreviousPosition(at(500.0, 0.0), 0.0, NOW)
         for one in (
             told(aircraft("A"), before=far),
             told(aircraft("A")),

@@ -21,7 +21,7 @@ from recon.model.event import (
 )
 from recon.model.units import NS_PER_S
 from recon.safety.rules import RULES
-from recon.safety.watchdogs import WATCHDOGS, Finding, Picture
+from recon.safety.watchdogs import WATCHDOGS, Finding, TrafficPicture
 from recon.station.alarms.conditions import raise_alarms
 from recon.station.control import order_gateway
 from recon.station.control.order_gateway import Stepped
@@ -112,10 +112,10 @@ class TestATick:
     def test_a_watchdog_without_a_fault_is_unchanged(self) -> None:
         finding = Finding("k", "r", Severity.INFO, "A", "text")
 
-        def finds(_picture: Picture) -> Iterable[Finding]:
+        def finds(_picture: TrafficPicture) -> Iterable[Finding]:
             yield finding
 
-        picture: Picture = None  # type: ignore[assignment]
+        picture: TrafficPicture = None  # type: ignore[assignment]
         assert tuple(isolated(finds)(picture)) == (finding,)
 
     def test_if_raising_alarms_fails_those_that_stand_stay(

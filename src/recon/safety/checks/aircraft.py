@@ -3,7 +3,7 @@
 from recon.model.stamped import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.check import Check, Point
-from recon.safety.gnss_quality import gnss_fault
+from recon.safety.rules.gnss import gnss_fault
 from recon.safety.situation import Situation
 
 LINK = Point("link", "Link")

@@ -1,7 +1,14 @@
 """What people have told of the vehicle in the site's file, since the ICD carries none of it."""
 
+from collections.abc import Iterator
+
+import numpy as np
+
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile, VehicleState
+from recon.model.zone import HeightDatum, ZoneKind
+from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.check import Check, Point
+from recon.safety.datum import takeoff_up_m
 from recon.safety.situation import Situation
 
 ALTITUDE = Point("altitude_reference", "Altitude reference")
@@ -67,3 +74,88 @@ def _profile(vehicle: VehicleState) -> VehicleProfile:
 
 def _write(vehicle: VehicleState, line: str) -> str:
     return f'write {line} under [[vehicles]] serial = "{vehicle.serial}" in site.toml'
+
+
+HEIGHT = Point("go_home_height", "Go-home height")
+
+
+def go_home_height(vehicle: VehicleState, situation: Situation) -> Check:
+    """It is told, possible, under the ceiling, and in nobody else's layer; zones are looked at."""
+    height_m = None if vehicle.profile is None else vehicle.profile.go_home_height_m
+    if height_m is None:
+        return HEIGHT.unknown(
+            "the height at which it goes home is not told",
+            "read it in the aircraft's settings and write go_home_height_m = METRES under "
+            f'[[vehicles]] serial = "{vehicle.serial}" in site.toml',
+        )
+    fault = next(_faults(height_m, vehicle, situation), None)
+    if fault is not None:
+        return HEIGHT.fails(fault, "set another one in the aircraft and in site.toml")
+    low = _not_cleared(height_m, vehicle, situation)
+    if low:
+        return HEIGHT.attention(
+            f"{height_m:g} m does not clear {', '.join(low)}",
+            "nothing is flown whose way home leads there; a greater height would clear it",
+        )
+    return HEIGHT.ok(f"{height_m:g} m above takeoff")
+
+
+def _faults(height_m: float, vehicle: VehicleState, situation: Situation) -> Iterator[str]:
+    settings, limits = situation.settings.preflight, situation.airspace.airspace.limits
+    if not settings.least_go_home_m <= height_m <= settings.most_go_home_m:
+        yield (
+            f"{height_m:g} m: aircraft take {settings.least_go_home_m:g} to "
+            f"{settings.most_go_home_m:g} m"
+        )
+    if height_m > limits.max_height_above_ground_m:
+        yield f"{height_m:g} m: the site allows {limits.max_height_above_ground_m:g} m at most"
+    for other, apart_m in _neighbours(vehicle, situation):
+        if apart_m < limits.min_separation_vertical_m:
+            yield (
+                f"{height_m:g} m: {other.display_name} goes home {apart_m:.1f} m from that, "
+                f"{limits.min_separation_vertical_m:g} m apart is needed"
+            )
+
+
+def _neighbours(
+    vehicle: VehicleState, situation: Situation
+) -> Iterator[tuple[VehicleState, float]]:
+    """Yield the others whose go-home height is known, and how far it is from the vehicle's."""
+    own_m = _go_home_up_m(situation.airspace, vehicle)
+    for other in situation.facts.others:
+        other_m = _go_home_up_m(situation.airspace, other)
+        if own_m is not None and other_m is not None:
+            yield other, abs(own_m - other_m)
+
+
+def _go_home_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | None:
+    """How high it goes home, in the site's frame; from the origin's height when nobody knows where
+    it took off."""
+    if vehicle.profile is None or vehicle.profile.go_home_height_m is None:
+        return None
+    return (takeoff_up_m(airspace, vehicle) or 0.0) + vehicle.profile.go_home_height_m
+
+
+def _not_cleared(height_m: float, vehicle: VehicleState, situation: Situation) -> list[str]:
+    """Keep-out zones with a ceiling that the go-home height is not above, by their names.
+
+    The ground under a zone counts at the corners of its outline; what is flown is judged exactly,
+    by the rule keep_out.
+    """
+    base_m = takeoff_up_m(situation.airspace, vehicle)
+    if base_m is None:
+        return []
+    over_m = base_m + height_m - situation.settings.fences.zone_vertical_margin_m
+    zones = situation.airspace.zones_of(ZoneKind.KEEP_OUT)
+    tops_m = ((zone.zone.name, _top_up_m(zone, situation.airspace)) for zone in zones)
+    return [repr(name) for name, top_m in tops_m if top_m is not None and over_m < top_m]
+
+
+def _top_up_m(prepared: PreparedZone, airspace: PreparedAirspace) -> float | None:
+    zone, frame = prepared.zone, airspace.airspace.frame
+    if zone.ceiling_m is None or frame is None:
+        return None
+    if zone.datum is HeightDatum.WGS84:
+        return zone.ceiling_m - frame.origin.ellipsoid_height_m
+    ground_m = airspace.ground_up_m(zone.region.outline_m)
+    return float(np.nanmax(ground_m, initial=-np.inf)) + zone.ceiling_m

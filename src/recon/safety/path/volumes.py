@@ -16,7 +16,6 @@ from recon.model.command import Command, StickFrame
 from recon.model.mission import Mission
 from recon.model.vehicle import Failsafe
 from recon.safety.datum import places_m
-from recon.safety.path.departure import Departure, UnknownPath, departure
 from recon.safety.path.order_path import (
     Hold,
     OrderPath,
@@ -26,7 +25,17 @@ from recon.safety.path.order_path import (
     as_sent,
     order_path,
 )
-from recon.safety.path.pieces import Kind, PathVolume, Pieces, block, joined, legs_between
+from recon.safety.path.pieces import (
+    Departure,
+    Kind,
+    PathVolume,
+    Pieces,
+    UnknownPath,
+    block,
+    departure,
+    joined,
+    legs_between,
+)
 from recon.safety.settings import FenceSettings, SafetySettings
 from recon.safety.situation import Situation
 

@@ -1,29 +1,28 @@
-"""Where vehicles will be: courses from their state and what they were told."""
+"""Where vehicles will be: trajectories from their state and what they were told."""
 
-from recon.safety.prediction.course import FOREVER_S, Course, Part, part_words
-from recon.safety.prediction.flyer import Flyer, flyer
-from recon.safety.prediction.foresee import foresee_order, foresee_traffic
-from recon.safety.prediction.hazard_area import HazardArea, hazard_area_of, hazard_courses
-from recon.safety.prediction.intents import Follower
-from recon.safety.prediction.meetings import Meeting, first_meeting
-from recon.safety.prediction.plane import Plane
+from recon.safety.prediction.conflicts import Conflict, first_conflict
+from recon.safety.prediction.hazard_area import HazardArea, hazard_area_of, hazard_trajectories
+from recon.safety.prediction.motion import Plane, VehicleMotion, vehicle_motion
+from recon.safety.prediction.predicted_trajectories import predict_order, predict_traffic
+from recon.safety.prediction.predictor import Predictor
+from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, Trajectory, part_text
 from recon.safety.settings import PredictionSettings
 
 __all__ = [
     "FOREVER_S",
-    "Course",
-    "Flyer",
-    "Follower",
+    "Conflict",
+    "FlightPart",
     "HazardArea",
-    "Meeting",
-    "Part",
     "Plane",
     "PredictionSettings",
-    "first_meeting",
-    "flyer",
-    "foresee_order",
-    "foresee_traffic",
+    "Predictor",
+    "Trajectory",
+    "VehicleMotion",
+    "first_conflict",
     "hazard_area_of",
-    "hazard_courses",
-    "part_words",
+    "hazard_trajectories",
+    "part_text",
+    "predict_order",
+    "predict_traffic",
+    "vehicle_motion",
 ]

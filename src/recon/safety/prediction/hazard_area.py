@@ -7,10 +7,16 @@ plausible speed and reaches down to the ground, for its battery ends somewhere.
 from dataclasses import dataclass
 
 from recon.model.intent import Commanded, Intent
-from recon.safety.prediction.course import ALL_HEIGHTS_M, FOREVER_S, Course, CourseWriter, Part
-from recon.safety.prediction.flyer import Flyer
-from recon.safety.prediction.intents import go_home_top_m
 from recon.safety.prediction.legs import stopping_distance_m
+from recon.safety.prediction.motion import VehicleMotion
+from recon.safety.prediction.predictor import go_home_top_m
+from recon.safety.prediction.trajectory import (
+    ALL_HEIGHTS_M,
+    FOREVER_S,
+    FlightPart,
+    Trajectory,
+    TrajectoryWriter,
+)
 from recon.safety.settings import PredictionSettings
 
 LONGEST_RISE_S = 10.0
@@ -40,58 +46,60 @@ class HazardArea:
     corridor_half_m: float
 
 
-def hazard_area_of(flyer: Flyer, intent: Intent, settings: PredictionSettings) -> HazardArea | None:
+def hazard_area_of(
+    motion: VehicleMotion, intent: Intent, settings: PredictionSettings
+) -> HazardArea | None:
     """Return the hazard area of a vehicle that is too long unheard; None of one that is heard."""
-    if flyer.age_s <= settings.stale_s:
+    if motion.age_s <= settings.stale_s:
         return None
-    growth_mps = max(_plausible_mps(flyer, intent), settings.hazard_least_speed_mps)
+    growth_mps = max(_plausible_mps(motion, intent), settings.hazard_least_speed_mps)
     largest_m = max(settings.hazard_radius_m, stopping_distance_m(growth_mps, settings))
-    rise_m = max(0.0, flyer.velocity_mps[2]) * min(flyer.age_s, LONGEST_RISE_S)
-    top_m = flyer.high_m + rise_m
-    if flyer.goes_home:
-        top_m = max(top_m, go_home_top_m(flyer, settings))
+    rise_m = max(0.0, motion.velocity_mps[2]) * min(motion.age_s, LONGEST_RISE_S)
+    top_m = motion.high_m + rise_m
+    if motion.goes_home:
+        top_m = max(top_m, go_home_top_m(motion, settings))
     return HazardArea(
-        name=flyer.name,
-        serial=flyer.state.serial,
-        age_s=flyer.age_s,
-        east_m=flyer.east_m,
-        north_m=flyer.north_m,
-        radius_m=min(largest_m, growth_mps * flyer.age_s),
+        name=motion.name,
+        serial=motion.state.serial,
+        age_s=motion.age_s,
+        east_m=motion.east_m,
+        north_m=motion.north_m,
+        radius_m=min(largest_m, growth_mps * motion.age_s),
         growth_mps=growth_mps,
         largest_m=largest_m,
         low_m=-ALL_HEIGHTS_M,
         high_m=top_m,
-        home_m=flyer.home_m if flyer.goes_home else None,
-        corridor_low_m=flyer.low_m,
+        home_m=motion.home_m if motion.goes_home else None,
+        corridor_low_m=motion.low_m,
         corridor_half_m=settings.corridor_m,
     )
 
 
-def hazard_courses(hazard: HazardArea) -> tuple[Course, ...]:
-    """Return the hazard area's volumes as courses: the circle, the way home, the landing."""
-    circle = CourseWriter(hazard.east_m, hazard.north_m, hazard.low_m, hazard.high_m)
+def hazard_trajectories(hazard: HazardArea) -> tuple[Trajectory, ...]:
+    """Return the hazard area's volumes as trajectories: the circle, the way home, the landing."""
+    circle = TrajectoryWriter(hazard.east_m, hazard.north_m, hazard.low_m, hazard.high_m)
     circle.radius_m = hazard.radius_m
     if hazard.radius_m < hazard.largest_m:
         grows_s = (hazard.largest_m - hazard.radius_m) / hazard.growth_mps
-        circle.grows(hazard.largest_m, grows_s, Part.UNSEEN)
-    circle.stays(Part.UNSEEN)
+        circle.grows(hazard.largest_m, grows_s, FlightPart.HAZARD)
+    circle.stays(FlightPart.HAZARD)
     writers = [circle]
     if hazard.home_m is not None:
-        way = CourseWriter(hazard.east_m, hazard.north_m, hazard.corridor_low_m, hazard.high_m)
+        way = TrajectoryWriter(hazard.east_m, hazard.north_m, hazard.corridor_low_m, hazard.high_m)
         way.radius_m = hazard.corridor_half_m
-        way.moves(*hazard.home_m, FOREVER_S, Part.UNSEEN)
-        landing = CourseWriter(*hazard.home_m, hazard.low_m, hazard.high_m)
+        way.moves(*hazard.home_m, FOREVER_S, FlightPart.HAZARD)
+        landing = TrajectoryWriter(*hazard.home_m, hazard.low_m, hazard.high_m)
         landing.radius_m = hazard.corridor_half_m
-        landing.stays(Part.UNSEEN)
+        landing.stays(FlightPart.HAZARD)
         writers += [way, landing]
-    return tuple(writer.course(hazard.name, hazard.serial) for writer in writers)
+    return tuple(writer.trajectory(hazard.name, hazard.serial) for writer in writers)
 
 
-def _plausible_mps(flyer: Flyer, intent: Intent) -> float:
+def _plausible_mps(motion: VehicleMotion, intent: Intent) -> float:
     """What it flew last, or what it was told to fly."""
     told_mps = 0.0
     if intent.commanded is Commanded.MISSION and intent.mission is not None:
         told_mps = max(w.speed_mps for w in intent.mission.waypoints)
     elif intent.commanded is Commanded.STICK:
         told_mps = intent.speed_mps or 0.0
-    return max(flyer.speed_mps, told_mps)
+    return max(motion.speed_mps, told_mps)

@@ -1,9 +1,9 @@
-"""Straight ways flown with limited acceleration, and stopping: rows for a course."""
+"""Straight ways flown with limited acceleration, and stopping: rows for a trajectory."""
 
 from math import hypot, sqrt
 from typing import NamedTuple
 
-from recon.safety.prediction.course import FOREVER_S, CourseWriter, Part
+from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, TrajectoryWriter
 from recon.safety.settings import PredictionSettings
 
 LEAST_M = 1e-3
@@ -37,7 +37,7 @@ class Leg(NamedTuple):
 
 
 def fly(
-    writer: CourseWriter,
+    writer: TrajectoryWriter,
     leg: Leg,
     settings: PredictionSettings,
     *,
@@ -67,12 +67,12 @@ def fly(
 
 
 def stop(
-    writer: CourseWriter,
+    writer: TrajectoryWriter,
     velocity_mps: tuple[float, float, float],
     settings: PredictionSettings,
     *,
     reaction_s: float,
-    part: int = Part.STOPPING,
+    part: int = FlightPart.STOPPING,
 ) -> None:
     """Go on for the reaction's time and brake in a straight line; velocity is east, north, up."""
     east_mps, north_mps, up_mps = velocity_mps
@@ -163,7 +163,7 @@ def _phase(long_m: float, from_mps: float, to_mps: float) -> Phase:
 
 
 def _write_phases(
-    writer: CourseWriter,
+    writer: TrajectoryWriter,
     leg: Leg,
     long_m: float,
     phases: tuple[Phase, Phase, Phase],

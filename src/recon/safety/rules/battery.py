@@ -5,8 +5,8 @@ from math import ceil, floor, isfinite
 from recon.model.command import BODY_NAMES, Body, Command, FlyMission, Refusal
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.energy import Need, consumption, leads_away, need_of
+from recon.safety.path.order_path import is_stop
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "battery"
 ROUNDING = 1e-9
@@ -58,10 +58,10 @@ def _short(vehicle: VehicleState, body: Body, is_away: bool, situation: Situatio
         return "its place or its home is not known, so not how much battery the way home takes"
     reserve = situation.airspace.airspace.limits.battery_reserve_fraction
     left = reserve if is_away else energy.landing_fraction
-    return None if need.whole + left <= has else _told(body, need, left, has)
+    return None if need.whole + left <= has else _text_of_need(body, need, left, has)
 
 
-def _told(body: Body, need: Need, left: float, has: float) -> str:
+def _text_of_need(body: Body, need: Need, left: float, has: float) -> str:
     name = BODY_NAMES[type(body)].replace("_", " ")
     end = f"waypoint {need.at}" if isinstance(body, FlyMission) else "its end"
     flown = f"{_near(need.flown)} % to {end}, " if need.at > 0 else ""

@@ -5,11 +5,10 @@ import numpy.typing as npt
 
 from recon.geo import Polygon
 from recon.model.command import Command, Refusal
-from recon.safety.path.departure import UnknownPath
-from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.order_path import is_stop
+from recon.safety.path.pieces import Kind, PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "boundary"
 

@@ -35,7 +35,7 @@ def flying(command: Command, situation: Situation) -> Refusal | None:
     if any(_says_flying(claiming_link, situation) for claiming_link in situation.claiming_links):
         return None
     reason = f"{vehicle.display_name}: {_why(vehicle, situation)}"
-    return Refusal(RULE, reason, is_stale=_is_unheard(vehicle, situation))
+    return Refusal(RULE, reason, is_stale=_is_telemetry_lost(vehicle, situation))
 
 
 def _no_takeoff(command: Command, vehicle: VehicleState | None) -> Refusal | None:
@@ -58,7 +58,7 @@ def _says_flying(claiming_link: ClaimingLink, situation: Situation) -> bool:
     return is_fresh and claiming_link.is_flying.value is True
 
 
-def _is_unheard(vehicle: VehicleState, situation: Situation) -> bool:
+def _is_telemetry_lost(vehicle: VehicleState, situation: Situation) -> bool:
     """Whether the vehicle was last known to fly and its telemetry is too old to say so now."""
     age_s = vehicle.is_flying.age_s(situation.now_ns)
     is_old = age_s is not None and age_s > situation.settings.fresh_telemetry_s

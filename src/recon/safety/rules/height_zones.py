@@ -5,13 +5,11 @@ import numpy as np
 from recon.model.command import Command, Refusal
 from recon.model.zone import ZoneKind
 from recon.safety.airspace import PreparedZone
-from recon.safety.columns import columns
-from recon.safety.heights import height_words, stays_above, stays_below, up_of, zone_datum
-from recon.safety.path.departure import UnknownPath
-from recon.safety.path.pieces import PathVolume
+from recon.safety.heights import columns, height_text, stays_above, stays_below, up_of, zone_datum
+from recon.safety.path.order_path import is_stop
+from recon.safety.path.pieces import PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "height_zones"
 
@@ -56,7 +54,7 @@ def _fault(zone: PreparedZone, path: PathVolume, situation: Situation, stops: bo
         if is_low.any():
             is_low &= ~columns(path, situation, stops)[near]
         if is_low.any():
-            limit = f"fly no lower than {height_words(floor_m, datum)} there"
+            limit = f"fly no lower than {height_text(floor_m, datum)} there"
             return _reason(zone, path, int(near[is_low][0]), limit)
     if ceiling_m is not None:
         high_m = pieces.high_m[near] - slack_m
@@ -67,7 +65,7 @@ def _fault(zone: PreparedZone, path: PathVolume, situation: Situation, stops: bo
             is_no_higher = stays_below(airspace, triangles_m, pieces.high_m[near], most_m, datum)
             is_high &= ~(pieces.is_entry[near] & is_no_higher)
         if is_high.any():
-            limit = f"fly no higher than {height_words(ceiling_m, datum)} there"
+            limit = f"fly no higher than {height_text(ceiling_m, datum)} there"
             return _reason(zone, path, int(near[is_high][0]), limit)
     return None
 

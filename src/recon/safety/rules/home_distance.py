@@ -3,11 +3,10 @@
 import numpy as np
 
 from recon.model.command import Command, Refusal
-from recon.safety.path.departure import UnknownPath
-from recon.safety.path.pieces import Kind
+from recon.safety.path.order_path import is_stop
+from recon.safety.path.pieces import Kind, UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "home_distance"
 

@@ -7,17 +7,16 @@ from recon.model.command import Command, Refusal
 from recon.model.zone import Zone, ZoneKind
 from recon.safety.airspace import PreparedZone
 from recon.safety.heights import (
-    height_words,
+    height_text,
     stays_above,
     stays_below,
     up_of,
     zone_datum,
 )
-from recon.safety.path.departure import UnknownPath
-from recon.safety.path.pieces import PathVolume
+from recon.safety.path.order_path import is_stop
+from recon.safety.path.pieces import PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "keep_out"
 FloatArray = npt.NDArray[np.float64]
@@ -130,9 +129,9 @@ def _reason(zone: PreparedZone, path: PathVolume, index: int, situation: Situati
 def _extent(zone: Zone) -> str:
     ends = []
     if zone.floor_m is not None:
-        ends.append(f"from {height_words(zone.floor_m, zone_datum(zone))}")
+        ends.append(f"from {height_text(zone.floor_m, zone_datum(zone))}")
     if zone.ceiling_m is not None:
-        ends.append(f"up to {height_words(zone.ceiling_m, zone_datum(zone))}")
+        ends.append(f"up to {height_text(zone.ceiling_m, zone_datum(zone))}")
     return f" ({' '.join(ends)})" if ends else ""
 
 

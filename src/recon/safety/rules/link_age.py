@@ -2,8 +2,8 @@
 
 from recon.model.command import Command, Refusal
 from recon.model.units import ns_to_seconds
+from recon.safety.path.order_path import is_stop
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "link_age"
 

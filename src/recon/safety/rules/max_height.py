@@ -8,12 +8,10 @@ import numpy.typing as npt
 from recon.model.command import Command, Refusal, VirtualStick
 from recon.safety.datum import is_ground_assumed_flat
 from recon.safety.heights import stays_below
-from recon.safety.path.departure import UnknownPath
-from recon.safety.path.order_path import as_sent
-from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.path.order_path import as_sent, is_stop
+from recon.safety.path.pieces import Kind, PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "max_height"
 IntArray = npt.NDArray[np.int64]

@@ -3,14 +3,12 @@
 import numpy as np
 
 from recon.model.command import Command, Refusal
-from recon.safety.columns import columns
 from recon.safety.datum import is_ground_assumed_flat
-from recon.safety.heights import stays_above
-from recon.safety.path.departure import UnknownPath
-from recon.safety.path.pieces import Kind, PathVolume
+from recon.safety.heights import columns, stays_above
+from recon.safety.path.order_path import is_stop
+from recon.safety.path.pieces import Kind, PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "min_height"
 _CLIMB_FIRST = (

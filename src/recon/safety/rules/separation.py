@@ -1,9 +1,9 @@
 """Vehicles keep apart: predicted paths are compared in space and time.
 
-The course of the order is foreseen to its end, and so is that of every other vehicle in the air,
-from its state and what it was last told. They must stay apart horizontally or vertically at all
-times that they may be there together; how exactly those times are known falls with the time ahead.
-A vehicle that is not heard any more is a hazard about its last place and along its way home.
+The trajectory of the order is predicted to its end, and so is that of every other vehicle in the
+air, from its state and what it was last told. They must stay apart horizontally or vertically at
+all times that they may be there together; how exactly those times are known falls with the time
+ahead. A vehicle that is not heard any more is a hazard about its last place and along its way home.
 """
 
 from math import ceil
@@ -11,29 +11,33 @@ from math import ceil
 from recon.model.command import Command, Refusal
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import frame_for
+from recon.safety.path.order_path import is_stop
 from recon.safety.prediction import (
-    Course,
-    Flyer,
-    Meeting,
-    Part,
+    Conflict,
+    FlightPart,
     Plane,
-    first_meeting,
-    flyer,
-    foresee_order,
-    foresee_traffic,
-    part_words,
+    Trajectory,
+    VehicleMotion,
+    first_conflict,
+    part_text,
+    predict_order,
+    predict_traffic,
+    vehicle_motion,
 )
-from recon.safety.prediction.foresee import may_enter, may_meet, surroundings
+from recon.safety.prediction.predicted_trajectories import (
+    may_conflict,
+    may_enter,
+    trajectory_bounds,
+)
 from recon.safety.separation_minima import SeparationMinima, gate_minima
 from recon.safety.situation import Situation
-from recon.safety.standstill import is_stop
 
 RULE = "separation"
 NOWHERE = "it does not tell where it is, and others are in the air"
 
 
 def separation(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse a path that comes too near to another vehicle's, or to where one may be unseen."""
+    """Refuse a path that comes too near to another vehicle's, or to where one may be lost."""
     body, vehicle = command.body, situation.vehicle
     if not command.moves or is_stop(command, situation) or not situation.traffic:
         return None
@@ -47,28 +51,28 @@ def separation(command: Command, situation: Situation) -> Refusal | None:
     own = _placed(vehicle, plane, situation)
     if own is None:
         return _refusal(vehicle.display_name, NOWHERE)
-    course = foresee_order(own, body, prediction)
-    others = _others(own, course, plane, situation)
+    trajectory = predict_order(own, body, prediction)
+    others = _others(own, trajectory, plane, situation)
     if isinstance(others, Refusal):
         return others
-    meeting = first_meeting(course, others, need, prediction)
-    if meeting is None:
+    conflict = first_conflict(trajectory, others, need, prediction)
+    if conflict is None:
         return None
-    return _refusal(own.name, _words(meeting, others[meeting.other], need))
+    return _refusal(own.name, _text(conflict, others[conflict.other], need))
 
 
-def _placed(vehicle: VehicleState, plane: Plane, situation: Situation) -> Flyer | None:
+def _placed(vehicle: VehicleState, plane: Plane, situation: Situation) -> VehicleMotion | None:
     prediction = situation.settings.prediction
-    return flyer(vehicle, situation.airspace, plane, situation.now_ns, prediction)
+    return vehicle_motion(vehicle, situation.airspace, plane, situation.now_ns, prediction)
 
 
 def _others(
-    own: Flyer, course: Course, plane: Plane, situation: Situation
-) -> tuple[Course, ...] | Refusal:
-    """The courses of all traffic that can come near the order's course while it lasts."""
+    own: VehicleMotion, trajectory: Trajectory, plane: Plane, situation: Situation
+) -> tuple[Trajectory, ...] | Refusal:
+    """The trajectories of all traffic that can come near the order's trajectory while it lasts."""
     prediction = situation.settings.prediction
-    around = surroundings(course, _minima(situation), prediction)
-    courses: list[Course] = []
+    around = trajectory_bounds(trajectory, _minima(situation), prediction)
+    trajectories: list[Trajectory] = []
     for other in situation.traffic:
         seen = _placed(other.vehicle, plane, situation)
         if seen is None:
@@ -78,27 +82,29 @@ def _others(
             text = f"{name} may be in the air and has never told where: land it or dismiss it"
             return _refusal(own.name, text)
         if may_enter(seen, other.intent, around, prediction):
-            foreseen = foresee_traffic(seen, other.intent, prediction, around.until_s)
-            courses += (course for course in foreseen if may_meet(course, around))
-    return tuple(courses)
+            predicted = predict_traffic(seen, other.intent, prediction, around.until_s)
+            trajectories += (
+                trajectory for trajectory in predicted if may_conflict(trajectory, around)
+            )
+    return tuple(trajectories)
 
 
 def _minima(situation: Situation) -> SeparationMinima:
     return gate_minima(situation.airspace.airspace.limits, situation.settings)
 
 
-def _words(meeting: Meeting, other: Course, need: SeparationMinima) -> str:
-    where, when_s = part_words(meeting.own_part), ceil(meeting.at_s)
-    if meeting.other_part == Part.UNSEEN:
+def _text(conflict: Conflict, other: Trajectory, need: SeparationMinima) -> str:
+    where, when_s = part_text(conflict.own_part), ceil(conflict.at_s)
+    if conflict.other_part == FlightPart.HAZARD:
         return (
             f"{where}, about {when_s} s from now, it would come within "
-            f"{meeting.horizontal_m:.0f} m of where {other.name} may be, telemetry lost; "
+            f"{conflict.horizontal_m:.0f} m of where {other.name} may be, telemetry lost; "
             "wait until it reconnects, or dismiss its hazard area once you have located it"
         )
     return (
-        f"{where}, about {when_s} s from now, it could come within {meeting.horizontal_m:.0f} m "
-        f"and {meeting.vertical_m:.0f} m in height of {other.name} "
-        f"({part_words(meeting.other_part)}); {need.horizontal_m:g} m, or {need.vertical_m:g} m in "
+        f"{where}, about {when_s} s from now, it could come within {conflict.horizontal_m:.0f} m "
+        f"and {conflict.vertical_m:.0f} m in height of {other.name} "
+        f"({part_text(conflict.other_part)}); {need.horizontal_m:g} m, or {need.vertical_m:g} m in "
         "height, must be kept: fly at another height, elsewhere, or later"
     )
 

@@ -5,16 +5,20 @@ from collections.abc import Callable, Iterable
 from recon.safety.settings import WatchdogSettings
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.fences import fences
-from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.heights import heights
-from recon.safety.watchdogs.jumps import jumps
-from recon.safety.watchdogs.link import link
-from recon.safety.watchdogs.picture import Before, Held, Picture, WatchedVehicle, hold_words
 from recon.safety.watchdogs.separation import separation
-from recon.safety.watchdogs.sticks import sticks
-from recon.safety.watchdogs.take import plane_of, take_picture
+from recon.safety.watchdogs.telemetry import heights, jumps, link, sticks
+from recon.safety.watchdogs.traffic_picture import (
+    CommandedHold,
+    Finding,
+    PreviousPosition,
+    TrafficPicture,
+    WatchedVehicle,
+    build_traffic_picture,
+    hold_outcome,
+    plane_of,
+)
 
-Watchdog = Callable[[Picture], Iterable[Finding]]
+Watchdog = Callable[[TrafficPicture], Iterable[Finding]]
 
 WATCHDOGS: tuple[Watchdog, ...] = (
     separation,
@@ -28,14 +32,14 @@ WATCHDOGS: tuple[Watchdog, ...] = (
 
 __all__ = [
     "WATCHDOGS",
-    "Before",
+    "CommandedHold",
     "Finding",
-    "Held",
-    "Picture",
+    "PreviousPosition",
+    "TrafficPicture",
     "Watchdog",
     "WatchdogSettings",
     "WatchedVehicle",
-    "hold_words",
+    "build_traffic_picture",
+    "hold_outcome",
     "plane_of",
-    "take_picture",
 ]

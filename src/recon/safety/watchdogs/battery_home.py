@@ -4,13 +4,12 @@ from collections.abc import Iterator
 
 from recon.model.severity import Severity
 from recon.safety.energy import fraction_to_get_home
-from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.picture import Picture, WatchedVehicle
+from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture, WatchedVehicle
 
 RULE = "battery_home"
 
 
-def battery_home(picture: Picture) -> Iterator[Finding]:
+def battery_home(picture: TrafficPicture) -> Iterator[Finding]:
     """Find vehicles in the air whose battery is about to be too low to come home."""
     for watched in picture.flying:
         has = watched.state.battery_fraction.value
@@ -22,7 +21,7 @@ def battery_home(picture: Picture) -> Iterator[Finding]:
 
 
 def _compared(
-    watched: WatchedVehicle, has: float, needs: float, picture: Picture
+    watched: WatchedVehicle, has: float, needs: float, picture: TrafficPicture
 ) -> Iterator[Finding]:
     """Below what a landing must leave it is critical; below the reserve it is time to turn back."""
     least, reserve = picture.energy.landing_fraction, _reserve(picture)
@@ -35,5 +34,5 @@ def _compared(
         yield watched.finding(RULE, Severity.WARNING, text, after_s=1.0)
 
 
-def _reserve(picture: Picture) -> float:
+def _reserve(picture: TrafficPicture) -> float:
     return picture.airspace.airspace.limits.battery_reserve_fraction

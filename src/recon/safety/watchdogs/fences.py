@@ -8,19 +8,28 @@ pilot leads is alarmed about only.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
+import numpy.typing as npt
 
-from recon.geo import Polygon
+from recon.geo import Footprints, Polygon
+from recon.model.geo import LatLon, LocalFrame
 from recon.model.severity import Severity
 from recon.model.zone import ZoneKind
 from recon.safety.airspace import PreparedAirspace, PreparedZone
-from recon.safety.heights import height_words, stays_above, stays_below, zone_datum
-from recon.safety.prediction.course import ALL_HEIGHTS_M
-from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.picture import Picture
-from recon.safety.watchdogs.way import BoolArray, IntArray, Way, way_ahead
+from recon.safety.datum import places_m
+from recon.safety.heights import height_text, stays_above, stays_below, zone_datum
+from recon.safety.prediction.motion import last_place
+from recon.safety.prediction.trajectory import ALL_HEIGHTS_M, FloatArray
+from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture
+
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
+
+NEAR_HOME_M = 15.0
+"""Takeoffs and landings are low by nature: a vehicle this near to its home is on one."""
 
 FENCE, ZONE, HEIGHT = "fence_ahead", "zone_ahead", "height_limit"
 
@@ -28,7 +37,21 @@ DEEPER_M = 0.5
 """A vehicle on the wrong side may drift this much before it counts as going deeper."""
 
 
-def fences(picture: Picture) -> Iterator[Finding]:
+@dataclass(frozen=True, slots=True, eq=False)
+class Way:
+    """For N vehicles: where they are and will be, (N, 2) in the site's frame, and the heights
+    between, (N,) up metres. `ahead` are the hulls of the ways, from (N, 3, 2) `triangles_m`."""
+
+    here_m: FloatArray
+    there_m: FloatArray
+    triangles_m: FloatArray
+    ahead: Footprints
+    low_m: FloatArray
+    high_m: FloatArray
+    is_near_home: BoolArray
+
+
+def fences(picture: TrafficPicture) -> Iterator[Finding]:
     """Find vehicles that are, or will soon be, where the site says they must not."""
     frame = picture.airspace.airspace.frame
     if frame is None or not picture.flying:
@@ -43,7 +66,7 @@ def fences(picture: Picture) -> Iterator[Finding]:
     yield from _limits(picture, way)
 
 
-def _boundary(picture: Picture, way: Way, fence: Polygon) -> Iterator[Finding]:
+def _boundary(picture: TrafficPicture, way: Way, fence: Polygon) -> Iterator[Finding]:
     for index in np.flatnonzero(~fence.holds(way.ahead)):
         inside_m, later_m = _depths_m(way, fence, int(index))
         if inside_m < 0.0:
@@ -55,7 +78,7 @@ def _boundary(picture: Picture, way: Way, fence: Polygon) -> Iterator[Finding]:
         yield _found(picture, int(index), FENCE, text, is_bad=is_out, stops=stops)
 
 
-def _keep_out(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
+def _keep_out(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
     indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead))
     name = zone.zone.name
     for index in indices[_has_its_heights(picture.airspace, way, zone, indices)]:
@@ -69,7 +92,7 @@ def _keep_out(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Findin
         yield _found(picture, int(index), ZONE, text, about=name, is_bad=is_in, stops=stops)
 
 
-def _heights(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
+def _heights(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
     """Heights are alarmed about and not held: standing too low or too high is no better.
 
     A height that nobody knows is neither.
@@ -80,17 +103,17 @@ def _heights(picture: Picture, way: Way, zone: PreparedZone) -> Iterator[Finding
     floor_m, ceiling_m = zone.zone.floor_m, zone.zone.ceiling_m
     if ceiling_m is not None:
         is_over = ~stays_below(airspace, triangles_m, way.high_m[indices], ceiling_m, datum)
-        text = f"is too high, or soon will be: at most {height_words(ceiling_m, datum)} in {name!r}"
+        text = f"is too high, or soon will be: at most {height_text(ceiling_m, datum)} in {name!r}"
         for index in indices[is_over]:
             yield _found(picture, int(index), HEIGHT, text, about=name)
     if floor_m is not None:
         is_under = ~stays_above(airspace, triangles_m, way.low_m[indices], floor_m, datum)
-        text = f"is too low, or soon will be: at least {height_words(floor_m, datum)} in {name!r}"
+        text = f"is too low, or soon will be: at least {height_text(floor_m, datum)} in {name!r}"
         for index in indices[is_under & ~_may_be_low(picture, way)[indices]]:
             yield _found(picture, int(index), HEIGHT, text, about=name)
 
 
-def _limits(picture: Picture, way: Way) -> Iterator[Finding]:
+def _limits(picture: TrafficPicture, way: Way) -> Iterator[Finding]:
     """The site's own least and greatest height; over ground that nobody knows it is too high."""
     airspace, limits = picture.airspace, picture.airspace.airspace.limits
     most_m, least_m = limits.max_height_above_ground_m, limits.min_height_above_ground_m
@@ -123,7 +146,7 @@ def _has_its_heights(
     return has
 
 
-def _may_be_low(picture: Picture, way: Way) -> BoolArray:
+def _may_be_low(picture: TrafficPicture, way: Way) -> BoolArray:
     """Who takes off or lands."""
     is_coming_down = [watched.is_coming_down for watched in picture.flying]
     return way.is_near_home | np.array(is_coming_down, dtype=np.bool_)
@@ -137,7 +160,7 @@ def _depths_m(way: Way, polygon: Polygon, index: int) -> tuple[float, float]:
 
 
 def _found(
-    picture: Picture,
+    picture: TrafficPicture,
     index: int,
     rule: str,
     text: str,
@@ -148,8 +171,8 @@ def _found(
 ) -> Finding:
     watched = picture.flying[index]
     severity = Severity.CRITICAL if is_bad else Severity.ERROR
-    if stops and watched.hold_words:
-        text = f"{text}; {watched.name} {watched.hold_words}"
+    if stops and watched.hold_outcome:
+        text = f"{text}; {watched.name} {watched.hold_outcome}"
     finding = watched.finding(rule, severity, text, about=f":{about}" if about else "")
     is_due = picture.lasted_s(finding.key) >= picture.settings.confirm_s
     if not (stops and is_due and watched.may_be_held) or watched.is_coming_down:
@@ -157,3 +180,55 @@ def _found(
     if watched.was_held_within_s(picture.now_ns, picture.settings.hold_again_s):
         return finding
     return replace(finding, holds=watched.state.serial)
+
+
+def way_ahead(picture: TrafficPicture, frame: LocalFrame) -> Way:
+    """Return the ways of a picture's flying vehicles, of which there must be one.
+
+    Each is flown in `fence_factor` times the time in which its speed covers its stopping distance.
+    """
+    motions = [watched.motion for watched in picture.flying]
+    speeds = np.array([0.0 if motion is None else motion.speed_mps for motion in motions])
+    prediction, times_s = picture.prediction, picture.ahead.times_s
+    stop_s = prediction.reaction_s + speeds / (2.0 * prediction.braking_mps2)
+    last = np.searchsorted(times_s, np.minimum(picture.settings.fence_factor * stop_s, times_s[-1]))
+    here_m = places_m(frame, [_place(picture, number) for number in range(len(motions))])
+    last_known_m = np.array([(f.east_m, f.north_m) if f else (0.0, 0.0) for f in motions])
+    at_m = _at_m(picture, np.stack([np.zeros_like(last), (last + 1) // 2, last], axis=1))
+    # Exact where the vehicles were heard, and from there on in the plane, which is exact enough.
+    triangles_m = here_m[:, np.newaxis] + at_m - last_known_m[:, np.newaxis]
+    flies, rows = picture.ahead.as_it_flies, np.arange(len(motions))
+    return Way(
+        here_m=triangles_m[:, 0],
+        there_m=triangles_m[:, 2],
+        triangles_m=triangles_m,
+        ahead=Footprints(triangles_m),
+        low_m=np.minimum(flies.low_m[rows, 0], flies.low_m[rows, last]),
+        high_m=np.maximum(flies.high_m[rows, 0], flies.high_m[rows, last]),
+        is_near_home=_is_near_home(picture),
+    )
+
+
+def _place(picture: TrafficPicture, number: int) -> LatLon:
+    place, _at_ns = last_place(picture.flying[number].state)
+    assert place is not None, "a vehicle that is heard flying has told where it is"
+    return place
+
+
+def _at_m(picture: TrafficPicture, index: IntArray) -> FloatArray:
+    """Where each vehicle is at M of the moments (N, M): (N, M, 2) in the plane."""
+    flies, rows = picture.ahead.as_it_flies, np.arange(len(index))[:, np.newaxis]
+    return np.stack([flies.east_m[rows, index], flies.north_m[rows, index]], axis=2)
+
+
+def _is_near_home(picture: TrafficPicture) -> BoolArray:
+    near = []
+    for watched in picture.flying:
+        motion = watched.motion
+        home_m = None if motion is None else motion.home_m
+        if motion is None or home_m is None:
+            near.append(False)
+            continue
+        far_m = hypot(motion.east_m - home_m[0], motion.north_m - home_m[1])
+        near.append(far_m <= NEAR_HOME_M)
+    return np.array(near, dtype=np.bool_)

@@ -20,7 +20,7 @@ from recon.model.authority import AuthorityHolder
 from recon.model.severity import Severity
 from recon.safety.prediction import HazardArea
 from recon.safety.separation_minima import SeparationMinima
-from recon.safety.watchdogs.closeness import (
+from recon.safety.watchdogs.closest_approach import (
     Approach,
     IntArray,
     approach,
@@ -28,14 +28,13 @@ from recon.safety.watchdogs.closeness import (
     hazard_closeness,
     near_pairs,
 )
-from recon.safety.watchdogs.finding import Finding
-from recon.safety.watchdogs.picture import Picture, WatchedVehicle
+from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture, WatchedVehicle
 
 RULE = "separation"
-SWITCHED_OFF = "holding is switched off"
+HOLDS_OFF = "holding is switched off"
 
 
-def separation(picture: Picture) -> Iterator[Finding]:
+def separation(picture: TrafficPicture) -> Iterator[Finding]:
     """Find the pairs of vehicles, and of vehicles and hazard areas, that come too near."""
     if not picture.flying:
         return
@@ -46,7 +45,7 @@ def separation(picture: Picture) -> Iterator[Finding]:
     for watched in picture.watched:
         if watched.hazard is not None:
             yield from _hazard(picture, watched.hazard, need)
-    if len(picture.foreseen) < 2:
+    if len(picture.predicted) < 2:
         return
     flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
     first, second = near_pairs(flies, need)
@@ -77,9 +76,9 @@ def in_order_of_yielding(
 
 
 def _pair(
-    picture: Picture, one: int, other: int, found: Approach, need: SeparationMinima
+    picture: TrafficPicture, one: int, other: int, found: Approach, need: SeparationMinima
 ) -> Finding:
-    both = picture.foreseen[one], picture.foreseen[other]
+    both = picture.predicted[one], picture.predicted[other]
     yielding, second = in_order_of_yielding(*both)
     indices = {id(both[0]): one, id(both[1]): other}
     keys = sorted((yielding.key, second.key))
@@ -93,11 +92,13 @@ def _pair(
             if _can_be_held(picture, candidate) and _helps(picture, pair, found, need):
                 held = candidate
                 break
-    text = f"{_words(found, second.name + _unheard(second))}{_outcome(picture, *both)}"
+    text = f"{_text(found, second.name + _lost_text(second))}{_outcome(picture, *both)}"
     return _finding(picture, key, yielding, text, found, held)
 
 
-def _hazard(picture: Picture, hazard: HazardArea, need: SeparationMinima) -> Iterator[Finding]:
+def _hazard(
+    picture: TrafficPicture, hazard: HazardArea, need: SeparationMinima
+) -> Iterator[Finding]:
     ahead = picture.ahead
     flies = hazard_closeness(ahead.as_it_flies, ahead.times_s, hazard, need)
     rows = np.flatnonzero((flies[0][: len(picture.flying)] < 1.0).any(axis=1))
@@ -113,11 +114,11 @@ def _hazard(picture: Picture, hazard: HazardArea, need: SeparationMinima) -> Ite
         can = is_due and _can_be_held(picture, watched) and _is_better(picture, found, instead)
         held = watched if can else None
         where = f"where {hazard.name} may be, which has not been heard for {hazard.age_s:.0f} s"
-        text = f"{_words(found, where)}{_outcome(picture, watched)}"
+        text = f"{_text(found, where)}{_outcome(picture, watched)}"
         yield _finding(picture, key, watched, text, found, held)
 
 
-def _is_due(picture: Picture, key: str, found: Approach, *both: WatchedVehicle) -> bool:
+def _is_due(picture: TrafficPicture, key: str, found: Approach, *both: WatchedVehicle) -> bool:
     """Whether it is time to hold: the alarm has been there, and little more time is left than all
     of them need to stop, one after the other."""
     settings, prediction = picture.settings, picture.prediction
@@ -128,7 +129,7 @@ def _is_due(picture: Picture, key: str, found: Approach, *both: WatchedVehicle) 
 
 
 def _may_wait(
-    picture: Picture, candidate: WatchedVehicle, stays: WatchedVehicle, found: Approach
+    picture: TrafficPicture, candidate: WatchedVehicle, stays: WatchedVehicle, found: Approach
 ) -> bool:
     """Whether a hold just given may still show before the other one has to stop too."""
     settings, prediction = picture.settings, picture.prediction
@@ -139,14 +140,17 @@ def _may_wait(
     return found.in_s > needs_s + 0.5 * settings.hold_margin_s
 
 
-def _can_be_held(picture: Picture, candidate: WatchedVehicle) -> bool:
+def _can_be_held(picture: TrafficPicture, candidate: WatchedVehicle) -> bool:
     if not picture.is_hold_on or not candidate.may_be_held:
         return False
     return not candidate.was_held_within_s(picture.now_ns, picture.settings.hold_again_s)
 
 
 def _helps(
-    picture: Picture, pair: tuple[IntArray, IntArray], found: Approach, need: SeparationMinima
+    picture: TrafficPicture,
+    pair: tuple[IntArray, IntArray],
+    found: Approach,
+    need: SeparationMinima,
 ) -> bool:
     """Whether the first of the pair, held, comes less near to the second, which flies on."""
     ahead = picture.ahead
@@ -157,7 +161,7 @@ def _helps(
     return _is_better(picture, found, instead)
 
 
-def _is_better(picture: Picture, found: Approach, instead: Approach) -> bool:
+def _is_better(picture: TrafficPicture, found: Approach, instead: Approach) -> bool:
     settings = picture.settings
     if instead.in_s is None:
         return True
@@ -169,31 +173,31 @@ def _is_better(picture: Picture, found: Approach, instead: Approach) -> bool:
 
 
 def _speed_mps(watched: WatchedVehicle) -> float:
-    return 0.0 if watched.flyer is None else watched.flyer.speed_mps
+    return 0.0 if watched.motion is None else watched.motion.speed_mps
 
 
-def _words(found: Approach, what: str) -> str:
+def _text(found: Approach, what: str) -> str:
     assert found.in_s is not None
     how = "is too near" if found.in_s == 0.0 else f"comes too near in {found.in_s:.0f} s"
     apart = f"{found.horizontal_m:.0f} m, and {found.vertical_m:.0f} m in height"
     return f"{how} to {what}: {apart}"
 
 
-def _unheard(watched: WatchedVehicle) -> str:
+def _lost_text(watched: WatchedVehicle) -> str:
     if watched.hazard is None:
         return ""
     return f" (not heard for {watched.hazard.age_s:.0f} s, if it flies its mission on)"
 
 
-def _outcome(picture: Picture, *both: WatchedVehicle) -> str:
+def _outcome(picture: TrafficPicture, *both: WatchedVehicle) -> str:
     """What has been done: what the station did, never what it is about to try."""
     if not picture.is_hold_on:
-        return f"; {SWITCHED_OFF}: act now"
-    return "".join(f"; {one.name} {one.hold_words}" for one in both if one.hold_words)
+        return f"; {HOLDS_OFF}: act now"
+    return "".join(f"; {one.name} {one.hold_outcome}" for one in both if one.hold_outcome)
 
 
 def _finding(
-    picture: Picture,
+    picture: TrafficPicture,
     key: str,
     watched: WatchedVehicle,
     text: str,

@@ -4,7 +4,7 @@ from recon.api import schema
 from recon.model.geo import LatLon
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import home
-from recon.safety.prediction.flyer import last_place
+from recon.safety.prediction.motion import last_place
 from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import dismissed_by, hazard
 

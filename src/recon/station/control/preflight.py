@@ -6,7 +6,7 @@ from recon.model.command import Refusal
 from recon.model.event import ClockRead, PreflightOverridden
 from recon.model.vehicle import VehicleState
 from recon.safety import Override
-from recon.safety.facts import ClockReading, StationFacts
+from recon.safety.situation import ClockReading, StationFacts
 from recon.station.state.station import Clock, Station
 
 RULE = "preflight_override"

@@ -4,7 +4,7 @@ from recon.model.command import Command, FlyMission
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.safety import ClaimingLink, Situation, Traffic
-from recon.safety.facts import NO_FACTS
+from recon.safety.situation import NO_FACTS
 from recon.station.control import preflight
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import VehicleControl

@@ -13,7 +13,7 @@ from functools import partial
 from recon.model.command import Hover
 from recon.model.errors import described
 from recon.model.event import Event, OperatorOrder, StationFaulted, SticksDue, Tick
-from recon.safety.watchdogs import WATCHDOGS, Finding, Picture, Watchdog
+from recon.safety.watchdogs import WATCHDOGS, Finding, TrafficPicture, Watchdog
 from recon.station.alarms import station_faults
 from recon.station.alarms.conditions import raise_alarms
 from recon.station.alarms.station_faults import TO_DO, WHOSE, note
@@ -116,7 +116,7 @@ def raise_alarms_isolated(station: Station, now_ns: int) -> Stepped:
 def isolated(watchdog: Watchdog) -> Watchdog:
     """Return a watchdog that reports a fault of its own as a finding."""
 
-    def find(picture: Picture) -> Iterable[Finding]:
+    def find(picture: TrafficPicture) -> Iterable[Finding]:
         try:
             return tuple(watchdog(picture))
         except Exception as fault:

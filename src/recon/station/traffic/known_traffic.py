@@ -9,7 +9,7 @@ from recon.model.event import HazardDismissed
 from recon.model.intent import Commanded, Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.safety.prediction import HazardArea, flyer, hazard_area_of
+from recon.safety.prediction import HazardArea, hazard_area_of, vehicle_motion
 from recon.safety.watchdogs import plane_of
 from recon.station.state.station import Station
 from recon.station.traffic import identity_grace
@@ -67,7 +67,7 @@ def hazard(station: Station, vehicle: VehicleState, now_ns: int) -> HazardArea |
         return None
     prediction = station.settings.safety.prediction
     plane = plane_of(station.airspace, (vehicle,))
-    seen = flyer(vehicle, station.airspace, plane, now_ns, prediction)
+    seen = vehicle_motion(vehicle, station.airspace, plane, now_ns, prediction)
     intent = station.control(vehicle.serial).intent
     return None if seen is None else hazard_area_of(seen, intent, prediction)
 

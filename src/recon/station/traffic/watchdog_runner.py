@@ -12,14 +12,14 @@ from recon.model.replacing import replace
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety.watchdogs import (
-    Before,
+    CommandedHold,
     Finding,
-    Held,
-    Picture,
+    PreviousPosition,
+    TrafficPicture,
     Watchdog,
     WatchedVehicle,
-    hold_words,
-    take_picture,
+    build_traffic_picture,
+    hold_outcome,
 )
 from recon.station.state.station import Station
 from recon.station.state.watchdog_state import HoldRefused, Kept, StickCount
@@ -40,7 +40,7 @@ def run(
     station: Station, now_ns: int, watchdogs: Iterable[Watchdog]
 ) -> tuple[Station, tuple[HoldRequest, ...]]:
     """Return the station with the watchdogs' findings, if it is time, and the holds they want."""
-    looked_at_ns, settings = station.watchdog_state.looked_at_ns, station.settings.safety.watch
+    looked_at_ns, settings = station.watchdog_state.looked_at_ns, station.settings.safety.watchdogs
     if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
         return station, ()
     station = identity_grace.with_unidentified(_with_stick_counts(station, now_ns), now_ns)
@@ -49,7 +49,7 @@ def run(
         station, watchdog_state=replace(station.watchdog_state, holds_refused=refused)
     )
     kept = station.watchdog_state.findings
-    picture = take_picture(
+    picture = build_traffic_picture(
         _watched(station, now_ns),
         station.airspace,
         station.settings.safety,
@@ -125,22 +125,22 @@ def _kept(
     return still
 
 
-def _before(picture: Picture) -> dict[str, Before]:
+def _before(picture: TrafficPicture) -> dict[str, PreviousPosition]:
     """Each vehicle's newest position, to compare the next one with."""
-    newest: dict[str, Before] = {}
+    newest: dict[str, PreviousPosition] = {}
     for one in picture.watched:
         serial, position = one.state.serial, one.state.position
         if serial is None:
             continue
         if position.value is not None and position.received_at_ns is not None:
-            speed_mps = 0.0 if one.flyer is None else one.flyer.speed_mps
-            newest[serial] = Before(position.value, speed_mps, position.received_at_ns)
+            speed_mps = 0.0 if one.motion is None else one.motion.speed_mps
+            newest[serial] = PreviousPosition(position.value, speed_mps, position.received_at_ns)
         elif one.before is not None:
             newest[serial] = one.before
     return newest
 
 
-def _still_held(station: Station) -> dict[str, Held]:
+def _still_held(station: Station) -> dict[str, CommandedHold]:
     """The holds that nothing has ended: no newer order, and not the ground."""
     return {
         serial: held
@@ -152,7 +152,7 @@ def _still_held(station: Station) -> dict[str, Held]:
 
 def _lately_refused(station: Station, now_ns: int) -> dict[str, HoldRefused]:
     """The holds that could not be given, until they are to be tried again."""
-    retry_ns = seconds_to_ns(station.settings.safety.watch.hold_retry_s)
+    retry_ns = seconds_to_ns(station.settings.safety.watchdogs.hold_retry_s)
     refused = station.watchdog_state.holds_refused.items()
     return {serial: one for serial, one in refused if now_ns - one.at_ns < retry_ns}
 
@@ -168,8 +168,10 @@ def after_hold(station: Station, request: HoldRequest, why_not: str | None, now_
         refused = {**state.holds_refused, serial: HoldRefused(now_ns, why_not)}
         state = replace(state, holds_refused=refused)
     else:
-        state = replace(state, held={**state.held, serial: Held(now_ns, request.speed_mps)})
-    words = hold_words(state.held.get(serial), why_not or "")
+        state = replace(
+            state, held={**state.held, serial: CommandedHold(now_ns, request.speed_mps)}
+        )
+    words = hold_outcome(state.held.get(serial), why_not or "")
     outcome = f"; {station.fleet.vehicles[serial].display_name} {words}"
     key = request.finding.key
     if outcome not in request.finding.text:  # or it was held before, and is held again
@@ -179,11 +181,11 @@ def after_hold(station: Station, request: HoldRequest, why_not: str | None, now_
     return replace(station, watchdog_state=state)
 
 
-def _requests(findings: Iterable[Finding], picture: Picture) -> tuple[HoldRequest, ...]:
+def _requests(findings: Iterable[Finding], picture: TrafficPicture) -> tuple[HoldRequest, ...]:
     """One hold for each vehicle that a finding wants held; the last finding gives the reason."""
     wanted = {finding.holds: finding for finding in findings if finding.holds is not None}
     speeds_mps = {
-        one.state.serial: one.flyer.speed_mps for one in picture.flying if one.flyer is not None
+        one.state.serial: one.motion.speed_mps for one in picture.flying if one.motion is not None
     }
     return tuple(
         HoldRequest(serial, finding, speeds_mps.get(serial, 0.0))

@@ -1,4 +1,4 @@
-"""Courses cut into pieces that are compared in space and time."""
+"""Trajectories cut into pieces that are compared in space and time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from recon.safety.prediction.course import (
+from recon.safety.prediction.trajectory import (
     CURVE,
     EAST_0,
     EAST_1,
@@ -21,9 +21,9 @@ from recon.safety.prediction.course import (
     RADIUS_0,
     RADIUS_1,
     START_S,
-    Course,
+    FlightPart,
     FloatArray,
-    Part,
+    Trajectory,
 )
 from recon.safety.settings import PredictionSettings
 
@@ -34,12 +34,13 @@ MOST_PIECES = 400
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Tubes:
-    """N pieces of courses: within the time from `early_s` to `late_s` the vehicle may be anywhere
+class ProtectedVolumes:
+    """N pieces of trajectories: within the time from `early_s` to `late_s` the vehicle may be
+    anywhere
     within `radius_m` of the straight line and between the two heights. Each array is (N,).
 
     `at_s` is when it is thought to enter the piece, `until_s` when to leave it. `first` (G + 1,)
-    says where each course begins.
+    says where each trajectory begins.
     """
 
     early_s: FloatArray
@@ -57,11 +58,11 @@ class Tubes:
     first: IntArray
 
 
-def cut(courses: Sequence[Course], settings: PredictionSettings) -> Tubes:
-    """Return the courses in pieces, each with the time it may be flown in."""
-    rows = np.concatenate([course.rows for course in courses])
-    counts = np.array([len(course.rows) for course in courses])
-    delays_s = np.repeat([course.delay_s for course in courses], counts)
+def cut(trajectories: Sequence[Trajectory], settings: PredictionSettings) -> ProtectedVolumes:
+    """Return the trajectories in pieces, each with the time it may be flown in."""
+    rows = np.concatenate([trajectory.rows for trajectory in trajectories])
+    counts = np.array([len(trajectory.rows) for trajectory in trajectories])
+    delays_s = np.repeat([trajectory.delay_s for trajectory in trajectories], counts)
     pieces = _pieces(rows, settings)
     index = np.repeat(np.arange(len(rows)), pieces)
     number = np.arange(len(index)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
@@ -72,7 +73,7 @@ def cut(courses: Sequence[Course], settings: PredictionSettings) -> Tubes:
     enters_s = found[:, START_S] + start * lasts_s
     leaves_s = found[:, START_S] + end * lasts_s
     row_first = np.concatenate([[0], np.cumsum(pieces)])
-    return Tubes(
+    return ProtectedVolumes(
         early_s=_earlier(enters_s, settings),
         late_s=_later(leaves_s, settings) + delays_s[index],
         at_s=enters_s,
@@ -94,7 +95,7 @@ def _pieces(rows: FloatArray, settings: PredictionSettings) -> IntArray:
     moved = (rows[:, EAST_0] != rows[:, EAST_1]) | (rows[:, NORTH_0] != rows[:, NORTH_1])
     sinks = (rows[:, LOW_0] != rows[:, LOW_1]) | (rows[:, HIGH_0] != rows[:, HIGH_1])
     grows = rows[:, RADIUS_0] != rows[:, RADIUS_1]
-    moves = (moved | sinks | grows) & (rows[:, PART] != Part.UNSEEN)
+    moves = (moved | sinks | grows) & (rows[:, PART] != FlightPart.HAZARD)
     wanted = np.where(moves, np.ceil(lasts_s / piece_s), 1.0)
     return np.clip(wanted, 1, MOST_PIECES).astype(np.int64)
 

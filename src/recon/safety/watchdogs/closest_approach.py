@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.safety.prediction import HazardArea
-from recon.safety.prediction.course import FloatArray
-from recon.safety.prediction.sampling import Samples
+from recon.safety.prediction.trajectory import FloatArray, Samples
 from recon.safety.separation_minima import SeparationMinima
 
 IntArray = npt.NDArray[np.int64]

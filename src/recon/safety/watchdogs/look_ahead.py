@@ -12,10 +12,9 @@ from recon.model.dji import DJI
 from recon.model.intent import Commanded, Intent
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
-from recon.safety.prediction import Flyer, Follower, PredictionSettings
-from recon.safety.prediction.course import FloatArray, Part, Row
+from recon.safety.prediction import PredictionSettings, Predictor, VehicleMotion
 from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
-from recon.safety.prediction.sampling import Samples, sample
+from recon.safety.prediction.trajectory import FlightPart, FloatArray, Row, Samples, sample
 from recon.safety.settings import WatchdogSettings
 
 ASIDE_COSINE = 0.64
@@ -46,7 +45,7 @@ class Braking:
 
 
 @dataclass(frozen=True, eq=False)
-class Ahead:
+class LookAhead:
     """V vehicles at K moments: `times_s` (K,), and where they are at each of them."""
 
     times_s: FloatArray
@@ -61,13 +60,13 @@ class Ahead:
 
 def look_ahead(
     rows: Sequence[Sequence[Row]], settings: WatchdogSettings, prediction: PredictionSettings
-) -> Ahead:
-    """Return the next seconds of courses; of none, arrays without vehicles."""
+) -> LookAhead:
+    """Return the next seconds of trajectories; of none, arrays without vehicles."""
     times_s = _moments_s(settings)
     if not rows:
         none = Samples(*(np.zeros((0, len(times_s))) for _ in range(5)))
-        return Ahead(times_s, none, prediction)
-    return Ahead(times_s, sample(rows, times_s), prediction)
+        return LookAhead(times_s, none, prediction)
+    return LookAhead(times_s, sample(rows, times_s), prediction)
 
 
 @lru_cache(maxsize=1)
@@ -79,31 +78,31 @@ def _moments_s(settings: WatchdogSettings) -> FloatArray:
 
 
 def next_rows(
-    flyer: Flyer,
+    motion: VehicleMotion,
     intent: Intent,
     braking: Braking | None,
     horizon_s: float,
     now_ns: int,
     prediction: PredictionSettings,
 ) -> list[Row]:
-    """Return a vehicle's course for the next seconds.
+    """Return a vehicle's trajectory for the next seconds.
 
     One that does as it was told is followed along its way, around corners and into stops. Any other
     flies on as it does now: the longer one looks, the less it will, but nobody knows better.
     """
-    follower = Follower(flyer, prediction, until_s=horizon_s, exactly=True)
-    if not _flies_as_told(flyer, intent, braking, now_ns, prediction):
-        follower.go_straight_on(horizon_s + flyer.age_s, Part.FREE)
+    predictor = Predictor(motion, prediction, until_s=horizon_s, exactly=True)
+    if not _flies_as_commanded(motion, intent, braking, now_ns, prediction):
+        predictor.go_straight_on(horizon_s + motion.age_s, FlightPart.FREE)
     elif intent.commanded is Commanded.HOLD:
         since_s = (now_ns - intent.since_ns) / NS_PER_S
-        follower.hold(max(0.0, prediction.reaction_s - since_s))
+        predictor.hold(max(0.0, prediction.reaction_s - since_s))
     else:
-        follower.follow(intent)
-    return follower.writer.rows
+        predictor.follow(intent)
+    return predictor.writer.rows
 
 
-def _flies_as_told(
-    flyer: Flyer,
+def _flies_as_commanded(
+    motion: VehicleMotion,
     intent: Intent,
     braking: Braking | None,
     now_ns: int,
@@ -114,47 +113,47 @@ def _flies_as_told(
         return False
     if told in (Commanded.HOLD, Commanded.LAND):
         since_s = (now_ns - intent.since_ns) / NS_PER_S
-        return _brakes(flyer, braking or Braking(since_s, DJI.max_speed_mps), prediction)
-    mode = flyer.state.flight_mode.value
+        return _brakes(motion, braking or Braking(since_s, DJI.max_speed_mps), prediction)
+    mode = motion.state.flight_mode.value
     if mode is not None and mode not in _MODES[told]:
         return False
-    return not _flies_aside(flyer, intent)
+    return not _flies_aside(motion, intent)
 
 
-def _brakes(flyer: Flyer, braking: Braking, prediction: PredictionSettings) -> bool:
+def _brakes(motion: VehicleMotion, braking: Braking, prediction: PredictionSettings) -> bool:
     """Whether it is no faster than one that brakes as it should, with twice the reaction's time."""
     braked_s = max(0.0, braking.since_s - 2.0 * prediction.reaction_s)
     expected_mps = max(0.0, braking.speed_mps - prediction.braking_mps2 * braked_s)
-    return flyer.speed_mps <= expected_mps + ASIDE_MPS
+    return motion.speed_mps <= expected_mps + ASIDE_MPS
 
 
-def _flies_aside(flyer: Flyer, intent: Intent) -> bool:
-    if flyer.speed_mps < ASIDE_MPS:
+def _flies_aside(motion: VehicleMotion, intent: Intent) -> bool:
+    if motion.speed_mps < ASIDE_MPS:
         return False
-    ways = [way for way in _ways_told(flyer, intent) if hypot(*way) >= LEAST_WAY_M]
-    least_mps = ASIDE_COSINE * flyer.speed_mps
-    return bool(ways) and all(_along_mps(flyer, way) < least_mps for way in ways)
+    ways = [way for way in _commanded_directions(motion, intent) if hypot(*way) >= LEAST_WAY_M]
+    least_mps = ASIDE_COSINE * motion.speed_mps
+    return bool(ways) and all(_along_mps(motion, way) < least_mps for way in ways)
 
 
-def _along_mps(flyer: Flyer, way_m: Point) -> float:
-    east_mps, north_mps, _up_mps = flyer.velocity_mps
+def _along_mps(motion: VehicleMotion, way_m: Point) -> float:
+    east_mps, north_mps, _up_mps = motion.velocity_mps
     return (way_m[0] * east_mps + way_m[1] * north_mps) / hypot(*way_m)
 
 
-def _ways_told(flyer: Flyer, intent: Intent) -> Iterator[Point]:
+def _commanded_directions(motion: VehicleMotion, intent: Intent) -> Iterator[Point]:
     """The directions that it may be flying in: to where it was told, and at a mission's waypoint
     along the legs before and after, whichever it has come to."""
-    here_m = flyer.east_m, flyer.north_m
+    here_m = motion.east_m, motion.north_m
     if intent.mission is not None:
         first = max(0, intent.passed - 2)
         waypoints = intent.mission.waypoints[first : intent.passed + 2]
-        stops_m = [flyer.plane.east_north_m(waypoint) for waypoint in waypoints]
+        stops_m = [motion.plane.east_north_m(waypoint) for waypoint in waypoints]
         yield from (_way(here_m, stop_m) for stop_m in stops_m[intent.passed - first :][:1])
         yield from (_way(a_m, b_m) for a_m, b_m in pairwise(stops_m))
     elif intent.target is not None:
-        yield _way(here_m, flyer.plane.east_north_m(intent.target))
-    elif intent.commanded is Commanded.RETURN and flyer.home_m is not None:
-        yield _way(here_m, flyer.home_m)
+        yield _way(here_m, motion.plane.east_north_m(intent.target))
+    elif intent.commanded is Commanded.RETURN and motion.home_m is not None:
+        yield _way(here_m, motion.home_m)
 
 
 def _way(from_m: Point, to_m: Point) -> Point:

@@ -1,12 +1,10 @@
-"""The course of a vehicle that does what it was told."""
+"""The trajectory of a vehicle that does what it was told."""
 
 from math import hypot
 
 from recon.model.geo import LatLon
 from recon.model.intent import Commanded, Intent
 from recon.model.mission import Mission
-from recon.safety.prediction.course import ALL_HEIGHTS_M, FOREVER_S, CourseWriter, Part
-from recon.safety.prediction.flyer import Flyer
 from recon.safety.prediction.legs import (
     LEAST_M,
     STANDING_MPS,
@@ -15,6 +13,13 @@ from recon.safety.prediction.legs import (
     fly,
     stop,
     stopping_distance_m,
+)
+from recon.safety.prediction.motion import VehicleMotion
+from recon.safety.prediction.trajectory import (
+    ALL_HEIGHTS_M,
+    FOREVER_S,
+    FlightPart,
+    TrajectoryWriter,
 )
 from recon.safety.settings import PredictionSettings
 
@@ -25,26 +30,26 @@ UNHOMED_RADIUS_M = 150.0
 """A vehicle told to return whose home nobody knows: the station's hazard areas grow as far."""
 
 
-class Follower:
-    """Writes one vehicle's course; `until_s` ends the work early when no more is asked.
+class Predictor:
+    """Writes one vehicle's trajectory; `until_s` ends the work early when no more is asked.
 
     `exactly` writes phases of gaining and losing speed, for looking a few seconds ahead.
     """
 
     def __init__(
         self,
-        flyer: Flyer,
+        motion: VehicleMotion,
         settings: PredictionSettings,
         *,
         until_s: float = FOREVER_S,
         exactly: bool = False,
     ) -> None:
-        self.flyer = flyer
+        self.motion = motion
         self.settings = settings
         self.until_s = until_s
         self.exactly = exactly
-        self.writer = CourseWriter(flyer.east_m, flyer.north_m, flyer.low_m, flyer.high_m)
-        self.writer.time_s = -flyer.age_s
+        self.writer = TrajectoryWriter(motion.east_m, motion.north_m, motion.low_m, motion.high_m)
+        self.writer.time_s = -motion.age_s
 
     def follow(self, intent: Intent) -> None:
         """Write what an intent makes a vehicle do."""
@@ -55,10 +60,10 @@ class Follower:
                 height_m = intent.target_height_above_takeoff_m
                 speed_mps = intent.speed_mps or self.settings.go_home_speed_mps
                 self.go_to(intent.target, height_m, speed_mps)
-                self.writer.stays(Part.HOVERING)
+                self.writer.stays(FlightPart.HOVERING)
             case Commanded.STICK:
                 if intent.target_height_above_takeoff_m is not None:
-                    self.writer.widens(*self.flyer.up_m(intent.target_height_above_takeoff_m))
+                    self.writer.widens(*self.motion.up_m(intent.target_height_above_takeoff_m))
                 self.go_straight_on(self.settings.stick_horizon_s)
                 self.hold()
             case Commanded.HOLD:
@@ -72,7 +77,7 @@ class Follower:
 
     def fly_mission(self, mission: Mission, passed: int) -> None:
         """The rest of a mission, and for ever what it ends with."""
-        waypoints, writer, plane = mission.waypoints, self.writer, self.flyer.plane
+        waypoints, writer, plane = mission.waypoints, self.writer, self.motion.plane
         start_mps: float | None = None
         for index in range(passed, len(waypoints)):
             if writer.time_s > self.until_s:
@@ -85,7 +90,7 @@ class Follower:
                 end_mps = min(speed_mps, waypoint.speed_mps)
             writer.radius_m = self._bulge_m(mission, index)
             place_m = plane.east_north_m(waypoint)
-            band_m = self.flyer.up_m(waypoint.height_above_takeoff_m)
+            band_m = self.motion.up_m(waypoint.height_above_takeoff_m)
             if index == 0:
                 writer.widens(*band_m)  # it may climb or sink first, last or on the way
             leg = Leg(
@@ -103,25 +108,25 @@ class Follower:
                 writer.waits(waypoint.loiter_s, index)
         writer.radius_m = 0.0
         if mission.land_at_end:
-            self.sink_here(Part.LANDING)
+            self.sink_here(FlightPart.LANDING)
         else:
-            writer.stays(Part.HOVERING)
+            writer.stays(FlightPart.HOVERING)
 
     def go_to(self, target: LatLon, height_m: float | None, speed_mps: float) -> None:
         """Straight to a place, at any height between here and there."""
         writer = self.writer
-        band_m = (writer.low_m, writer.high_m) if height_m is None else self.flyer.up_m(height_m)
-        place_m = self.flyer.plane.east_north_m(target)
+        band_m = (writer.low_m, writer.high_m) if height_m is None else self.motion.up_m(height_m)
+        place_m = self.motion.plane.east_north_m(target)
         writer.widens(*band_m)
         start_mps = self._towards_mps(*place_m)
         both_m = writer.low_m, writer.high_m
-        leg = Leg(*place_m, both_m, start_mps, speed_mps, 0.0, Part.GOING_TO)
+        leg = Leg(*place_m, both_m, start_mps, speed_mps, 0.0, FlightPart.GOING_TO)
         fly(writer, leg, self.settings, exactly=self.exactly)
         writer.low_m, writer.high_m = band_m
 
-    def go_straight_on(self, seconds: float, part: int = Part.STEERED) -> None:
+    def go_straight_on(self, seconds: float, part: int = FlightPart.STEERED) -> None:
         """Keep the present velocity for a while."""
-        east_mps, north_mps, up_mps = self.flyer.velocity_mps
+        east_mps, north_mps, up_mps = self.motion.velocity_mps
         writer, rise_m = self.writer, up_mps * seconds
         writer.moves(
             writer.east_m + east_mps * seconds,
@@ -133,24 +138,25 @@ class Follower:
 
     def hold(self, reaction_s: float = 0.0) -> None:
         """Brake, when the order has come through, and stand for ever."""
-        stop(self.writer, self.flyer.velocity_mps, self.settings, reaction_s=reaction_s)
-        self.writer.stays(Part.HOVERING)
+        stop(self.writer, self.motion.velocity_mps, self.settings, reaction_s=reaction_s)
+        self.writer.stays(FlightPart.HOVERING)
 
     def land(self) -> None:
         """Brake and be anywhere between here and the ground."""
-        stop(self.writer, self.flyer.velocity_mps, self.settings, reaction_s=0.0)
-        self.sink_here(Part.LANDING)
+        stop(self.writer, self.motion.velocity_mps, self.settings, reaction_s=0.0)
+        self.sink_here(FlightPart.LANDING)
 
     def sink_here(self, part: int) -> None:
-        """Sink from where the course has come to, anywhere between there and the ground; then be
-        down, which ends the course. A few seconds ahead only so far as it can sink in them."""
+        """Sink from where the trajectory has come to, anywhere between there and the ground; then
+        be
+        down, which ends the trajectory. A few seconds ahead only so far as it can sink in them."""
         writer, settings = self.writer, self.settings
         if self.exactly:
             low_m = writer.low_m - self.until_s * settings.sink_mps
             band_m = low_m, writer.high_m
             writer.moves(writer.east_m, writer.north_m, self.until_s, part, band_m=band_m)
             return
-        base_m = self.flyer.takeoff_up_m
+        base_m = self.motion.takeoff_up_m
         high_m = settings.unknown_climb_m if base_m is None else max(0.0, writer.high_m - base_m)
         writer.widens(-ALL_HEIGHTS_M, writer.high_m)
         high_m = min(high_m, settings.unknown_climb_m)
@@ -158,48 +164,50 @@ class Follower:
 
     def return_home(self) -> None:
         """Climb to the go-home height unless higher, fly home, sink."""
-        flyer, writer, settings = self.flyer, self.writer, self.settings
-        if flyer.home_m is None:
+        motion, writer, settings = self.motion, self.writer, self.settings
+        if motion.home_m is None:
             writer.widens(-ALL_HEIGHTS_M, ALL_HEIGHTS_M)
-            writer.grows(UNHOMED_RADIUS_M, UNHOMED_RADIUS_M / settings.go_home_speed_mps, Part.FREE)
-            writer.stays(Part.FREE)
+            writer.grows(
+                UNHOMED_RADIUS_M, UNHOMED_RADIUS_M / settings.go_home_speed_mps, FlightPart.FREE
+            )
+            writer.stays(FlightPart.FREE)
             return
-        towards_mps = self._towards_mps(*flyer.home_m)
-        top_m = go_home_top_m(flyer, settings)
+        towards_mps = self._towards_mps(*motion.home_m)
+        top_m = go_home_top_m(motion, settings)
         if towards_mps >= UNDER_WAY_MPS:
             writer.widens(writer.low_m, top_m)
         else:
-            stop(writer, flyer.velocity_mps, settings, reaction_s=0.0)
+            stop(writer, motion.velocity_mps, settings, reaction_s=0.0)
         if top_m > writer.high_m:
             low_m, climb_s = writer.low_m, (top_m - writer.high_m) / settings.climb_mps
             writer.moves(
                 writer.east_m,
                 writer.north_m,
                 climb_s,
-                Part.CLIMBING_HOME,
+                FlightPart.CLIMBING_HOME,
                 band_m=(low_m, top_m),
             )
-            if flyer.go_home_up_m is not None:
+            if motion.go_home_up_m is not None:
                 writer.low_m = top_m
         speed_mps = max(settings.go_home_speed_mps, towards_mps)
         band_m = (writer.low_m, writer.high_m)
-        leg = Leg(*flyer.home_m, band_m, towards_mps, speed_mps, 0.0, Part.GOING_HOME)
+        leg = Leg(*motion.home_m, band_m, towards_mps, speed_mps, 0.0, FlightPart.GOING_HOME)
         fly(writer, leg, settings, exactly=self.exactly)
-        self.sink_here(Part.LANDING)
+        self.sink_here(FlightPart.LANDING)
 
     def drift(self) -> None:
         """Use the present speed in any direction for a while: a pilot may have it, or the wind."""
-        flyer, writer, settings = self.flyer, self.writer, self.settings
-        up_mps = flyer.velocity_mps[2]
-        if max(flyer.speed_mps, abs(up_mps)) < STANDING_MPS:
-            writer.stays(Part.HOVERING)
+        motion, writer, settings = self.motion, self.writer, self.settings
+        up_mps = motion.velocity_mps[2]
+        if max(motion.speed_mps, abs(up_mps)) < STANDING_MPS:
+            writer.stays(FlightPart.HOVERING)
             return
         rise_m = up_mps * settings.free_s
         writer.widens(writer.low_m + min(rise_m, 0.0), writer.high_m + max(rise_m, 0.0))
-        reach_m = flyer.speed_mps * settings.free_s
-        reach_m += stopping_distance_m(flyer.speed_mps, settings)
-        writer.grows(reach_m, settings.free_s, Part.FREE)
-        writer.stays(Part.FREE)
+        reach_m = motion.speed_mps * settings.free_s
+        reach_m += stopping_distance_m(motion.speed_mps, settings)
+        writer.grows(reach_m, settings.free_s, FlightPart.FREE)
+        writer.stays(FlightPart.FREE)
 
     def _towards_mps(self, east_m: float, north_m: float) -> float:
         """How fast the vehicle flies now towards a place."""
@@ -207,14 +215,14 @@ class Follower:
         far_m = hypot(*ahead_m)
         if far_m < LEAST_M:
             return 0.0
-        east_mps, north_mps, _up_mps = self.flyer.velocity_mps
+        east_mps, north_mps, _up_mps = self.motion.velocity_mps
         return max(0.0, (ahead_m[0] * east_mps + ahead_m[1] * north_mps) / far_m)
 
     def _bulge_m(self, mission: Mission, index: int) -> float:
         """How far corners at either end of the leg to a waypoint may carry the vehicle off it."""
         if not mission.curved:
             return 0.0
-        waypoints, plane = mission.waypoints, self.flyer.plane
+        waypoints, plane = mission.waypoints, self.motion.plane
         bulges_m = [0.0]
         for corner in (index - 1, index):
             if 0 < corner < len(waypoints) - 1:
@@ -224,8 +232,8 @@ class Follower:
         return max(bulges_m)
 
 
-def go_home_top_m(flyer: Flyer, settings: PredictionSettings) -> float:
+def go_home_top_m(motion: VehicleMotion, settings: PredictionSettings) -> float:
     """Return the height of the way home: the go-home height unless already higher."""
-    if flyer.go_home_up_m is None:
-        return min(flyer.high_m + settings.unknown_climb_m, ALL_HEIGHTS_M)
-    return max(flyer.high_m, flyer.go_home_up_m)
+    if motion.go_home_up_m is None:
+        return min(motion.high_m + settings.unknown_climb_m, ALL_HEIGHTS_M)
+    return max(motion.high_m, motion.go_home_up_m)

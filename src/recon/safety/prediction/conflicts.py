@@ -1,4 +1,4 @@
-"""Where and when one vehicle's course comes too near to others'."""
+"""Where and when one vehicle's trajectory comes too near to others'."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,34 +6,34 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from recon.safety.prediction.course import (
+from recon.safety.prediction.protected_volumes import IntArray, ProtectedVolumes, cut
+from recon.safety.prediction.trajectory import (
     EAST_0,
     FOREVER_S,
     NORTH_0,
-    Course,
+    FlightPart,
     FloatArray,
-    Part,
+    Trajectory,
+    sample,
 )
-from recon.safety.prediction.sampling import sample
-from recon.safety.prediction.tubes import IntArray, Tubes, cut
 from recon.safety.separation_minima import SeparationMinima
 from recon.safety.settings import PredictionSettings
 
 BoolArray = npt.NDArray[np.bool_]
 
 _APART_S = 4.0 * FOREVER_S
-"""Courses' times are laid one behind the other on one axis, this far apart."""
+"""Trajectories' times are laid one behind the other on one axis, this far apart."""
 
 CLOSER_M = 0.5
 """Two vehicles led apart may seem this much nearer by the noise of their positions."""
 
 
 @dataclass(frozen=True, slots=True)
-class Meeting:
-    """When a course first comes too near to another, and how near it comes on these two parts."""
+class Conflict:
+    """When a trajectory first violates the minima to another, and the closest approach."""
 
     other: int
-    """Index into the others' courses."""
+    """Index into the others' trajectories."""
     own_part: int
     other_part: int
     at_s: float
@@ -41,13 +41,14 @@ class Meeting:
     vertical_m: float
 
 
-def first_meeting(
-    own: Course,
-    others: Sequence[Course],
+def first_conflict(
+    own: Trajectory,
+    others: Sequence[Trajectory],
     need: SeparationMinima,
     settings: PredictionSettings,
-) -> Meeting | None:
-    """Return where `own` first comes nearer than `need` to any other course; None if it does not.
+) -> Conflict | None:
+    """Return where `own` first comes nearer than `need` to any other trajectory; None if it does
+    not.
 
     To another that is too near already, for the first seconds only coming nearer counts.
     """
@@ -63,42 +64,42 @@ def first_meeting(
     gap_m = apart_m - mine.radius_m[pairs.own] - theirs.radius_m[pairs.other]
     is_near = gap_m < need.horizontal_m
     now = _now(own, others, theirs, need)
-    comes_nearer = apart_m < now.apart_m[pairs.course] - CLOSER_M
+    comes_nearer = apart_m < now.apart_m[pairs.trajectory] - CLOSER_M
     comes_nearer |= _comes_up_or_down_to(mine, pairs, now)
-    is_meeting = is_near & (comes_nearer | ~_is_leaving(mine, settings)[pairs.own])
-    if not is_meeting.any():
+    is_conflict = is_near & (comes_nearer | ~_is_leaving(mine, settings)[pairs.own])
+    if not is_conflict.any():
         return None
-    met = _kept(pairs, is_meeting)
+    met = _kept(pairs, is_conflict)
     first = int(np.argmin(mine.at_s[met.own]))
-    same = met.course == met.course[first]
-    for tubes, piece in ((mine, met.own), (theirs, met.other)):
-        same &= tubes.part[piece] == tubes.part[piece[first]]
+    same = met.trajectory == met.trajectory[first]
+    for volumes, piece in ((mine, met.own), (theirs, met.other)):
+        same &= volumes.part[piece] == volumes.part[piece[first]]
     vertical_m = _vertical_gap_m(mine, theirs, met)
-    return Meeting(
-        other=int(met.course[first]),
+    return Conflict(
+        other=int(met.trajectory[first]),
         own_part=int(mine.part[met.own[first]]),
         other_part=int(theirs.part[met.other[first]]),
         at_s=max(0.0, float(mine.at_s[met.own[first]])),
-        horizontal_m=max(0.0, float(gap_m[is_meeting][same].min())),
+        horizontal_m=max(0.0, float(gap_m[is_conflict][same].min())),
         vertical_m=max(0.0, float(vertical_m[same].min())),
     )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pairs:
-    """Pieces that may be flown at the same time: indices (P,) of mine, theirs and their course."""
+    """Pieces that overlap in time: indices (P,) of mine, theirs and their trajectory."""
 
     own: IntArray
     other: IntArray
-    course: IntArray
+    trajectory: IntArray
 
 
 def _kept(pairs: _Pairs, mask: BoolArray) -> _Pairs:
-    return _Pairs(pairs.own[mask], pairs.other[mask], pairs.course[mask])
+    return _Pairs(pairs.own[mask], pairs.other[mask], pairs.trajectory[mask])
 
 
-def _pairs(mine: Tubes, theirs: Tubes) -> _Pairs:
-    """In a course both ends of the pieces' times ascend, so those that overlap lie together."""
+def _pairs(mine: ProtectedVolumes, theirs: ProtectedVolumes) -> _Pairs:
+    """In a trajectory both ends of the pieces' times ascend, so those that overlap lie together."""
     counts_of = np.diff(theirs.first)
     shift_s = np.arange(len(counts_of)) * _APART_S
     piece_shift_s = np.repeat(shift_s, counts_of)
@@ -110,18 +111,20 @@ def _pairs(mine: Tubes, theirs: Tubes) -> _Pairs:
     counts = np.maximum(high - low, 0).ravel()
     group = np.repeat(np.arange(len(counts)), counts)
     step = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
-    own, course = np.divmod(group, len(counts_of))
-    return _Pairs(own, low.ravel()[group] + step, course)
+    own, trajectory = np.divmod(group, len(counts_of))
+    return _Pairs(own, low.ravel()[group] + step, trajectory)
 
 
-def _vertical_gap_m(mine: Tubes, theirs: Tubes, pairs: _Pairs) -> FloatArray:
+def _vertical_gap_m(mine: ProtectedVolumes, theirs: ProtectedVolumes, pairs: _Pairs) -> FloatArray:
     below = theirs.low_m[pairs.other] - mine.high_m[pairs.own]
     above = mine.low_m[pairs.own] - theirs.high_m[pairs.other]
     gap: FloatArray = np.maximum(below, above)
     return gap
 
 
-def _may_be_near(mine: Tubes, theirs: Tubes, pairs: _Pairs, need: SeparationMinima) -> BoolArray:
+def _may_be_near(
+    mine: ProtectedVolumes, theirs: ProtectedVolumes, pairs: _Pairs, need: SeparationMinima
+) -> BoolArray:
     """Whether their boxes are: cheap, and right for all but the few that are then looked at."""
     reach_m = need.horizontal_m + mine.radius_m[pairs.own] + theirs.radius_m[pairs.other]
     mine_low, mine_high = _box(mine)
@@ -133,13 +136,13 @@ def _may_be_near(mine: Tubes, theirs: Tubes, pairs: _Pairs, need: SeparationMini
     return is_near
 
 
-def _box(tubes: Tubes) -> tuple[FloatArray, FloatArray]:
-    low: FloatArray = np.minimum(tubes.starts_m, tubes.ends_m)
-    high: FloatArray = np.maximum(tubes.starts_m, tubes.ends_m)
+def _box(volumes: ProtectedVolumes) -> tuple[FloatArray, FloatArray]:
+    low: FloatArray = np.minimum(volumes.starts_m, volumes.ends_m)
+    high: FloatArray = np.maximum(volumes.starts_m, volumes.ends_m)
     return low, high
 
 
-def _apart_m(mine: Tubes, theirs: Tubes, pairs: _Pairs) -> FloatArray:
+def _apart_m(mine: ProtectedVolumes, theirs: ProtectedVolumes, pairs: _Pairs) -> FloatArray:
     """How far the straight lines of each pair are apart, (P,)."""
     return segments_apart_m(
         mine.starts_m[pairs.own],
@@ -161,13 +164,15 @@ class _Now:
     vertical_m: FloatArray
 
 
-def _now(own: Course, others: Sequence[Course], theirs: Tubes, need: SeparationMinima) -> _Now:
+def _now(
+    own: Trajectory, others: Sequence[Trajectory], theirs: ProtectedVolumes, need: SeparationMinima
+) -> _Now:
     """How near the others are from here.
 
     Here is all the way since it was last heard: one that is leaving was nearer then.
     """
     here = sample([own.rows], [0.0])
-    now = sample([course.rows for course in others], [0.0])
+    now = sample([trajectory.rows for trajectory in others], [0.0])
     heard_m = own.rows[:1, [EAST_0, NORTH_0]]
     place_m = np.column_stack([here.east_m[:, 0], here.north_m[:, 0]])
     starts_m = np.column_stack([now.east_m[:, 0], now.north_m[:, 0]])
@@ -175,35 +180,35 @@ def _now(own: Course, others: Sequence[Course], theirs: Tubes, need: SeparationM
     radius_m = now.radius_m[:, 0]
     # What nobody sees is all of its way home now, and as wide as it is kept clear of.
     whole = theirs.first[:-1]
-    is_unseen = theirs.part[whole] == Part.UNSEEN
-    starts_m[is_unseen] = theirs.starts_m[whole[is_unseen]]
-    ends_m[is_unseen] = theirs.ends_m[whole[is_unseen]]
-    radius_m = np.where(is_unseen, theirs.radius_m[whole], radius_m)
+    is_hazard = theirs.part[whole] == FlightPart.HAZARD
+    starts_m[is_hazard] = theirs.starts_m[whole[is_hazard]]
+    ends_m[is_hazard] = theirs.ends_m[whole[is_hazard]]
+    radius_m = np.where(is_hazard, theirs.radius_m[whole], radius_m)
     heard_m, place_m = (np.broadcast_to(each, starts_m.shape) for each in (heard_m, place_m))
     apart_m = segments_apart_m(heard_m, place_m, starts_m, ends_m)
     gap_m = apart_m - radius_m  # its own place is known now, how far a turn may lead is not counted
-    low_m, high_m = np.array([course.here_m for course in others]).T
+    low_m, high_m = np.array([trajectory.here_m for trajectory in others]).T
     vertical_m = np.maximum(low_m - own.here_m[1], own.here_m[0] - high_m)
     is_near = (gap_m < need.horizontal_m) & (vertical_m < need.vertical_m)
     return _Now(
         apart_m=np.where(is_near, apart_m, np.inf),
         low_m=low_m,
         high_m=high_m,
-        vertical_m=np.where(is_unseen, -np.inf, vertical_m),
+        vertical_m=np.where(is_hazard, -np.inf, vertical_m),
     )
 
 
-def _is_leaving(mine: Tubes, settings: PredictionSettings) -> BoolArray:
+def _is_leaving(mine: ProtectedVolumes, settings: PredictionSettings) -> BoolArray:
     """Which pieces are of the time for leading apart; what stays for long does not leave."""
     leaving: BoolArray = (mine.at_s < settings.escape_s) & (mine.until_s < 2.0 * settings.escape_s)
     return leaving
 
 
-def _comes_up_or_down_to(mine: Tubes, pairs: _Pairs, now: _Now) -> BoolArray:
+def _comes_up_or_down_to(mine: ProtectedVolumes, pairs: _Pairs, now: _Now) -> BoolArray:
     """Whether a piece is nearer in height to where the other is now than here is."""
-    below_m = now.low_m[pairs.course] - mine.high_m[pairs.own]
-    above_m = mine.low_m[pairs.own] - now.high_m[pairs.course]
-    nearer: BoolArray = np.maximum(below_m, above_m) < now.vertical_m[pairs.course] - CLOSER_M
+    below_m = now.low_m[pairs.trajectory] - mine.high_m[pairs.own]
+    above_m = mine.low_m[pairs.own] - now.high_m[pairs.trajectory]
+    nearer: BoolArray = np.maximum(below_m, above_m) < now.vertical_m[pairs.trajectory] - CLOSER_M
     return nearer
 
 

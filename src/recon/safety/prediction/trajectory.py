@@ -1,4 +1,4 @@
-"""A course: where a vehicle will be and when, as rows of straight motion.
+"""A trajectory: where a vehicle will be and when, as rows of straight motion.
 
 Each row is a straight piece of the way with a constant acceleration along it, a band of heights at
 its start and end, and a disc's radius that grows evenly in time:
@@ -8,6 +8,7 @@ its start and end, and a disc's radius that grows evenly in time:
 is how far along the row the vehicle is t seconds after its start.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -30,7 +31,7 @@ Row = tuple[float, ...]
 """One row's `COLUMNS`."""
 
 
-class Part(IntEnum):
+class FlightPart(IntEnum):
     """What a vehicle does on a row that is no leg; legs are numbered from 0 up."""
 
     HOVERING = -1
@@ -41,32 +42,33 @@ class Part(IntEnum):
     STEERED = -6
     GOING_TO = -7
     FREE = -8
-    UNSEEN = -9
+    HAZARD = -9
 
 
 _WORDS = {
-    Part.HOVERING: "while it hovers",
-    Part.LANDING: "while it lands",
-    Part.CLIMBING_HOME: "while it climbs to go home",
-    Part.GOING_HOME: "on its way home",
-    Part.STOPPING: "while it stops",
-    Part.STEERED: "under the sticks",
-    Part.GOING_TO: "on its way to its target",
-    Part.FREE: "wherever it is flown by hand",
-    Part.UNSEEN: "anywhere about the place it was last heard from",
+    FlightPart.HOVERING: "while it hovers",
+    FlightPart.LANDING: "while it lands",
+    FlightPart.CLIMBING_HOME: "while it climbs to go home",
+    FlightPart.GOING_HOME: "on its way home",
+    FlightPart.STOPPING: "while it stops",
+    FlightPart.STEERED: "under the sticks",
+    FlightPart.GOING_TO: "on its way to its target",
+    FlightPart.FREE: "wherever it is flown by hand",
+    FlightPart.HAZARD: "anywhere about the place it was last heard from",
 }
 
 
-def part_words(part: int) -> str:
+def part_text(part: int) -> str:
     """Return where on its way a vehicle is, in words; leg 0 leads to the first waypoint."""
     if part > 0:
         return f"between waypoints {part} and {part + 1}"
-    return "on its way to the first waypoint" if part == 0 else _WORDS[Part(part)]
+    return "on its way to the first waypoint" if part == 0 else _WORDS[FlightPart(part)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Course:
-    """A vehicle's course. `rows` is (N, 14), in order of time and without gaps, times in seconds
+class Trajectory:
+    """A vehicle's trajectory. `rows` is (N, 14), in order of time and without gaps, times in
+    seconds
     from now, east and north in the plane, heights as up metres of the site's frame. All of it may
     be flown later by `delay_s`: a mission that has not begun. `here_m` are the two heights between
     which it was last heard; on its first row it may be higher or lower by then."""
@@ -78,8 +80,8 @@ class Course:
     delay_s: float = 0.0
 
 
-class CourseWriter:
-    """Writes a course row after row from where a vehicle is."""
+class TrajectoryWriter:
+    """Writes a trajectory row after row from where a vehicle is."""
 
     def __init__(self, east_m: float, north_m: float, low_m: float, high_m: float) -> None:
         self.east_m, self.north_m = east_m, north_m
@@ -125,7 +127,59 @@ class CourseWriter:
         """Stay for ever."""
         self.waits(FOREVER_S, part)
 
-    def course(self, name: str, serial: str | None) -> Course:
+    def trajectory(self, name: str, serial: str | None) -> Trajectory:
         """Return what has been written."""
         rows = np.array(self.rows, dtype=np.float64).reshape(-1, COLUMNS)
-        return Course(name, serial, rows, self.here_m)
+        return Trajectory(name, serial, rows, self.here_m)
+
+
+_APART_S = 4.0 * FOREVER_S
+"""Vehicles' times are laid one behind the other on one axis, this far apart."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Samples:
+    """V vehicles at K moments: each array is (V, K), metres in the plane and up."""
+
+    east_m: FloatArray
+    north_m: FloatArray
+    low_m: FloatArray
+    high_m: FloatArray
+    radius_m: FloatArray
+
+
+def sample(trajectories: Sequence[Sequence[Row] | FloatArray], times_s: npt.ArrayLike) -> Samples:
+    """Return where each trajectory's vehicle is at (K,) moments; before and after it, at its ends.
+
+    No trajectory may be without a row.
+    """
+    times = np.asarray(times_s, dtype=np.float64)
+    rows = np.array([row for trajectory in trajectories for row in trajectory], dtype=np.float64)
+    counts = np.array([len(trajectory) for trajectory in trajectories])
+    vehicle = np.repeat(np.arange(len(trajectories)), counts)
+    axis = rows[:, START_S] + vehicle * _APART_S
+    asked = times[np.newaxis, :] + np.arange(len(trajectories))[:, np.newaxis] * _APART_S
+    first = np.cumsum(counts) - counts
+    index = np.searchsorted(axis, asked, side="right") - 1
+    found = rows[np.maximum(index, first[:, np.newaxis])]
+    return _at(found, times)
+
+
+def _at(found: FloatArray, times: FloatArray) -> Samples:
+    lasts_s = np.maximum(found[..., END_S] - found[..., START_S], 1e-9)
+    gone_s = np.clip(times - found[..., START_S], 0.0, lasts_s)
+    in_time = gone_s / lasts_s
+    curve = found[..., CURVE]
+    share = (1.0 / lasts_s - curve * lasts_s) * gone_s + curve * gone_s**2
+
+    def between(start: int, end: int, at: FloatArray) -> FloatArray:
+        value: FloatArray = found[..., start] + at * (found[..., end] - found[..., start])
+        return value
+
+    return Samples(
+        east_m=between(EAST_0, EAST_1, share),
+        north_m=between(NORTH_0, NORTH_1, share),
+        low_m=between(LOW_0, LOW_1, share),
+        high_m=between(HIGH_0, HIGH_1, share),
+        radius_m=between(RADIUS_0, RADIUS_1, in_time),
+    )

@@ -2,18 +2,36 @@
 
 from typing import NamedTuple
 
+from recon.geo import OnGlobe
+from recon.geo.distance import offset_north_east_m
 from recon.model.geo import LatLon
 from recon.model.stamped import Stamped
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, takeoff_up_m
-from recon.safety.prediction.course import ALL_HEIGHTS_M
-from recon.safety.prediction.plane import Plane
+from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
 from recon.safety.settings import PredictionSettings
 
 
-class Flyer(NamedTuple):
+class Plane:
+    """The tangent plane at a position."""
+
+    def __init__(self, origin: OnGlobe) -> None:
+        self._latitude_deg = origin.latitude_deg
+        self._longitude_deg = origin.longitude_deg
+        here = LatLon(origin.latitude_deg, origin.longitude_deg)
+        there = LatLon(origin.latitude_deg + 1.0, origin.longitude_deg + 1.0)
+        self._north_m_per_deg, self._east_m_per_deg = offset_north_east_m(here, there)
+
+    def east_north_m(self, place: OnGlobe) -> tuple[float, float]:
+        """Return how far east and north of the origin a place lies."""
+        east_deg = (place.longitude_deg - self._longitude_deg + 180.0) % 360.0 - 180.0
+        north_deg = place.latitude_deg - self._latitude_deg
+        return east_deg * self._east_m_per_deg, north_deg * self._north_m_per_deg
+
+
+class VehicleMotion(NamedTuple):
     """A vehicle as it was last heard, `age_s` ago.
 
     `low_m` and `high_m` are equal but for a vehicle whose height nobody knows. `velocity_mps` is
@@ -49,13 +67,13 @@ class Flyer(NamedTuple):
         return up_m, up_m
 
 
-def flyer(
+def vehicle_motion(
     state: VehicleState,
     airspace: PreparedAirspace,
     plane: Plane,
     now_ns: int,
     settings: PredictionSettings,
-) -> Flyer | None:
+) -> VehicleMotion | None:
     """Return a vehicle in the plane; None when it has never told where it is.
 
     One that tells no position now is where it was last seen, as long ago as that was.
@@ -71,7 +89,7 @@ def flyer(
     go_home_m = None if profile is None else profile.go_home_height_m
     velocity_mps, speed_mps = _velocity(state, settings)
     east_m, north_m = plane.east_north_m(place)
-    return Flyer(
+    return VehicleMotion(
         state=state,
         plane=plane,
         east_m=east_m,

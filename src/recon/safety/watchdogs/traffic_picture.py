@@ -1,0 +1,295 @@
+"""The one picture all watchdogs look at."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from recon.model.authority import AuthorityHolder
+from recon.model.geo import LatLon
+from recon.model.intent import Commanded, Intent
+from recon.model.severity import Severity
+from recon.model.units import NS_PER_S
+from recon.model.vehicle import FlightMode, VehicleState
+from recon.safety.airspace import PreparedAirspace
+from recon.safety.prediction import (
+    HazardArea,
+    Plane,
+    PredictionSettings,
+    Predictor,
+    VehicleMotion,
+    hazard_area_of,
+    vehicle_motion,
+)
+from recon.safety.prediction.trajectory import CURVE, RADIUS_0, RADIUS_1, Row
+from recon.safety.separation_minima import SeparationMinima, watchdog_minima
+from recon.safety.settings import EnergySettings, SafetySettings, WatchdogSettings
+from recon.safety.watchdogs.look_ahead import Braking, LookAhead, look_ahead, next_rows
+
+_COMING_DOWN_MODES = frozenset(
+    {FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING, FlightMode.GO_HOME}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something wrong now. The same `key` is the same cause.
+
+    `holds` is the serial of a vehicle to be held for it. `after_s` is how long it must last before
+    it is an alarm.
+    """
+
+    key: str
+    rule: str
+    severity: Severity
+    vehicle_name: str
+    text: str
+    serial: str | None = None
+    link_id: int | None = None
+    holds: str | None = None
+    after_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class CommandedHold:
+    """The station has held a vehicle: since when, and how fast it was then."""
+
+    since_ns: int
+    speed_mps: float
+
+    def holds_against(self, intent: Intent) -> bool:
+        """Return whether nothing newer has been ordered."""
+        return intent.since_ns <= self.since_ns or intent.commanded is Commanded.HOLD
+
+
+def hold_outcome(held: CommandedHold | None, refused: str) -> str:
+    """Return what became of a hold, to follow the vehicle's name; empty when none was given."""
+    if refused:
+        return f"could not be told to hold ({refused})"
+    return "" if held is None else "has been told to hold"
+
+
+@dataclass(frozen=True, slots=True)
+class PreviousPosition:
+    """A vehicle's telemetry before the newest: where it was, how fast, and when."""
+
+    place: LatLon
+    speed_mps: float
+    at_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class WatchedVehicle:
+    """A vehicle that flies or may, and what the station knows beside its state.
+
+    `motion` is None while it has never told where it is; `hazard area` is set while it is not
+    heard. `stick_quiet_s` is set while sticks are streamed to it: how long none was sent.
+    `hold_refused` tells why a hold could not be given to it just now.
+    """
+
+    state: VehicleState
+    intent: Intent = Intent()
+    holder: AuthorityHolder = AuthorityHolder.OPERATOR
+    motion: VehicleMotion | None = None
+    hazard: HazardArea | None = None
+    held: CommandedHold | None = None
+    before: PreviousPosition | None = None
+    is_imager: bool = False
+    stick_quiet_s: float | None = None
+    hold_refused: str = ""
+
+    @property
+    def key(self) -> str:
+        """What its findings are told apart by."""
+        return self.state.serial or f"link {self.state.link_id}"
+
+    @property
+    def name(self) -> str:
+        """The name people see."""
+        return self.state.display_name
+
+    @property
+    def is_flying_in_contact(self) -> bool:
+        """Whether it tells of itself that it flies, and where."""
+        return (
+            self.motion is not None and self.hazard is None and self.state.is_flying.value is True
+        )
+
+    @property
+    def may_continue_mission(self) -> bool:
+        """Whether it is not heard and was sent a mission: its app may fly that on by itself."""
+        return self.hazard is not None and self.intent.commanded is Commanded.MISSION
+
+    @property
+    def is_coming_down(self) -> bool:
+        """Whether it lands or returns: it is on its way out of the air."""
+        return (
+            self.intent.commanded in (Commanded.LAND, Commanded.RETURN)
+            or self.state.flight_mode.value in _COMING_DOWN_MODES
+        )
+
+    @property
+    def may_be_held(self) -> bool:
+        """Whether a hold would be the station's to give: in the air, known, not the pilot's."""
+        return (
+            self.is_flying_in_contact
+            and self.state.serial is not None
+            and self.holder is not AuthorityHolder.PILOT
+            and not self.hold_refused
+        )
+
+    @property
+    def hold_outcome(self) -> str:
+        """What became of a hold for it, to follow its name; empty when none was given."""
+        return hold_outcome(self.held, self.hold_refused)
+
+    def was_held_within_s(self, now_ns: int, seconds: float) -> bool:
+        """Return whether the station has held it so lately."""
+        return self.held is not None and now_ns - self.held.since_ns < seconds * NS_PER_S
+
+    def finding(
+        self, rule: str, severity: Severity, text: str, *, about: str = "", after_s: float = 0.0
+    ) -> Finding:
+        """Return a finding about this vehicle, which its text names first."""
+        return Finding(
+            key=f"{rule}:{self.key}{about}",
+            rule=rule,
+            severity=severity,
+            vehicle_name=self.name,
+            text=f"{self.name}: {text}",
+            serial=self.state.serial,
+            link_id=self.state.link_id,
+            after_s=after_s,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class TrafficPicture:
+    """Everything that is watched, at one moment.
+
+    `flying` are heard to fly. `lost` are not heard any more, and may be flying on a mission.
+    `ahead` is of the one and then of the other, in their order. `since_ns` says since when each
+    finding has been made, by its key.
+    """
+
+    now_ns: int
+    watched: tuple[WatchedVehicle, ...]
+    flying: tuple[WatchedVehicle, ...]
+    lost: tuple[WatchedVehicle, ...]
+    ahead: LookAhead
+    airspace: PreparedAirspace
+    settings: WatchdogSettings = field(default_factory=WatchdogSettings)
+    prediction: PredictionSettings = field(default_factory=PredictionSettings)
+    energy: EnergySettings = field(default_factory=EnergySettings)
+    since_ns: Mapping[str, int] = field(default_factory=dict)
+    is_hold_on: bool = True
+
+    @property
+    def predicted(self) -> tuple[WatchedVehicle, ...]:
+        """Those that `ahead` is of."""
+        return self.flying + self.lost
+
+    @property
+    def minima(self) -> SeparationMinima:
+        """The minima below which the separation watchdog raises an alarm."""
+        return watchdog_minima(self.airspace.airspace.limits, self.settings)
+
+    def lasted_s(self, key: str) -> float:
+        """Return how long a finding has been made, 0 for a new one."""
+        since_ns = self.since_ns.get(key)
+        return 0.0 if since_ns is None else (self.now_ns - since_ns) / NS_PER_S
+
+
+def build_traffic_picture(
+    vehicles: Iterable[WatchedVehicle],
+    airspace: PreparedAirspace,
+    settings: SafetySettings,
+    now_ns: int,
+    since_ns: Mapping[str, int],
+    *,
+    is_hold_on: bool = True,
+) -> TrafficPicture:
+    """Return the picture of vehicles that fly or may; those on the ground must not be among them.
+
+    Their motions and hazard areas are worked out here.
+    """
+    known = tuple(vehicles)
+    plane = plane_of(airspace, (one.state for one in known))
+    watched = tuple(_placed(one, airspace, settings, plane, now_ns) for one in known)
+    flying = tuple(one for one in watched if one.is_flying_in_contact)
+    lost = tuple(one for one in watched if one.may_continue_mission)
+    rows = [_next_rows(one, settings, now_ns) for one in flying]
+    rows += [_lost_rows(one, settings) for one in lost]
+    return TrafficPicture(
+        now_ns=now_ns,
+        watched=watched,
+        flying=flying,
+        lost=lost,
+        ahead=look_ahead(rows, settings.watchdogs, settings.prediction),
+        airspace=airspace,
+        settings=settings.watchdogs,
+        prediction=settings.prediction,
+        energy=settings.energy,
+        since_ns=since_ns,
+        is_hold_on=is_hold_on,
+    )
+
+
+def plane_of(airspace: PreparedAirspace, states: Iterable[VehicleState]) -> Plane:
+    """Return the plane at the site's origin; without a site, at the first vehicle that has a place.
+
+    Where no vehicle has one, it lies anywhere.
+    """
+    frame = airspace.airspace.frame
+    if frame is not None:
+        return Plane(frame.origin)
+    places = (state.position.value for state in states)
+    first = next((place for place in places if place is not None), None)
+    return Plane(first or LatLon(0.0, 0.0))
+
+
+def _placed(
+    one: WatchedVehicle,
+    airspace: PreparedAirspace,
+    settings: SafetySettings,
+    plane: Plane,
+    now_ns: int,
+) -> WatchedVehicle:
+    seen = vehicle_motion(one.state, airspace, plane, now_ns, settings.prediction)
+    hazard = None if seen is None else hazard_area_of(seen, one.intent, settings.prediction)
+    # Written out, for `replace` takes longer than all the rest.
+    return WatchedVehicle(
+        one.state,
+        one.intent,
+        one.holder,
+        seen,
+        hazard,
+        one.held,
+        one.before,
+        one.is_imager,
+        one.stick_quiet_s,
+        one.hold_refused,
+    )
+
+
+def _next_rows(one: WatchedVehicle, settings: SafetySettings, now_ns: int) -> list[Row]:
+    """A hold that the station gave counts from its giving on, until a newer order."""
+    assert one.motion is not None, "a vehicle that is heard flying has told where it is"
+    intent, braking, held = one.intent, None, one.held
+    if held is not None and held.holds_against(intent):
+        if not one.is_coming_down:
+            intent = Intent(Commanded.HOLD, held.since_ns)
+        braking = Braking((now_ns - held.since_ns) / NS_PER_S, held.speed_mps)
+    horizon_s = settings.watchdogs.horizon_s
+    return next_rows(one.motion, intent, braking, horizon_s, now_ns, settings.prediction)
+
+
+def _lost_rows(one: WatchedVehicle, settings: SafetySettings) -> list[Row]:
+    """The mission it was sent, flown on: anywhere within what time has made of its place."""
+    motion, prediction = one.motion, settings.prediction
+    assert motion is not None, "only a vehicle that has told where it is has a hazard area"
+    predictor = Predictor(motion, prediction, until_s=settings.watchdogs.horizon_s)
+    predictor.follow(one.intent)
+    off_m = prediction.time_uncertainty * motion.age_s * motion.speed_mps
+    return [
+        (*row[:RADIUS_0], row[RADIUS_0] + off_m, row[RADIUS_1] + off_m, *row[CURVE:])
+        for row in predictor.writer.rows
+    ]
