@@ -93,6 +93,6 @@ async def _open(app: ASGIApp, scope: dict[str, Any]) -> Opened:
         if message["type"] == "websocket.send":
             has_text.set()
 
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(120.0):
         await app(scope, receive, send)
     return opened

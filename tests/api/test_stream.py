@@ -13,7 +13,7 @@ from recon.api import stream as stream_module
 from recon.api.schema import StationState
 from recon.api.security import PROTOCOL
 
-PATIENCE_S = 20.0
+PATIENCE_S = 120.0
 
 
 class BigStation(FakeStation):

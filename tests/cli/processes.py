@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from queue import Empty, Queue
 from threading import Thread
 
-PATIENCE_S = 40.0
+PATIENCE_S = 120.0
 
 
 class Started:

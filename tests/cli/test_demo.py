@@ -66,7 +66,7 @@ def test_a_bad_scenario_is_told_and_nothing_is_started(tmp_path: Path) -> None:
 def await_vehicles(console: str, count: int) -> list[dict[str, object]]:
     give_up_at_s = time.monotonic() + PATIENCE_S
     while time.monotonic() < give_up_at_s:
-        with urllib.request.urlopen(f"{console}/api/vehicles", timeout=20) as response:
+        with urllib.request.urlopen(f"{console}/api/vehicles", timeout=120) as response:
             vehicles: list[dict[str, object]] = json.load(response)
         if len(vehicles) == count:
             return vehicles

@@ -29,7 +29,7 @@ def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -
     with started("run", *FREE, "--capture", str(tmp_path / "raw")) as recon:
         port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
         console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
-        with urllib.request.urlopen(f"{console}/api/state", timeout=20) as response:
+        with urllib.request.urlopen(f"{console}/api/state", timeout=120) as response:
             assert json.load(response)["vehicles"] == []
         with socket.create_connection(("127.0.0.1", port)) as app:
             recon.line_with("app connected")

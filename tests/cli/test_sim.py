@@ -19,7 +19,7 @@ from recon.cli.sim import sim_command
 from recon.cli.sim_options import parse_address, parse_home, parse_size
 from recon.sim.errors import SimulationError
 
-LIMIT_S = 60.0
+LIMIT_S = 120.0
 
 command = typer.Typer()
 command.command()(sim_command)

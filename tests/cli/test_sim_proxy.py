@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from recon.cli.commands import app
 
-LIMIT_S = 60.0
+LIMIT_S = 120.0
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ async def until(
 ) -> tuple[Returning, ...]:
     """Ask with every new state until it is so."""
     vehicle = await station.vehicle("SIM-1")
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(120.0):
         async for _state in vehicle.telemetry():
             called = await station.fleet.returning()
             if is_so(called):

@@ -28,7 +28,7 @@ from recon.station.kernel.driver import AsyncioDriver
 FLYING, STANDING, UNIDENTIFIED, STREAMS, STOPS = 12, 4, 2, 3, 5
 NOW_NS = 1_800_000_000_000_000_000
 HOVER = 0
-PATIENCE_S = 30.0
+PATIENCE_S = 120.0
 
 
 @dataclass(slots=True)

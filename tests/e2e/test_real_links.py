@@ -20,7 +20,7 @@ from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock
 
-PATIENCE_S = 40.0
+PATIENCE_S = 120.0
 SERIALS = ("SIM-1", "SIM-2")
 
 

@@ -14,7 +14,7 @@ from recon.link.settings import LinkSettings
 from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived
 from recon.model.report import Report
 
-PATIENCE_S = 20.0
+PATIENCE_S = 120.0
 POLL_S = 0.01
 
 E = TypeVar("E")

@@ -56,7 +56,7 @@ def test_files_of_gone_links_are_closed(tmp_path: Path) -> None:
     for link_id in range(200):
         capture.record(link_id, Direction.FROM_APP, b"x", 0)
         capture.end_link(link_id)
-    give_up_at_s = time.monotonic() + 10.0
+    give_up_at_s = time.monotonic() + 120.0
     while len(list(Path("/proc/self/fd").iterdir())) > open_before + 3:
         assert time.monotonic() < give_up_at_s, "files of gone links stay open"
     capture.close()

@@ -9,7 +9,7 @@ from recon.record.audit import AuditEntry
 from recon.record.audit_files import audit_files, read_run_end
 from recon.record.audit_log import AuditLog
 
-PATIENCE_S = 20.0
+PATIENCE_S = 120.0
 
 
 def entry(text: str = "it happened", kind: str = "test", **details: object) -> AuditEntry:

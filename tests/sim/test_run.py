@@ -17,7 +17,7 @@ from recon.sim.errors import FrameSourceError
 from recon.sim.fleet import ImagerSetup, SimulationConfig
 from recon.sim.run import run_fleet
 
-LIMIT_S = 20.0
+LIMIT_S = 120.0
 PICTURE = np.arange(9 * 16 * 3, dtype=np.uint8).reshape(9, 16, 3)
 CONFIG = SimulationConfig(home=GeoPoint(41.9, -93.6, 275.0), vehicle_count=1)
 

@@ -10,7 +10,7 @@ from recon.sim.errors import SimulationError
 from recon.sim.proxy import Damage, ProxyConfig, Towards, run_proxy
 from recon.sim.proxy.damage import MOST_HELD_BYTES
 
-LIMIT_S = 20.0
+LIMIT_S = 120.0
 HERE = "127.0.0.1"
 Streams = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 

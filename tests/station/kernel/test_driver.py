@@ -13,7 +13,7 @@ from recon.station.kernel.driver import AsyncioDriver, station_clock
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.state.jobs import JobDropped
 
-PATIENCE_S = 60.0
+PATIENCE_S = 120.0
 
 
 class TestQueue:

@@ -16,7 +16,7 @@ from recon.station.state.jobs import Job, JobDone, JobDropped, JobFailed, JobKin
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
 
-PATIENCE_S = 60.0
+PATIENCE_S = 120.0
 DIRTY = "the lens is dirty"
 SITE = Site(name="bare")
 
