@@ -56,25 +56,25 @@ class Client:
 
 @dataclass
 class Opened:
-    """What a server said to a WebSocket."""
+    """The messages that a server sent to a WebSocket."""
 
-    said: list[Message] = field(default_factory=list)
+    sent: list[Message] = field(default_factory=list)
 
     @property
     def is_accepted(self) -> bool:
-        return any(message["type"] == "websocket.accept" for message in self.said)
+        return any(message["type"] == "websocket.accept" for message in self.sent)
 
     @property
     def subprotocol(self) -> str | None:
-        return next(m["subprotocol"] for m in self.said if m["type"] == "websocket.accept")
+        return next(m["subprotocol"] for m in self.sent if m["type"] == "websocket.accept")
 
     @property
     def close_code(self) -> int | None:
-        return next((m["code"] for m in self.said if m["type"] == "websocket.close"), None)
+        return next((m["code"] for m in self.sent if m["type"] == "websocket.close"), None)
 
     @property
     def first_text(self) -> str:
-        return str(next(m["text"] for m in self.said if m["type"] == "websocket.send"))
+        return str(next(m["text"] for m in self.sent if m["type"] == "websocket.send"))
 
 
 async def _open(app: ASGIApp, scope: dict[str, Any]) -> Opened:
@@ -89,7 +89,7 @@ async def _open(app: ASGIApp, scope: dict[str, Any]) -> Opened:
         return {"type": "websocket.disconnect", "code": 1000}
 
     async def send(message: Message) -> None:
-        opened.said.append(message)
+        opened.sent.append(message)
         if message["type"] == "websocket.send":
             has_text.set()
 

@@ -46,7 +46,7 @@ def post(client: Client, text: str) -> Any:
 
 
 class TestState:
-    def test_what_is_served_is_what_the_schema_says(self, client: Client) -> None:
+    def test_what_is_served_matches_the_schema(self, client: Client) -> None:
         response = client.get("/api/state")
         assert response.status_code == 200
         state = schema.StationState.model_validate_json(response.text)
@@ -152,7 +152,7 @@ class TestOrders:
                 assert isinstance(response.json()["error"], str)
 
     @pytest.mark.parametrize(
-        ("text", "says"),
+        ("text", "sentence"),
         [
             ("", "body"),
             ("{", "JSON"),
@@ -168,12 +168,12 @@ class TestOrders:
             ('{"serials": ["%s"], "order": {"kind": "hover"}}' % ("x" * 3000), "2048"),
         ],
     )
-    def test_what_is_malformed_is_told_in_one_sentence(
-        self, client: Client, text: str, says: str
+    def test_a_malformed_request_is_answered_in_one_sentence(
+        self, client: Client, text: str, sentence: str
     ) -> None:
         response = post(client, text)
         assert response.status_code == 422
-        assert says in response.json()["error"]
+        assert sentence in response.json()["error"]
 
     @settings(max_examples=100, deadline=None)
     @given(st.text(max_size=60))
@@ -221,7 +221,7 @@ class TestOrders:
         response = client.post("/api/orders", content=pieces())
         assert response.status_code == 411
 
-    def test_all_stop_with_nobody_there(self, client: Client) -> None:
+    def test_all_stop_without_vehicles(self, client: Client) -> None:
         assert client.post("/api/all-stop").json() == {"results": []}
 
     @pytest.mark.parametrize("alarm_id", ["7", "-1", "9" * 40])
@@ -336,7 +336,7 @@ class TestConsole:
     def test_a_websocket_to_a_file_is_refused(self, with_console: Client) -> None:
         assert not with_console.open_stream("/app.js").is_accepted
 
-    def test_without_one_a_page_says_how_to_build_it(self, client: Client) -> None:
+    def test_without_one_a_page_describes_how_to_build_it(self, client: Client) -> None:
         assert "make web" in client.get("/").text
 
 
@@ -355,7 +355,7 @@ class TestPictures:
         assert bgr[16, 56, 0] > 200
 
     def test_an_apps_own_jpeg_is_passed_on(self, client: Client, station: FakeStation) -> None:
-        """Even if it is something else: the browser is told not to guess."""
+        """Even if it is something else: the browser must not guess."""
         station.frames["A"] = Frame(1, "A", 0, 0, 0.25, jpeg=b"<script>")
         response = client.get("/api/vehicles/A/frame.jpg")
         assert response.content == b"<script>"
@@ -408,19 +408,19 @@ class TestFleetReturn:
         results = client.post("/api/fleet-return", json={"serials": serials}).json()["results"]
         assert [result["serial"] for result in results] == serials
 
-    def test_without_names_everybody_is_called_and_here_nobody_is(self, client: Client) -> None:
+    def test_without_names_all_vehicles_are_called_and_here_are_none(self, client: Client) -> None:
         assert client.post("/api/fleet-return", json={}).json() == {"results": []}
         assert client.get("/api/state").json()["fleet_return"] is None
 
     @pytest.mark.parametrize("asked", [{"serials": []}, {"serials": "A"}, {"all": True}, [1]])
-    def test_what_is_not_understood_calls_nobody(self, client: Client, asked: object) -> None:
+    def test_a_malformed_request_calls_no_vehicle(self, client: Client, asked: object) -> None:
         response = client.post("/api/fleet-return", json=asked)
         assert response.status_code == 422
         assert client.get("/api/commands").json() == []
 
 
 class TestWatching:
-    def test_only_a_ghost_can_be_dismissed(self, client: Client) -> None:
+    def test_only_a_hazard_area_can_be_dismissed(self, client: Client) -> None:
         response = client.post("/api/vehicles/A/hazard/dismiss")
         assert response.status_code == 404
         assert "No hazard area" in response.json()["error"]

@@ -81,12 +81,12 @@ def test_the_stream_tells_every_entry_once_and_in_order(station: FakeStation) ->
             async with websockets.connect(url) as reader:
                 seen: list[int] = []
                 while len(seen) < 210:
-                    told = AuditPage.model_validate_json(await reader.recv())
-                    seen += [entry.n for entry in told.entries]
+                    page = AuditPage.model_validate_json(await reader.recv())
+                    seen += [entry.n for entry in page.entries]
                 put(station, 3)
                 while len(seen) < 213:
-                    told = AuditPage.model_validate_json(await reader.recv())
-                    seen += [entry.n for entry in told.entries]
+                    page = AuditPage.model_validate_json(await reader.recv())
+                    seen += [entry.n for entry in page.entries]
                 assert seen == list(range(21, 234))
 
     asyncio.run(main())

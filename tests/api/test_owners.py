@@ -1,4 +1,4 @@
-"""Streams that hold steered orders: they live as long as they say so."""
+"""Streams that own steered orders: a silent or closed one ends them."""
 
 import asyncio
 
@@ -47,7 +47,7 @@ def test_a_stream_holds_while_it_is_open() -> None:
     asyncio.run(main())
 
 
-def test_one_that_says_nothing_holds_no_longer_and_is_closed(
+def test_a_silent_stream_is_closed_and_owns_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(owners, "SILENT_S", 0.2)
@@ -136,9 +136,9 @@ class TestOrders:
         answer = client.post("/api/orders", json=asked)
         assert answer.status_code == 422
         assert "needs a owner" in answer.json()["error"]
-        held_by_nobody = client.post("/api/orders", json={**asked, "owner": NAME})
-        assert held_by_nobody.status_code == 200
-        (result,) = held_by_nobody.json()["results"]
+        without_stream = client.post("/api/orders", json={**asked, "owner": NAME})
+        assert without_stream.status_code == 200
+        (result,) = without_stream.json()["results"]
         assert not result["accepted"]
         assert len(station.asked) == 1
 

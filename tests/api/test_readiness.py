@@ -59,8 +59,8 @@ class TestAuthority:
             AuthorityHolder(holder),
             "api 127.0.0.1",
         )
-        told = vehicle(client)["authority"]
-        assert (told["holder"], told["holder_name"], told["age_s"]) == (
+        authority = vehicle(client)["authority"]
+        assert (authority["holder"], authority["holder_name"], authority["age_s"]) == (
             holder,
             "api 127.0.0.1",
             0.0,
@@ -73,7 +73,7 @@ class TestAuthority:
         assert "take control first" in answer["reason"]
         assert station.driver.station.control("A").authority.holder is AuthorityHolder.PILOT
 
-    def test_nobody_leads_what_is_not_known(self, client: Client) -> None:
+    def test_an_unknown_vehicle_has_no_authority_to_take(self, client: Client) -> None:
         assert "X is not known" in self.take(client, "operator", "X")["reason"]
 
     @pytest.mark.parametrize("body", [{}, {"holder": "cat"}, {"holder": "pilot", "by": "me"}])
@@ -82,30 +82,35 @@ class TestAuthority:
 
 
 class TestPreflight:
-    def test_the_list_says_point_by_point_what_is_missing(self, client: Client) -> None:
+    def test_the_list_shows_each_point_that_is_missing(self, client: Client) -> None:
         response = client.get("/api/vehicles/A/preflight")
-        told = schema.PreflightView.model_validate_json(response.text)
-        assert (told.serial, told.name, told.is_passed, told.override) == ("A", "A", False, None)
-        points = {point.key: point for point in told.points}
+        checklist = schema.PreflightView.model_validate_json(response.text)
+        assert (checklist.serial, checklist.name, checklist.is_passed, checklist.override) == (
+            "A",
+            "A",
+            False,
+            None,
+        )
+        points = {point.key: point for point in checklist.points}
         assert (points["fence"].state, points["fence"].holds_back) == ("fails", True)
         assert (points["gnss"].state, points["gnss"].to_do) == ("ok", "")
         assert "endurance_min" in points["endurance"].to_do
 
-    def test_a_vehicle_nobody_knows_has_none(self, client: Client) -> None:
+    def test_an_unknown_vehicle_has_no_checklist(self, client: Client) -> None:
         response = client.get("/api/vehicles/X/preflight")
         assert response.status_code == 404
         assert response.json() == {"error": "no vehicle has the serial 'X'"}
 
-    def test_an_override_is_told_everywhere(self, client: Client) -> None:
+    def test_an_override_is_shown_everywhere(self, client: Client) -> None:
         assert vehicle(client)["preflight_override"] is None
         path = "/api/vehicles/A/preflight/override"
         answer = client.post(path, json={"reason": "a test flight indoors"}).json()
         assert answer == {"accepted": True, "rule": None, "reason": None}
         given = {"by": "api 127.0.0.1", "reason": "a test flight indoors", "age_s": 0.0}
         assert vehicle(client)["preflight_override"] == given
-        told = client.get("/api/vehicles/A/preflight").json()
-        assert told["override"] == given
-        assert told["is_passed"] is False
+        checklist = client.get("/api/vehicles/A/preflight").json()
+        assert checklist["override"] == given
+        assert checklist["is_passed"] is False
 
     def test_no_reason_is_no_override(self, client: Client) -> None:
         path = "/api/vehicles/A/preflight/override"

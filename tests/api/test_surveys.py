@@ -1,4 +1,4 @@
-"""Surveys and shade by HTTP: what is asked, refused, told and drawn."""
+"""Surveys and shade by HTTP: requests, refusals, answers and pictures."""
 
 import cv2
 import numpy as np
@@ -103,7 +103,7 @@ class TestWords:
         assert "Z is not known" in answer["reason"]
         assert client.get(f"/api/surveys/{number}").json()["phase"] == "created"
 
-    def test_nobody_is_no_request(self, client: Client, number: int) -> None:
+    def test_a_start_without_vehicles_is_malformed(self, client: Client, number: int) -> None:
         assert client.post(f"/api/surveys/{number}/start", json={"serials": []}).status_code == 422
 
     def test_what_does_not_fly_cannot_be_paused_but_aborted(
@@ -138,14 +138,14 @@ class TestLooks:
 
     def test_those_there_are_are_named(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
-        told = client.get("/api/surveys/77").json()["error"]
-        assert told == f"Survey 77 not found; available: {number} field (created)"
+        error = client.get("/api/surveys/77").json()["error"]
+        assert error == f"Survey 77 not found; available: {number} field (created)"
 
-    def test_one_without_rows_says_why(self, client: Client) -> None:
+    def test_one_without_rows_gives_the_reason(self, client: Client) -> None:
         asked = {**ASKED, "speed_mps": 14.0}
         number = client.post("/api/surveys", json=asked).json()["survey"]["id"]
-        told = client.get(f"/api/surveys/{number}/ways").json()["error"]
-        assert told.startswith(f"the survey {number} has no rows: ")
+        error = client.get(f"/api/surveys/{number}/ways").json()["error"]
+        assert error.startswith(f"the survey {number} has no rows: ")
 
     def test_rows_lie_in_the_field(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
@@ -190,16 +190,16 @@ class TestShade:
         assert picture[0, 0, 0] > picture[0, 0, 2], "shade is blue"
         assert picture[0, -1, 0] < picture[0, -1, 2], "sun is yellow"
 
-    @pytest.mark.parametrize(("asked_s", "told"), [(0.0, "0"), (44.0, "30"), (4_000.0, "600")])
-    def test_the_nearest_lead_is_given_and_said(
-        self, client: Client, station: FakeStation, asked_s: float, told: str
+    @pytest.mark.parametrize(("asked_s", "nearest_s"), [(0.0, "0"), (44.0, "30"), (4_000.0, "600")])
+    def test_the_nearest_lead_is_drawn_and_named(
+        self, client: Client, station: FakeStation, asked_s: float, nearest_s: str
     ) -> None:
         put(station, *found())
         response = client.get("/api/forecast.png", params={"lead_s": asked_s, "as": "values"})
-        assert response.headers["X-Lead-S"] == told
+        assert response.headers["X-Lead-S"] == nearest_s
         drawn = decoded(response.content)
-        is_foreseen = float(told) <= 300.0
-        assert (drawn[..., 3] == 255).any() == is_foreseen
+        is_predicted = float(nearest_s) <= 300.0
+        assert (drawn[..., 3] == 255).any() == is_predicted
 
     @pytest.mark.parametrize("authority", ["-1", "nan", "soon"])
     def test_a_lead_that_is_none_is_refused(self, client: Client, authority: str) -> None:

@@ -35,7 +35,7 @@ def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -
             recon.line_with("app connected")
             app.sendall(HELLO)
             app.shutdown(socket.SHUT_WR)
-            recon.line_with("app gone")
+            recon.line_with("app disconnected")
             assert recon.end(number) == 0
         assert "Traceback" not in recon.text
     (capture,) = (tmp_path / "raw").iterdir()

@@ -50,7 +50,7 @@ def test_the_moment_is_written_to_the_microsecond() -> None:
     assert utc_text(1_748_770_200_123_456_789) == "2025-06-01T09:30:00.123456Z"
 
 
-def test_numbers_that_json_has_not_are_told_in_words() -> None:
+def test_numbers_without_a_json_form_are_written_as_text() -> None:
     read = decode_line(line_of(AuditEntry("k", "t", details={"speed_mps": float("nan")})))
     assert read.details == {"speed_mps": "nan"}
 

@@ -1,4 +1,4 @@
-"""A cut or changed audit is found; a torn last line is tolerated and said."""
+"""A cut or changed audit is found; a torn last line is tolerated and reported."""
 
 from pathlib import Path
 
@@ -28,12 +28,12 @@ class TestWhole:
         assert check_audit(second).is_whole
         assert not check_audit(second).is_end_known
 
-    def test_an_end_in_order_is_said(self, tmp_path: Path) -> None:
+    def test_an_end_in_order_is_reported(self, tmp_path: Path) -> None:
         path = written(tmp_path, 1, lambda log: log.put(entry(kind=STOPPED_KIND), 1) and None)
         assert check_audit(path).is_closed
         assert not check_audit(written(tmp_path, 2)).is_closed
 
-    def test_a_torn_last_line_is_tolerated_and_said(self, tmp_path: Path) -> None:
+    def test_a_torn_last_line_is_tolerated_and_reported(self, tmp_path: Path) -> None:
         path = written(tmp_path, 5)
         path.write_bytes(path.read_bytes()[:-30])
         verdict = check_audit(path)

@@ -1,4 +1,4 @@
-"""Writing the audit: in order, for keeps, without ever making anybody wait; disks fail."""
+"""Writing the audit: in order, without blocking a caller; disks fail."""
 
 import errno
 import json
@@ -17,7 +17,7 @@ from recon.record.errors import RecordError
 
 
 class Disk:
-    """Stands in for os.write: full when told, and writes in pieces."""
+    """Stands in for os.write: full on demand, and writes in pieces."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.is_full = False
@@ -87,7 +87,7 @@ def test_a_line_written_in_pieces_is_one_line(tmp_path: Path, disk: Disk) -> Non
     assert check_audit(written(tmp_path, 3)).is_whole
 
 
-def test_a_full_disk_is_told_and_nothing_is_lost_when_it_has_room_again(
+def test_a_full_disk_is_reported_and_nothing_is_lost_when_it_has_room_again(
     tmp_path: Path, disk: Disk
 ) -> None:
     log = AuditLog(tmp_path)
@@ -106,8 +106,8 @@ def test_a_full_disk_is_told_and_nothing_is_lost_when_it_has_room_again(
     assert check_audit(log.path or tmp_path).is_whole
 
 
-def test_nobody_waits_for_a_disk_that_hangs(tmp_path: Path, disk: Disk) -> None:
-    """More than the queue holds is put while a write stands still; the file says what is lost."""
+def test_a_disk_that_hangs_blocks_no_caller(tmp_path: Path, disk: Disk) -> None:
+    """More than the queue holds is put while a write stands still; the file states what is lost."""
     log = AuditLog(tmp_path)
     disk.gate.clear()
     log.start()
@@ -145,7 +145,7 @@ def test_a_folder_that_cannot_be_made_is_trouble_until_it_can(
     assert [line["text"] for line in read(log.path)][1:] == ["waits"]
 
 
-def test_a_deleted_file_is_told_and_another_begun(
+def test_a_deleted_file_is_reported_and_another_begun(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(audit_log, "RETRY_AFTER_S", 0.3)

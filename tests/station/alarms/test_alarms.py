@@ -60,7 +60,7 @@ def test_one_that_gets_better_need_not() -> None:
     assert only(updated(book, LOW)).acknowledged_by == "me"
 
 
-def test_one_that_nobody_has_seen_comes_back_as_itself() -> None:
+def test_one_not_acknowledged_comes_back_as_the_same_alarm() -> None:
     book = AlarmBook()
     for second in range(50):
         book = updated(book, *([LOW] if second % 2 == 0 else []), at_s=second)

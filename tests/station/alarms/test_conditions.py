@@ -1,4 +1,4 @@
-"""What is wrong now, from the station's state alone."""
+"""Conditions, derived from the station's state alone."""
 
 import pytest
 from tests.fleet.reports import core, extended
@@ -90,6 +90,9 @@ class TestMessages:
     def test_an_apps_warnings_and_errors_stay_until_seen(self) -> None:
         scene = CommandedStation().opens(1, core(), extended())
         for severity in MessageSeverity:
-            scene.says(1, MessageReport(severity, f"says {severity.name}"))
+            scene.says(1, MessageReport(severity, f"level {severity.name}"))
         texts = {a.condition.text for a in scene.station.alarms.alarms.values()}
-        assert texts == {"A: its app says: says WARNING", "A: its app says: says ERROR"}
+        assert texts == {
+            "A: message from its app: level WARNING",
+            "A: message from its app: level ERROR",
+        }

@@ -58,12 +58,12 @@ class TestAllStop:
         bench.open(4, core(is_flying=0))
         bench.open(5, extended(b"00000"), core())
         results = bench.service.all_stop("test").results
-        told = {(r.serial, r.link_id): r.accepted for r in results}
-        assert told == {("A", None): True, ("B", None): False, (None, 3): True, (None, 5): True}
+        accepted = {(r.serial, r.link_id): r.accepted for r in results}
+        assert accepted == {("A", None): True, ("B", None): False, (None, 3): True, (None, 5): True}
         refused = next(r for r in results if r.serial == "B")
         assert refused.rule == "flying"
 
-    def test_nobody_is_ordered_twice(self, bench: Bench) -> None:
+    def test_no_vehicle_is_ordered_twice(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
         bench.open(2, extended(b"A"), core())
         results = bench.service.all_stop("test").results
@@ -204,7 +204,7 @@ class TestBuild:
         pixels = station.settings.detection.pixels_per_radian
         assert site.imager is not None
         at_axis = -site.imager.camera.direct[0]
-        assert pixels == pytest.approx(at_axis, rel=0.15), "the eye's own lens, not the default"
+        assert pixels == pytest.approx(at_axis, rel=0.15), "the imager's own lens, not the default"
         driver = AsyncioDriver(station, lambda: 0)
         site_view = Service.around(driver, site, None).state().site
         assert site_view is not None

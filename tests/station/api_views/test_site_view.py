@@ -1,4 +1,4 @@
-"""The site as the API says it: what is drawn lies where it is, and is never too much."""
+"""The site as the API shows it: outlines in place, and bounded in number."""
 
 from dataclasses import asdict, replace
 
@@ -43,7 +43,7 @@ def corner_count(view: SiteView) -> int:
     return sum(len(ring) - 1 for area in view.areas for ring in area.rings)
 
 
-def test_the_demonstrations_site_is_told_whole() -> None:
+def test_the_demonstration_site_is_shown_whole() -> None:
     site = load_site(demo_site_folder())
     view = site_view(site)
     assert site.frame is not None
@@ -81,7 +81,7 @@ def test_it_is_made_once_for_each_site() -> None:
     assert site_view(site) is site_view(site)
 
 
-def test_outlines_of_many_corners_are_thinned_by_as_much_as_is_said() -> None:
+def test_outlines_of_many_corners_are_thinned_by_as_much_as_is_stated() -> None:
     region = Region(star(6_000), (star(2_000, teeth_m=1.0) / 4.0,))
     view = site_view(site_of(region))
     assert corner_count(view) <= MOST_CORNERS

@@ -34,7 +34,7 @@ from recon.model.units import NS_PER_S
 from recon.record.audit import AuditEntry
 from recon.sim.fleet import Airborne
 from recon.station.audit.entries import Auditing, audit
-from recon.station.audit.link_entries import MOST_IN_A_WINDOW
+from recon.station.audit.link_entries import MAX_IN_A_WINDOW
 from recon.station.kernel.step import step
 from recon.station.state.orders import PhaseChange
 from recon.station.state.station import Station
@@ -129,7 +129,7 @@ class TestOrders:
         assert [w["latitude_deg"] for w in waypoints] == [w.latitude_deg for w in mission.waypoints]
         assert entry.details["takeoff"] is False
 
-    def test_a_repeated_stop_is_told_each_time_it_is_sent(self) -> None:
+    def test_a_repeated_stop_is_written_each_time_it_is_sent(self) -> None:
         here = world(1, faults=("ack-then-nothing",), wanders=True)
         audited = Audited(here)
         here.run_for(5.0)
@@ -158,7 +158,7 @@ class TestSticks:
         assert sticks[1].details["refused"] == 0
         assert 9.0 < sticks[1].details["seconds"] < 11.0
 
-    def test_a_stream_that_is_refused_says_so_once(self, steps: Steps) -> None:
+    def test_a_refused_stream_is_written_once(self, steps: Steps) -> None:
         steps.connect(1, is_flying=0)
         for number in range(1, 51):
             self.stick(steps, number)
@@ -175,7 +175,7 @@ class TestSticks:
 
 
 class TestLinks:
-    def test_a_link_opens_says_who_it_is_and_closes(self, steps: Steps) -> None:
+    def test_a_link_opens_reports_its_serial_and_closes(self, steps: Steps) -> None:
         scene = steps.connect(1)
         assert kinds(scene)[:2] == ["link.opened", "link.identified"]
         assert scene[0].details["address"] == "10.0.0.1:5"
@@ -190,7 +190,7 @@ class TestLinks:
         assert "link.conflict" in kinds(steps.hear(1, core()))
         assert "link.conflict_ended" in kinds(steps.handle(LinkClosed(2, "gone")))
 
-    def test_a_reconnect_is_told_as_the_same_vehicle(self, steps: Steps) -> None:
+    def test_a_reconnect_is_written_as_the_same_vehicle(self, steps: Steps) -> None:
         steps.connect(1)
         steps.handle(LinkClosed(1, "gone"))
         (identified,) = [e for e in steps.connect(2) if e.kind == "link.identified"]
@@ -199,14 +199,14 @@ class TestLinks:
     def test_a_flood_of_connections_is_counted(self, steps: Steps) -> None:
         for number in range(1, 1001):
             steps.handle(LinkOpened(number, "10.0.0.9:5"), LinkClosed(number, "gone"))
-        assert len(steps.entries) == MOST_IN_A_WINDOW
+        assert len(steps.entries) == MAX_IN_A_WINDOW
         steps.pass_s(61.0)
         (many,) = [e for e in steps.entries if e.kind == "link.many"]
-        assert many.details["count"] == 2000 - MOST_IN_A_WINDOW
+        assert many.details["count"] == 2000 - MAX_IN_A_WINDOW
 
 
 class TestFlights:
-    def test_takeoff_and_landing_are_told_with_where(self) -> None:
+    def test_takeoff_and_landing_are_written_with_their_position(self) -> None:
         here = world(1, airborne=Airborne.NONE)
         audited = Audited(here)
         here.run_for(3.0)
@@ -249,7 +249,7 @@ class TestAlarms:
         ended = [e for e in steps.pass_s(0.05) if e.kind == "alarm.ended"]
         assert lost.details["id"] in [e.details["id"] for e in ended]
 
-    def test_one_that_comes_and_goes_is_told_every_five_seconds_at_most(self, steps: Steps) -> None:
+    def test_a_flapping_alarm_is_written_every_five_seconds_at_most(self, steps: Steps) -> None:
         steps.connect(1)
         before = len(steps.entries)
         for _ in range(100):
@@ -275,7 +275,7 @@ class TestWords:
         assert (taken.details["from"], taken.details["holder"]) == ("operator", "pilot")
         assert steps.handle(AuthorityTaken("A", AuthorityHolder.PILOT, "Ms Smith")) == []
 
-    def test_a_word_that_is_refused_is_told_with_the_reason(self, steps: Steps) -> None:
+    def test_a_refused_command_is_written_with_the_reason(self, steps: Steps) -> None:
         steps.connect(1)
         scene = steps.handle(
             AuthorityTaken("Z", AuthorityHolder.OPERATOR, "Ms Smith"),
@@ -287,13 +287,13 @@ class TestWords:
         ]
         assert all(e.details["reason"] for e in scene)
 
-    def test_an_override_is_told_with_its_reason(self, steps: Steps) -> None:
+    def test_an_override_is_written_with_its_reason(self, steps: Steps) -> None:
         steps.connect(1)
         (scene,) = steps.handle(PreflightOverridden("A", "Ms Smith", "home point was checked"))
         assert (scene.kind, scene.by) == ("preflight.overridden", "Ms Smith")
         assert scene.details["reason"] == "home point was checked"
 
-    def test_what_people_say_is_told_with_their_name(self, steps: Steps) -> None:
+    def test_operator_commands_are_written_with_their_name(self, steps: Steps) -> None:
         scene = steps.handle(
             HazardDismissed("A", "one"),
             SeparationHoldSwitched(False, "two"),
@@ -310,7 +310,7 @@ class TestWords:
 
 class TestNothing:
     def test_telemetry_alone_makes_no_entries(self) -> None:
-        """A minute of 4 vehicles is 48 sightings, not 2,880 packets."""
+        """A minute of 4 vehicles is 48 positions, not 2,880 packets."""
         here = world(4)
         here.run_for(5.0)
         audited = Audited(here)

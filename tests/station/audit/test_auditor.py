@@ -58,7 +58,7 @@ def test_a_recovery_snapshot_that_cannot_be_written_is_an_alarm_too(tmp_path: Pa
 
 
 class Terminal:
-    """Stands in for the log: stands still until it is told to go on."""
+    """Stands in for the log: blocks until it is released."""
 
     def __init__(self) -> None:
         self.goes_on = threading.Event()
@@ -73,7 +73,7 @@ class Terminal:
     warning = info
 
 
-def test_a_terminal_that_stands_still_holds_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_blocked_terminal_blocks_no_caller(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(log_module, "_log", terminal)
     printer = LogPrinter()
@@ -82,15 +82,15 @@ def test_a_terminal_that_stands_still_holds_nobody_up(monkeypatch: pytest.Monkey
     assert terminal.is_reached.wait(PATIENCE_S)
     for number in range(WAITING_LINES + 70):
         printer.put(entry(f"line {number}"))
-    assert printer.left_out == 70
+    assert printer.dropped == 70
     terminal.goes_on.set()
     until(lambda: len(terminal.lines) == WAITING_LINES + 2)
     printer.close()
     assert terminal.lines[0] == "first"
-    assert "70 lines were left out" in terminal.lines[1]
+    assert "70 lines dropped" in terminal.lines[1]
 
 
-def test_what_a_wire_said_cannot_move_the_cursor(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_text_from_the_wire_cannot_move_the_cursor(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     terminal.goes_on.set()
     monkeypatch.setattr(log_module, "_log", terminal)

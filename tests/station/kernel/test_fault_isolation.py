@@ -263,7 +263,7 @@ class TestTheDriver:
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """Auditing that fault fails too: it must not go round in circles."""
-        monkeypatch.setattr(bench.driver, "_observe", failing)
+        monkeypatch.setattr(bench.driver, "observe", failing)
         bench.driver.handle(Tick())
         bench.driver.handle(Tick())
         (alarm,) = fault_alarms(bench.driver.station)

@@ -100,7 +100,7 @@ class TestAuthority:
     def test_a_pilot_keeps_it_and_guidance_does_not(
         self, flown: World, before: AuthorityHolder, after: AuthorityHolder
     ) -> None:
-        held = ControlAuthority(before, "somebody", 1, "a reason")
+        held = ControlAuthority(before, "Ann", 1, "a reason")
         flown.driver.station = flown.driver.station.with_control("SIM-1", authority=held)
         flown.run_for(6.0)
         authority = restart(flown).control("SIM-1").authority
@@ -278,7 +278,7 @@ class TestOrders:
 
 
 class TestTroubles:
-    def test_a_damaged_snapshot_is_one_alarm_that_says_what_to_do(self) -> None:
+    def test_a_damaged_snapshot_is_one_alarm_with_what_to_do(self) -> None:
         last_run = LastRun(None, ("snapshot A not used: damaged", "snapshot B not used: damaged"))
         station = restored(Station(), last_run, 1)
         (alarm,) = station.alarms.alarms.values()

@@ -1,4 +1,4 @@
-"""A start with many vehicles in the air: nobody is flooded with alarms, nothing is held."""
+"""A restart with many vehicles in flight: one alarm for all, and no vehicle is held."""
 
 import pytest
 from tests.station.recovery.restarts import restart, saved
@@ -50,7 +50,7 @@ def test_the_one_alarm_names_whom_it_waits_for() -> None:
     here = restarted(10, frozenset({"SIM-1", "SIM-4"}))
     (waits,) = alarms(here)
     assert waits.is_active
-    named = waits.condition.text.partition("waits to hear ")[2].partition(", which flew")[0]
+    named = waits.condition.text.partition("telemetry of ")[2].partition(", in flight")[0]
     assert sorted(named.split(", ")) == ["SIM-1", "SIM-10", "SIM-4"]
 
 

@@ -20,7 +20,7 @@ def on_message(
     """Note a warning or an error, unless its app has too many that are not acknowledged."""
     severity = _SEVERITIES.get(report.severity)
     source = vehicle.serial if vehicle.serial is not None else f"link {vehicle.link_id}"
-    if severity is None or _unseen(station, source) >= station.settings.app_messages_kept:
+    if severity is None or _unacknowledged(station, source) >= station.settings.app_messages_kept:
         return station, ()
     condition = Condition(
         key=f"app:{source}:{report.text}",
@@ -35,6 +35,6 @@ def on_message(
     return replace(station, alarms=book), ()
 
 
-def _unseen(station: Station, source: str) -> int:
+def _unacknowledged(station: Station, source: str) -> int:
     alarms = station.alarms.alarms.values()
     return sum(alarm.condition.key.startswith(f"app:{source}:") for alarm in alarms)

@@ -1,4 +1,18 @@
-"""What is wrong now, worked out from the station's state alone."""
+"""The conditions that hold now, derived from the station's state alone.
+
+Theory of operation. A condition is a fact with a key ("battery:SERIAL"), a severity and a sentence.
+`raise_alarms` runs every tick: it derives all conditions anew and gives them to the alarm book.
+
+    absent --condition holds for after_s--> active --condition gone--> ended
+    ended, not acknowledged --condition holds again--> the same alarm, active
+    active, acknowledged --severity rises--> active, not acknowledged
+    ended and acknowledged --> removed
+
+Nothing here keeps a state of its own, so an alarm cannot outlive its cause or be lost with an
+event; only the book remembers since when a condition holds and who acknowledged it. `after_s`
+absorbs what is normal for a moment: an app that has not reported its serial yet, a landing that
+waits for the pilot. After a restart the vehicles that are not back yet share one alarm.
+"""
 
 from collections.abc import Iterator
 
@@ -19,8 +33,8 @@ from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
 from recon.station.traffic import identity_grace, known_traffic
 
-NAMES_TOLD = 8
-"""Of many vehicles an alarm names this many and counts the rest."""
+MAX_NAMES = 8
+"""An alarm about many vehicles names this many and counts the rest."""
 
 
 def raise_alarms(station: Station, now_ns: int) -> Stepped:
@@ -39,10 +53,10 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _identity(vehicle)
         if vehicle.serial not in names and not known_traffic.is_dismissed(station, vehicle):
             yield from _silence(vehicle, now_ns)
-        yield from _never_heard(vehicle, station.settings.first_telemetry_s)
+        yield from _no_telemetry(vehicle, station.settings.first_telemetry_s)
         yield from _battery(vehicle, station.settings)
         yield from _landing(vehicle, station.settings.landing_wait_s)
-        yield from _by_itself(station, vehicle)
+        yield from _failsafe(station, vehicle)
     for link in station.fleet.unbound_links():
         yield from _not_taken(link, station.settings.fleet)
         yield from _unidentified(link, station.settings.serial_wait_s)
@@ -56,7 +70,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     yield from station_faults.conditions(station, now_ns)
     for operation in OPERATIONS:
         yield from operation.conditions(station)
-    yield from _watch(station)
+    yield from _watchdogs(station)
     yield from frames.conditions(station)
     yield from _audit(station)
 
@@ -75,8 +89,8 @@ def _identity(vehicle: VehicleState) -> Iterator[Condition]:
     if vehicle.in_conflict:
         links = ", ".join(str(link_id) for link_id in vehicle.rival_link_ids)
         text = (
-            f"link {links} claims the same serial while link {vehicle.link_id} still speaks; "
-            "only hold, land and return are sent, to all of them"
+            f"serial claimed by link {links} while link {vehicle.link_id} still sends telemetry: "
+            "only hold, land and return are sent, on all these links. Close the wrong app"
         )
         yield _about(vehicle, "serial_conflict", Severity.ERROR, text)
 
@@ -87,59 +101,65 @@ def _silence(vehicle: VehicleState, now_ns: int) -> Iterator[Condition]:
         return
     age_s = ns_to_seconds(now_ns - vehicle.core_received_at_ns)
     if vehicle.is_flying.value is False:
-        text = f"no telemetry for {age_s:.0f} s; it was on the ground"
+        text = f"no telemetry for {age_s:.0f} s; it was on the ground: check its companion app"
         yield _about(vehicle, "link_lost", Severity.WARNING, text)
     else:
-        text = f"no telemetry for {age_s:.0f} s; it may be anywhere near its last place"
+        text = (
+            f"no telemetry for {age_s:.0f} s; it was in flight: check its companion app and keep "
+            "clear of its hazard area"
+        )
         yield _about(vehicle, "link_lost", Severity.CRITICAL, text)
 
 
 def _awaited(awaited: tuple[VehicleState, ...], settings: StationSettings) -> Iterator[Condition]:
-    """One alarm for all: each gets its own if it does not come back."""
+    """One alarm for all; each vehicle that does not return gets its own later."""
     if not awaited:
         return
-    names = ", ".join(vehicle.display_name for vehicle in awaited[:NAMES_TOLD])
-    others = len(awaited) - NAMES_TOLD
+    names = ", ".join(vehicle.display_name for vehicle in awaited[:MAX_NAMES])
+    others = len(awaited) - MAX_NAMES
     more = f" and {others} more" if others > 0 else ""
     text = (
-        f"the station was restarted and waits to hear {names}{more}, which flew when it ended; "
-        f"for {settings.restart.settle_s:g} s nobody is held because of where they may be"
+        f"the station was restarted and waits for telemetry of {names}{more}, in flight before; "
+        f"for {settings.restart.settle_s:g} s their hazard areas hold no other vehicle"
     )
     yield Condition("restart_waits", Severity.WARNING, "restart_waits", "", text)
 
 
-def _never_heard(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
+def _no_telemetry(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
     if vehicle.core_received_at_ns is None and vehicle.link_id is not None:
-        text = "its app has said its serial but never where it is or whether it flies"
+        text = "serial reported, but no telemetry received: check its companion app"
         yield _about(vehicle, "no_telemetry", Severity.WARNING, text, after_s)
 
 
 def _battery(vehicle: VehicleState, settings: StationSettings) -> Iterator[Condition]:
-    """The aircraft's own warning and the level both count: either may be wrong or missing."""
+    """Report the aircraft's own warning and the level: either may be wrong or missing."""
     warning = vehicle.battery_warning.value
     level = vehicle.battery_fraction.value
     left = 1.0 if level is None or vehicle.is_flying.value is False else level
     if warning is BatteryWarning.SERIOUS:
-        text = "the aircraft warns of a seriously low battery"
+        text = "battery critically low, reported by the aircraft: land now"
         yield _about(vehicle, "battery", Severity.CRITICAL, text)
     elif left <= settings.serious_battery_fraction:
-        yield _about(vehicle, "battery", Severity.CRITICAL, f"its battery is at {left:.0%}")
+        limit = settings.serious_battery_fraction
+        text = f"battery at {left:.0%}, limit {limit:.0%}: land now"
+        yield _about(vehicle, "battery", Severity.CRITICAL, text)
     elif warning is BatteryWarning.LOW:
-        text = "the aircraft warns of a low battery"
+        text = "battery low, reported by the aircraft: return home"
         yield _about(vehicle, "battery", Severity.WARNING, text)
     elif left <= settings.low_battery_fraction:
-        yield _about(vehicle, "battery", Severity.WARNING, f"its battery is at {left:.0%}")
+        text = f"battery at {left:.0%}, limit {settings.low_battery_fraction:.0%}: return home"
+        yield _about(vehicle, "battery", Severity.WARNING, text)
 
 
 def _landing(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
     waits = vehicle.flight_mode.value is FlightMode.CONFIRM_LANDING
     if waits and vehicle.is_flying.value is True:
-        text = "its landing waits for confirmation in the app or by the pilot"
+        text = "landing waits for confirmation: confirm it in the app or on the controller"
         yield _about(vehicle, "landing_waits", Severity.ERROR, text, after_s)
 
 
-def _by_itself(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
-    """What the aircraft does that nobody here ordered, by the flight table."""
+def _failsafe(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
+    """A flight mode that the station did not command, by the flight table."""
     follows = station.control(vehicle.serial).tracking
     if follows is not None and follows.failsafe is not None:
         yield _about(vehicle, "failsafe", Severity.ERROR, follows.failsafe)
@@ -147,7 +167,7 @@ def _by_itself(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
 
 def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:
     if link.claimed_serial is None and link.own_state.is_flying.value is True:
-        text = f"a vehicle without a serial is flying ({link.remote_address})"
+        text = f"in flight without a serial ({link.remote_address}): check its companion app"
         yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s)
 
 
@@ -155,15 +175,15 @@ def _not_taken(link: LinkRecord, settings: FleetSettings) -> Iterator[Condition]
     if link.rejected_serial is None:
         return
     text = (
-        f"its app says it is {link.rejected_serial}, but {settings.vehicles_kept} vehicles that "
-        "may fly are not heard, and no other is taken in: dismiss those whose place you know; "
-        "until then it can only be told to hold, land or return"
+        f"serial {link.rejected_serial} not accepted: {settings.vehicles_kept} lost vehicles may "
+        f"be in flight, limit {settings.vehicles_kept}: dismiss the hazard areas of those you have "
+        "located; until then only hold, land and return are sent on this link"
     )
     yield _about(link.own_state, "no_room", Severity.ERROR, text)
 
 
 def _lost_unidentified(name: str, state: VehicleState) -> Condition:
-    """It ends with a person's word alone: nobody would know the vehicle if it were heard again."""
+    """Ends only when an operator dismisses it: without a serial no telemetry can be matched."""
     if name == known_traffic.MANY_LOST:
         text = (
             f"more than {known_traffic.LOST_KEPT} vehicles without a serial were lost in flight; "
@@ -171,8 +191,8 @@ def _lost_unidentified(name: str, state: VehicleState) -> Condition:
         )
     else:
         text = (
-            "a vehicle without a serial was flying when it was last heard; it may be anywhere near "
-            f"its last place: dismiss {name} when you have seen where it is"
+            "telemetry lost in flight, and no serial known; it may be anywhere near its last "
+            f"position: locate it, then dismiss {name}"
         )
     return Condition(
         key=f"unidentified_lost:{name}",
@@ -193,14 +213,17 @@ def _waiting(record: OrderRecord) -> Iterator[Condition]:
         severity=Severity.CRITICAL,
         rule="stop_waits",
         vehicle_name=name,
-        text=f"{name}: a stop waits until the vehicle is heard again",
+        text=(
+            f"{name}: stop not sent, no telemetry: it is sent when telemetry returns; use the "
+            "controller"
+        ),
         serial=record.command.serial,
         link_id=record.command.link_id,
     )
 
 
 def _of_order(record: OrderRecord) -> Iterator[Condition]:
-    """An order that a person must look after, until telemetry shows it or a newer one comes."""
+    """An order that needs attention until telemetry confirms it or a newer order replaces it."""
     if record.alarm is None:
         return
     command = record.command
@@ -216,8 +239,8 @@ def _of_order(record: OrderRecord) -> Iterator[Condition]:
     )
 
 
-def _watch(station: Station) -> Iterator[Condition]:
-    """What the watchdogs found, and whether their findings may hold vehicles."""
+def _watchdogs(station: Station) -> Iterator[Condition]:
+    """The findings of the watchdogs, and whether they may hold vehicles."""
     for kept in station.watchdog_state.findings.values():
         found = kept.finding
         yield Condition(
@@ -231,10 +254,10 @@ def _watch(station: Station) -> Iterator[Condition]:
             after_s=found.after_s,
         )
     if not station.watchdog_state.is_hold_on:
-        text = "vehicles in conflict are not held, only alarmed about: holding is switched off"
-        by = f" by {station.watchdog_state.switched_by}"
+        by = station.watchdog_state.switched_by
+        text = f"separation holds switched off by {by}: vehicles in conflict raise alarms only"
         key = rule = "separation_hold_off"
-        yield Condition(key, Severity.WARNING, rule, "", f"{text}{by}")
+        yield Condition(key, Severity.WARNING, rule, "", text)
 
 
 def _audit(station: Station) -> Iterator[Condition]:
@@ -244,5 +267,8 @@ def _audit(station: Station) -> Iterator[Condition]:
             severity=Severity.ERROR,
             rule="audit",
             vehicle_name="",
-            text=f"{station.audit_problem}; flying goes on, the record of it has a gap",
+            text=(
+                f"{station.audit_problem}. Flying continues, but entries may be lost and a restart "
+                "may restore an old state: free disk space or restore the folder"
+            ),
         )

@@ -1,4 +1,4 @@
-"""A fault in the station's own code is a critical alarm while it comes again, and until seen."""
+"""Faults in the station's own code: critical alarms while they recur, and until acknowledged."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -9,25 +9,25 @@ from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Fault, Station
 
 WHOSE = "Station"
-TO_DO = "hold or land with the controllers what you are not sure of, and start the station again"
+TO_DO = "hold or land doubtful vehicles with their controllers, then restart the station"
 
 
 @dataclass(frozen=True, slots=True)
 class FaultSettings:
-    """How faults are told."""
+    """Limits for the alarms of faults."""
 
     lasts_s: float = 10.0
-    """A fault that has not come again for this long counts as over."""
+    """A fault that has not recurred for this long has ended."""
 
     kept: int = 32
-    """Different faults told at once: more say nothing new."""
+    """Different faults shown at once."""
 
 
 SETTINGS = FaultSettings()
 
 
 def note(station: Station, event: StationFaulted, now_ns: int) -> Station:
-    """Return the station that knows of a fault."""
+    """Return the station with a fault recorded."""
     first = station.faults.get(event.where)
     since_ns = now_ns if first is None else first.since_ns
     recent = {fault.where: fault for fault in _present(station, now_ns)}
@@ -38,9 +38,9 @@ def note(station: Station, event: StationFaulted, now_ns: int) -> Station:
 
 
 def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
-    """Yield an alarm for each fault that has come lately."""
+    """Yield an alarm for each recent fault."""
     for fault in _present(station, now_ns):
-        text = f"{WHOSE}: a fault in its own code, {fault.where}: {fault.what}; {TO_DO}"
+        text = f"{WHOSE}: fault in its own code, {fault.where}: {fault.what}; {TO_DO}"
         key = f"station_fault:{fault.where}"
         yield Condition(key, Severity.CRITICAL, "station_fault", WHOSE, text)
 

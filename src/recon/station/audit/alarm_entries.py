@@ -1,7 +1,7 @@
-"""Alarms in the audit: raised, worse, seen by a person, ended.
+"""Alarms in the audit: raised, worse, acknowledged, ended.
 
-An alarm that comes and goes many times a second is told every five seconds at most, as it is then;
-that it got worse, or that a person has seen it, is told at once.
+An alarm that begins and ends many times a second is written every five seconds at most; a rise in
+severity or an acknowledgment is written at once.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ AGAIN_AFTER_S = 5.0
 
 @dataclass(frozen=True, slots=True)
 class AlarmLogged:
-    """An alarm as the audit last told it."""
+    """An alarm as last written."""
 
     alarm: Alarm
     at_ns: int
@@ -24,34 +24,33 @@ class AlarmLogged:
 
 @dataclass(frozen=True, slots=True)
 class AlarmsLogged:
-    """All alarms that were there, by number."""
+    """All alarms as last written, by id."""
 
-    told: Mapping[int, AlarmLogged] = field(default_factory=dict)
+    written: Mapping[int, AlarmLogged] = field(default_factory=dict)
 
 
 def alarm_entries(
     memory: AlarmsLogged, book: AlarmBook, now_ns: int
 ) -> tuple[AlarmsLogged, tuple[AuditEntry, ...]]:
-    """Return what is new about the alarms since it was last told."""
+    """Return the changes of the alarms since they were last written."""
     entries: list[AuditEntry] = []
-    told = dict(memory.told)
+    written = dict(memory.written)
     for number, alarm in book.alarms.items():
-        last = told.get(number)
-        new = _news(last, alarm, now_ns)
+        new = _change(written.get(number), alarm, now_ns)
         if new is not None:
             entries.append(new)
-            told[number] = AlarmLogged(alarm, now_ns)
-    for number in memory.told.keys() - book.alarms.keys():
-        entries += _forgotten(told.pop(number).alarm)
-    return (AlarmsLogged(told), tuple(entries)) if entries else (memory, ())
+            written[number] = AlarmLogged(alarm, now_ns)
+    for number in memory.written.keys() - book.alarms.keys():
+        entries += _forgotten(written.pop(number).alarm)
+    return (AlarmsLogged(written), tuple(entries)) if entries else (memory, ())
 
 
-def seen_entry(alarm: Alarm, by: str) -> AuditEntry:
-    """Return the entry of an alarm that a person has seen."""
-    return _entry("alarm.acknowledged", "alarm seen", alarm, by)
+def acknowledged_entry(alarm: Alarm, by: str) -> AuditEntry:
+    """Return the entry of an acknowledged alarm."""
+    return _entry("alarm.acknowledged", "alarm acknowledged", alarm, by)
 
 
-def _news(last: AlarmLogged | None, alarm: Alarm, now_ns: int) -> AuditEntry | None:
+def _change(last: AlarmLogged | None, alarm: Alarm, now_ns: int) -> AuditEntry | None:
     if last is None:
         return _entry("alarm.raised", "alarm", alarm)
     was = last.alarm
@@ -65,7 +64,7 @@ def _news(last: AlarmLogged | None, alarm: Alarm, now_ns: int) -> AuditEntry | N
 
 
 def _forgotten(alarm: Alarm) -> list[AuditEntry]:
-    """What leaves the book was seen by a person and has ended."""
+    """An alarm leaves the book when it is acknowledged and has ended."""
     return [_entry("alarm.ended", "alarm ended", alarm)] if alarm.is_active else []
 
 

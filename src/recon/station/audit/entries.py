@@ -1,4 +1,15 @@
-"""What a step changed that belongs into the audit. Pure: the same steps give the same entries."""
+"""The audit entries of a step. Pure: the same steps give the same entries.
+
+Theory of operation. After every step the auditor calls `audit` with the states before and after it.
+Because states are immutable, a field that is the same object has not changed, and most steps cost a
+few comparisons. Entries come in the order of cause and effect: commands, operations, links,
+flights, authority, orders, alarms. What would flood the file is reduced by a memory kept between
+steps (`Auditing`): a stick stream is its start and end, an alarm that begins and ends is written
+every five seconds at most, links 120 times a minute, positions every five seconds.
+
+The chain of hashes, numbers and UTC are added by `record/audit_log.py`; this module knows no clock
+and no file. Nothing reads the audit back into a station: a restart uses `station/recovery/`.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -16,7 +27,7 @@ from recon.model.event import (
     Tick,
 )
 from recon.record.audit import AuditEntry
-from recon.station.audit.alarm_entries import AlarmsLogged, alarm_entries, seen_entry
+from recon.station.audit.alarm_entries import AlarmsLogged, acknowledged_entry, alarm_entries
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
@@ -31,7 +42,7 @@ Changed = Iterable[tuple[str, VehicleControl]]
 
 @dataclass(frozen=True, slots=True)
 class Auditing:
-    """What the entries of the next step depend on, beside the states before and after it."""
+    """What the entries of the next step depend on, besides the states before and after it."""
 
     orders: OrdersLogged = field(default_factory=OrdersLogged)
     alarms: AlarmsLogged = field(default_factory=AlarmsLogged)
@@ -43,7 +54,7 @@ def audit(
     memory: Auditing, before: Station, event: Event, after: Station, now_ns: int
 ) -> tuple[Auditing, tuple[AuditEntry, ...]]:
     """Return the entries of one step, in the order of cause and effect."""
-    entries = list(_words(before, event, after))
+    entries = list(_commands(before, event, after))
     for operation in OPERATIONS:
         entries += operation.audit(before, event, after, now_ns)
     links, new = link_entries(memory.links, before, event, after, now_ns)
@@ -67,31 +78,31 @@ def audit(
     return Auditing(orders, alarms, links, flights), tuple(entries)
 
 
-def _words(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
-    """What somebody said that is no order to one vehicle."""
+def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
+    """Operator commands that are not orders to one vehicle."""
     match event:
         case AlarmAcknowledged(alarm_id, by) if alarm_id in before.alarms.alarms:
-            yield seen_entry(before.alarms.alarms[alarm_id], by)
+            yield acknowledged_entry(before.alarms.alarms[alarm_id], by)
         case AuthorityTaken(serial=serial, by=by):
             yield from _refused(after, "authority", authority.refusal(before, event), by, serial)
         case PreflightOverridden(serial=serial, by=by):
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
         case HazardDismissed(serial, by):
             name = known_traffic.lost_as(before, serial) or serial
-            yield _about(before, "hazard.dismissed", "is no longer counted as in the air", by, name)
+            yield _about(before, "hazard.dismissed", "hazard area dismissed", by, name)
         case SeparationHoldSwitched(is_on, by):
             word = "on" if is_on else "off"
-            text = f"the separation watchdog's holds were switched {word}"
+            text = f"separation holds switched {word}"
             yield AuditEntry("separation_hold.switched", text, by, details={"is_on": is_on})
         case AuditTroubled(problem):
-            text = problem or "the audit can be written again"
+            text = problem or "audit and recovery snapshot are written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
 
 
 def _refused(
     station: Station, what: str, refusal: Refusal | None, by: str, serial: str
 ) -> Iterator[AuditEntry]:
-    """A word that changed nothing; what it would have changed is new where it did."""
+    """A refused command; an accepted one is written with its effect."""
     if refusal is not None:
         details = {"rule": refusal.rule, "reason": refusal.reason}
         yield _about(station, f"{what}.refused", f"refused: {refusal.reason}", by, serial, details)
@@ -108,7 +119,7 @@ def _authorities(before: Station, after: Station, changed: Changed) -> Iterator[
             "from": was.holder.value,
             "reason": held.reason,
         }
-        text = f"is led by the {held.holder.value} now: {held.reason}"
+        text = f"authority: {held.holder.value}: {held.reason}"
         by = held.holder_name or held.holder.value
         yield _about(after, "authority.taken", text, by, serial, details)
 
@@ -119,11 +130,11 @@ def _overrides(before: Station, after: Station, changed: Changed) -> Iterator[Au
         if override is was:
             continue
         if override is not None:
-            text = f"may fly without its preflight checklist: {override.reason}"
+            text = f"preflight checklist overridden: {override.reason}"
             details = {"reason": override.reason}
             yield _about(after, "preflight.overridden", text, override.by, serial, details)
         else:
-            text = "needs its preflight checklist again"
+            text = "preflight override ended"
             yield _about(after, "preflight.override_ended", text, "station", serial)
 
 

@@ -1,4 +1,4 @@
-"""Takeoffs, landings and positions in the audit, for whoever reconstructs a flight.
+"""Takeoffs, landings and positions in the audit.
 
 One entry per vehicle every five seconds in the air and every minute on the ground, and one
 whenever a flight begins or ends or its link closes.

@@ -1,7 +1,7 @@
-"""Connections in the audit: opened, closed, which vehicle they are, conflicts.
+"""Links in the audit: opened, closed, identified by serial, in conflict.
 
-Whoever reaches the port can connect a thousand times a second: beyond two a second the rest of a
-minute is told as a count.
+Any program that reaches the port can connect a thousand times a second: beyond 120 entries a minute
+the rest is written as a count.
 """
 
 from collections.abc import Iterable, Iterator
@@ -15,33 +15,33 @@ from recon.record.audit import AuditEntry
 from recon.station.state.station import Station
 
 WINDOW_S = 60.0
-MOST_IN_A_WINDOW = 120
+MAX_IN_A_WINDOW = 120
 
 
 @dataclass(frozen=True, slots=True)
 class LinksLogged:
-    """How much of this minute's coming and going was told, and how much only counted."""
+    """How many changes of this minute were written, and how many only counted."""
 
     window_began_ns: int = 0
-    told: int = 0
-    untold: int = 0
+    written: int = 0
+    counted: int = 0
 
 
 def link_entries(
     memory: LinksLogged, before: Station, event: Event, after: Station, now_ns: int
 ) -> tuple[LinksLogged, tuple[AuditEntry, ...]]:
-    """Return what an event changes of the connections."""
+    """Return the entries of an event that changes links."""
     entries: list[AuditEntry] = []
     if now_ns - memory.window_began_ns >= seconds_to_ns(WINDOW_S):
-        if memory.untold:
-            entries.append(_untold(memory.untold))
+        if memory.counted:
+            entries.append(_many(memory.counted))
         memory = LinksLogged(now_ns)
     for entry in _changes(before, event, after):
-        if memory.told < MOST_IN_A_WINDOW:
-            memory = LinksLogged(memory.window_began_ns, memory.told + 1, memory.untold)
+        if memory.written < MAX_IN_A_WINDOW:
+            memory = LinksLogged(memory.window_began_ns, memory.written + 1, memory.counted)
             entries.append(entry)
         else:
-            memory = LinksLogged(memory.window_began_ns, memory.told, memory.untold + 1)
+            memory = LinksLogged(memory.window_began_ns, memory.written, memory.counted + 1)
     return memory, tuple(entries)
 
 
@@ -53,14 +53,14 @@ def _changes(before: Station, event: Event, after: Station) -> Iterator[AuditEnt
             yield AuditEntry("link.opened", text, details=details)
         case LinkClosed(link_id, reason):
             yield _closed(before, link_id, reason)
-    for serial in _serials_to_look_at(event, after):
+    for serial in _serials_concerned(event, after):
         vehicle = after.fleet.vehicles.get(serial)
         if vehicle is not None:
             yield from _identity(before.fleet.vehicles.get(serial), vehicle)
 
 
-def _serials_to_look_at(event: Event, after: Station) -> Iterable[str]:
-    """An app's word concerns the vehicle it claims; time and a lost link can concern any."""
+def _serials_concerned(event: Event, after: Station) -> Iterable[str]:
+    """A packet concerns the vehicle its link claims; time and a closed link can concern any."""
     match event:
         case PacketReceived(_, ImageReport()):
             return ()
@@ -76,7 +76,7 @@ def _closed(before: Station, link_id: int, reason: str) -> AuditEntry:
     vehicle = before.fleet.vehicle_of_link(link_id)
     serial = None if vehicle is None else vehicle.serial
     name = "" if vehicle is None or serial is None else vehicle.display_name
-    text = f"app gone: link {link_id}{f' of {name}' if name else ''}: {reason}"
+    text = f"app disconnected: link {link_id}{f' of {name}' if name else ''}: {reason}"
     details = {"link_id": link_id, "reason": reason}
     return AuditEntry("link.closed", text, "station", serial, name, details)
 
@@ -91,11 +91,15 @@ def _identity(old: VehicleState | None, vehicle: VehicleState) -> Iterator[Audit
     was_in_conflict = old is not None and old.in_conflict
     if vehicle.in_conflict is not was_in_conflict:
         kind = "link.conflict" if vehicle.in_conflict else "link.conflict_ended"
-        words = "two links claim its serial" if vehicle.in_conflict else "one link claims it again"
+        words = (
+            "two links claim its serial"
+            if vehicle.in_conflict
+            else "one link claims its serial again"
+        )
         rivals = {"link_id": vehicle.link_id, "rival_link_ids": list(vehicle.rival_link_ids)}
         yield AuditEntry(kind, f"{name}: {words}", "station", vehicle.serial, name, rivals)
 
 
-def _untold(count: int) -> AuditEntry:
-    text = f"{count} more changes of connections in the last minute, not told one by one"
+def _many(count: int) -> AuditEntry:
+    text = f"{count} more changes of connections in the last minute, not listed"
     return AuditEntry("link.many", text, details={"count": count})

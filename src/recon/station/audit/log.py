@@ -1,7 +1,7 @@
-"""What the station did, one line an event, for the person at the terminal and the log file.
+"""The audit's sentences on the terminal, one line each.
 
-The lines are the audit's, in words. A terminal can stand still (Ctrl+S, a pipe that nobody reads):
-they are printed on a thread of their own, which may wait while the station flies on.
+A terminal can block (Ctrl+S, a pipe without a reader), so a thread of its own prints them and
+only that thread waits.
 """
 
 import queue
@@ -22,15 +22,15 @@ _LOUD_KINDS = ("alarm.raised", "alarm.worse", "order.refused", "order.failed", "
 
 
 class LogPrinter:
-    """Prints entries in their order; what a terminal that stands still cannot take is counted."""
+    """Prints entries in order; counts those dropped while the terminal blocks."""
 
     def __init__(self) -> None:
-        self.left_out = 0
+        self.dropped = 0
         self._waiting: queue.SimpleQueue[AuditEntry | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._print, name="log", daemon=True)
 
     def start(self) -> None:
-        """Begin to print."""
+        """Start the thread."""
         self._thread.start()
 
     def put(self, entry: AuditEntry) -> None:
@@ -38,20 +38,20 @@ class LogPrinter:
         if entry.kind in _QUIET_KINDS:
             return
         if self._waiting.qsize() >= WAITING_LINES:
-            self.left_out += 1
+            self.dropped += 1
             return
         self._waiting.put(entry)
 
     def close(self) -> None:
-        """Print what waits, as far as the terminal takes it in time."""
+        """Print the waiting lines, as far as the terminal accepts them in time."""
         if self._thread.is_alive():
             self._waiting.put(None)
             self._thread.join(CLOSE_WITHIN_S)
 
     def _print(self) -> None:
         while (entry := self._waiting.get()) is not None:
-            if self.left_out:
-                _log.warning(f"{self.left_out} lines were left out: nothing took them")
-                self.left_out = 0
-            say = _log.warning if entry.kind.startswith(_LOUD_KINDS) else _log.info
-            say(shown(entry.text), by=shown(entry.by))
+            if self.dropped:
+                _log.warning(f"{self.dropped} lines dropped: the terminal was blocked")
+                self.dropped = 0
+            print_line = _log.warning if entry.kind.startswith(_LOUD_KINDS) else _log.info
+            print_line(shown(entry.text), by=shown(entry.by))

@@ -1,6 +1,6 @@
-"""Every change in every order's life, as the audit keeps it; streams of sticks as one each.
+"""Orders in the audit: every change of phase; a stream of stick commands as one.
 
-Of a stream of sticks the audit has its first packet, its end with a count, and each kind of trouble
+Of a stick stream the audit has its first packet, its end with a count, and each kind of problem
 once, instead of ten lines a second.
 """
 
@@ -16,7 +16,7 @@ from recon.record.audit import AuditEntry
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
 
 STREAM_ENDS_AFTER_S = 2.0
-"""A stream of sticks that is silent so long has ended: its last stick's own time is over."""
+"""A stick stream without a packet for this long has ended: its last packet has timed out."""
 
 _TROUBLE = frozenset(
     {
@@ -31,7 +31,7 @@ _TROUBLE = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class StickStream:
-    """Sticks of one giver for one vehicle that followed each other closely."""
+    """Consecutive stick commands of one issuer for one vehicle."""
 
     by: str
     serial: str | None
@@ -41,7 +41,7 @@ class StickStream:
     last_ns: int
     count: int = 0
     refused: int = 0
-    told: frozenset[str] = frozenset()
+    problems: frozenset[str] = frozenset()
 
 
 StickStreams = Mapping[tuple[str | None, str], StickStream]
@@ -49,7 +49,7 @@ StickStreams = Mapping[tuple[str | None, str], StickStream]
 
 @dataclass(frozen=True, slots=True)
 class OrdersLogged:
-    """What the next step's entries depend on: the streams that go on."""
+    """The open streams."""
 
     streams: StickStreams = field(default_factory=dict)
 
@@ -65,15 +65,15 @@ def order_entries(
             continue
         changes = record.history[0 if old is None else len(old.history) :]
         if isinstance(record.command.body, VirtualStick):
-            memory, told = _stick(memory, record, changes, old is None, now_ns)
-            entries += told
+            memory, new = _stick(memory, record, changes, old is None, now_ns)
+            entries += new
         else:
             entries += [_entry(record, change) for change in changes]
     return memory, tuple(entries)
 
 
 def ended_streams(memory: OrdersLogged, now_ns: int) -> tuple[OrdersLogged, tuple[AuditEntry, ...]]:
-    """Return an entry for each stream of sticks that has ended."""
+    """Return an entry for each stick stream that has ended."""
     limit_ns = seconds_to_ns(STREAM_ENDS_AFTER_S)
     ended = [s for s in memory.streams.values() if now_ns - s.last_ns > limit_ns]
     if not ended:
@@ -134,8 +134,8 @@ def _stick(
         stream = replace(stream, count=stream.count + 1, last_ns=now_ns)
     for change in changes:
         if change.phase in _TROUBLE and stream is not None:
-            stream, told = _trouble(stream, record, change)
-            entries += told
+            stream, new = _trouble(stream, record, change)
+            entries += new
     if stream is None:
         return memory, entries
     return replace(memory, streams={**memory.streams, key: stream}), entries
@@ -144,17 +144,17 @@ def _stick(
 def _trouble(
     stream: StickStream, record: OrderRecord, change: PhaseChange
 ) -> tuple[StickStream, Iterator[AuditEntry] | tuple[AuditEntry, ...]]:
-    """Tell each kind of trouble once a stream."""
+    """Write each kind of problem once a stream."""
     refused = stream.refused + (change.phase is Phase.REFUSED_BY_STATION)
     kind = f"{change.phase.value}:{change.note.partition(':')[0]}"
-    is_known = kind in stream.told
-    stream = replace(stream, refused=refused, told=stream.told | {kind})
+    is_known = kind in stream.problems
+    stream = replace(stream, refused=refused, problems=stream.problems | {kind})
     return stream, () if is_known else (_entry(record, change),)
 
 
 def _begin(record: OrderRecord) -> AuditEntry:
     command = record.command
-    text = f"{record.vehicle_name}: a stream of sticks begins"
+    text = f"{record.vehicle_name}: stick stream started"
     details = {"id": command.id, "body": body_details(command), "asked_as": command.asked_as.value}
     return AuditEntry(
         "sticks.began", text, command.issued_by, command.serial, record.vehicle_name, details
@@ -163,7 +163,7 @@ def _begin(record: OrderRecord) -> AuditEntry:
 
 def _end(stream: StickStream) -> AuditEntry:
     seconds = ns_to_seconds(stream.last_ns - stream.began_ns)
-    text = f"{stream.vehicle}: a stream of {stream.count} sticks ended after {seconds:.1f} s"
+    text = f"{stream.vehicle}: stick stream of {stream.count} packets ended after {seconds:.1f} s"
     details = {
         "first_id": stream.first_id,
         "count": stream.count,

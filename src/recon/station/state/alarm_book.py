@@ -1,4 +1,4 @@
-"""Alarms: each names its vehicle, stays until its cause ends, and is acknowledged by a person."""
+"""Alarms: each names its vehicle and stays until its cause has ended and it is acknowledged."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -11,10 +11,7 @@ __all__ = ["Alarm", "AlarmBook", "Condition", "Severity", "acknowledge", "note",
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Something that is the case now. The same `key` is the same cause.
-
-    It becomes an alarm when it has lasted `after_s`.
-    """
+    """A fact that holds now, and an alarm after `after_s`. The same `key` is the same cause."""
 
     key: str
     severity: Severity
@@ -28,7 +25,7 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """A condition that was raised, and what became of it."""
+    """A condition that was raised."""
 
     id: int
     condition: Condition
@@ -67,8 +64,8 @@ def update(book: AlarmBook, conditions: Iterable[Condition], now_ns: int, kept: 
 
 
 def _continued(alarm: Alarm, ripe: Mapping[str, Condition]) -> Alarm:
-    """The alarm with its cause as it is now. One that nobody has seen comes back as itself; one
-    that got worse must be seen again."""
+    """Return the alarm with its condition as it is now. One not acknowledged becomes active again;
+    one whose severity rose must be acknowledged again."""
     condition = ripe.get(alarm.condition.key)
     if condition is None:
         return replace(alarm, is_active=False)
@@ -78,9 +75,9 @@ def _continued(alarm: Alarm, ripe: Mapping[str, Condition]) -> Alarm:
 
 
 def note(book: AlarmBook, condition: Condition, now_ns: int, kept: int) -> AlarmBook:
-    """Return the book with an event that has no duration; it stays until acknowledged.
+    """Return the book with an event without a duration; it stays until acknowledged.
 
-    The same cause, not yet acknowledged, is not raised twice.
+    The same cause is not raised twice before that.
     """
     if any(a.condition.key == condition.key for a in book.alarms.values()):
         return book
@@ -90,7 +87,7 @@ def note(book: AlarmBook, condition: Condition, now_ns: int, kept: int) -> Alarm
 
 
 def acknowledge(book: AlarmBook, alarm_id: int, by: str) -> AlarmBook:
-    """Return the book after a person has seen an alarm; an ended one leaves it."""
+    """Return the book after an operator acknowledged an alarm; an ended one is removed."""
     alarm = book.alarms.get(alarm_id)
     if alarm is None:
         return book
@@ -99,8 +96,8 @@ def acknowledge(book: AlarmBook, alarm_id: int, by: str) -> AlarmBook:
 
 
 def _bounded(alarms: dict[int, Alarm], kept: int) -> dict[int, Alarm]:
-    """Forget ended and acknowledged alarms; beyond the limit, ended ones too: of those the least
-    severe first, and among them the oldest, so that chatter never displaces what matters."""
+    """Remove ended and acknowledged alarms; beyond the limit, ended ones too: the least severe and
+    then the oldest first, so that frequent messages never displace a severe alarm."""
     open_alarms = {
         key: alarm
         for key, alarm in alarms.items()
