@@ -132,7 +132,7 @@ def test_without_an_open_stream_nothing_is_sent() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            station._stream.holder_name = None
+            station._stream.owner = None
             with pytest.raises(ConnectionLostError, match="nothing was sent"):
                 await vehicle.nudge(north_m=1.0)
 
