@@ -43,7 +43,7 @@ command.command()(sim_command)
         (["--replay-site", "/no/such/folder"], "expected a folder with RefFrame.jpeg"),
         (["--replay-site", "/", "--frames", "/"], "--replay-site or --frames, got both"),
         (["--no-imager", "--frames", "/"], "--no-imager: expected neither"),
-        (["--site", "/no/such/folder"], "expected a site's file"),
+        (["--site", "/no/such/folder"], "Folder or site.toml not found"),
     ],
 )
 def test_bad_options_get_one_sentence_and_exit_code_2(options: list[str], words: str) -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 from recon.model.airspace import FlightLimits
 from recon.model.vehicle import Failsafe
 from recon.site import Site, demo_site_folder, load_site
-from recon.site.limits import LimitsTable
 from recon.site.report import site_report
+from recon.site.schema import LimitsTable
 
 GUIDE = Path(__file__).parents[2] / "docs/how-to/prepare-a-site.md"
 TOML = re.compile(r"```toml\n(.*?)```", re.DOTALL)

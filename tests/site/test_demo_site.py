@@ -21,8 +21,7 @@ from recon.model.vehicle import AltitudeReference, Failsafe
 from recon.model.zone import ZoneKind
 from recon.safety import PreparedAirspace
 from recon.site import demo_site_folder, load_site
-from recon.site.demo_elevation import ELEVATION_FILE, demo_elevation_bytes
-from recon.site.demo_layers import BOUNDARY
+from recon.site.demo_layers import BOUNDARY, ELEVATION_FILE, demo_elevation_bytes
 from recon.site.demo_site import (
     IMAGER_HEIGHT_M,
     IMAGER_SERIAL,

@@ -161,7 +161,7 @@ class TestWhatItBecomes:
         assert model is not None
         assert ground_heights_m(model, PLACES_M) == pytest.approx(275.0)
         other = GEOID if table == WGS84 else WGS84
-        assert "expected heights as elevation.datum = " in refusal(tmp_path, tiff, other)
+        assert "expected heights with elevation.datum = " in refusal(tmp_path, tiff, other)
 
     def test_nothing_is_asked_of_the_network(self, tmp_path: Path) -> None:
         set_network_enabled(True)
@@ -293,7 +293,7 @@ def sparse(side: int, **profile: Any) -> bytes:
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ("", "/site.toml: elevation.datum: expected 'geoid' or 'wgs84', got nothing"),
+        ("", "/site.toml: elevation.datum is missing: expected 'geoid' or 'wgs84'"),
         ('datum = "msl"', "elevation.datum: expected 'geoid' or 'wgs84', got 'msl'"),
         (
             'datum = "geoid"',

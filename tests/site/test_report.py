@@ -14,7 +14,7 @@ from recon.site import Site, default_site, demo_site_folder, load_site, site_rep
 from recon.site.demo_layers import BOUNDARY, FARMYARD, SURVEY, TREES, Outline
 from recon.site.demo_site import ORIGIN
 from recon.site.site import Layers
-from recon.site.warnings import site_advice
+from recon.site.warnings import site_warnings
 
 
 def test_the_report_tells_the_fit_and_every_residual() -> None:
@@ -24,7 +24,7 @@ def test_the_report_tells_the_fit_and_every_residual() -> None:
     solution = site.imager.solution
     assert lines[0] == "site demo field: 8 vehicle profiles"
     assert "512 x 512 cells of 1 m" in lines[1]
-    assert lines[2] == "eye SIM-IMAGER: 1280 x 720 lens model"
+    assert lines[2] == "imaging drone SIM-IMAGER: 1280 x 720 lens model"
     assert f"8 control points fit to {solution.rms_px:.2f} px RMS" in lines[3]
     assert f"height {solution.height_above_ground_m:.1f} +-" in lines[3]
     points = [line.split(":")[0] for line in lines[4:12]]
@@ -55,9 +55,9 @@ def test_the_report_lists_the_layers_the_terrain_and_the_limits() -> None:
 
 
 def warnings_of(site: Site) -> list[str]:
-    told = [line for line in site_report(site) if line.startswith("warning: ")]
-    assert told == [f"warning: {advice}" for advice in site_advice(site)]
-    return [line.removeprefix("warning: ") for line in told]
+    lines = [line for line in site_report(site) if line.startswith("warning: ")]
+    assert lines == [f"warning: {warning}" for warning in site_warnings(site)]
+    return [line.removeprefix("warning: ") for line in lines]
 
 
 def pad(east_m: float, up_m: float = 0.0) -> GeoPoint:
@@ -65,8 +65,8 @@ def pad(east_m: float, up_m: float = 0.0) -> GeoPoint:
 
 
 def site_with(*profiles: VehicleProfile, **more: Any) -> Site:
-    told = {profile.serial: profile for profile in profiles}
-    return replace(load_site(demo_site_folder()), profiles=told, **more)
+    profiles_by_serial = {profile.serial: profile for profile in profiles}
+    return replace(load_site(demo_site_folder()), profiles=profiles_by_serial, **more)
 
 
 def complete(serial: str, height_m: float, place: GeoPoint) -> VehicleProfile:
@@ -79,49 +79,49 @@ def complete(serial: str, height_m: float, place: GeoPoint) -> VehicleProfile:
     )
 
 
-def test_a_site_that_tells_everything_gets_no_warning() -> None:
+def test_a_complete_site_gets_no_warning() -> None:
     assert warnings_of(load_site(demo_site_folder())) == []
-    assert site_advice(default_site()) == ()
+    assert site_warnings(default_site()) == ()
 
 
-def test_the_report_says_what_is_assumed_without_layers_and_elevation() -> None:
+def test_the_report_names_the_assumptions_without_layers_and_elevation() -> None:
     bare = site_with(layers=Layers(), elevation=None)
-    assert "terrain: flat assumed, as high as origin.ground_altitude_m" in site_report(bare)
-    assert warnings_of(bare) == [
-        "no boundary: nothing but the distance from home, 500 m, bounds flights"
-    ]
+    assert "terrain: assumed flat at origin.ground_altitude_m" in site_report(bare)
+    assert warnings_of(bare) == ["no boundary: only the distance from home, 500 m, limits flights"]
 
 
-def test_each_vehicle_that_is_half_known_is_named_with_what_is_missing() -> None:
+def test_each_incomplete_vehicle_is_named_with_its_missing_keys() -> None:
     half = VehicleProfile("B", "Bea", endurance_s=900.0, pad=pad(40.0))
     site = site_with(VehicleProfile("A"), half, complete("C", 50.0, pad(90.0)))
-    where = "where they matter the worst is assumed, or the order refused"
+    effect = "the worst case is assumed, or the order refused"
     keys = "endurance_min, go_home_height_m, failsafe, pad"
     assert warnings_of(site) == [
-        f"vehicle A: site.toml does not tell {keys}; {where}",
-        f"vehicle Bea: site.toml does not tell go_home_height_m, failsafe; {where}",
+        f"vehicle A: site.toml does not set {keys}; {effect}",
+        f"vehicle Bea: site.toml does not set go_home_height_m, failsafe; {effect}",
     ]
 
 
-def test_ways_home_too_close_or_too_low_are_named() -> None:
+def test_go_home_heights_too_close_or_too_low_are_named() -> None:
     high = Zone("mast", ZoneKind.HEIGHT, Region(np.array(TREES)), 317.0, None, HeightDatum.WGS84)
     layers = replace(load_site(demo_site_folder()).layers, zones=(high,), landing_pads=())
     vehicles = [complete("A", 41.0, pad(0.0)), complete("B", 46.5, pad(40.0))]
     assert warnings_of(site_with(*vehicles, layers=layers)) == [
-        "vehicles A and B go home at 41 m and 46.5 m, closer than "
+        "vehicles A and B have go-home heights of 41 m and 46.5 m, closer than "
         "limits.min_separation_vertical_m, 6 m",
-        "vehicle A goes home at 41 m, lower than zone mast asks for",
+        "vehicle A has a go-home height of 41 m, below the floor of zone mast",
     ]
     trees = site_with(complete("A", 34.0, pad(150.0)))
-    assert warnings_of(trees) == ["vehicle A goes home at 34 m, lower than zone tree line asks for"]
+    assert warnings_of(trees) == [
+        "vehicle A has a go-home height of 34 m, below the floor of zone tree line"
+    ]
 
 
 def test_pads_too_close_or_off_the_ground_are_named() -> None:
     layers = replace(load_site(demo_site_folder()).layers, landing_pads=())
     vehicles = [complete("A", 40.0, pad(0.0, -6.0)), complete("B", 50.0, pad(12.0, 7.0))]
     close = (
-        "pads A and B are 12.0 m apart, closer than limits.min_separation_horizontal_m, 15 m: one "
-        "lands after the other"
+        "pads A and B are 12.0 m apart, closer than limits.min_separation_horizontal_m, 15 m: "
+        "vehicles land one at a time"
     )
     for elevation, ground in (
         (load_site(demo_site_folder()).elevation, "the model's ground"),
@@ -135,25 +135,28 @@ def test_pads_too_close_or_off_the_ground_are_named() -> None:
         ]
 
 
-def test_a_model_with_gaps_says_how_much_of_the_boundary_it_leaves_out() -> None:
+def test_a_model_with_gaps_gives_the_share_of_the_boundary_without_ground() -> None:
     model = load_site(demo_site_folder()).elevation
     assert model is not None
     heights_m = model.ellipsoid_height_m.copy()
     heights_m[:26] = np.nan
-    (told,) = warnings_of(site_with(elevation=replace(model, ellipsoid_height_m=heights_m)))
-    share = float(told.partition("under ")[2].partition(" %")[0])
+    (warning,) = warnings_of(site_with(elevation=replace(model, ellipsoid_height_m=heights_m)))
+    share = float(warning.partition("under ")[2].partition(" %")[0])
     assert share == pytest.approx(50.0, abs=5.0)
-    assert told.endswith("of the boundary: flights over it are refused")
+    assert warning.endswith("of the boundary: flights over it are refused")
 
 
-def test_the_report_says_when_the_first_frame_stands_for_the_marked_one() -> None:
+def test_the_report_names_a_missing_marked_frame() -> None:
     site = load_site(demo_site_folder())
     assert site.imager is not None
-    guessed = Site(site.name, site.frame, site.ground_grid, replace(site.imager, marked_frame=None))
-    assert any("first frame received in flight stands for it" in x for x in site_report(guessed))
+    without = Site(site.name, site.frame, site.ground_grid, replace(site.imager, marked_frame=None))
+    assert any(
+        "[imager.marked_frame] is missing: the first frame received" in x
+        for x in site_report(without)
+    )
 
 
-def test_the_report_of_no_site_says_what_is_missing() -> None:
+def test_the_report_of_no_site_names_what_is_off() -> None:
     assert site_report(default_site()) == (
-        "no site: nothing is known of any vehicle, no frame is laid on the ground",
+        "No site loaded: vehicle profiles and ground image are off",
     )

@@ -8,7 +8,7 @@ from tests.site.test_layers import HOLE, collection, polygon, refusal, ring
 from tests.site.test_layers import load as load_layer
 
 from recon.site import SiteError
-from recon.site.warnings import site_advice
+from recon.site.warnings import site_warnings
 
 PLACE = "/layer.geojson: zone 'yard': "
 RIDGE = [(60, -20), (100, -20), (100, 20), (60, 20)]
@@ -26,15 +26,15 @@ def zone(outline: list[tuple[float, float]] = HOLE, **heights: object) -> str:
             "keep_out",
             {"ceiling_m": 30, "datum": "wgs84"},
             "expected ceiling_m above the ground beneath, which is up to 275 m above the WGS84 "
-            "ellipsoid, got 30 m from the same; set datum to 'ground' if it counts from there, or "
-            "a greater height",
+            "ellipsoid, got 30 m from the same; set datum to 'ground' if the height is above "
+            "ground, or set a greater height",
         ),
         ("keep_out", {"ceiling_m": 275, "datum": "wgs84"}, "got 275 m from the same"),
         (
             "keep_out",
             {"ceiling_m": -5, "datum": "ground"},
-            "expected ceiling_m to be more than 0 m above ground, got -5 m; set a greater height, "
-            "or leave it out",
+            "expected ceiling_m to be more than 0 m above ground, got -5 m; set a greater height "
+            "or remove it",
         ),
         ("keep_out", {"ceiling_m": 0, "datum": "ground"}, "more than 0 m above ground, got 0 m"),
         ("height_zones", {"ceiling_m": 60, "datum": "wgs84"}, "expected ceiling_m above the gr"),
@@ -92,15 +92,15 @@ def test_where_the_model_knows_no_ground_the_sites_counts(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    ("floor_m", "datum", "is_said"),
+    ("floor_m", "datum", "is_warned"),
     [(121, "ground", True), (119, "ground", False), (396, "wgs84", True), (394, "wgs84", False)],
 )
-def test_a_keep_out_zone_that_begins_above_every_flight_is_worth_a_look(
-    tmp_path: Path, floor_m: float, datum: str, is_said: bool
+def test_a_keep_out_zone_that_begins_above_every_flight_gets_a_warning(
+    tmp_path: Path, floor_m: float, datum: str, is_warned: bool
 ) -> None:
     site = load_layer(tmp_path, "keep_out", zone(floor_m=floor_m, datum=datum))
-    said = [line for line in site_advice(site) if "yard" in line]
-    assert said == is_said * [
-        f"keep-out zone yard begins at {floor_m:g} m ({datum}), above every height that flights "
-        "may have there; is its datum right?"
+    warnings = [line for line in site_warnings(site) if "yard" in line]
+    assert warnings == is_warned * [
+        f"keep-out zone yard begins at {floor_m:g} m ({datum}), above every allowed height there; "
+        "is its datum right?"
     ]

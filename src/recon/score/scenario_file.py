@@ -30,7 +30,7 @@ from recon.sim.world import (
     WindSettings,
     WindShift,
 )
-from recon.site.validation_errors import complaint
+from recon.site.validation_errors import validation_error
 
 LARGEST_BYTES = 1_000_000
 AT_LINE = re.compile(r"at line (\d+)")
@@ -54,7 +54,7 @@ def load_scenario(path: Path) -> Scenario:
     try:
         file = msgspec.convert(data, ScenarioFile, strict=True)
     except msgspec.ValidationError as problem:
-        raise complain.about(complaint(problem, data, ScenarioFile, "")) from problem
+        raise complain.about(validation_error(problem, data, ScenarioFile, "")) from problem
     return _scenario(path, file, complain)
 
 

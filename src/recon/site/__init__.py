@@ -1,8 +1,7 @@
-"""A site's folder: the place, the eye above it, the vehicles known there."""
+"""A site's folder: origin, imaging drone, vehicles, layers, elevation; read and checked."""
 
-from recon.site.demo_folder import demo_site_folder
 from recon.site.errors import SiteError
-from recon.site.load import load_site
+from recon.site.load import demo_site_folder, load_site
 from recon.site.report import pose_report, site_report
 from recon.site.site import Imager, Layers, Site, default_site
 

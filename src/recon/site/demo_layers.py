@@ -1,12 +1,17 @@
-"""The demonstration's GeoJSON layers: a boundary, a farmyard to keep out of, trees to stay above,
-pads, two fields to survey.
+"""The demonstration's GeoJSON layers and elevation model.
 
-The outlines are in metres east and north of the origin, here only; the files hold degrees.
+Layers: a boundary, a farmyard to keep out of, trees to stay above, pads, two fields to survey. The
+outlines are in metres east and north of the origin here; the files hold degrees. The ground is
+flat, as in the simulator: aircraft stand and images are rendered on one plane.
 """
 
 import json
 from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
+from rasterio.io import MemoryFile
+from rasterio.transform import Affine
 
 from recon.geo import geo_from_enu
 from recon.model.geo import LocalFrame
@@ -91,3 +96,30 @@ def _positions(places: Outline, frame: LocalFrame) -> list[list[float]]:
         [round(float(longitude), DECIMALS), round(float(latitude), DECIMALS)]
         for latitude, longitude in zip(latitudes, longitudes, strict=True)
     ]
+
+
+ELEVATION_FILE = "ground.tif"
+PIXEL_DEG = 0.0005
+"""56 m north, 41 m east."""
+PIXELS = 64
+
+
+def demo_elevation_bytes(frame: LocalFrame) -> bytes:
+    """Return a GeoTIFF in degrees of WGS84 around the origin, all at its height."""
+    origin = frame.origin
+    half_deg = PIXELS / 2 * PIXEL_DEG
+    west_deg, north_deg = origin.longitude_deg - half_deg, origin.latitude_deg + half_deg
+    heights_m = np.full((1, PIXELS, PIXELS), origin.ellipsoid_height_m, np.float32)
+    with MemoryFile() as memory:
+        with memory.open(
+            driver="GTiff",
+            count=1,
+            height=PIXELS,
+            width=PIXELS,
+            dtype="float32",
+            crs="EPSG:4326",
+            transform=Affine(PIXEL_DEG, 0.0, west_deg, 0.0, -PIXEL_DEG, north_deg),
+            compress="deflate",
+        ) as dataset:
+            dataset.write(heights_m)
+        return bytes(memory.read())

@@ -1,7 +1,7 @@
-"""The demonstration's site: made up, so that a first run needs no data.
+"""The demonstration's site: synthetic, so that a first run needs no data.
 
-The lens is an equisolid-angle fisheye of 170 degrees; the eye hovers 120 m over farmland and looks
-straight down, the frame's top towards its yaw. Running this module writes the files in `demo/`:
+The lens is an equisolid-angle fisheye of 170 degrees; the imaging drone hovers 120 m over farmland
+and looks straight down, the top of the frame at its yaw. Running this module writes `demo/`:
 
     python -m recon.site.demo_site
 """
@@ -18,14 +18,13 @@ from recon.camera import (
 )
 from recon.geo import geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.demo_elevation import ELEVATION_FILE, demo_elevation_bytes
-from recon.site.demo_folder import demo_site_folder
-from recon.site.demo_layers import demo_layer_files
+from recon.site.demo_layers import ELEVATION_FILE, demo_elevation_bytes, demo_layer_files
+from recon.site.load import demo_site_folder
 
 ORIGIN = GeoPoint(41.9012, -93.6034, 275.0)
 IMAGER_SERIAL = "SIM-IMAGER"
 SERIALS = ("SIM-1", "SIM-2", "SIM-3", IMAGER_SERIAL, "SIM-4", "SIM-5", "SIM-6", "SIM-7")
-"""A demonstration of four vehicles, the eye among them, has the first four numbers."""
+"""A demonstration of four vehicles, with the imaging drone, has the first four."""
 IMAGER_HEIGHT_M = 120.0
 IMAGER_YAW_DEG = 20.0
 
@@ -47,10 +46,10 @@ POINTS_EAST_NORTH_M = {
     "G": (-190.0, -70.0),
     "H": (40.0, 30.0),
 }
-LOWEST_WAY_HOME_M, WAYS_HOME_APART_M = 40, 8
-"""Above the trees' zone; the eye, which hovers at 120 m, comes home from there."""
+LOWEST_GO_HOME_HEIGHT_M, GO_HOME_HEIGHT_STEP_M = 40, 8
+"""Above the trees' zone. The imaging drone returns to home at its 120 m."""
 ENDURANCE_MIN = 25
-"""What a simulated battery lasts, unless the simulator is told another time."""
+"""The simulated battery's default."""
 
 
 def demo_site_files() -> dict[str, str]:
@@ -66,7 +65,7 @@ def demo_site_files() -> dict[str, str]:
 
 
 def demo_camera() -> OmnidirectionalCamera:
-    """Return the made-up lens: r = 2 f sin(angle / 2), fitted by the omnidirectional model."""
+    """Return the synthetic lens: r = 2 f sin(angle / 2), fitted by the omnidirectional model."""
     focal_px = RADIUS_AT_HALF_FIELD_PX / (2.0 * np.sin(HALF_FIELD_RAD / 2.0))
     angles = np.linspace(0.0, HALF_FIELD_RAD + 0.05, 400)
     sine = np.sin(angles / 2.0)
@@ -95,7 +94,7 @@ def demo_camera() -> OmnidirectionalCamera:
 
 
 def demo_marked_telemetry() -> TelemetryReference:
-    """Return the eye's telemetry when the marked frame was taken: level, over the origin."""
+    """Return the imaging drone's telemetry at the marked frame: level, over the origin."""
     return TelemetryReference(
         ORIGIN.latitude_deg, ORIGIN.longitude_deg, IMAGER_HEIGHT_M, IMAGER_YAW_DEG
     )
@@ -124,7 +123,7 @@ def _control_points(camera: OmnidirectionalCamera) -> tuple[ControlPoint, ...]:
 
 
 def _site_toml() -> str:
-    header = f"""# The demonstration's site: a made-up field with a made-up lens above it.
+    header = f"""# The demonstration's site: a synthetic field and lens.
 # Written by `python -m recon.site.demo_site`; docs/how-to/prepare-a-site.md explains the keys.
 name = "demo field"
 
@@ -134,7 +133,7 @@ longitude_deg = {ORIGIN.longitude_deg}
 ground_altitude_m = {ORIGIN.ellipsoid_height_m}
 
 [limits]
-max_height_above_ground_m = 130.0  # the eye hovers at {IMAGER_HEIGHT_M:g} m
+max_height_above_ground_m = 130.0  # the imaging drone hovers at {IMAGER_HEIGHT_M:g} m
 max_distance_from_home_m = 500.0
 
 [imager]
@@ -179,8 +178,8 @@ def _vehicle_toml(serial: str) -> str:
     is_imager = serial == IMAGER_SERIAL
     name = "Imager" if is_imager else f"Drone {serial[-1]}"
     number = 0 if is_imager else int(serial[-1])
-    go_home_height_m = LOWEST_WAY_HOME_M + number * WAYS_HOME_APART_M
-    # The eye sees the whole field: of two in conflict it is held last.
+    go_home_height_m = LOWEST_GO_HOME_HEIGHT_M + number * GO_HOME_HEIGHT_STEP_M
+    # The imaging drone sees the whole field: in a conflict the other vehicle is held first.
     more = "priority = 10" if is_imager else "camera_interval_s = 2.0"
     return f"""
 [[vehicles]]

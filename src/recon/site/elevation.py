@@ -35,7 +35,7 @@ metres, or another place; geoid and ellipsoid are up to 100 m apart, by 30 m in 
 
 
 class ElevationTable(Struct, frozen=True, forbid_unknown_fields=True):
-    """[elevation]: `datum` says what the file's heights count from; it is never guessed."""
+    """[elevation]: `datum` is the zero of the file's heights; it is never guessed."""
 
     file: FileName
     datum: Literal["wgs84", "geoid"]
@@ -64,7 +64,7 @@ def ground_heights_m(model: ElevationModel, east_north_m: FloatArray) -> FloatAr
 
 
 def _raised_m(place: str, table: ElevationTable) -> float:
-    """Return what is to be added to the file's heights to count them from the ellipsoid."""
+    """Return the offset from the file's heights to ellipsoidal ones."""
     if (table.datum == "geoid") != (table.geoid_height_m is not None):
         got = "none" if table.geoid_height_m is None else "one"
         raise SiteError(
@@ -75,7 +75,7 @@ def _raised_m(place: str, table: ElevationTable) -> float:
 
 
 def _refuse_other_datum(file: HeightFile, table: ElevationTable) -> None:
-    """A file that says what its heights count from must say what site.toml says."""
+    """Raise `SiteError` when the file declares another vertical datum than site.toml."""
     vertical = next((crs for crs in file.crs.sub_crs_list if crs.is_vertical), None)
     if vertical is None and len(file.crs.axis_info) < 3:
         return
@@ -83,8 +83,8 @@ def _refuse_other_datum(file: HeightFile, table: ElevationTable) -> None:
     is_ellipsoidal = vertical is None or "ellipsoid" in name.lower()
     if is_ellipsoidal != (table.datum == "wgs84"):
         raise SiteError(
-            f"{file.place}: expected heights as elevation.datum = '{table.datum}' in site.toml "
-            f"says, got a file that says {name!a}"
+            f"{file.place}: expected heights with elevation.datum = '{table.datum}' as in "
+            f"site.toml, got a file with {name!a}"
         )
     if vertical is not None and vertical.axis_info[0].unit_conversion_factor != 1.0:
         unit = vertical.axis_info[0].unit_name
@@ -124,7 +124,7 @@ def _grid(frame: LocalFrame, area_m: tuple[FloatArray, FloatArray], pixel_m: flo
     wanted_m = min(max(pixel_m, FINEST_CELL_M), COARSEST_CELL_M)
     affordable_m = float(np.sqrt(width_m * height_m / MOST_CELLS))
     cell_m = max(wanted_m, affordable_m)
-    # One more on each side: between the middles alone the ground is known.
+    # One more on each side: heights are known only between the centres of cells.
     rows, cols = (int(np.ceil(side_m / cell_m)) + 2 for side_m in (height_m, width_m))
     west_m, north_m = float(south_west[0]) - cell_m, float(north_east[1]) + cell_m
     return GroundGrid(frame, west_m, north_m, cell_m, rows, cols)
@@ -147,9 +147,9 @@ def _resampled(file: HeightFile, grid: GroundGrid, pixel_m: float) -> FloatArray
 def _reach(cell_m: float, pixel_m: float) -> int:
     """Return from how many pixels around a cell's middle gets the highest ground.
 
-    Where cells are wider than pixels no peak may be lost: what lies between the middles is then
-    never higher than all of them. It lies a cell away at most, in a grid that may be turned
-    against the file's; each end is interpolated between pixels.
+    Where cells are wider than pixels, no peak between cell centres may be lost. A peak is at most
+    a cell away, in a grid that may be rotated against the file's; both ends are interpolated
+    between pixels.
     """
     if cell_m <= 1.01 * pixel_m:
         return 0
@@ -181,7 +181,7 @@ def _window(
 
 
 def _highest_around(heights_m: FloatArray, reach: int) -> FloatArray:
-    """Return the highest height within `reach` pixels; what is unknown stays so."""
+    """Return the highest height within `reach` pixels; unknown heights stay unknown."""
     is_unknown = np.isnan(heights_m)
     filled = np.where(is_unknown, -np.inf, heights_m)
     highest = ndimage.maximum_filter(filled, size=2 * reach + 1, mode="nearest")
@@ -198,16 +198,16 @@ def _between(heights_m: FloatArray, pixels: FloatArray) -> FloatArray:
 
 
 def _refuse_other_ground(place: str, model: ElevationModel) -> None:
-    """The model and origin.ground_altitude_m must tell of the same ground."""
-    told_m = model.grid.frame.origin.ellipsoid_height_m
+    """Raise `SiteError` when the model differs from origin.ground_altitude_m at the origin."""
+    stated_m = model.grid.frame.origin.ellipsoid_height_m
     found_m = float(ground_heights_m(model, np.zeros((1, 2)))[0])
     if np.isnan(found_m):
         raise SiteError(f"{place}: expected a height at the site's origin, got none")
-    if abs(found_m - told_m) > LARGEST_GAP_M:
+    if abs(found_m - stated_m) > LARGEST_GAP_M:
         raise SiteError(
             f"{place}: expected ground within {LARGEST_GAP_M:g} m of origin.ground_altitude_m in "
-            f"site.toml, {told_m:g} m above the ellipsoid, got {found_m:.1f} m; are its heights in "
-            "metres, and is elevation.datum right?"
+            f"site.toml, {stated_m:g} m above the ellipsoid, got {found_m:.1f} m; are its "
+            "heights in metres, and is elevation.datum right?"
         )
 
 

@@ -20,7 +20,7 @@ from recon.model.geo import LatLon, LocalFrame
 from recon.model.zone import Region
 from recon.site.errors import SiteError
 from recon.site.reading import convert, read_bounded, refuse_non_finite
-from recon.site.validation_errors import said_value
+from recon.site.validation_errors import shown_value
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,7 +43,7 @@ ACCEPTED_CRS = frozenset(
 
 Position = Annotated[
     list[float],
-    Meta(min_length=2, max_length=3, description="a position: longitude, latitude, maybe a height"),
+    Meta(min_length=2, max_length=3, description="a position: longitude, latitude[, height]"),
 ]
 Ring = Annotated[list[Position], Meta(min_length=4, description="a ring of at least 4 positions")]
 Rings = Annotated[list[Ring], Meta(min_length=1, description="a polygon's list of rings")]
@@ -52,7 +52,7 @@ Polygons = Annotated[list[Rings], Meta(min_length=1, description="a list of poly
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Feature:
-    """One feature: `place` names it in complaints; `geometry` is not looked at yet."""
+    """One feature: `place` names it in errors; `geometry` is not checked yet."""
 
     place: str
     number: int
@@ -65,7 +65,7 @@ def read_features(path: Path) -> tuple[Feature, ...]:
     collection = _object(str(path), _read_json(path), "FeatureCollection")
     features = collection.get("features")
     if not isinstance(features, list):
-        raise SiteError(f"{path}: expected a list of features, got {said_value(features)}")
+        raise SiteError(f"{path}: expected a list of features, got {shown_value(features)}")
     if len(features) > MOST_FEATURES:
         raise SiteError(f"{path}: expected at most {MOST_FEATURES} features, got {len(features)}")
     return tuple(_feature(path, number, data) for number, data in enumerate(features, start=1))
@@ -81,7 +81,7 @@ def regions_of(feature: Feature, frame: LocalFrame) -> tuple[Region, ...]:
         polygons = convert(feature.place, coordinates, Polygons, "coordinates")
     else:
         raise SiteError(
-            f"{feature.place}: expected a Polygon or MultiPolygon, got {said_value(kind)}"
+            f"{feature.place}: expected a Polygon or MultiPolygon, got {shown_value(kind)}"
         )
     corners = sum(len(ring) for rings in polygons for ring in rings)
     if corners > MOST_CORNERS:
@@ -93,7 +93,7 @@ def point_of(feature: Feature, frame: LocalFrame) -> LatLon:
     """Return where a Point is; its height, if it has one, is not read. Raises `SiteError`."""
     kind = feature.geometry.get("type")
     if kind != "Point":
-        raise SiteError(f"{feature.place}: expected a Point, got {said_value(kind)}")
+        raise SiteError(f"{feature.place}: expected a Point, got {shown_value(kind)}")
     position = convert(feature.place, feature.geometry.get("coordinates"), Position, "coordinates")
     _local_m(feature.place, [position], frame)
     return LatLon(latitude_deg=position[1], longitude_deg=position[0])
@@ -104,25 +104,25 @@ def _read_json(path: Path) -> object:
     try:
         return msgspec.json.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError) as problem:
-        raise SiteError(_no_json(path, data)) from problem
+        raise SiteError(_not_json(path, data)) from problem
     except RecursionError as problem:
         raise SiteError(f"{path}: expected a GeoJSON file, got one nested too deeply") from problem
 
 
-def _no_json(path: Path, data: bytes) -> str:
-    """Return what is wrong with a file that is no JSON; numbers that JSON has not are named."""
+def _not_json(path: Path, data: bytes) -> str:
+    """Return the error for a file that is not JSON; NaN and infinity are named."""
     expected = f"{path}: expected a GeoJSON file, got"
     try:
         _refuse_non_finite_features(path, json.loads(data.decode("utf-8")))
     except SiteError as problem:
         return str(problem)
     except json.JSONDecodeError as problem:
-        return f"{expected} no JSON at line {problem.lineno}, column {problem.colno}"
+        return f"{expected} invalid JSON at line {problem.lineno}, column {problem.colno}"
     except UnicodeDecodeError:
-        return f"{expected} bytes that are no UTF-8 text"
+        return f"{expected} bytes that are not UTF-8 text"
     except (ValueError, RecursionError):
-        pass  # A number of too many digits, or lists in lists without end.
-    return f"{expected} what cannot be read as JSON"
+        pass  # A number with too many digits, or lists nested too deeply.
+    return f"{expected} unreadable JSON"
 
 
 def _refuse_non_finite_features(path: Path, read: object) -> None:
@@ -136,7 +136,7 @@ def _object(place: str, data: object, kind: str | None) -> dict[str, Any]:
     """Return a JSON object of a GeoJSON type, any type for None, in an accepted CRS."""
     if not isinstance(data, dict) or (kind is not None and data.get("type") != kind):
         got = data.get("type") if isinstance(data, dict) else data
-        raise SiteError(f"{place}: expected a GeoJSON {kind or 'geometry'}, got {said_value(got)}")
+        raise SiteError(f"{place}: expected a GeoJSON {kind or 'geometry'}, got {shown_value(got)}")
     if "crs" in data:
         crs = data["crs"]
         properties = crs.get("properties") if isinstance(crs, dict) else None
@@ -144,7 +144,7 @@ def _object(place: str, data: object, kind: str | None) -> dict[str, Any]:
         if not isinstance(name, str) or name not in ACCEPTED_CRS:
             raise SiteError(
                 f"{place}: expected coordinates in WGS84 (CRS84 or EPSG:4326), got the CRS "
-                f"{said_value(name)}; export the layer as EPSG:4326"
+                f"{shown_value(name)}; export the layer as EPSG:4326"
             )
     return data
 
@@ -156,17 +156,19 @@ def _feature(path: Path, number: int, data: object) -> Feature:
     if properties is None:
         properties = {}
     if not isinstance(properties, dict):
-        raise SiteError(f"{place}: expected properties, got {said_value(properties)}")
+        raise SiteError(f"{place}: expected properties, got {shown_value(properties)}")
     # An attribute left empty in QGIS is written as null.
     properties = {key: value for key, value in properties.items() if value is not None}
     return Feature(place, number, properties, _object(place, feature.get("geometry"), None))
 
 
 def _feature_place(path: Path, number: int, feature: object) -> str:
-    """Return what names a feature in complaints: file, number and, if it has one, its name."""
+    """Return a feature's place in errors: file, number and its name, if any."""
     properties = feature.get("properties") if isinstance(feature, dict) else None
     name = properties.get("name") if isinstance(properties, dict) else None
-    return f"{path}: feature {number}" + (f" ({said_value(name)})" if isinstance(name, str) else "")
+    return f"{path}: feature {number}" + (
+        f" ({shown_value(name)})" if isinstance(name, str) else ""
+    )
 
 
 def _region(place: str, rings: list[list[list[float]]], frame: LocalFrame) -> Region:
@@ -188,7 +190,7 @@ def _ring(place: str, positions: list[list[float]], frame: LocalFrame) -> FloatA
 
 
 def _local_m(place: str, positions: list[list[float]], frame: LocalFrame) -> FloatArray:
-    """Return east-north metres (N, 2) of positions as the file has them, none of them far away."""
+    """Return east-north metres (N, 2) of a file's positions; `SiteError` for a far one."""
     degrees = np.array([position[:2] for position in positions])
     longitude, latitude = degrees[:, 0], degrees[:, 1]
     enu = enu_from_geo(frame, latitude, longitude, frame.origin.ellipsoid_height_m)
@@ -205,7 +207,7 @@ def _is_far(
     latitude: FloatArray, longitude: FloatArray, enu_m: FloatArray
 ) -> npt.NDArray[np.bool_]:
     is_off_globe = (np.abs(latitude) > 90.0) | (np.abs(longitude) > 180.0)
-    # Through the earth: east and north alone are small again at its other side.
+    # In three dimensions: east and north are small again on the other side of the earth.
     far: npt.NDArray[np.bool_] = is_off_globe | (np.linalg.norm(enu_m, axis=1) > FARTHEST_M)
     return far
 
@@ -213,11 +215,11 @@ def _is_far(
 def _far_away(place: str, degrees: FloatArray, enu_m: FloatArray, looks_swapped: bool) -> str:
     got = f"longitude {degrees[0]:.6g}, latitude {degrees[1]:.6g}"
     if looks_swapped:
-        advice = "latitude and longitude look swapped: GeoJSON writes the longitude first"
+        hint = "latitude and longitude look swapped: GeoJSON writes the longitude first"
     else:
-        advice = "is the origin in site.toml right?"
+        hint = "is the origin in site.toml right?"
     distance_km = float(np.linalg.norm(enu_m)) / 1_000.0
     return (
         f"{place}: expected corners within {FARTHEST_M / 1_000.0:g} km of the site's origin, got "
-        f"{got}, {distance_km:.0f} km away; {advice}"
+        f"{got}, {distance_km:.0f} km away; {hint}"
     )

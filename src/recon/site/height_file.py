@@ -1,4 +1,4 @@
-"""A GeoTIFF with heights, opened with care: bounded, georeferenced, in metres, one band.
+"""A GeoTIFF with heights, checked: bounded size, georeferenced, metres, one band.
 
 The file is read whole into memory first and opened by the GeoTIFF driver alone, so that it can name
 no other file or address; nothing is asked of the network.
@@ -49,7 +49,7 @@ GDAL_OPTIONS = {"GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR", "CPL_DEBUG": "OFF"}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeightFile:
-    """An open file; `crs` is its whole reference system, `place` leads complaints."""
+    """An open file; `crs` is its whole reference system, `place` leads errors."""
 
     place: str
     dataset: DatasetReader
@@ -72,7 +72,7 @@ class HeightFile:
         return np.where(np.isfinite(pixels), pixels, np.nan)
 
     def heights_m(self, first: tuple[int, int], size: tuple[int, int]) -> FloatArray:
-        """Return a window of the file's heights, NaN where it tells none. Raises `SiteError`."""
+        """Return a window of the file's heights, NaN where it has none. Raises `SiteError`."""
         if size[0] * size[1] > MOST_PIXELS:
             raise SiteError(
                 f"{self.place}: expected at most {MOST_PIXELS} pixels around the site, got "
@@ -102,7 +102,7 @@ def opened(path: Path) -> Iterator[HeightFile]:
     set_network_enabled(False)
     place = str(path)
     with (
-        _without_chatter(),
+        _without_gdal_logs(),
         rasterio.Env(**GDAL_OPTIONS),
         MemoryFile(data, filename="heights.tif") as memory,
         _dataset(place, memory) as dataset,
@@ -112,8 +112,8 @@ def opened(path: Path) -> Iterator[HeightFile]:
 
 
 @contextmanager
-def _without_chatter() -> Iterator[None]:
-    """GDAL's notes on odd tags are not for the operator: what matters becomes a `SiteError`."""
+def _without_gdal_logs() -> Iterator[None]:
+    """Silence GDAL's log of odd tags; what matters becomes a `SiteError`."""
     log = logging.getLogger("rasterio._env")
     was_disabled, log.disabled = log.disabled, True
     try:
@@ -176,7 +176,7 @@ def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
     except (ProjError, RasterioError) as problem:
         raise SiteError(
             f"{place}: expected a coordinate reference system that PROJ relates to WGS84, got: "
-            f"{said(problem)}"
+            f"{shown_problem(problem)}"
         ) from problem
     base = flat.source_crs if flat.is_bound and flat.source_crs is not None else flat
     if not (base.is_geographic or base.is_projected):
@@ -200,8 +200,8 @@ def _refuse_no_heights(place: str, heights_m: FloatArray) -> None:
         )
 
 
-def said(problem: BaseException) -> str:
-    """Return a library's complaint in printable characters, on one line, not too long."""
+def shown_problem(problem: BaseException) -> str:
+    """Return a library's error in printable characters, on one line, shortened."""
     text = ascii(" ".join(str(problem).split()))[1:-1]
     text = _MEMORY.sub("", text)
     return text if len(text) <= 200 else text[:197] + "..."

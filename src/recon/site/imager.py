@@ -1,4 +1,4 @@
-"""The eye from its table in site.toml: files read, pose solved, and both checked for sense."""
+"""The imaging drone from its table in site.toml: files read, pose solved, both checked."""
 
 from pathlib import Path
 
@@ -29,7 +29,7 @@ LARGEST_MARKED_GAP_M = 100.0
 
 
 def imager_from_table(site_file: Path, table: ImagerTable, frame: LocalFrame) -> Imager:
-    """Return the eye with its files read and its pose solved.
+    """Return the imaging drone with its files read and its pose solved.
 
     Files lie in the site file's folder. Raises `SiteError` naming file, line or key.
     """
@@ -72,7 +72,7 @@ def _circle(table: ImagerTable) -> ImageCircle | None:
 
 
 def _refuse_other_marked_frame(path: Path, imager: Imager, frame: LocalFrame) -> None:
-    """The telemetry must be of the place where the control points put the camera."""
+    """Raise `SiteError` for telemetry far from the camera position that the points give."""
     marked = imager.marked_frame
     if marked is None:
         return

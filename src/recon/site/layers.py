@@ -1,4 +1,4 @@
-"""A site's GeoJSON layers: what each may hold, and what it becomes."""
+"""A site's GeoJSON layers: their features and what they are read as."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -16,8 +16,8 @@ from recon.site.schema import Altitude, LayersTable, Serial, Text
 from recon.site.site import Layers
 
 MOST_PADS = 64
-PEOPLES_OWN = frozenset({"fid", "id", "notes"})
-"""Attributes that QGIS numbers features by or people keep for themselves; no other is ignored."""
+UNUSED_PROPERTIES = frozenset({"fid", "id", "notes"})
+"""Attributes of QGIS and users' notes; no other is ignored."""
 
 
 class _Named(Struct, frozen=True, forbid_unknown_fields=True):
@@ -141,5 +141,5 @@ def _survey(path: Path, frame: LocalFrame) -> dict[str, Region]:
 
 
 def _properties(feature: Feature, kind: type[Any]) -> Any:
-    ours = {key: value for key, value in feature.properties.items() if key not in PEOPLES_OWN}
+    ours = {key: value for key, value in feature.properties.items() if key not in UNUSED_PROPERTIES}
     return convert(feature.place, ours, kind, "properties")

@@ -9,24 +9,28 @@ from typing import Any
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
-from recon.site.agreement import refuse_high_ways_home, refuse_misplaced_pads, refuse_sunken_pads
+from recon.site.consistency import (
+    refuse_high_go_home_heights,
+    refuse_misplaced_pads,
+    refuse_sunken_pads,
+    refuse_sunken_zones,
+)
 from recon.site.elevation import ElevationTable, read_elevation
 from recon.site.errors import SiteError
 from recon.site.imager import imager_from_table
 from recon.site.layers import read_layers
-from recon.site.limits import LimitsTable, limits_from_table
-from recon.site.profiles import profile_from_table
+from recon.site.profiles import limits_from_table, profile_from_table
 from recon.site.reading import convert, read_bounded, refuse_non_finite
 from recon.site.schema import (
     GroundImageTable,
     ImagerTable,
     LayersTable,
+    LimitsTable,
     OriginTable,
     SiteTable,
     VehicleTable,
 )
 from recon.site.site import Layers, Site
-from recon.site.zone_heights import refuse_sunken_zones
 
 SITE_FILE = "site.toml"
 LARGEST_FILE_BYTES = 256 * 1024
@@ -37,8 +41,9 @@ MOST_VEHICLES = 64
 def load_site(folder: Path) -> Site:
     """Return the site of a folder with a site.toml.
 
-    Files it names lie in the folder: a name that leads out of it (absolute, by .. or by a symbolic
-    link) is refused, so that a folder got from others reads nothing else. Raises `SiteError`.
+    The files it names must lie in the folder: a name that leads out of it (absolute, by .. or by a
+    symbolic link) is refused, so that a folder from elsewhere reads nothing else. Raises
+    `SiteError`.
     """
     path = folder / SITE_FILE
     data = _read_toml(path)
@@ -61,7 +66,7 @@ def load_site(folder: Path) -> Site:
         convert(path, table.limits, LimitsTable, "limits"), f"{path}: limits"
     )
     site = Site(table.name, frame, grid, imager, profiles, layers, limits)
-    refuse_high_ways_home(str(path), profiles, limits)
+    refuse_high_go_home_heights(str(path), profiles, limits)
     refuse_misplaced_pads(path, site)
     if table.elevation is not None:
         elevation = convert(path, table.elevation, ElevationTable, "elevation")
@@ -73,16 +78,16 @@ def load_site(folder: Path) -> Site:
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
-    data = read_bounded(
-        path,
-        LARGEST_FILE_BYTES,
-        "a site's file",
-        f"; give the folder that holds {SITE_FILE}",
-    )
+    try:
+        data = read_bounded(path, LARGEST_FILE_BYTES, "a site file")
+    except SiteError as problem:
+        if isinstance(problem.__cause__, FileNotFoundError | NotADirectoryError):
+            raise SiteError(f"{path}: Folder or {SITE_FILE} not found") from problem
+        raise
     try:
         return tomllib.loads(data.decode("utf-8"))
     except ValueError as problem:
-        # No TOML, no UTF-8, or a number of more digits than Python reads.
+        # Not TOML, not UTF-8, or a number with more digits than Python reads.
         raise SiteError(f"{path}: expected a TOML file, got: {problem}") from problem
     except RecursionError as problem:
         raise SiteError(f"{path}: expected a TOML file, got one nested too deeply") from problem
@@ -128,7 +133,7 @@ def _profiles(path: Path, tables: list[dict[str, Any]]) -> dict[str, VehicleProf
 
 
 def _refuse_shared_names(path: Path, profiles: Mapping[str, VehicleProfile]) -> None:
-    """Who reads or types a name must mean one vehicle: no two share one, nor a serial."""
+    """Raise `SiteError` for a name that stands for two vehicles."""
     names = set(profiles)
     for number, profile in enumerate(profiles.values(), start=1):
         name = profile.display_name
@@ -141,7 +146,7 @@ def _refuse_shared_names(path: Path, profiles: Mapping[str, VehicleProfile]) -> 
 
 
 def _give_pads(path: Path, layers: Layers, profiles: dict[str, VehicleProfile]) -> None:
-    """Put the layer's pads into the profiles of the vehicles they belong to."""
+    """Add the layer's pads to the profiles of their vehicles."""
     given: set[str] = set()
     for pad in layers.landing_pads:
         if pad.serial is None:
@@ -149,11 +154,14 @@ def _give_pads(path: Path, layers: Layers, profiles: dict[str, VehicleProfile]) 
         place = f"{path}: layers.landing_pads: pad {pad.name!a}"
         profile = profiles.get(pad.serial)
         if profile is None:
-            raise SiteError(f"{place}: expected a vehicle's serial, got {pad.serial!a} of none")
+            raise SiteError(f"{place}: expected a vehicle's serial, got the unknown {pad.serial!a}")
         if profile.pad is not None:
             where = "the layer" if pad.serial in given else "[[vehicles]]"
-            raise SiteError(
-                f"{place}: expected one pad for {pad.serial!a}, got another in {where} already"
-            )
+            raise SiteError(f"{place}: expected one pad for {pad.serial!a}, got another in {where}")
         given.add(pad.serial)
         profiles[pad.serial] = replace(profile, pad=pad.place)
+
+
+def demo_site_folder() -> Path:
+    """Return the folder of the demonstration's site, inside the package."""
+    return Path(__file__).parent / "demo"

@@ -1,20 +1,23 @@
-"""A vehicle's profile from its table in site.toml."""
+"""Vehicle profiles and flight limits from their tables in site.toml."""
 
 from dataclasses import replace
 from typing import Any
 
+import msgspec
+
+from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint
 from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
 from recon.site.errors import SiteError
-from recon.site.schema import VehicleTable
+from recon.site.schema import LimitsTable, VehicleTable
 
 PLACEHOLDER_SERIAL = "00000"
-"""What apps send before they know their aircraft's serial: nobody's."""
+"""Sent by apps before they know their aircraft's serial."""
 
 APP_PRESETS: dict[str, dict[str, Any]] = {
     "legacy": {"max_waypoints": 25},
 }
-"""What older companion apps need: 25 waypoints, 1,011 bytes, are read at once."""
+"""Limits of older companion apps: they read 25 waypoints, 1,011 bytes, at once."""
 
 _PLAIN_KEYS = (
     "name",
@@ -31,7 +34,7 @@ _PLAIN_KEYS = (
 
 
 def profile_from_table(table: VehicleTable, place: str) -> VehicleProfile:
-    """Return the profile; keys that are given win over the app's preset, that over the defaults.
+    """Return the profile; given keys override the app's preset, which overrides the defaults.
 
     `place` leads the message of the `SiteError` that a placeholder serial raises.
     """
@@ -55,3 +58,18 @@ def profile_from_table(table: VehicleTable, place: str) -> VehicleProfile:
         pad = table.pad
         values["pad"] = GeoPoint(pad.latitude_deg, pad.longitude_deg, pad.altitude_m)
     return replace(VehicleProfile(table.serial), **values)
+
+
+def limits_from_table(table: LimitsTable, place: str) -> FlightLimits:
+    """Return the limits; `place` leads the `SiteError` for limits that contradict each other."""
+    given = {
+        key: value for key, value in msgspec.structs.asdict(table).items() if value is not None
+    }
+    limits = FlightLimits(**given)
+    low_m, high_m = limits.min_height_above_ground_m, limits.max_height_above_ground_m
+    if low_m >= high_m:
+        raise SiteError(
+            f"{place}.min_height_above_ground_m: expected less than max_height_above_ground_m, "
+            f"{high_m:g} m, got {low_m:g} m"
+        )
+    return limits

@@ -1,4 +1,4 @@
-"""What a site's folder came to, in sentences for the operator."""
+"""A site's summary at the start of a station."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from recon.geo import Polygon
 from recon.model.airspace import FlightLimits
 from recon.model.zone import ZoneKind
 from recon.site.site import Imager, Layers, Site
-from recon.site.warnings import site_advice
+from recon.site.warnings import site_warnings
 
 
 def site_report(site: Site) -> tuple[str, ...]:
-    """Return lines that say what was read, how well the control points fit, what is assumed."""
+    """Return lines on the files read, the fit of the control points, and the warnings."""
     if site.frame is None:
-        return ("no site: nothing is known of any vehicle, no frame is laid on the ground",)
+        return ("No site loaded: vehicle profiles and ground image are off",)
     lines = [f"site {site.name}: {len(site.profiles)} vehicle profiles"]
     if site.ground_grid is not None:
         grid = site.ground_grid
@@ -21,18 +21,18 @@ def site_report(site: Site) -> tuple[str, ...]:
             f"ground image {grid.cols} x {grid.rows} cells of {grid.cell_m:g} m around the origin"
         )
     if site.imager is None:
-        lines.append("no eye: frames are shown as they come, none is laid on the ground")
+        lines.append("no imaging drone: ground image is off")
     else:
         lines += _imager_report(site.imager)
     lines += _layers_report(site.layers)
     lines += [_terrain_report(site), _limits_report(site.limits)]
-    lines += [f"warning: {advice}" for advice in site_advice(site)]
+    lines += [f"warning: {warning}" for warning in site_warnings(site)]
     return tuple(lines)
 
 
 def _terrain_report(site: Site) -> str:
     if site.elevation is None:
-        return "terrain: flat assumed, as high as origin.ground_altitude_m"
+        return "terrain: assumed flat at origin.ground_altitude_m"
     grid, heights_m = site.elevation.grid, site.elevation.ellipsoid_height_m
     known = heights_m[np.isfinite(heights_m)]
     return (
@@ -71,12 +71,14 @@ def _layers_report(layers: Layers) -> list[str]:
 
 
 def _imager_report(imager: Imager) -> list[str]:
-    lines = [f"eye {imager.serial}: {imager.camera.cols} x {imager.camera.rows} lens model"]
+    lines = [
+        f"imaging drone {imager.serial}: {imager.camera.cols} x {imager.camera.rows} lens model"
+    ]
     lines += pose_report(imager.solution)
     if imager.first_frame_stands_for_marked_frame:
         lines.append(
-            "the marked frame's telemetry is not given: the first frame received in flight stands "
-            "for it, which is right only where that frame was taken"
+            "[imager.marked_frame] is missing: the first frame received in flight is used instead, "
+            "which is right only if it was taken from the same position"
         )
     return lines
 

@@ -1,7 +1,7 @@
-"""What site.toml may hold: one struct per table, unknown keys refused.
+"""The tables of site.toml: one struct each, unknown keys refused.
 
-The how-to docs/how-to/prepare-a-site.md explains each key; ranges are checked here, what depends on
-more than one key in `recon.site.load`.
+The how-to docs/how-to/prepare-a-site.md explains each key; ranges are checked here,
+relations between keys in `recon.site.load`.
 """
 
 from typing import Annotated, Any, Literal
@@ -102,7 +102,7 @@ class PadTable(_Table, frozen=True):
 
 
 class VehicleTable(_Table, frozen=True):
-    """One of [[vehicles]]: what a vehicle is and accepts. Absent keys keep the default."""
+    """One of [[vehicles]]: a vehicle's properties and limits. Absent keys keep the default."""
 
     serial: Serial
     name: Text | None = None
@@ -134,8 +134,26 @@ class LayersTable(_Table, frozen=True):
     survey_regions: FileName | None = None
 
 
+class LimitsTable(_Table, frozen=True):
+    """[limits]: absent keys keep the defaults of `FlightLimits`, whose reasons stand there."""
+
+    max_height_above_ground_m: Annotated[float, Meta(ge=20.0, le=500.0)] | None = None
+    """DJI's own bounds of the height an aircraft can be limited to."""
+    min_height_above_ground_m: Annotated[float, Meta(ge=0.0, le=100.0)] | None = None
+    max_distance_from_home_m: Annotated[float, Meta(ge=15.0, le=8_000.0)] | None = None
+    """DJI's own bounds of the radius."""
+    max_speed_mps: Annotated[float, Meta(ge=1.0, le=15.0)] | None = None
+    min_separation_horizontal_m: Annotated[float, Meta(ge=5.0, le=200.0)] | None = None
+    """Two GNSS positions may be off by 5 m together: less keeps nothing apart."""
+    min_separation_vertical_m: Annotated[float, Meta(ge=2.0, le=100.0)] | None = None
+    """The barometers of two aircraft just started agree to a metre or two."""
+    boundary_margin_m: Annotated[float, Meta(ge=0.0, le=100.0)] | None = None
+    battery_reserve_fraction: Annotated[float, Meta(ge=0.1, le=0.9)] | None = None
+    """Aircraft land where they are at about a tenth."""
+
+
 class SiteTable(_Table, frozen=True):
-    """The whole file. The tables are converted one by one, so that a complaint can name its own."""
+    """The whole file. The tables are converted one by one, so that an error names its table."""
 
     name: Text
     origin: dict[str, Any]

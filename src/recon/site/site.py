@@ -1,4 +1,4 @@
-"""A site: the place, the eye above it, and the vehicles that are known there."""
+"""A site: origin, imaging drone, vehicle profiles, layers and elevation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,10 +18,10 @@ from recon.model.zone import LandingPad, Region, Zone
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imager:
-    """The imaging vehicle: its lens, its control points and the pose these give.
+    """The imaging drone: its lens, its control points and the pose these give.
 
-    `solution` is the camera's pose when the marked frame was taken; `marked_frame` what telemetry
-    said then. `image_circle` is at the camera's size, None when it is to be found in the frames.
+    `solution` is the camera's pose when the marked frame was taken; `marked_frame` its telemetry
+    then. `image_circle` is at the camera's size, None when it must be detected in the frames.
     """
 
     serial: str
@@ -34,20 +34,20 @@ class Imager:
 
     @property
     def first_frame_stands_for_marked_frame(self) -> bool:
-        """Whether the first frame received in flight is taken for the marked one.
+        """Whether the first frame received in flight is used as the marked one.
 
-        So when the file does not tell the marked frame's telemetry: right only if the aircraft is
-        then where it was when the control points' frame was taken. The station must say so.
+        True without the marked frame's telemetry. It is right only if both were taken from the same
+        position, so the station warns about it.
         """
         return self.marked_frame is None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layers:
-    """What the site's GeoJSON layers hold, in metres of its local frame.
+    """The site's GeoJSON layers, in metres of its local frame.
 
-    `files` names the file of each layer that was read. A feature of several polygons becomes as
-    many zones of one name.
+    `files` names the file of each layer that was read. A feature of several polygons becomes
+    several zones of one name.
     """
 
     files: Mapping[str, str] = field(default_factory=dict)
@@ -59,7 +59,7 @@ class Layers:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Site:
-    """What a site's folder says; without a folder nothing but the name is known."""
+    """A site's folder as read; without a folder only the name is known."""
 
     name: str
     frame: LocalFrame | None = None
@@ -73,7 +73,7 @@ class Site:
 
     @property
     def airspace(self) -> Airspace:
-        """What holds in the site's air; pads that only a profile tells are among the pads."""
+        """Limits, zones and pads of the site; with pads that stand only in a profile."""
         layered = self.layers.landing_pads
         owners = {pad.serial for pad in layered}
         own = (
@@ -92,5 +92,5 @@ class Site:
 
 
 def default_site() -> Site:
-    """Return the site of a station that was started without one."""
+    """Return the site of a station started without one."""
     return Site(name="no site")

@@ -1,7 +1,7 @@
-"""What a value of the site's files should have been, and what came, in words of the house.
+"""Validation errors of a site's files: expected value, actual value, place.
 
-The words come from the schema: its ranges, choices and keys, and where a pattern says little to a
-person, the description beside it. Of msgspec's own text only the place of the fault is read.
+The text comes from the schema: its ranges, choices and keys, or the description beside a pattern.
+Of msgspec's own text only the place of the error is read.
 """
 
 import re
@@ -15,12 +15,12 @@ from msgspec import inspect
 
 K = TypeVar("K", bound=inspect.Type)
 
-LONGEST_SAID = 80
+MAX_SHOWN_LETTERS = 80
 _STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
 
 
-def complaint(problem: msgspec.ValidationError, data: object, kind: object, key: str) -> str:
-    """Return "key: expected this, got that" for data that is not of its type; `key` is its own."""
+def validation_error(problem: msgspec.ValidationError, data: object, kind: object, key: str) -> str:
+    """Return "key: expected this, got that" for data of another type than `kind`, under `key`."""
     what, _, where = str(problem).rpartition(" - at `$")
     steps = [name or int(index) for name, index in _STEP.findall(where.rstrip("`"))]
     owners, kinds = [data], [inspect.type_info(kind)]
@@ -29,19 +29,21 @@ def complaint(problem: msgspec.ValidationError, data: object, kind: object, key:
             owners.append(owners[-1][step])  # type: ignore[index]
             kinds.append(_inner(kinds[-1], step))
     except (LookupError, TypeError, StopIteration):
-        # The place was part of a key that the file's author made up: the fault is at the top.
+        # The place was part of an unknown key: report the error at the top.
         what, steps, owners, kinds = str(problem), [], owners[:1], kinds[:1]
     what = what or str(problem)
     if what.startswith("Object contains unknown field"):
         return _unknown_key(_path(key, steps), owners[-1], kinds[-1])
     if what.startswith("Object missing required field"):
         missing = _missing(owners[-1], kinds[-1])
-        words = in_words(_inner(kinds[-1], missing))
-        return f"{_path(key, [*steps, missing])}: expected {words}, got nothing"
+        expected, path = in_words(_inner(kinds[-1], missing)), _path(key, [*steps, missing])
+        if expected == "a table":
+            return f"section [{path}] is missing"
+        return f"{path} is missing: expected {expected}"
     hint = _swapped(owners, steps)
     place = _path(key, steps)
     lead = f"{place}: " if place else ""
-    return f"{lead}expected {in_words(kinds[-1])}, got {said_value(owners[-1])}{hint}"
+    return f"{lead}expected {in_words(kinds[-1])}, got {shown_value(owners[-1])}{hint}"
 
 
 def in_words(kind: inspect.Type) -> str:
@@ -50,8 +52,8 @@ def in_words(kind: inspect.Type) -> str:
         description = (kind.extra_json_schema or {}).get("description")
         return str(description) if description else in_words(kind.type)
     if isinstance(kind, inspect.UnionType):
-        told = [one for one in kind.types if not isinstance(one, inspect.NoneType)]
-        return " or ".join(in_words(one) for one in told)
+        choices = [one for one in kind.types if not isinstance(one, inspect.NoneType)]
+        return " or ".join(in_words(one) for one in choices)
     if isinstance(kind, inspect.LiteralType):
         return " or ".join(repr(value) for value in kind.values)
     if isinstance(kind, inspect.FloatType):
@@ -65,8 +67,8 @@ def in_words(kind: inspect.Type) -> str:
     return "a text" if isinstance(kind, inspect.StrType) else "a table"
 
 
-def said_value(value: object) -> str:
-    """Return a value of a file in printable characters, not too many of them."""
+def shown_value(value: object) -> str:
+    """Return a value of a file in printable characters, shortened."""
     if isinstance(value, Mapping):
         return "an object"
     if isinstance(value, list):
@@ -76,16 +78,16 @@ def said_value(value: object) -> str:
     if isinstance(value, int) and abs(value) > sys.float_info.max:
         return "a number with very many digits"
     text = ascii(value) if isinstance(value, str) else ascii(str(value))[1:-1]
-    return text if len(text) <= LONGEST_SAID else text[: LONGEST_SAID - 3] + "..."
+    return text if len(text) <= MAX_SHOWN_LETTERS else text[: MAX_SHOWN_LETTERS - 3] + "..."
 
 
 def _unknown_key(place: str, owner: object, kind: inspect.Type) -> str:
     known = [field.encode_name for field in _struct(kind).fields]
     unknown = next(str(name) for name in _keys(owner) if name not in known)
     near = get_close_matches(unknown, known, n=1)
-    advice = f"; did you mean {near[0]!r}?" if near else ""
+    hint = f"; did you mean {near[0]!r}?" if near else ""
     lead = f"{place}: " if place else ""
-    return f"{lead}expected only the keys {', '.join(known)}, got {said_value(unknown)}{advice}"
+    return f"{lead}expected only the keys {', '.join(known)}, got {shown_value(unknown)}{hint}"
 
 
 def _missing(owner: object, kind: inspect.Type) -> str:
@@ -99,7 +101,7 @@ def _keys(owner: object) -> Sequence[object]:
 
 
 def _swapped(owners: Sequence[object], steps: Sequence[str | int]) -> str:
-    """Whether a latitude that is none would be a longitude, and the other way round."""
+    """Return a hint when an invalid latitude and its longitude would be valid swapped."""
     if not steps or steps[-1] != "latitude_deg" or not isinstance(owners[-2], Mapping):
         return ""
     latitude, longitude = owners[-1], owners[-2].get("longitude_deg")

@@ -1,4 +1,4 @@
-"""What a site leaves open or makes hard: sentences for the operator, nothing that stops a start."""
+"""Warnings about a site that do not prevent a start."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -8,25 +8,25 @@ import numpy as np
 from recon.geo import Polygon, enu_from_points
 from recon.model.vehicle import VehicleProfile
 from recon.model.zone import HeightDatum, Zone, ZoneKind
+from recon.site.consistency import highest_ground_m
 from recon.site.elevation import ground_heights_m
 from recon.site.site import Site
-from recon.site.zone_heights import highest_ground_m
 
 SUNKEN_M = 5.0
-"""Between a pad's altitude and the ground taken for true there: more is worth a look."""
+"""Between a pad's altitude and the ground there."""
 SHARE_SHOWN = 0.001
 
 
-def site_advice(site: Site) -> tuple[str, ...]:
-    """Return what should be looked at before flying; empty for a site that tells everything."""
+def site_warnings(site: Site) -> tuple[str, ...]:
+    """Return what to check before flying; empty for a complete site."""
     if site.frame is None:
         return ()
     return (
         *_unbounded(site),
         *_unknown_ground(site),
-        *_untold(site),
-        *_close_ways_home(site),
-        *_low_ways_home(site),
+        *_missing_keys(site),
+        *_close_go_home_heights(site),
+        *_low_go_home_heights(site),
         *_high_zones(site),
         *_close_pads(site),
         *_sunken_pads(site),
@@ -36,13 +36,13 @@ def site_advice(site: Site) -> tuple[str, ...]:
 def _unbounded(site: Site) -> Iterator[str]:
     if site.layers.boundary is None:
         yield (
-            "no boundary: nothing but the distance from home, "
-            f"{site.limits.max_distance_from_home_m:g} m, bounds flights"
+            "no boundary: only the distance from home, "
+            f"{site.limits.max_distance_from_home_m:g} m, limits flights"
         )
 
 
 def _unknown_ground(site: Site) -> Iterator[str]:
-    """Say how much of the boundary has no ground in the elevation model."""
+    """Yield the share of the boundary without ground in the elevation model."""
     if site.elevation is None or site.layers.boundary is None:
         return
     grid = site.elevation.grid
@@ -54,18 +54,18 @@ def _unknown_ground(site: Site) -> Iterator[str]:
     share = float((is_unknown & is_inside).sum()) / max(1, int(is_inside.sum()))
     if share > SHARE_SHOWN:
         yield (
-            f"the elevation model tells no ground under {100.0 * share:.1f} % of the boundary: "
+            f"the elevation model has no ground under {100.0 * share:.1f} % of the boundary: "
             "flights over it are refused"
         )
 
 
-def _untold(site: Site) -> Iterator[str]:
+def _missing_keys(site: Site) -> Iterator[str]:
     for profile in site.profiles.values():
         missing = [key for key, value in _flight_keys(profile).items() if value is None]
         if missing:
             yield (
-                f"vehicle {profile.display_name}: site.toml does not tell {', '.join(missing)}; "
-                "where they matter the worst is assumed, or the order refused"
+                f"vehicle {profile.display_name}: site.toml does not set {', '.join(missing)}; "
+                "the worst case is assumed, or the order refused"
             )
 
 
@@ -78,34 +78,34 @@ def _flight_keys(profile: VehicleProfile) -> dict[str, object]:
     }
 
 
-def _close_ways_home(site: Site) -> Iterator[str]:
+def _close_go_home_heights(site: Site) -> Iterator[str]:
     least_m = site.limits.min_separation_vertical_m
-    told = [
+    known = [
         (profile.go_home_height_m, profile.display_name)
         for profile in site.profiles.values()
         if profile.go_home_height_m is not None
     ]
-    for (height_m, one), (other_m, other) in pairwise(sorted(told)):
+    for (height_m, one), (other_m, other) in pairwise(sorted(known)):
         if other_m - height_m < least_m:
             yield (
-                f"vehicles {one} and {other} go home at {height_m:g} m and {other_m:g} m, closer "
-                f"than limits.min_separation_vertical_m, {least_m:g} m"
+                f"vehicles {one} and {other} have go-home heights of {height_m:g} m and "
+                f"{other_m:g} m, closer than limits.min_separation_vertical_m, {least_m:g} m"
             )
 
 
-def _low_ways_home(site: Site) -> Iterator[str]:
+def _low_go_home_heights(site: Site) -> Iterator[str]:
     for profile in site.profiles.values():
         height_m = profile.go_home_height_m
         for zone in site.layers.zones:
             if height_m is not None and _is_above(zone, height_m, site):
                 yield (
-                    f"vehicle {profile.display_name} goes home at {height_m:g} m, lower than zone "
-                    f"{zone.name} asks for"
+                    f"vehicle {profile.display_name} has a go-home height of {height_m:g} m, below "
+                    f"the floor of zone {zone.name}"
                 )
 
 
 def _high_zones(site: Site) -> Iterator[str]:
-    """Name each keep-out zone that nothing may fly high enough to meet."""
+    """Yield each keep-out zone above every allowed height."""
     for zone in site.layers.zones:
         if zone.kind is not ZoneKind.KEEP_OUT or zone.floor_m is None or zone.datum is None:
             continue
@@ -113,7 +113,7 @@ def _high_zones(site: Site) -> Iterator[str]:
         if zone.floor_m > highest_m:
             yield (
                 f"keep-out zone {zone.name} begins at {zone.floor_m:g} m ({zone.datum.value}), "
-                "above every height that flights may have there; is its datum right?"
+                "above every allowed height there; is its datum right?"
             )
 
 
@@ -128,7 +128,7 @@ def _is_above(zone: Zone, height_m: float, site: Site) -> bool:
 
 
 def _close_pads(site: Site) -> Iterator[str]:
-    """Name each pad that is too close to another, with the one that is closest."""
+    """Yield each pad that is too close to its nearest neighbour."""
     assert site.frame is not None
     pads = site.airspace.landing_pads
     places_m = enu_from_points(site.frame, [pad.place for pad in pads])[:, :2]
@@ -142,8 +142,8 @@ def _close_pads(site: Site) -> Iterator[str]:
             named.add(frozenset((one, other)))
             yield (
                 f"pads {pads[one].name} and {pads[other].name} are {apart_m[other]:.1f} m apart, "
-                f"closer than limits.min_separation_horizontal_m, {least_m:g} m: one lands after "
-                "the other"
+                f"closer than limits.min_separation_horizontal_m, {least_m:g} m: vehicles land "
+                "one at a time"
             )
 
 

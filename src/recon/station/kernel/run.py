@@ -22,7 +22,7 @@ from recon.model.event import Event
 from recon.model.units import ns_to_seconds
 from recon.record.errors import RecordError
 from recon.site import Site
-from recon.site.digest import site_digest
+from recon.site.reading import site_digest
 from recon.station.api_views.service import Service
 from recon.station.audit.auditor import Auditor
 from recon.station.audit.log import LogPrinter

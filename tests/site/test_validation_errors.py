@@ -13,17 +13,17 @@ from recon.site.elevation import ElevationTable
 from recon.site.errors import SiteError
 from recon.site.geojson import Polygons, Rings
 from recon.site.layers import _Named, _PadProperties, _ZoneProperties
-from recon.site.limits import LimitsTable
 from recon.site.reading import convert
 from recon.site.schema import (
     GroundImageTable,
     ImagerTable,
     LayersTable,
+    LimitsTable,
     OriginTable,
     SiteTable,
     VehicleTable,
 )
-from recon.site.validation_errors import in_words, said_value
+from recon.site.validation_errors import in_words, shown_value
 
 TABLES: list[Any] = [
     *(
@@ -89,7 +89,7 @@ def test_a_wrong_value_of_any_key_names_the_key_what_was_meant_and_what_came(
     words, _, got = rest.rpartition(", got ")
     assert not MSGSPECS_OWN.search(place + words)
     if place == f"site.toml: t.{key}" and words == in_words(kind):
-        assert got.startswith(said_value(value)[:20])
+        assert got.startswith(shown_value(value)[:20])
 
 
 @pytest.mark.parametrize("field", fields(), ids=lambda field: f"{field[0].__name__}.{field[1]}")
@@ -115,7 +115,7 @@ def test_an_unknown_key_is_told_with_the_known_ones(table: Any, unknown: str) ->
     text = said({unknown: 1}, table, "t")
     assert text is not None
     assert text.isprintable()
-    lead = f"site.toml: t: expected only the keys {', '.join(known)}, got {said_value(unknown)}"
+    lead = f"site.toml: t: expected only the keys {', '.join(known)}, got {shown_value(unknown)}"
     assert text.startswith(lead)
 
 
