@@ -94,7 +94,6 @@ study: setup ## Long runs: the sky held against measurements, fences and fleets 
 	$(RUN) python -m studies.fleets --scenes 10000
 	$(RUN) python -m studies.session --seconds 100000
 	$(RUN) python -m studies.same_again --seconds 600
-	$(RUN) python -m studies.gears --seeds 10
 	@$(MAKE) mutants
 
 mutants: setup ## Change the gate's rules everywhere: a test must notice each change

@@ -13,7 +13,7 @@ from recon.model.event import OperatorOrder, OwnerConnected
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.score.whole.apps import ConnectedApps
+from recon.score.connected_apps import ConnectedApps
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import parse_fault
@@ -87,7 +87,7 @@ class EightVehicles:
         while self.driver.now_ns < end_ns:
             next_ns = min([end_ns, *(at_ns for at_ns, _ in self._later)])
             until_then_s = (next_ns - self.driver.now_ns) / NS_PER_S
-            self.connected.run_for(min(WATCHED_EVERY_S, until_then_s))
+            self.connected.advance(min(WATCHED_EVERY_S, until_then_s))
             self._do_what_is_due()
 
     def order(self, serial: str, body: Body, owner: str | None = None) -> None:
@@ -161,7 +161,9 @@ def eight_vehicles(
     site = load_site(demo_site_folder())
     driver = VirtualDriver(first_state(site), jobs=JobRunner(site), keeps_log=keeps_log)
     fleet = build_fleet(_config(site, seed, sees, faults), driver.now_ns)
-    return EightVehicles(ConnectedApps(driver, fleet, make_link), site, steers)
+    connected = ConnectedApps(driver, make_link)
+    connected.connect_all(fleet)
+    return EightVehicles(connected, site, steers)
 
 
 def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> SimulationConfig:

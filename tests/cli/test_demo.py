@@ -45,13 +45,13 @@ def test_vehicles_fly_and_the_simulator_ends_with_the_demo(number: int, tmp_path
         demo.line_with("Ctrl+C ends the demo")
         vehicles = await_vehicles(console, 3)
         assert all(v["is_simulated"] for v in vehicles)
-        demo.line_with("survey 1 is flown by SIM-1, SIM-2")
+        demo.line_with("survey 1: flown by SIM-1, SIM-2")
         demo.line_with("mission: started")
         children = children_of(demo.process.pid)
         assert len(children) == 1
         assert demo.end(number) == 0
         assert "Traceback" not in demo.text
-        assert "nothing more is flown" not in demo.text
+        assert "scripted operator stopped" not in demo.text
         assert not any(Path(f"/proc/{pid}").exists() for pid in children)
 
 

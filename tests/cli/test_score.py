@@ -1,4 +1,4 @@
-"""`recon score` as it is called: tables that repeat, complaints in one line."""
+"""`recon score` on the command line: repeatable tables, errors in one line."""
 
 from pathlib import Path
 
@@ -8,44 +8,30 @@ from typer.testing import CliRunner
 
 from recon.cli.commands import app
 
-EVENTS = ["--gear", "events"]
-FEW = [*EVENTS, "--seeds", "2", "--first-seed", "7"]
+SHORT = SMALL.replace("limit_min = 10.0", "limit_min = 1.0")
+FEW = ["--seeds", "2", "--first-seed", "7"]
 
 
-def test_tables_come_out_and_progress_goes_beside(tmp_path: Path) -> None:
-    path = str(written(tmp_path))
+def test_tables_go_to_stdout_and_progress_to_stderr(tmp_path: Path) -> None:
+    path = str(written(tmp_path, SHORT))
     first, second = (CliRunner().invoke(app, ["score", path, *FEW]) for _ in range(2))
     assert first.exit_code == 0
     assert first.stdout_bytes == second.stdout_bytes
     assert "ideal, forecast global_shift, planner lawnmower_again; 2 seeds" in first.stdout
     assert "| time to 95 % in sun, min |" in first.stdout
     assert "| shade IoU | 1.00 |" in first.stdout
-    assert "| Brier, unseen |" in first.stdout
+    assert "| Brier, beyond horizon |" in first.stdout
+    assert "| violations: outside the fence | 0.0 |" in first.stdout
     assert [line.split(":")[0] for line in first.stderr.splitlines()] == ["seed 7", "seed 8"]
+    assert "times faster than real time" in first.stderr
 
 
-def test_the_whole_station_flies_it_unless_told_otherwise(tmp_path: Path) -> None:
-    path = str(written(tmp_path, SMALL.replace("limit_min = 10.0", "limit_min = 2.0")))
-    done = CliRunner().invoke(app, ["score", path, "--seeds", "1", "--forecast", "none"])
-    assert done.exit_code == 0
-    assert "flown by the whole station" in done.stdout
-    assert "| violations: out of the fence | 0.0 |" in done.stdout
-    assert "times faster than real time" in done.stderr
-
-
-def test_methods_can_be_chosen(tmp_path: Path) -> None:
-    options = [*EVENTS, "--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
-    done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
+def test_options_choose_methods(tmp_path: Path) -> None:
+    options = ["--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
     assert done.exit_code == 0
     assert "forecast none, planner lawnmower_once; 1 seeds" in done.stdout
     assert "Brier" not in done.stdout
-
-
-def test_faults_that_are_not_felt_are_told(tmp_path: Path) -> None:
-    text = SMALL.replace("pilot-takes:1:40:30", "no-ack:1")
-    options = [*EVENTS, "--seeds", "1"]
-    done = CliRunner().invoke(app, ["score", str(written(tmp_path, text)), *options])
-    assert "faults that flights by events do not feel: no-ack" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -58,7 +44,9 @@ def test_faults_that_are_not_felt_are_told(tmp_path: Path) -> None:
         (["--forecast", "magic"], "--forecast: expected none or global_shift or persistence, got"),
     ],
 )
-def test_bad_options_are_one_line(tmp_path: Path, options: list[str], words: str) -> None:
+def test_invalid_options_are_one_line(
+    tmp_path: Path, options: list[str], words: str
+) -> None:
     done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
     assert (done.exit_code, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1
@@ -66,7 +54,7 @@ def test_bad_options_are_one_line(tmp_path: Path, options: list[str], words: str
     assert words in done.stderr
 
 
-def test_a_bad_scenario_is_told_with_its_line(tmp_path: Path) -> None:
+def test_an_invalid_scenario_names_its_line(tmp_path: Path) -> None:
     path = written(tmp_path, SMALL.replace("cover = 0.4", "cover = 4"))
     done = CliRunner().invoke(app, ["score", str(path)])
     assert done.exit_code == 2

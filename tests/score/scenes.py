@@ -1,4 +1,4 @@
-"""A small scenario as text, and as it is read."""
+"""A small scenario, as text and loaded."""
 
 from pathlib import Path
 

@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import SunForecast
-from recon.score.forecast_metrics import Ahead, LeadScore, score_lead
+from recon.score.forecast_metrics import HorizonCells, LeadScore, score_lead
 from recon.score.shade_metrics import Overlap
 
 GRID = GroundGrid(LocalFrame(GeoPoint(45.0, -93.0, 250.0)), 0.0, 8.0, 4.0, 2, 2)
@@ -35,25 +35,27 @@ def test_brier_and_iou_of_seen_unseen_and_all() -> None:
     is_sunlit = np.array([[True, True], [False, False]])
     found = score_lead(foretold, 60.0, is_sunlit, ALL)
     # Seen: right and in sun; and wrong, told in shade. Unseen: 0.2 and 0.8 of sun, both in shade.
-    assert found[Ahead.SEEN] == LeadScore(1.0, 2, Overlap(0, 1))
-    assert found[Ahead.UNSEEN].squares == pytest.approx(0.2**2 + 0.8**2)
-    assert found[Ahead.UNSEEN].shade == Overlap(1, 2)
-    assert found[Ahead.ALL].brier == pytest.approx((1.0 + 0.04 + 0.64) / 4.0)
-    assert found[Ahead.ALL].shade.iou == pytest.approx(1.0 / 3.0)
+    assert found[HorizonCells.WITHIN] == LeadScore(1.0, 2, Overlap(0, 1))
+    assert found[HorizonCells.BEYOND].squares == pytest.approx(0.2**2 + 0.8**2)
+    assert found[HorizonCells.BEYOND].shade == Overlap(1, 2)
+    assert found[HorizonCells.ALL].brier == pytest.approx((1.0 + 0.04 + 0.64) / 4.0)
+    assert found[HorizonCells.ALL].shade.iou == pytest.approx(1.0 / 3.0)
 
 
 def test_a_coin_has_a_quarter() -> None:
     found = score_lead(forecast([128] * 4, [0.0] * 4), 60.0, ~ALL, ALL)
-    assert found[Ahead.ALL].brier == pytest.approx(0.25, abs=0.003)
+    assert found[HorizonCells.ALL].brier == pytest.approx(0.25, abs=0.003)
 
 
 def test_nothing_seen_has_no_brier() -> None:
-    assert score_lead(forecast([9] * 4, [0.0] * 4), 60.0, ALL, ALL)[Ahead.SEEN].brier is None
+    assert (
+        score_lead(forecast([9] * 4, [0.0] * 4), 60.0, ALL, ALL)[HorizonCells.WITHIN].brier is None
+    )
 
 
 def test_cells_outside_the_footprint_do_not_count() -> None:
     found = score_lead(forecast([255] * 4, [60.0] * 4), 60.0, ~ALL, np.diag([True, False]))
-    assert found[Ahead.ALL].cells == 1
+    assert found[HorizonCells.ALL].cells == 1
 
 
 def test_a_lead_that_is_not_there_is_refused() -> None:
@@ -79,5 +81,5 @@ def test_ranges_and_the_parts_are_the_whole(
     for score in found.values():
         assert score.brier is None or 0.0 <= score.brier <= 1.0
         assert 0 <= score.shade.both <= score.shade.either <= score.cells
-    assert found[Ahead.ALL] == found[Ahead.SEEN] + found[Ahead.UNSEEN]
-    assert found[Ahead.ALL].cells == counted.sum()
+    assert found[HorizonCells.ALL] == found[HorizonCells.WITHIN] + found[HorizonCells.BEYOND]
+    assert found[HorizonCells.ALL].cells == counted.sum()

@@ -13,7 +13,7 @@ from recon.score.shade_metrics import (
     Overlap,
     boundary_error_m,
     overlap,
-    told_shade,
+    shade_or_wrong,
 )
 
 FRAME = LocalFrame(GeoPoint(45.0, -93.0, 250.0))
@@ -53,7 +53,7 @@ def test_no_shade_at_all_has_no_iou() -> None:
 def test_what_is_unknown_counts_as_wrong_in_sun_and_in_shade() -> None:
     truth, valid = strip(0, 4), ALL.copy()
     valid[:, 3:5] = False
-    told = told_shade(shade_map(truth, valid), truth)
+    told = shade_or_wrong(shade_map(truth, valid), truth)
     assert (told != truth).tolist() == (~valid).tolist()
     # Three columns are told in shade and are so; one is missed, and one in sun counts as shade.
     assert overlap(told, truth, ALL) == Overlap(both=18, either=30)
@@ -93,8 +93,8 @@ def test_ranges_and_sameness(told: np.ndarray, truth: np.ndarray, counted: np.nd
 def test_more_unknown_cells_never_help(
     truth: np.ndarray, valid: np.ndarray, said: np.ndarray
 ) -> None:
-    known = told_shade(shade_map(said, ALL), truth)
-    less = told_shade(shade_map(said, valid), truth)
+    known = shade_or_wrong(shade_map(said, ALL), truth)
+    less = shade_or_wrong(shade_map(said, valid), truth)
     assert ((less != truth) >= (known != truth)).all()
 
 

@@ -1,6 +1,5 @@
-"""Where a scenario is played: on a site of a folder or made up, and by the simulator."""
+"""The place of a scenario: a site folder or a generated site; and its simulated fleet."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +8,6 @@ from tests.score.scenes import SMALL, small
 
 from recon.geo import Polygon, enu_from_point
 from recon.score import Scenario, ScenarioError, load_scenario
-from recon.score.fault_effects import with_chances, without_effect
 from recon.score.simulation import simulation_of
 from recon.sim.app.faults import FaultKind
 from recon.sim.fleet import IMAGER_SERIAL, build_fleet
@@ -30,7 +28,7 @@ def scenarios() -> list[Scenario]:
     return every_scenario()
 
 
-def test_all_that_is_flown_over_lies_well_inside_the_fence(scenarios: list[Scenario]) -> None:
+def test_region_and_pads_lie_inside_the_fence_by_its_margin(scenarios: list[Scenario]) -> None:
     for scenario in scenarios:
         boundary = scenario.site.layers.boundary
         assert boundary is not None
@@ -39,18 +37,18 @@ def test_all_that_is_flown_over_lies_well_inside_the_fence(scenarios: list[Scena
         assert inside_m.min() > scenario.site.limits.boundary_margin_m
 
 
-def test_ways_home_are_in_layers_and_under_the_ceiling(scenarios: list[Scenario]) -> None:
+def test_go_home_heights_are_separated_and_below_the_ceiling(scenarios: list[Scenario]) -> None:
     for scenario in scenarios:
         serials = (*scenario.fleet.serials, IMAGER_SERIAL)
-        told = [scenario.site.profiles[serial].go_home_height_m for serial in serials]
-        heights_m = sorted(height_m for height_m in told if height_m is not None)
+        profiles = [scenario.site.profiles[serial] for serial in serials]
+        heights_m = sorted(p.go_home_height_m for p in profiles if p.go_home_height_m is not None)
         assert len(heights_m) == len(serials)
         limits = scenario.site.limits
         assert np.diff(heights_m).min() >= limits.min_separation_vertical_m
         assert heights_m[-1] < limits.max_height_above_ground_m
 
 
-def test_a_sites_folder_says_where_drones_and_imager_are(tmp_path: Path) -> None:
+def test_a_site_folder_defines_pads_and_imager_position(tmp_path: Path) -> None:
     scenario = small(tmp_path, ON_DEMO)
     assert scenario.fleet.pads_m[0] == pytest.approx((-24.0, -8.0), abs=0.01)
     assert scenario.imager.over_m == pytest.approx((0.0, 0.0), abs=0.2)
@@ -61,31 +59,39 @@ def test_a_sites_folder_says_where_drones_and_imager_are(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("/demo", "/none", "small.toml:6: site.folder: expected a site's folder, got: "),
-        ("[task]", "latitude_deg = 41.9\n[task]", "site: expected a folder alone, got an origin"),
-        ("radius_m", "over_m = [0.0, 0.0]\nradius_m", "imager.over_m: expected none, for the site"),
-        ("survey_drones = 2", "survey_drones = 9", "expected no more than have pads on the site"),
+        ("/demo", "/none", "small.toml:6: site.folder: expected a site that loads, got: "),
+        ("[task]", "latitude_deg = 41.9\n[task]", "site: expected a folder or an origin, got both"),
+        (
+            "radius_m",
+            "over_m = [0.0, 0.0]\nradius_m",
+            "imager.over_m: expected only without a folder",
+        ),
+        (
+            "survey_drones = 2",
+            "survey_drones = 9",
+            "survey_drones: expected a pad on the site for",
+        ),
         (
             "survey_drones = 2",
             "survey_drones = 2\npads_m = [[0.0, 0.0], [30.0, 0.0]]",
-            "fleet.pads_m: expected none, for the site has pads",
+            "fleet.pads_m: expected only without a folder",
         ),
     ],
 )
-def test_what_a_folder_leaves_no_room_for_is_told(
+def test_keys_that_conflict_with_a_site_folder_are_errors(
     tmp_path: Path, old: str, new: str, words: str
 ) -> None:
-    with pytest.raises(ScenarioError) as told:
+    with pytest.raises(ScenarioError) as caught:
         small(tmp_path, ON_DEMO.replace(old, new))
-    assert words in str(told.value)
+    assert words in str(caught.value)
 
 
-def test_a_site_is_told_whole(tmp_path: Path) -> None:
+def test_an_incomplete_origin_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match="site: expected a folder, or latitude_deg, longitude"):
         small(tmp_path, SMALL.replace("latitude_deg = 41.9\n", ""))
 
 
-def test_the_simulator_flies_the_scenarios_fleet_from_its_pads(tmp_path: Path) -> None:
+def test_the_simulated_fleet_starts_on_the_pads(tmp_path: Path) -> None:
     scenario = small(tmp_path)
     apps = build_fleet(simulation_of(scenario, 3), 0)
     assert [app.settings.serial for app in apps] == [IMAGER_SERIAL, "SIM-1", "SIM-2"]
@@ -96,7 +102,7 @@ def test_the_simulator_flies_the_scenarios_fleet_from_its_pads(tmp_path: Path) -
     assert apps[0].aircraft.motion.height_m == pytest.approx(120.0)
 
 
-def test_a_fault_of_the_first_drone_is_not_the_eyes(tmp_path: Path) -> None:
+def test_a_fault_of_drone_1_does_not_strike_the_imager(tmp_path: Path) -> None:
     apps = build_fleet(simulation_of(small(tmp_path), 0), 0)
     assert [len(app.settings.faults) for app in apps] == [0, 1, 0]
 
@@ -119,7 +125,7 @@ def with_storm(folder: Path, storm: str) -> Scenario:
     return small(folder, SMALL.replace("[site]", 'fault_file = "storm.toml"\n\n[site]', 1))
 
 
-def test_a_file_of_faults_stands_beside_the_scenario(tmp_path: Path) -> None:
+def test_a_fault_file_adds_to_the_scenarios_faults(tmp_path: Path) -> None:
     scenario = with_storm(tmp_path, STORM)
     assert [fault.kind.value for fault in scenario.faults] == ["pilot-takes", "gusts"]
     imager, first, second = build_fleet(simulation_of(scenario, 5), 0)
@@ -128,19 +134,23 @@ def test_a_file_of_faults_stands_beside_the_scenario(tmp_path: Path) -> None:
     assert "telemetry-dropout" in [fault.kind.value for fault in imager.settings.faults]
 
 
-def test_chance_has_the_same_for_a_seed_in_both_gears(tmp_path: Path) -> None:
+def test_random_faults_repeat_for_a_seed_and_differ_between_seeds(tmp_path: Path) -> None:
     scenario = with_storm(tmp_path, STORM)
-    by_events = with_chances(scenario, 5)
-    for app in build_fleet(simulation_of(scenario, 5), 0):
-        serial = app.settings.serial
-        simulated = [f for f in app.settings.faults if f.kind.value == "telemetry-dropout"]
-        drawn = [f for f in by_events.faults if f.vehicle == serial and f not in scenario.faults]
-        assert [f.start_s for f in drawn] == [f.start_s for f in simulated]
-        assert len(drawn) > 0
-    assert with_chances(scenario, 6).faults != by_events.faults
-    assert without_effect(scenario) == []
-    unfelt = replace(scenario.chances[0], kind=FaultKind.NO_ACK)
-    assert without_effect(replace(scenario, chances=(unfelt,))) == ["no-ack"]
+
+    def starts_s(seed: int) -> dict[str, list[float]]:
+        apps = build_fleet(simulation_of(scenario, seed), 0)
+        return {
+            app.settings.serial: [
+                fault.start_s
+                for fault in app.settings.faults
+                if fault.kind is FaultKind.TELEMETRY_DROPOUT
+            ]
+            for app in apps
+        }
+
+    assert starts_s(5) == starts_s(5)
+    assert starts_s(6) != starts_s(5)
+    assert all(len(found) > 0 for found in starts_s(5).values())
 
 
 @pytest.mark.parametrize(
@@ -155,22 +165,22 @@ def test_chance_has_the_same_for_a_seed_in_both_gears(tmp_path: Path) -> None:
         ("per_hour = 30.0", "per_hour = -1.0", "storm.toml: line 9"),
     ],
 )
-def test_a_bad_file_of_faults_is_told_with_its_line(
+def test_errors_in_a_fault_file_name_its_line(
     tmp_path: Path, old: str, new: str, words: str
 ) -> None:
-    with pytest.raises(ScenarioError) as told:
+    with pytest.raises(ScenarioError) as caught:
         with_storm(tmp_path, STORM.replace(old, new))
-    assert words in str(told.value)
-    assert "small.toml:5: fault_file" in str(told.value)
+    assert words in str(caught.value)
+    assert "small.toml:5: fault_file" in str(caught.value)
 
 
-def test_the_imager_may_have_faults_of_its_own(tmp_path: Path) -> None:
+def test_a_fault_can_strike_the_imager_alone(tmp_path: Path) -> None:
     scenario = small(tmp_path, SMALL.replace("pilot-takes:1:40:30", "frames-black:SIM-IMAGER:5:5"))
     imager, first, _second = build_fleet(simulation_of(scenario, 0), 0)
     assert (len(imager.settings.faults), len(first.settings.faults)) == (1, 0)
 
 
-def test_the_land_rolls_when_that_is_asked_for(tmp_path: Path) -> None:
+def test_relief_is_rendered_only_where_the_scenario_has_it(tmp_path: Path) -> None:
     flat = simulation_of(small(tmp_path), 1)
     text = SMALL.replace("ground_altitude_m = 280.0", "ground_altitude_m = 280.0\nrelief_m = 6.0")
     rolling = simulation_of(small(tmp_path, text), 1)

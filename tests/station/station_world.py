@@ -1,7 +1,7 @@
 """A station and simulated apps joined by fake links, in virtual time."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from tests.ready import ready_profile, ready_site
 
@@ -10,8 +10,8 @@ from recon.model.event import OperatorOrder
 from recon.model.geo import GeoPoint
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import AltitudeReference, VehicleState
-from recon.score.whole.apps import SECOND_LINK, AppConnection
-from recon.sim.app.app import LinkOrder, LinkOrderKind, SimulatedApp
+from recon.score.connected_apps import ConnectedApps
+from recon.sim.app.app import SimulatedApp
 from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.station.kernel.build import first_state
@@ -19,33 +19,14 @@ from recon.station.kernel.virtual import FakeLink, VirtualDriver
 from recon.station.state.orders import OrderRecord
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
+STEP_S = 0.01
 
 
 @dataclass(slots=True)
-class Connected:
-    """An app and its present main connection."""
+class World(ConnectedApps):
+    """A station with its simulated apps; tests command vehicles and read orders by number."""
 
-    app: SimulatedApp
-    peer: AppConnection
-    link_id: int
-
-
-@dataclass(slots=True)
-class World:
-    """Runs everything; carries out what faults ask of connections."""
-
-    driver: VirtualDriver
-    make_link: Callable[[], FakeLink] = FakeLink
-    connected: dict[str, Connected] = field(default_factory=dict)
-    _later: list[tuple[int, Callable[[], None]]] = field(default_factory=list)
     _next_order: int = 1
-
-    def connect(self, app: SimulatedApp, link: FakeLink | None = None) -> int:
-        app.connected(self.driver.now_ns)
-        peer = AppConnection(app)
-        link_id = self.driver.connect(peer, link or self.make_link())
-        self.connected[app.settings.serial] = Connected(app, peer, link_id)
-        return link_id
 
     def vehicle(self, serial: str) -> VehicleState:
         return self.driver.station.fleet.vehicles[serial]
@@ -67,47 +48,14 @@ class World:
 
     def run_for(self, seconds: float) -> None:
         for _ in range(round(seconds * 100)):
-            self._advance()
+            self.advance(STEP_S)
 
     def run_until(self, is_reached: Callable[[], bool], at_most_s: float) -> bool:
         for _ in range(round(at_most_s * 100)):
             if is_reached():
                 return True
-            self._advance()
+            self.advance(STEP_S)
         return is_reached()
-
-    def _advance(self) -> None:
-        self.driver.run_for(0.01)
-        due = [action for at_ns, action in self._later if at_ns <= self.driver.now_ns]
-        self._later = [item for item in self._later if item[0] > self.driver.now_ns]
-        for action in due:
-            action()
-        for connected in tuple(self.connected.values()):
-            for order in connected.app.take_link_orders():
-                self._carry_out(connected, order)
-
-    def _carry_out(self, connected: Connected, order: LinkOrder) -> None:
-        app, old_id = connected.app, connected.link_id
-        match order.kind:
-            case LinkOrderKind.RECONNECT:
-                self.driver.disconnect(old_id)
-                self._after(order.seconds, lambda: self.connect(app))
-            case LinkOrderKind.ABANDON:
-                connected.peer.is_abandoned = True
-                self._after(order.seconds, lambda: self.driver.disconnect(old_id))
-                self.connect(app)
-            case LinkOrderKind.SECOND:
-                app.connected(self.driver.now_ns, SECOND_LINK)
-                second_id = self.driver.connect(AppConnection(app, SECOND_LINK), self.make_link())
-                self._after(order.seconds, lambda: self._end_second(app, second_id))
-
-    def _end_second(self, app: SimulatedApp, link_id: int) -> None:
-        app.disconnected(SECOND_LINK)
-        self.driver.disconnect(link_id)
-
-    def _after(self, seconds: float, action: Callable[[], object]) -> None:
-        at_ns = self.driver.now_ns + round(seconds * 1e9)
-        self._later.append((at_ns, lambda: (action(), None)[1]))
 
 
 def world(
@@ -151,8 +99,7 @@ def world(
     )
     site = ready_site(HOME, profiles)
     made = World(VirtualDriver(first_state(site), keeps_log=keeps_log), make_link)
-    for app in apps:
-        made.connect(app)
+    made.connect_all(apps)
     return made
 
 

@@ -110,7 +110,7 @@ class Steered:
         self.w.driver.disconnect(self.w.connected[SERIAL].link_id)
         self.run_for(seconds)
         self.w.connect(self.tap.app)
-        self.w.connected[SERIAL].peer.app = cast(SimulatedApp, self.tap)
+        self.w.connected[SERIAL].connection.app = cast(SimulatedApp, self.tap)
 
     def phase(self, order: int) -> Phase:
         return self.w.record(order).phase
@@ -159,7 +159,7 @@ def steered(
     """Return one vehicle that hovers at 40 m over its start, three seconds after connecting."""
     w = world(faults=faults, make_link=make_link, seed=seed, keeps_log=False)
     tap = Tap(w.app(SERIAL))
-    w.connected[SERIAL].peer.app = cast(SimulatedApp, tap)
+    w.connected[SERIAL].connection.app = cast(SimulatedApp, tap)
     s = Steered(w, tap)
     s.gust(north_mps=wind[0], east_mps=wind[1])
     w.run_for(3.0)

@@ -1,4 +1,4 @@
-"""`recon demo`: a scenario, live: the station, its drones and eye in the simulator, the console."""
+"""`recon demo`: station, console and a scenario's simulated drones, in real time."""
 
 import asyncio
 import sys
@@ -23,15 +23,15 @@ STATION_ENDS_WITHIN_S = 5.0
 FPS_HZ = 2
 DEMO_SCENARIO = "cumulus-40.toml"
 DEMO_SEED = 11
-"""Of a sky that begins in sun, with shadows from the first minutes on."""
+"""Its sky starts in sun; shadows follow in the first minutes."""
 
 
 def demo_command(
     scenario: Annotated[
-        Path | None, typer.Option(help="A scenario's file; else fair-weather cumulus.")
+        Path | None, typer.Option(help="Scenario file; default: fair-weather cumulus.")
     ] = None,
     survey: Annotated[
-        bool, typer.Option("--survey/--no-survey", help="Whether the drones fly by themselves.")
+        bool, typer.Option("--survey/--no-survey", help="Fly surveys with a scripted operator.")
     ] = True,
     http_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port of the console; 0 picks one.")
@@ -39,9 +39,7 @@ def demo_command(
     link_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port for companion apps; 0 picks one.")
     ] = 3001,
-    seed: Annotated[
-        int, typer.Option(min=0, help="The same seed has the same sky and flies the same way.")
-    ] = DEMO_SEED,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of sky, wind and faults.")] = DEMO_SEED,
 ) -> None:
     """Run the station with simulated drones that survey a field.
 
@@ -57,7 +55,7 @@ def demo_command(
         site=played.site,
         link_port=link_port,
         http_port=http_port,
-        # A demonstration goes on with nothing: its drones start anew with it.
+        # No state of an earlier run is recovered: its drones no longer exist.
         audit=default_place(link_port=0),
         console=console_folder(),
     )
@@ -73,11 +71,11 @@ def demo_scenario_file() -> Path:
     for folder in (package / "scenarios", package.parent.parent / "scenarios"):
         if (folder / DEMO_SCENARIO).is_file():
             return folder / DEMO_SCENARIO
-    raise ScenarioError(f"expected {DEMO_SCENARIO} beside the package, found none: give --scenario")
+    raise ScenarioError(f"{DEMO_SCENARIO} not found beside the package; use --scenario")
 
 
 class _Demo:
-    """A running demonstration: the simulator's process, and what goes on beside the station."""
+    """A running demonstration: the simulator's process and the tasks beside the station."""
 
     def __init__(
         self, config: RunConfig, path: Path, scenario: Scenario, seed: int, flies: bool
@@ -88,7 +86,7 @@ class _Demo:
         self._beside: list[asyncio.Task[None]] = []
 
     async def run(self) -> None:
-        """Run until the station ends, then end the rest."""
+        """Run until the station ends, then end simulator and tasks."""
         try:
             await run(self._config, self._start)
         finally:
@@ -100,17 +98,17 @@ class _Demo:
     async def _start(self, started: Started) -> None:
         announce(started)
         self._simulator = await self._start_simulator(started.link_port)
-        self._go_on(self._tell_of_end(self._simulator))
+        self._add_task(self._report_end(self._simulator))
         if self._flies:
-            self._go_on(self._fly(started.console_url))
+            self._add_task(self._fly(started.console_url))
         print("Open the console in a browser. Ctrl+C ends the demo.", flush=True)
 
-    def _go_on(self, work: Coroutine[Any, Any, None]) -> None:
+    def _add_task(self, work: Coroutine[Any, Any, None]) -> None:
         self._beside.append(asyncio.create_task(work))
-        self._beside[-1].add_done_callback(_tell_of_fault)
+        self._beside[-1].add_done_callback(_report_fault)
 
     async def _start_simulator(self, port: int) -> asyncio.subprocess.Process:
-        """The simulator is a process of its own: it speaks to the station as any app, by TCP."""
+        """Start the simulator as a process of its own; it connects over TCP as any app does."""
         settings = {
             "--station": f"127.0.0.1:{port}",
             "--seed": self._seed,
@@ -120,19 +118,18 @@ class _Demo:
         words = ("-m", "recon", "sim", "scenario", str(self._path), *options)
         return await asyncio.create_subprocess_exec(sys.executable, *words)
 
-    async def _tell_of_end(self, simulator: asyncio.subprocess.Process) -> None:
-        """The station goes on without the simulator, as it does without real apps; but say so."""
+    async def _report_end(self, simulator: asyncio.subprocess.Process) -> None:
+        """The station runs on without the simulator, as it does without real apps."""
         code = await simulator.wait()
-        told = f"recon: the simulator ended by itself (exit code {code})"
-        print(told, file=sys.stderr, flush=True)
+        print(f"recon: the simulator ended (exit code {code})", file=sys.stderr, flush=True)
 
     async def _fly(self, url: str) -> None:
         try:
             await fly_surveys(url, self._scenario, print_now)
         except ClientError as problem:
-            # A station that is told to end takes this task with it, and has nothing to explain.
+            # While the station shuts down, this task is cancelled here and reports nothing.
             await asyncio.sleep(STATION_ENDS_WITHIN_S)
-            print_now(f"nothing more is flown by itself: {problem}")
+            print_now(f"scripted operator stopped: {problem}")
 
     async def _end_simulator(self) -> None:
         simulator = self._simulator
@@ -146,9 +143,9 @@ class _Demo:
             await simulator.wait()
 
 
-def _tell_of_fault(task: asyncio.Task[None]) -> None:
-    """What goes wrong beside the station ends nothing, and is said."""
+def _report_fault(task: asyncio.Task[None]) -> None:
+    """Report a failed task; the station runs on."""
     problem = None if task.cancelled() else task.exception()
     if problem is not None:
-        told = f"recon demo: {type(problem).__name__}: {problem}; the station goes on"
-        print(told, file=sys.stderr, flush=True)
+        line = f"recon demo: {type(problem).__name__}: {problem}; the station runs on"
+        print(line, file=sys.stderr, flush=True)

@@ -1,89 +1,158 @@
-"""The people of a demonstration: what they would say to the station, said over its API.
+"""The scripted operator over HTTP: flies a demonstration's surveys as a client of the API.
 
-They plan a survey, let the drones fly it, send those with fresh batteries off again, and begin anew
-when it is done. As soon as somebody else pauses or aborts it, they say nothing any more.
+A person at the console has priority: as soon as a survey is paused or aborted, the operator stops.
+It does not restart drones that were stopped one by one either, nor acts on alarms.
 """
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 from recon.client import ClientError, Refusal, Station, Survey, Telemetry
 from recon.geo import point_from_enu
 from recon.score import Scenario
+from recon.score.scripted_operator import (
+    AbortSurvey,
+    CallHome,
+    DroneView,
+    FieldView,
+    OperatorAction,
+    PlanSurvey,
+    ScriptedOperator,
+    StartDrones,
+    SurveyStage,
+    TakeAuthority,
+)
 from recon.sim.fleet import IMAGER_SERIAL
 
 LOOK_EVERY_S = 1.0
 LIVE_WITHIN_S = 60.0
-REST_S = 20.0
-"""Between two surveys: time to look at the first one's end."""
-FRESH_FRACTION = 0.9
+STAGES = {
+    "planning": SurveyStage.PLANNING,
+    "created": SurveyStage.PLANNED,
+    "running": SurveyStage.FLYING,
+    "done": SurveyStage.FINISHED,
+}
+"""Phases in which the operator goes on; in any other it stops."""
 
-Say = Callable[[str], None]
+Report = Callable[[str], None]
 
 
-async def fly_surveys(url: str, scenario: Scenario, say: Say) -> None:
-    """Fly one survey after the other until somebody stops one, or the station refuses.
+async def fly_surveys(url: str, scenario: Scenario, report: Report) -> None:
+    """Fly one survey after the other until someone stops one, or the station refuses one.
 
     Raises `ClientError` when the station cannot be reached.
     """
-    serials = scenario.fleet.serials
     async with Station(url) as station:
-        for serial in (IMAGER_SERIAL, *serials):
+        for serial in (IMAGER_SERIAL, *scenario.fleet.serials):
             await station.vehicle(serial, LIVE_WITHIN_S)
+        await _HttpOperator(station, scenario, report).run()
+
+
+class _HttpOperator:
+    """The newest survey, what was last reported of it, and the operator that decides."""
+
+    def __init__(self, station: Station, scenario: Scenario, report: Report) -> None:
+        self._station, self._scenario, self._report_line = station, scenario, report
+        self._operator = ScriptedOperator(scenario.fleet.serials, repeats=True)
+        self._survey_id: int | None = None
+        self._last_line = ""
+
+    async def run(self) -> None:
+        """Look and act once a second."""
+        clock = asyncio.get_running_loop()
         while True:
-            survey = await _begun(station, scenario, serials, say)
-            if isinstance(survey, Refusal):
-                say(f"no survey: refused by the rule {survey.rule}: {survey.reason}")
+            survey = await self._survey()
+            if survey is not None and survey.phase not in STAGES:
+                self._report(f"survey {survey.id}: {survey.phase}, {survey.reason}; operator stops")
                 return
-            say(f"survey {survey.id} is flown by {', '.join(serials)}")
-            ended = await _seen_to_its_end(station, survey.id)
-            if ended.phase != "done":
-                say(f"survey {ended.id} is {ended.phase}: nothing more is flown by itself")
-                return
-            say(f"survey {ended.id} is done: {ended.reason}")
-            await _until(lambda: all(is_fresh(v) for v in _crew(station, serials)))
-            await asyncio.sleep(REST_S)
+            if survey is not None and survey.phase == "done":
+                self._report(f"survey {survey.id}: done, {survey.reason}")
+            view = await self._view(survey)
+            for action in self._operator.decide(view, clock.time()):
+                refusal = await self._carry_out(action)
+                if refusal is not None:
+                    self._report(f"refused by rule {refusal.rule}: {refusal.reason}")
+                if refusal is not None and (survey is None or survey.phase != "running"):
+                    return
+            await asyncio.sleep(LOOK_EVERY_S)
+
+    async def _survey(self) -> Survey | None:
+        if self._survey_id is None:
+            return None
+        for survey in await self._station.surveys.list():
+            if survey.id == self._survey_id:
+                return survey
+        raise ClientError(f"survey {self._survey_id} is missing from the station's list")
+
+    async def _view(self, survey: Survey | None) -> FieldView:
+        serials = self._scenario.fleet.serials
+        is_grounded = survey is None or survey.phase == "done"
+        ready = await self._passed_checklists() if is_grounded else frozenset(serials)
+        called_home = {v.serial for v in survey.vehicles if v.has_come_home} if survey else set()
+        drones = [v for v in self._station.vehicles() if v.serial in serials]
+        return FieldView(
+            [_drone(each, each.serial in ready, each.serial in called_home) for each in drones],
+            None if survey is None else STAGES[survey.phase],
+        )
+
+    async def _passed_checklists(self) -> frozenset[str]:
+        passed = set()
+        for serial in self._scenario.fleet.serials:
+            checklist = await self._station.known(serial).preflight()
+            if checklist.is_passed:
+                passed.add(serial)
+            elif self._survey_id is None:
+                unmet = "; ".join(f"{point.name} {point.text}" for point in checklist.unmet)
+                self._report(f"{serial}: preflight checklist incomplete: {unmet}")
+        return frozenset(passed)
+
+    async def _carry_out(self, action: OperatorAction) -> Refusal | None:
+        surveys = self._station.surveys
+        match action:
+            case PlanSurvey():
+                answer = await surveys.create(**survey_request(self._scenario))
+                if isinstance(answer, Survey):
+                    self._survey_id = answer.id
+            case StartDrones(serials):
+                answer = await surveys.start(self._planned_id, serials, takeoff=True)
+                if isinstance(answer, Survey):
+                    self._report(f"survey {answer.id}: flown by {', '.join(serials)}")
+            case AbortSurvey():
+                answer = await surveys.abort(self._planned_id)
+            case CallHome(serial):
+                ordered = await self._station.known(serial).return_home()
+                return ordered if isinstance(ordered, Refusal) else None
+            case TakeAuthority(serial):
+                return await self._station.known(serial).take()
+        return answer if isinstance(answer, Refusal) else None
+
+    @property
+    def _planned_id(self) -> int:
+        assert self._survey_id is not None  # only a planned survey is started or aborted
+        return self._survey_id
+
+    def _report(self, line: str) -> None:
+        """Report what has changed."""
+        if line != self._last_line:
+            self._last_line = line
+            self._report_line(line)
 
 
-async def _begun(
-    station: Station, scenario: Scenario, serials: Sequence[str], say: Say
-) -> Survey | Refusal:
-    await _until_ready(station, serials, say)
-    asked = await station.surveys.create(**survey_request(scenario))
-    if isinstance(asked, Refusal):
-        return asked
-    while True:
-        survey = await _survey(station, asked.id)
-        if survey.phase == "refused":
-            return Refusal("survey", survey.reason)
-        if survey.phase != "planning":
-            return await station.surveys.start(asked.id, serials, takeoff=True)
-        await asyncio.sleep(LOOK_EVERY_S)
-
-
-async def _seen_to_its_end(station: Station, survey_id: int) -> Survey:
-    """Follow a survey; who stands with a fresh battery is sent off again."""
-    while True:
-        survey = await _survey(station, survey_id)
-        if survey.phase != "running":
-            return survey
-        at_home = [v.serial for v in survey.vehicles if v.has_come_home]
-        for vehicle in filter(is_fresh, _crew(station, at_home)):
-            if vehicle.serial is not None:
-                await station.surveys.start(survey_id, [vehicle.serial], takeoff=True)
-        await asyncio.sleep(LOOK_EVERY_S)
-
-
-def is_fresh(vehicle: Telemetry) -> bool:
-    """Whether a vehicle stands, its battery nearly full."""
-    share = vehicle.battery_fraction.value
-    is_down = vehicle.is_live and vehicle.is_flying.value is False
-    return is_down and share is not None and share >= FRESH_FRACTION
+def _drone(vehicle: Telemetry, is_ready: bool, is_called_home: bool) -> DroneView:
+    """`is_stopped` and `has_battery_alarm` stay False: the person at the console sees to these."""
+    return DroneView(
+        vehicle.serial or "",
+        is_ready=is_ready and vehicle.is_live,
+        is_live=vehicle.is_live,
+        is_flying=vehicle.is_flying.value,
+        battery_fraction=vehicle.battery_fraction.value,
+        is_called_home=is_called_home,
+    )
 
 
 def survey_request(scenario: Scenario) -> dict[str, Any]:
-    """Return what the API is asked for: the scenario's task, as a polygon on the globe."""
+    """Return the fields of the API's `SurveyRequest` for the scenario's task."""
     survey = scenario.survey
     rings = (survey.region.outline_m, *survey.region.holes_m)
     return {
@@ -105,31 +174,3 @@ def _ring(scenario: Scenario, corners_m: list[list[float]]) -> list[list[float]]
         for east_m, north_m in (*corners_m, corners_m[0])
     ]
     return [[place.longitude_deg, place.latitude_deg] for place in places]
-
-
-async def _survey(station: Station, survey_id: int) -> Survey:
-    for survey in await station.surveys.list():
-        if survey.id == survey_id:
-            return survey
-    raise ClientError(f"expected the station to remember survey {survey_id}, it does not")
-
-
-async def _until_ready(station: Station, serials: Sequence[str], say: Say) -> None:
-    """Wait until the checklists of all are passed; what each waits for is said when it changes."""
-    said = ""
-    for serial in serials:
-        while not (checked := await station.known(serial).preflight()).is_passed:
-            unmet = "; ".join(f"{point.name} {point.text}" for point in checked.unmet)
-            if unmet != said:
-                say(f"{serial} waits for its checklist: {unmet}")
-            said = unmet
-            await asyncio.sleep(LOOK_EVERY_S)
-
-
-async def _until(is_so: Callable[[], bool]) -> None:
-    while not is_so():
-        await asyncio.sleep(LOOK_EVERY_S)
-
-
-def _crew(station: Station, serials: Sequence[str]) -> list[Telemetry]:
-    return [vehicle for vehicle in station.vehicles() if vehicle.serial in serials]

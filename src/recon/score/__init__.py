@@ -1,13 +1,23 @@
-"""Scenarios, flown in a closed loop by events, and the figures that methods are compared by.
+"""Scenarios flown by the whole station in virtual time, and figures to compare methods by.
 
-`load_scenario` reads a file; `run` flies it once for a seed; `tables` prints what several runs say.
+`load_scenario` reads a file, `run` flies it once for a seed, `tables` prints the figures of several
+runs. Nothing else sees the simulator's truth.
 """
 
-from recon.score.closed_loop import run
-from recon.score.errors import ScenarioError
+from recon.score.run import StationRun, run
 from recon.score.run_score import RunScore
 from recon.score.scenario import Methods, Scenario
+from recon.score.scenario_errors import ScenarioError
 from recon.score.scenario_file import load_scenario
 from recon.score.tables import tables
 
-__all__ = ["Methods", "RunScore", "Scenario", "ScenarioError", "load_scenario", "run", "tables"]
+__all__ = [
+    "Methods",
+    "RunScore",
+    "Scenario",
+    "ScenarioError",
+    "StationRun",
+    "load_scenario",
+    "run",
+    "tables",
+]

@@ -1,4 +1,4 @@
-"""How good forecasts are, by lead: Brier score and shade IoU, seen ahead and not."""
+"""How good forecasts are, by lead: Brier score and shade IoU, inside the horizon and beyond."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,17 +13,17 @@ from recon.score.shade_metrics import Overlap, overlap
 FloatArray = npt.NDArray[np.float64]
 
 
-class Ahead(Enum):
-    """Which cells count: a cell is seen ahead up to its horizon."""
+class HorizonCells(Enum):
+    """Which cells count: those whose horizon reaches the lead, the others, or all."""
 
-    SEEN = "seen"
-    UNSEEN = "unseen"
+    WITHIN = "within horizon"
+    BEYOND = "beyond horizon"
     ALL = "all"
 
 
 @dataclass(frozen=True, slots=True)
 class LeadScore:
-    """Sums over cells of one lead, which can be added up over forecasts."""
+    """Sums over the cells of one lead; they add up over forecasts."""
 
     squares: float = 0.0
     cells: int = 0
@@ -36,30 +36,31 @@ class LeadScore:
 
     @property
     def brier(self) -> float | None:
-        """Mean square of probability less truth: 0 is best, 0.25 a coin's; None of no cells."""
+        """Mean squared error of the probability (Brier 1950): 0 is best, 0.25 is always predicting
+        one half; None without cells."""
         return self.squares / self.cells if self.cells else None
 
 
 def score_lead(
     forecast: SunForecast, lead_s: float, is_sunlit: MaskMap, is_counted: MaskMap
-) -> Mapping[Ahead, LeadScore]:
+) -> Mapping[HorizonCells, LeadScore]:
     """Return the score of one of a forecast's leads against the truth at that moment.
 
-    Shade is foretold where sun is less likely than not. Raises `ValueError` for a lead that the
-    forecast has not.
+    A cell counts as predicted in shade below a probability of sun of one half. Raises `ValueError`
+    for a lead that the forecast does not have.
     """
     index = np.flatnonzero(forecast.lead_s == lead_s)
     if index.size != 1:
         raise ValueError(f"expected a lead of {forecast.lead_s.tolist()} s, got {lead_s}")
     probability = forecast.sun_probability[int(index[0])] / SURE
-    is_seen = forecast.horizon_s >= lead_s
+    is_within = forecast.horizon_s >= lead_s
     if lead_s == 0.0:
-        is_seen = forecast.horizon_s > 0.0
-    chosen = {Ahead.SEEN: is_seen, Ahead.UNSEEN: ~is_seen}
+        is_within = forecast.horizon_s > 0.0
+    chosen = {HorizonCells.WITHIN: is_within, HorizonCells.BEYOND: ~is_within}
     found = {
         ahead: _score(probability, is_sunlit, cells & is_counted) for ahead, cells in chosen.items()
     }
-    return {**found, Ahead.ALL: found[Ahead.SEEN] + found[Ahead.UNSEEN]}
+    return {**found, HorizonCells.ALL: found[HorizonCells.WITHIN] + found[HorizonCells.BEYOND]}
 
 
 def _score(probability: FloatArray, is_sunlit: MaskMap, cells: MaskMap) -> LeadScore:

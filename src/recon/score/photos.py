@@ -1,6 +1,6 @@
-"""What photos truly show, and in which light: the truth that no station is told.
+"""What photos truly show, and in which light; the station never learns of it.
 
-A photo counts where a mosaic would take it from: the band of its row, as the survey counts it.
+A photo counts for the cells that a mosaic would take from it: the band of its row, as in surveys.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from recon.guidance.survey import SurveyPlan
 from recon.model.shade import SUNLIT_TRANSMITTANCE
-from recon.score.flight import Hop
 from recon.sim.camera.survey_shutter import IntervalTimer
 from recon.sim.world import Sky
 
@@ -20,7 +19,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 STEEPEST_COURSE = 0.27
-"""Across over along a row: what surveys count as flown along it."""
+"""Largest ratio of motion across to along a row that counts as flown along it, as in surveys."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,9 +32,9 @@ class Photos:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imaged:
-    """What photos showed, on the plan's cells; times are infinite where no photo did.
+    """When each cell of the plan was on a photo; infinite where it never was.
 
-    A photo is shaded when more than half of what it shows of the region lies in shade.
+    A photo is shaded when more than half of the region's cells on it lie in shade.
     """
 
     first_s: FloatArray
@@ -46,30 +45,12 @@ class Imaged:
 
 
 def phases_s(seed: int, serials: Sequence[str], interval_s: float) -> list[float]:
-    """Return when within each interval the timers of drones fire, as the simulator has it."""
+    """Return when in each interval the camera timers of drones trigger, as in the simulator."""
     return [IntervalTimer(seed, serial, interval_s).phase_s for serial in serials]
 
 
-def photos_of(hops: Sequence[Hop], phase_s: float, plan: SurveyPlan) -> Photos:
-    """Return the photos that a timer of that phase takes along rows."""
-    interval_s = plan.survey.camera.interval_s
-    times: list[FloatArray] = []
-    places: list[FloatArray] = []
-    for hop in hops:
-        if not (hop.is_row and _is_along(hop, plan)):
-            continue
-        first = ceil((hop.start_s - phase_s) / interval_s)
-        after = ceil((hop.end_s - phase_s) / interval_s)
-        at_s = phase_s + interval_s * np.arange(first, after, dtype=np.float64)
-        times.append(at_s)
-        places.append(hop.places_m(at_s)[:, :2])
-    if not times:
-        return Photos(np.zeros(0), np.zeros((0, 2)))
-    return Photos(np.concatenate(times), np.concatenate(places))
-
-
 def imaged(photos: Sequence[Photos], plan: SurveyPlan, sky: Sky) -> Imaged:
-    """Return what the photos of all vehicles show."""
+    """Return what the photos of all drones show."""
     shape = plan.cells.is_inside.shape
     first_s, first_in_sun_s = np.full(shape, np.inf), np.full(shape, np.inf)
     taken = shaded = 0
@@ -89,14 +70,8 @@ def imaged(photos: Sequence[Photos], plan: SurveyPlan, sky: Sky) -> Imaged:
     return Imaged(first_s, first_in_sun_s, taken, shaded)
 
 
-def _is_along(hop: Hop, plan: SurveyPlan) -> bool:
-    ends = plan.lattice.along_across_m([hop.start_m[:2], hop.end_m[:2]])
-    along_m, across_m = np.abs(ends[1] - ends[0]).tolist()
-    return bool(along_m > 0.0 and across_m <= STEEPEST_COURSE * along_m)
-
-
 def _shown(photos: Photos, plan: SurveyPlan) -> tuple[IntArray, IntArray]:
-    """Pairs of a photo's number and the flat index of a cell of the region that it shows."""
+    """Return pairs (N,): a photo's index, and the flat index of a cell of the region on it."""
     survey, cells = plan.survey, plan.cells
     half_along_m = survey.camera.along_m(survey.height_above_takeoff_m) / 2.0
     half_across_m = plan.counted_swath.half_across_m

@@ -1,4 +1,4 @@
-"""A scenario: a place, a fleet, a sky, what goes wrong, what is to be imaged, and how."""
+"""A scenario: site, fleet, sky, wind, faults, survey task and methods."""
 
 from dataclasses import dataclass
 
@@ -10,21 +10,21 @@ from recon.site import Site
 
 IDEAL, NO_FORECAST = "ideal", "none"
 
-Place = tuple[float, float]
+EastNorth = tuple[float, float]
 """East and north metres of the site."""
 
 
 @dataclass(frozen=True, slots=True)
-class Fleet:
-    """The survey drones; `pads_m` holds one place for each."""
+class ScenarioFleet:
+    """The survey drones, one pad each."""
 
-    pads_m: tuple[Place, ...]
+    pads_m: tuple[EastNorth, ...]
     endurance_s: float
     """Hovering, from full to empty."""
     reserve_share: float
-    """Of the battery, that nobody plans with."""
+    """Of the battery, never planned with."""
     swap_s: float
-    """On the ground, for a fresh battery."""
+    """On the ground, to change the battery."""
 
     @property
     def serials(self) -> tuple[str, ...]:
@@ -34,9 +34,9 @@ class Fleet:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioImager:
-    """The eye hovers over a place and sees a circle of the ground."""
+    """The imaging drone hovers over a place and sees a circle of the ground."""
 
-    over_m: Place
+    over_m: EastNorth
     height_m: float
     radius_m: float
     period_s: float
@@ -46,10 +46,10 @@ class ScenarioImager:
 
 @dataclass(frozen=True, slots=True)
 class Methods:
-    """Who sees, who foresees: names; the planner's is in the survey.
+    """Names of the detection and forecast methods; the planner's is in the survey.
 
-    `detection` is `ideal`, for shade maps that are the truth, or a detector's name; `forecast` is
-    `none` or a forecaster's name.
+    `detection` is `ideal` (true shade maps) or a name in `DETECTORS`; `forecast` is `none` or a
+    name in `FORECASTERS`.
     """
 
     detection: str = IDEAL
@@ -57,37 +57,36 @@ class Methods:
 
     @property
     def is_guidance_alone(self) -> bool:
-        """Whether neither detection nor forecast is scored: then the eye looks only at the region,
-        and only until the survey is over. Studies of guidance are fast by that."""
+        """Whether neither detection nor forecast is scored: a run then ends with the survey."""
         return self.detection == IDEAL and self.forecast == NO_FORECAST
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scenario:
-    """All that a run needs beside its seed; `sky.seed` and `wind.seed` are the run's to set."""
+    """Everything that a run needs beside its seed, which replaces `sky.seed` and `wind.seed`."""
 
     name: str
     about: str
     site: Site
-    """A folder's, or made up around the task; it has a frame and an eye."""
-    fleet: Fleet
+    """Read from a folder, or generated around the task; has a frame and an imaging drone."""
+    fleet: ScenarioFleet
     imager: ScenarioImager
     sky: SkySettings
     light: LightSettings
     wind: WindSettings
     relief_m: float
-    """Standard deviation of the heights of the land that the eye sees; the station takes a site
-    without an elevation model for flat, and drones fly above their takeoff point all the same."""
+    """Standard deviation of the rendered land's heights. The station assumes flat ground on a site
+    without an elevation model; drones keep their height above takeoff in any case."""
     faults: tuple[InjectedFault, ...]
     chances: tuple[RandomFault, ...]
-    """Faults that each run draws from its seed."""
+    """Random faults, drawn from the run's seed."""
     survey: Survey
     methods: Methods
     limit_s: float
-    """When the run ends at the latest."""
+    """The operator aborts the survey then."""
 
     @property
     def frame(self) -> LocalFrame:
-        """The site's local frame, which all places are in."""
+        """The site's local frame, in which all positions are given."""
         assert self.site.frame is not None  # or it would not have been read
         return self.site.frame

@@ -1,4 +1,4 @@
-"""Reading a scenario: the whole file is checked before anything is made of it."""
+"""Reading a scenario file; the whole file is checked first."""
 
 import re
 import tomllib
@@ -13,12 +13,10 @@ from recon.guidance.survey import SurveyPlan, plan_survey
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
 from recon.model.zone import Region
-from recon.score.errors import ScenarioError
 from recon.score.scenario import Methods, Scenario
+from recon.score.scenario_errors import ScenarioError, ScenarioErrors, key_lines
 from recon.score.scenario_schema import CloudsTable, ScenarioFile, TaskTable
 from recon.score.staging import staged
-from recon.score.toml_lines import key_lines
-from recon.score.validation_errors import Complaints
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import InjectedFault, RandomFault, parse_fault
 from recon.sim.fleet import IMAGER_SERIAL
@@ -39,7 +37,7 @@ AT_LINE = re.compile(r"at line (\d+)")
 def load_scenario(path: Path) -> Scenario:
     """Return the scenario of a TOML file.
 
-    Raises `ScenarioError` with file, line, what was expected and what came.
+    Raises `ScenarioError` with file, line, expected and actual value.
     """
     text = _text(path)
     try:
@@ -48,18 +46,18 @@ def load_scenario(path: Path) -> Scenario:
         line = AT_LINE.search(str(problem))
         where = f"{path}:{line[1]}" if line else f"{path}"
         raise ScenarioError(f"{where}: expected a TOML file, got: {problem}") from problem
-    complain = Complaints(path, key_lines(text))
+    errors = ScenarioErrors(path, key_lines(text))
     for key in _nans(data, ""):
-        raise complain.about(f"{key}: expected a number, got nan")
+        raise errors.error(f"{key}: expected a number, got nan")
     try:
         file = msgspec.convert(data, ScenarioFile, strict=True)
     except msgspec.ValidationError as problem:
-        raise complain.about(validation_error(problem, data, ScenarioFile, "")) from problem
-    return _scenario(path, file, complain)
+        raise errors.error(validation_error(problem, data, ScenarioFile, "")) from problem
+    return _scenario(path, file, errors)
 
 
 def _nans(value: object, key: str) -> Iterator[str]:
-    """Yield the keys of what is no number: ranges let it pass."""
+    """Yield the keys of NaN values: range checks let them pass."""
     if isinstance(value, float) and isnan(value):
         yield key
     elif isinstance(value, dict):
@@ -77,7 +75,7 @@ def _text(path: Path) -> str:
         text = data.decode("utf-8")
     except OSError as problem:
         why = problem.strerror or str(problem)
-        raise ScenarioError(f"{path}: expected a scenario's file, got: {why}") from problem
+        raise ScenarioError(f"{path}: cannot read scenario file: {why}") from problem
     except UnicodeDecodeError as problem:
         line = data[: problem.start].count(b"\n") + 1
         raise ScenarioError(f"{path}:{line}: expected UTF-8 text, got other bytes") from problem
@@ -86,10 +84,10 @@ def _text(path: Path) -> str:
     return text
 
 
-def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
+def _scenario(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> Scenario:
     survey = _survey(path.stem, file.task, file.methods.planner)
-    place = staged(path, file, survey, complain)
-    script = _script(path, file, complain)
+    place = staged(path, file, survey, errors)
+    script = _script(path, file, errors)
     origin = place.frame.origin
     scenario = Scenario(
         name=path.stem,
@@ -97,11 +95,11 @@ def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
         site=place.site,
         fleet=place.fleet,
         imager=place.imager,
-        sky=_sky(file, origin, complain),
+        sky=_sky(file, origin, errors),
         light=LightSettings(altitude_m=origin.ellipsoid_height_m),
-        wind=_wind(file, complain),
+        wind=_wind(file, errors),
         relief_m=file.site.relief_m,
-        faults=(*_faults(file, complain), *script.faults),
+        faults=(*_faults(file, errors), *script.faults),
         chances=script.chances,
         survey=survey,
         methods=Methods(file.methods.detection, file.methods.forecast),
@@ -109,29 +107,29 @@ def _scenario(path: Path, file: ScenarioFile, complain: Complaints) -> Scenario:
     )
     plan = plan_survey(survey, scenario.frame)
     if not isinstance(plan, SurveyPlan):
-        raise complain.about(f"expected a survey that can be flown, got: {plan.reason}", "task")
-    _check_faulty(scenario, complain)
+        raise errors.error(f"expected a survey that can be flown, got: {plan.reason}", "task")
+    _check_faults(scenario, errors)
     return scenario
 
 
-def _faults(file: ScenarioFile, complain: Complaints) -> tuple[InjectedFault, ...]:
+def _faults(file: ScenarioFile, errors: ScenarioErrors) -> tuple[InjectedFault, ...]:
     return tuple(
-        complain.made(f"faults[{i}]", lambda text=text: parse_fault(text))  # type: ignore[misc]
+        errors.made(f"faults[{i}]", lambda text=text: parse_fault(text))  # type: ignore[misc]
         for i, text in enumerate(file.faults)
     )
 
 
-def _script(path: Path, file: ScenarioFile, complain: Complaints) -> FaultScript:
-    """The faults of a file of their own, beside the scenario's."""
+def _script(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> FaultScript:
+    """Return the faults of the separate fault file, if there is one."""
     name = file.fault_file
     if name is None:
         return FaultScript()
-    return complain.made("fault_file", lambda: load_faults(path.parent / name))
+    return errors.made("fault_file", lambda: load_faults(path.parent / name))
 
 
-def _wind(file: ScenarioFile, complain: Complaints) -> WindSettings:
+def _wind(file: ScenarioFile, errors: ScenarioErrors) -> WindSettings:
     wind = file.wind
-    return complain.made(
+    return errors.made(
         "wind",
         lambda: WindSettings(
             speed_10m_mps=wind.speed_10m_mps,
@@ -157,14 +155,14 @@ def _survey(name: str, task: TaskTable, planner: str) -> Survey:
     )
 
 
-def _sky(file: ScenarioFile, origin: GeoPoint, complain: Complaints) -> SkySettings:
+def _sky(file: ScenarioFile, origin: GeoPoint, errors: ScenarioErrors) -> SkySettings:
     place = LatLon(origin.latitude_deg, origin.longitude_deg)
     sun = SunSettings(place, file.start_utc.timestamp())
-    layers = tuple(_layer(i, clouds, complain) for i, clouds in enumerate(file.clouds))
-    return complain.made("clouds", lambda: SkySettings(sun=sun, layers=layers))
+    layers = tuple(_layer(i, clouds, errors) for i, clouds in enumerate(file.clouds))
+    return errors.made("clouds", lambda: SkySettings(sun=sun, layers=layers))
 
 
-def _layer(number: int, clouds: CloudsTable, complain: Complaints) -> LayerSettings:
+def _layer(number: int, clouds: CloudsTable, errors: ScenarioErrors) -> LayerSettings:
     within = f"clouds[{number}]"
     values = {name: getattr(clouds, name) for name in clouds.__struct_fields__ if name != "shifts"}
 
@@ -173,21 +171,21 @@ def _layer(number: int, clouds: CloudsTable, complain: Complaints) -> LayerSetti
         return WindShift(given.start_s, given.duration_s, given.speed_mps, given.heading_deg)
 
     shifts = tuple(
-        complain.made(f"{within}.shifts[{i}]", lambda i=i: shift(i))  # type: ignore[misc]
+        errors.made(f"{within}.shifts[{i}]", lambda i=i: shift(i))  # type: ignore[misc]
         for i in range(len(clouds.shifts))
     )
-    return complain.made(within, lambda: LayerSettings(**values, shifts=shifts))
+    return errors.made(within, lambda: LayerSettings(**values, shifts=shifts))
 
 
-def _check_faulty(scenario: Scenario, complain: Complaints) -> None:
+def _check_faults(scenario: Scenario, errors: ScenarioErrors) -> None:
     serials = scenario.fleet.serials
-    asked: list[InjectedFault | RandomFault] = [*scenario.faults, *scenario.chances]
-    for index, fault in enumerate(asked):
+    all_faults: list[InjectedFault | RandomFault] = [*scenario.faults, *scenario.chances]
+    for index, fault in enumerate(all_faults):
         if fault.is_for(IMAGER_SERIAL, 0):
             continue
         if not any(fault.is_for(serial, i + 1) for i, serial in enumerate(serials)):
             known = ", ".join((*serials, IMAGER_SERIAL))
-            said = f"expected a vehicle of {known}, its number or *, got {fault.vehicle!a}"
+            text = f"expected a vehicle of {known}, its number or *, got {fault.vehicle!a}"
             if fault.source:
-                raise complain.about(f"{fault.source}{said}", "fault_file")
-            raise complain.about(said, f"faults[{index}]")
+                raise errors.error(f"{fault.source}{text}", "fault_file")
+            raise errors.error(text, f"faults[{index}]")

@@ -1,7 +1,7 @@
-"""The keys of a scenario's file; ranges and descriptions are what complaints are made of."""
+"""The keys of a scenario file, with the ranges and descriptions that error messages quote."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 import msgspec
 from msgspec import Meta
@@ -11,15 +11,21 @@ from recon.forecast import FORECASTERS
 from recon.guidance.survey import PLANNERS
 from recon.score.scenario import IDEAL, NO_FORECAST
 
-DetectionName = Literal["ideal", "brightness_ratio", "otsu"]
-ForecastName = Literal["none", "global_shift", "persistence"]
-PlannerName = Literal["lawnmower_once", "lawnmower_again"]
 METHOD_NAMES = {
     "detection": (IDEAL, *DETECTORS),
     "forecast": (NO_FORECAST, *FORECASTERS),
     "planner": tuple(PLANNERS),
 }
-"""What may stand in `[methods]`; the types above say the same to readers of files."""
+"""The values of `[methods]`."""
+
+if TYPE_CHECKING:
+    DetectionName: TypeAlias = str
+    ForecastName: TypeAlias = str
+    PlannerName: TypeAlias = str
+else:  # the registries are known at run time only
+    DetectionName = Literal[METHOD_NAMES["detection"]]
+    ForecastName = Literal[METHOD_NAMES["forecast"]]
+    PlannerName = Literal[METHOD_NAMES["planner"]]
 
 Metres = Annotated[float, Meta(ge=-50_000.0, le=50_000.0)]
 Share = Annotated[float, Meta(ge=0.0, le=0.95)]
@@ -30,11 +36,11 @@ Ring = Annotated[list[PlacePair], Meta(min_length=3, description="3 places or mo
 
 
 class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A table that refuses keys it does not know."""
+    """A table that refuses unknown keys."""
 
 
 class SiteTable(Table, frozen=True):
-    """A site's folder, beside the scenario's file; or where a made-up one's origin lies."""
+    """A site's folder, relative to the scenario file; or the origin of a generated site."""
 
     folder: Annotated[str, Meta(min_length=1, description="a folder's name")] | None = None
     latitude_deg: Annotated[float, Meta(ge=-89.0, le=89.0)] | None = None
@@ -44,7 +50,7 @@ class SiteTable(Table, frozen=True):
 
 
 class TaskTable(Table, frozen=True):
-    """What is to be imaged; the region is in east-north metres of the site."""
+    """The survey's task; the region is in east-north metres of the site."""
 
     region_m: Ring
     limit_min: Annotated[float, Meta(ge=1.0, le=600.0)]
@@ -58,9 +64,9 @@ class TaskTable(Table, frozen=True):
 
 
 class FleetTable(Table, frozen=True):
-    """The survey drones; without pads they stand in a line south of the region.
+    """The survey drones; without pads they start from a line south of the region.
 
-    With a site's folder they are its SIM-1, SIM-2, ... and stand on its pads.
+    With a site's folder they are its SIM-1, SIM-2, ... and start from its pads.
     """
 
     survey_drones: Annotated[int, Meta(ge=1, le=16)]
@@ -71,7 +77,7 @@ class FleetTable(Table, frozen=True):
 
 
 class ImagerTable(Table, frozen=True):
-    """The eye; without a place it hovers over the middle of the region, 120 m high.
+    """The imaging drone; by default it hovers 120 m above the middle of the region.
 
     With a site's folder it hovers where the site's marked frame was taken.
     """
@@ -84,7 +90,7 @@ class ImagerTable(Table, frozen=True):
 
 
 class MethodsTable(Table, frozen=True):
-    """Which methods see, foresee and plan."""
+    """The methods of detection, forecast and planning."""
 
     detection: DetectionName = "ideal"
     forecast: ForecastName = "global_shift"
@@ -92,7 +98,7 @@ class MethodsTable(Table, frozen=True):
 
 
 class ShiftTable(Table, frozen=True):
-    """The clouds' velocity turns evenly into another one."""
+    """The clouds' velocity changes linearly into another one."""
 
     start_s: float
     duration_s: float
@@ -101,7 +107,7 @@ class ShiftTable(Table, frozen=True):
 
 
 class CloudsTable(Table, frozen=True):
-    """One layer; ranges are those of the sky's settings."""
+    """One cloud layer; the sky's settings check the ranges."""
 
     cover: float
     base_height_m: float = 1_400.0

@@ -1,4 +1,4 @@
-"""The site of a scenario that names no folder: a fence, pads, a lens and limits around its task."""
+"""The generated site of a scenario without a folder: fence, pads, lens and limits."""
 
 from collections.abc import Iterable
 from math import ceil, hypot
@@ -11,7 +11,7 @@ from recon.model.airspace import FlightLimits
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.model.zone import LandingPad, Region
-from recon.score.scenario import Fleet, Place, ScenarioImager
+from recon.score.scenario import EastNorth, ScenarioFleet, ScenarioImager
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.site import Imager, Site
 from recon.site.demo_site import (
@@ -23,28 +23,29 @@ from recon.site.demo_site import (
 from recon.site.site import Layers
 
 FENCE_OFF_M = 80.0
-"""Of all that is flown over: turns, gusts and the margin to the fence."""
+"""Around everything flown over: for turns, gusts and the margin to the fence."""
 BEYOND_HOME_M = 150.0
-"""A distance limit this much past the farthest corner is not what a study is about."""
+"""Past the farthest corner: the distance limit does not restrict a task."""
 ABOVE_IMAGER_M = 10.0
 USUAL_CEILING_M = 120.0
-LOWEST_WAY_HOME_M, WAYS_HOME_APART_M = 40.0, 8.0
-"""The eye's, and so far above it the next one's; nearer to each other when they are many."""
+LOWEST_GO_HOME_M, GO_HOME_SPACING_M = 40.0, 8.0
+"""The imaging drone's go-home height, and the spacing of the drones' heights above it; less for
+large fleets."""
 BELOW_CEILING_M = 5.0
 IMAGER_PRIORITY = 10
-"""Of two in conflict the eye is held last: it sees the whole field."""
+"""In a conflict the imaging drone is held last: it observes the whole field."""
 IMAGE_CELL_M = 1.0
 
 
-def made_up_site(
+def generated_site(
     name: str,
     frame: LocalFrame,
     region: Region,
-    fleet: Fleet,
+    fleet: ScenarioFleet,
     imager: ScenarioImager,
     photo_interval_s: float,
 ) -> Site:
-    """Return a site on level ground where a task can be flown and nothing else is in the way."""
+    """Return a site on level ground, without obstacles, on which the task can be flown."""
     ceiling_m = max(USUAL_CEILING_M, imager.height_m + ABOVE_IMAGER_M)
     return Site(
         name=name,
@@ -65,7 +66,9 @@ def made_up_site(
     )
 
 
-def _pads(frame: LocalFrame, fleet: Fleet, imager: ScenarioImager) -> tuple[LandingPad, ...]:
+def _pads(
+    frame: LocalFrame, fleet: ScenarioFleet, imager: ScenarioImager
+) -> tuple[LandingPad, ...]:
     serials, places_m = (*fleet.serials, IMAGER_SERIAL), (*fleet.pads_m, imager.over_m)
     return tuple(
         LandingPad(serial, serial, point_from_enu(frame, (*pad_m, 0.0)))
@@ -73,7 +76,7 @@ def _pads(frame: LocalFrame, fleet: Fleet, imager: ScenarioImager) -> tuple[Land
     )
 
 
-def _boundary(places_m: Iterable[Place | list[float]]) -> Region:
+def _boundary(places_m: Iterable[EastNorth | list[float]]) -> Region:
     places = np.array(list(places_m), dtype=np.float64)
     (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
     off = FENCE_OFF_M
@@ -82,7 +85,7 @@ def _boundary(places_m: Iterable[Place | list[float]]) -> Region:
     return Region(np.array(corners) + np.array(outward))
 
 
-def _farthest_m(pads_m: tuple[Place, ...], region: Region) -> float:
+def _farthest_m(pads_m: tuple[EastNorth, ...], region: Region) -> float:
     corners = region.outline_m.tolist()
     return max(hypot(east - e, north - n) for e, n in pads_m for east, north in corners)
 
@@ -94,7 +97,7 @@ def _grid(frame: LocalFrame, imager: ScenarioImager) -> GroundGrid:
 
 
 def _imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
-    """The demonstration's lens, looking straight down; its pose is known without control points."""
+    """Return the demonstration's lens, pointing straight down, with a pose that needs no fit."""
     beneath = point_from_enu(frame, (*imager.over_m, 0.0))
     marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, imager.height_m, 0.0)
     camera = demo_camera()
@@ -112,13 +115,13 @@ def _imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
 
 def _profiles(
     frame: LocalFrame,
-    fleet: Fleet,
+    fleet: ScenarioFleet,
     over: ScenarioImager,
     photo_interval_s: float,
     ceiling_m: float,
 ) -> dict[str, VehicleProfile]:
-    room_m = ceiling_m - BELOW_CEILING_M - LOWEST_WAY_HOME_M
-    apart_m = min(WAYS_HOME_APART_M, room_m / len(fleet.serials))
+    room_m = ceiling_m - BELOW_CEILING_M - LOWEST_GO_HOME_M
+    apart_m = min(GO_HOME_SPACING_M, room_m / len(fleet.serials))
     drones = {
         serial: VehicleProfile(
             serial,
@@ -127,7 +130,7 @@ def _profiles(
             waypoint_altitude=AltitudeReference.TAKEOFF,
             pad=point_from_enu(frame, (*pad_m, 0.0)),
             endurance_s=fleet.endurance_s,
-            go_home_height_m=LOWEST_WAY_HOME_M + apart_m * (number + 1),
+            go_home_height_m=LOWEST_GO_HOME_M + apart_m * (number + 1),
             failsafe=Failsafe.GO_HOME,
             camera_interval_s=photo_interval_s,
         )
@@ -140,7 +143,7 @@ def _profiles(
         waypoint_altitude=AltitudeReference.TAKEOFF,
         pad=point_from_enu(frame, (*over.over_m, 0.0)),
         endurance_s=fleet.endurance_s,
-        go_home_height_m=LOWEST_WAY_HOME_M,
+        go_home_height_m=LOWEST_GO_HOME_M,
         failsafe=Failsafe.GO_HOME,
         priority=IMAGER_PRIORITY,
     )

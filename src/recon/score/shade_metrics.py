@@ -1,6 +1,6 @@
-"""How well told shade agrees with the truth: overlap, and how far off its edges are.
+"""How well detected shade agrees with the truth: overlap and boundary error.
 
-Masks are (R, C), True in shade. What nothing is told of counts as told wrongly.
+Masks are (R, C), True in shade. Cells without a detected value count as wrong.
 """
 
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ import numpy.typing as npt
 from recon.model.shade import MaskMap, ShadeMap
 
 FARTHEST_EDGE_M = 200.0
-"""Edges farther apart than this are no longer the same shadow's; an edge that is not told, or told
-where there is none, counts as this."""
+"""Edges farther apart than this do not belong to the same shadow; a missed or a false edge counts
+with this distance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Overlap:
     """Counts of cells that can be added up over maps."""
 
     both: int = 0
-    """In shade in truth and as told."""
+    """In shade both in truth and as detected."""
     either: int = 0
 
     def __add__(self, other: "Overlap") -> "Overlap":
@@ -33,26 +33,26 @@ class Overlap:
         return self.both / self.either if self.either else None
 
 
-def told_shade(shade: ShadeMap, is_shade: MaskMap) -> MaskMap:
-    """Return what a map says, and the opposite of the truth where it says nothing."""
-    told: MaskMap = np.where(shade.valid, ~shade.is_sunlit, ~is_shade)
-    return told
+def shade_or_wrong(shade: ShadeMap, is_shade: MaskMap) -> MaskMap:
+    """Return a map's shade, and the opposite of the truth in cells without a value."""
+    detected: MaskMap = np.where(shade.valid, ~shade.is_sunlit, ~is_shade)
+    return detected
 
 
-def overlap(told: MaskMap, is_shade: MaskMap, is_counted: MaskMap) -> Overlap:
+def overlap(detected: MaskMap, is_shade: MaskMap, is_counted: MaskMap) -> Overlap:
     """Return the overlap of two masks of shade over the counted cells."""
-    both = int((told & is_shade & is_counted).sum())
-    return Overlap(both, int(((told | is_shade) & is_counted).sum()))
+    both = int((detected & is_shade & is_counted).sum())
+    return Overlap(both, int(((detected | is_shade) & is_counted).sum()))
 
 
 def boundary_error_m(
-    told: MaskMap, is_shade: MaskMap, is_counted: MaskMap, cell_m: float
+    detected: MaskMap, is_shade: MaskMap, is_counted: MaskMap, cell_m: float
 ) -> float | None:
-    """Return how far the edges of two masks are from each other on the mean, both ways.
+    """Return the mean distance between the edges of two masks, both ways.
 
     None where neither has an edge between counted cells.
     """
-    edges = _edges(told, is_counted), _edges(is_shade, is_counted)
+    edges = _edges(detected, is_counted), _edges(is_shade, is_counted)
     if not (edges[0].any() or edges[1].any()):
         return None
     if not (edges[0].any() and edges[1].any()):

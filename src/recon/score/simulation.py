@@ -1,4 +1,4 @@
-"""A scenario as the simulator flies it: the same sky, wind, places and faults, in real packets."""
+"""A scenario as the simulator's configuration: fleet, sky, wind, pads and faults."""
 
 from dataclasses import replace
 from typing import TypeVar
@@ -13,21 +13,23 @@ from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.replay import rig_over
 from recon.sim.camera.rig import CameraRig
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
-from recon.sim.world import Sky, Wind
+from recon.sim.world import Sky
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Imager, Site
 
-Asked = TypeVar("Asked", InjectedFault, RandomFault)
+FaultOrChance = TypeVar("FaultOrChance", InjectedFault, RandomFault)
 
 IMAGER_ENDURANCE_S = 36_000.0
-"""The eye stays up for as long as a scenario lasts: its change of batteries is not looked at."""
+"""The imaging drone stays up for the whole scenario: its battery changes are not modelled."""
 
 
 def simulation_of(
     scenario: Scenario, seed: int, feed: FeedSettings | None = None
 ) -> SimulationConfig:
-    """Return the fleet of a scenario, drones on their pads and the eye in the air, for a station
-    at the usual port; without a feed the eye sends no pictures."""
+    """Return a scenario's fleet: drones on their pads, the imaging drone in the air.
+
+    Without a feed the imaging drone sends no frames.
+    """
     site = scenario.site
     fleet = scenario.fleet
     frame, imager = scenario.frame, site.imager
@@ -61,28 +63,23 @@ def simulation_of(
 
 
 def pads_of(site: Site) -> dict[str, GeoPoint]:
-    """Return the pads that a site's profiles tell, by serial."""
+    """Return the pads of a site's vehicle profiles, by serial."""
     return {s: profile.pad for s, profile in site.profiles.items() if profile.pad is not None}
 
 
 def go_home_heights_of(site: Site) -> dict[str, float]:
-    """Return what a site's profiles say is set in the aircraft, in metres, by serial."""
-    told = {serial: profile.go_home_height_m for serial, profile in site.profiles.items()}
-    return {serial: height_m for serial, height_m in told.items() if height_m is not None}
+    """Return the go-home heights of a site's vehicle profiles in metres, by serial."""
+    heights_m = {serial: profile.go_home_height_m for serial, profile in site.profiles.items()}
+    return {serial: height_m for serial, height_m in heights_m.items() if height_m is not None}
 
 
 def sky_of(scenario: Scenario, seed: int) -> Sky:
-    """Return a run's sky."""
+    """Return the sky for a seed."""
     return Sky(replace(scenario.sky, seed=seed))
 
 
-def wind_of(scenario: Scenario, seed: int) -> Wind:
-    """Return a run's wind."""
-    return Wind(replace(scenario.wind, seed=seed))
-
-
 def rig_of(frame: LocalFrame, imager: Imager) -> CameraRig:
-    """Return the eye's camera on its aircraft, over a site's frame."""
+    """Return the imaging drone's camera in a site's frame."""
     pose = imager.solution.pose
     if imager.marked_frame is None:
         return rig_over(imager.camera, frame, pose)
@@ -95,7 +92,7 @@ def _relief(scenario: Scenario, seed: int) -> Relief | None:
     return Relief(ReliefSettings(seed, scenario.relief_m))
 
 
-def _by_serial(fault: Asked, serials: tuple[str, ...]) -> Asked:
-    """A scenario counts its survey drones alone, the simulator counts the eye as the first."""
+def _by_serial(fault: FaultOrChance, serials: tuple[str, ...]) -> FaultOrChance:
+    """Name drones by serial: the simulator counts the imaging drone as number 1, a scenario not."""
     named = dict(zip(map(str, range(1, len(serials) + 1)), serials, strict=True))
     return replace(fault, vehicle=named.get(fault.vehicle, fault.vehicle))

@@ -3,21 +3,20 @@
 from collections.abc import Callable, Sequence
 from math import inf, isinf
 
-from recon.score.closed_loop import CURVE_MIN
-from recon.score.forecast_metrics import Ahead, LeadScore
+from recon.score.forecast_metrics import HorizonCells, LeadScore
 from recon.score.interval import Interval, interval, ratio, times
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
-from recon.score.settings import RUN
+from recon.score.settings import SCORE
 
 Row = tuple[str, ...]
 Parts = Callable[[LeadScore], tuple[float, float]]
 NOTHING = "-"
-"""Where no run has the figure."""
+"""For a figure that no run has."""
 
 
 def tables(scenario: Scenario, runs: Sequence[RunScore]) -> str:
-    """Return all figures: the survey's, the shade's, the forecast's. The runs' order is nothing."""
+    """Return all figures of survey, shade and forecast; the order of the runs does not matter."""
     runs = sorted(runs, key=lambda each: each.seed)
     parts = [_head(scenario, runs), _survey(scenario, runs), _shade(runs)]
     if any(each.leads for each in runs):
@@ -27,9 +26,8 @@ def tables(scenario: Scenario, runs: Sequence[RunScore]) -> str:
 
 def _head(scenario: Scenario, runs: Sequence[RunScore]) -> str:
     methods, survey = scenario.methods, scenario.survey
-    flown = "events" if any(run.refusals is None for run in runs) else "the whole station"
     return (
-        f"{scenario.name}: {scenario.about}; flown by {flown}\n"
+        f"{scenario.name}: {scenario.about}\n"
         f"detection {methods.detection}, forecast {methods.forecast}, planner {survey.planner}; "
         f"{len(runs)} seeds"
     )
@@ -41,25 +39,25 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
         _time("time to 95 % imaged, min", [r.to_95_imaged_s for r in runs], limit_s),
         _time("time to 95 % in sun, min", [r.to_95_in_sun_s for r in runs], limit_s),
     ]
-    for index, minute in enumerate(m for m in CURVE_MIN if 60.0 * m <= limit_s):
+    for index, minute in enumerate(m for m in SCORE.curve_min if 60.0 * m <= limit_s):
         shares = [r.in_sun_share[index] for r in runs]
         rows.append(_row(f"in sun after {minute:g} min, %", shares, _percent, 1.0))
     rows += [
         _row(
-            "said in sun, but on no photo in sun, %",
+            "counted in sun, but on no photo in sun, %",
             _of(runs, "wrongly_in_sun_share"),
             _percent,
             1.0,
         ),
-        _row("until all have landed, min", _of(runs, "survey_s"), _minutes),
+        _row("until all drones have landed, min", _of(runs, "survey_s"), _minutes),
         _row("flight time of all drones, min", _of(runs, "flight_s"), _minutes),
         _row("missions", _of(runs, "missions"), _plain),
         _row("photos on rows", _of(runs, "photos"), _plain),
-        _row("of them in shade, %", _of(runs, "shaded_share"), _percent, 1.0),
-        _row("violations: nearer than 10 m", _of(runs, "encounters"), _plain),
-        _row("violations: landed under the reserve", _of(runs, "low_landings"), _plain),
-        _row("violations: out of the fence", _of(runs, "breaches"), _plain),
-        _row("orders that the gate refused", _of(runs, "refusals"), _plain),
+        _row("photos in shade, %", _of(runs, "shaded_share"), _percent, 1.0),
+        _row("violations: separation under 10 m", _of(runs, "encounters"), _plain),
+        _row("violations: landed below battery reserve", _of(runs, "low_landings"), _plain),
+        _row("violations: outside the fence", _of(runs, "breaches"), _plain),
+        _row("orders refused by the gate", _of(runs, "refusals"), _plain),
     ]
     return _table(("survey", "mean", "95 %", "runs"), rows)
 
@@ -67,32 +65,32 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
 def _shade(runs: Sequence[RunScore]) -> str:
     overlaps = ratio([(r.shade.both, r.shade.either) for r in runs])
     rows = [
-        _told("shade IoU", overlaps, _fine),
+        _formatted("shade IoU", overlaps, _fine),
         _row("boundary error, m", _of(runs, "boundary_error_m"), _plain),
-        _row("footprint that anything is said of, %", _of(runs, "known_share"), _percent, 1.0),
+        _row("footprint with a detected value, %", _of(runs, "known_share"), _percent, 1.0),
         _row("footprint in shade, %", _of(runs, "shade_share"), _percent, 1.0),
     ]
     return _table(("shade", "figure", "95 %", "runs"), rows)
 
 
 def _forecast(runs: Sequence[RunScore]) -> str:
-    head = ("forecast", *(f"{lead_s / 60.0:g} min" for lead_s in RUN.lead_s))
+    head = ("forecast", *(f"{lead_s / 60.0:g} min" for lead_s in SCORE.lead_s))
     rows = [
-        (f"cells, {ahead.value}, %", *(_cells(runs, lead_s, ahead) for lead_s in RUN.lead_s))
-        for ahead in Ahead
+        (f"cells, {ahead.value}, %", *(_cells(runs, lead_s, ahead) for lead_s in SCORE.lead_s))
+        for ahead in HorizonCells
     ]
     figures: dict[str, Parts] = {
         "Brier": lambda score: (score.squares, score.cells),
         "shade IoU": lambda score: (score.shade.both, score.shade.either),
     }
     for name, parts in figures.items():
-        for ahead in Ahead:
-            cells = [_lead(runs, lead_s, ahead, parts) for lead_s in RUN.lead_s]
+        for ahead in HorizonCells:
+            cells = [_lead(runs, lead_s, ahead, parts) for lead_s in SCORE.lead_s]
             rows.append((f"{name}, {ahead.value}", *cells))
     return _table(head, rows)
 
 
-def _lead(runs: Sequence[RunScore], lead_s: float, ahead: Ahead, parts: Parts) -> str:
+def _lead(runs: Sequence[RunScore], lead_s: float, ahead: HorizonCells, parts: Parts) -> str:
     scores = [run.leads.get((lead_s, ahead)) for run in runs]
     found = ratio([parts(score) for score in scores if score is not None])
     if found is None:
@@ -101,13 +99,17 @@ def _lead(runs: Sequence[RunScore], lead_s: float, ahead: Ahead, parts: Parts) -
     return mean if isinf(found.high) else f"{mean} ({_fine(found.low)} to {_fine(found.high)})"
 
 
-def _cells(runs: Sequence[RunScore], lead_s: float, ahead: Ahead) -> str:
-    def cells(which: Ahead) -> int:
+def _cells(runs: Sequence[RunScore], lead_s: float, ahead: HorizonCells) -> str:
+    def cells(which: HorizonCells) -> int:
         return sum(
             score.cells for run in runs if (score := run.leads.get((lead_s, which))) is not None
         )
 
-    return f"{100.0 * cells(ahead) / cells(Ahead.ALL):.0f}" if cells(Ahead.ALL) else NOTHING
+    return (
+        f"{100.0 * cells(ahead) / cells(HorizonCells.ALL):.0f}"
+        if cells(HorizonCells.ALL)
+        else NOTHING
+    )
 
 
 def _of(runs: Sequence[RunScore], name: str) -> list[float | None]:
@@ -115,17 +117,17 @@ def _of(runs: Sequence[RunScore], name: str) -> list[float | None]:
 
 
 def _row(
-    name: str, values: Sequence[float | None], words: Callable[[float], str], most: float = inf
+    name: str, values: Sequence[float | None], text: Callable[[float], str], most: float = inf
 ) -> Row:
-    return _told(name, interval(values), words, most)
+    return _formatted(name, interval(values), text, most)
 
 
-def _told(
-    name: str, found: Interval | None, words: Callable[[float], str], most: float = inf
+def _formatted(
+    name: str, found: Interval | None, text: Callable[[float], str], most: float = inf
 ) -> Row:
     if found is None:
         return name, NOTHING, NOTHING, "0"
-    return name, words(found.mean), _bounds(found, words, most), f"{found.count}"
+    return name, text(found.mean), _bounds(found, text, most), f"{found.count}"
 
 
 def _time(name: str, values: Sequence[float | None], limit_s: float) -> Row:
@@ -134,15 +136,15 @@ def _time(name: str, values: Sequence[float | None], limit_s: float) -> Row:
         return name, NOTHING, NOTHING, "0"
     is_cut = found.reached < found.count
     mean = ("at least " if is_cut else "") + _minutes(found.mean.mean)
-    reached = f"{found.reached} of {found.count} in time"
+    reached = f"{found.reached} of {found.count} within the limit"
     return name, mean, _bounds(found.mean, _minutes, limit_s), reached
 
 
-def _bounds(found: Interval, words: Callable[[float], str], most: float) -> str:
-    """The interval, as far as a figure from 0 to `most` can be at all."""
+def _bounds(found: Interval, text: Callable[[float], str], most: float) -> str:
+    """Return the interval, cut to the range of the figure: 0 to `most`."""
     if found.high == inf:
         return NOTHING
-    return f"{words(max(found.low, 0.0))} to {words(min(found.high, most))}"
+    return f"{text(max(found.low, 0.0))} to {text(min(found.high, most))}"
 
 
 def _plain(value: float) -> str:

@@ -1,0 +1,194 @@
+"""The scripted operator of `recon demo` and `recon score`: from what it sees to what it commands.
+
+Theory of operation. `decide` is called about once a second with a `FieldView` and returns actions:
+
+    no survey    plan one when all drones have been ready for SETTLED_S
+    planned      start it with all drones, takeoff allowed
+    flying       start a drone (again) that stands with a full battery, or hovers without a task;
+                 command return to home where a low-battery alarm is active and it is not returning
+    finished     nothing; with `repeats`, plan the next survey when all batteries are full again
+    past limit_s abort, then command return to home, and again for drones stopped on the way
+
+An operator needs time to notice an alarm or a stopped drone, find out why, and press a button: a
+condition has to last for REACTION_S before an action follows, and again before it is repeated.
+
+The class knows neither the station nor its API. `station_operator` adapts it to events in virtual
+time (`recon score`), `cli/scripted_operator` to HTTP (`recon demo`).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from enum import Enum, auto
+
+SETTLED_S = 3.0
+"""After the last drone became ready: until battery and satellite count have arrived."""
+REACTION_S = 20.0
+FULL_BATTERY_FRACTION = 0.9
+
+
+class SurveyStage(Enum):
+    """What the operator distinguishes in the life of a survey."""
+
+    PLANNING = auto()
+    PLANNED = auto()
+    FLYING = auto()
+    """Started and not finished; a paused survey counts as flying, all of its drones as stopped."""
+    FINISHED = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class DroneView:
+    """One vehicle as the operator sees it."""
+
+    serial: str
+    is_ready: bool = False
+    """Its telemetry is live; over the API, its preflight checklist is passed too."""
+    is_live: bool = False
+    is_flying: bool | None = None
+    is_descending: bool = False
+    """It returns to home or lands, by its own flight mode."""
+    battery_fraction: float | None = None
+    is_stopped: bool = False
+    """The survey gives it no missions until it is started again."""
+    is_called_home: bool = False
+    """The survey called it home; after landing it is started again with a full battery."""
+    is_flying_home: bool = False
+    """Called home, it flies its landing mission now."""
+    has_battery_alarm: bool = False
+    """The watchdog that compares battery and way home has an active alarm."""
+    is_under_pilot: bool = False
+    """A pilot holds control authority; the operator takes it back before a start."""
+
+    @property
+    def is_charged(self) -> bool:
+        """Whether it stands with a full battery."""
+        share = self.battery_fraction
+        is_full = share is not None and share >= FULL_BATTERY_FRACTION
+        return self.is_live and self.is_flying is False and is_full
+
+    @property
+    def is_out(self) -> bool:
+        """Whether it is in the air and neither returns nor lands."""
+        return self.is_flying is True and not self.is_descending
+
+
+@dataclass(frozen=True, slots=True)
+class FieldView:
+    """All vehicles with the imaging drone, and the operator's survey; None before the first."""
+
+    vehicles: Sequence[DroneView]
+    stage: SurveyStage | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSurvey:
+    """Ask the station to plan the task."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartDrones:
+    """Start or resume the survey with these drones, takeoff allowed."""
+
+    serials: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TakeAuthority:
+    """Take control of a drone back from its pilot."""
+
+    serial: str
+
+
+@dataclass(frozen=True, slots=True)
+class CallHome:
+    """Command return to home."""
+
+    serial: str
+
+
+@dataclass(frozen=True, slots=True)
+class AbortSurvey:
+    """End the survey for good."""
+
+
+OperatorAction = PlanSurvey | StartDrones | TakeAuthority | CallHome | AbortSurvey
+
+
+@dataclass(slots=True)
+class ScriptedOperator:
+    """Remembers for how long each condition has lasted, and nothing else of the field."""
+
+    serials: tuple[str, ...]
+    """The survey drones."""
+    limit_s: float | None = None
+    repeats: bool = False
+    _is_started: bool = False
+    _is_called_home: bool = False
+    _since_s: dict[str, float] = field(default_factory=dict)
+
+    def decide(self, view: FieldView, now_s: float) -> Iterator[OperatorAction]:
+        """Yield the actions for this moment; `now_s` is seconds since any fixed origin."""
+        drones = [each for each in view.vehicles if each.serial in self.serials]
+        if view.stage is None:
+            yield from self._plan(drones, now_s)
+        elif self.limit_s is not None and now_s >= self.limit_s:
+            yield from self._end(view.stage, drones, now_s)
+        elif view.stage is SurveyStage.PLANNED and not self._is_started:
+            self._is_started = True
+            yield StartDrones(self.serials)
+        elif view.stage in (SurveyStage.PLANNED, SurveyStage.FLYING):
+            yield from self._supervise(view, drones, now_s)
+        elif view.stage is SurveyStage.FINISHED and self.repeats:
+            yield from self._repeat(drones, now_s)
+
+    def _plan(self, drones: Sequence[DroneView], now_s: float) -> Iterator[OperatorAction]:
+        are_ready = len(drones) == len(self.serials) and all(each.is_ready for each in drones)
+        if self._lasts("ready", are_ready, now_s, SETTLED_S):
+            yield PlanSurvey()
+
+    def _repeat(self, drones: Sequence[DroneView], now_s: float) -> Iterator[OperatorAction]:
+        are_charged = all(each.is_charged and each.is_ready for each in drones)
+        if self._lasts("next survey", are_charged, now_s):
+            self._is_started = False
+            yield PlanSurvey()
+
+    def _supervise(
+        self, view: FieldView, drones: Sequence[DroneView], now_s: float
+    ) -> Iterator[OperatorAction]:
+        for each in view.vehicles:
+            is_at_risk = each.has_battery_alarm and each.is_out and not each.is_flying_home
+            if self._lasts(f"{each.serial}: battery", is_at_risk, now_s):
+                yield CallHome(each.serial)
+        for each in drones:
+            if self._lasts(f"{each.serial}: no task", _needs_start(each), now_s):
+                if each.is_under_pilot:
+                    yield TakeAuthority(each.serial)
+                yield StartDrones((each.serial,))
+
+    def _end(
+        self, stage: SurveyStage, drones: Sequence[DroneView], now_s: float
+    ) -> Iterator[OperatorAction]:
+        if stage is not SurveyStage.FINISHED:
+            yield AbortSurvey()
+        elif not self._is_called_home or self._lasts("return", True, now_s):
+            self._is_called_home = True
+            yield from (CallHome(each.serial) for each in drones if each.is_out)
+
+    def _lasts(self, what: str, holds: bool, now_s: float, for_s: float = REACTION_S) -> bool:
+        """Whether a condition has held for so long; the time starts again when it has."""
+        if not holds:
+            self._since_s.pop(what, None)
+            return False
+        if now_s - self._since_s.setdefault(what, now_s) < for_s:
+            return False
+        del self._since_s[what]
+        return True
+
+
+def _needs_start(drone: DroneView) -> bool:
+    """Whether a live drone has no task and could fly: it hovers, or stands with a full battery."""
+    if not drone.is_live:
+        return False
+    if drone.is_flying is True:
+        return drone.is_stopped and not drone.is_called_home and not drone.is_descending
+    return drone.is_charged and (drone.is_stopped or drone.is_called_home)

@@ -1,0 +1,106 @@
+"""The scripted operator in virtual time: its view read from the station, its actions as events."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from recon.fleet.state import staleness
+from recon.model.authority import AuthorityHolder
+from recon.model.command import ReturnHome
+from recon.model.event import (
+    AuthorityTaken,
+    Event,
+    OperatorOrder,
+    SurveyAsked,
+    SurveyStarted,
+    SurveyStopped,
+)
+from recon.model.survey import Survey
+from recon.model.units import NS_PER_S
+from recon.model.vehicle import FlightMode, Staleness
+from recon.score.scripted_operator import (
+    AbortSurvey,
+    CallHome,
+    DroneView,
+    FieldView,
+    OperatorAction,
+    PlanSurvey,
+    ScriptedOperator,
+    StartDrones,
+    SurveyStage,
+    TakeAuthority,
+)
+from recon.station.state.station import Station
+from recon.station.state.survey_record import SurveyRecord
+
+BY = "scripted operator"
+SURVEY_ID = 1
+BATTERY_RULE = "battery_home"
+DESCENDING = (FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)
+FIRST_ORDER = 101
+
+
+@dataclass(slots=True)
+class StationOperator:
+    """Called once a second with the station's state."""
+
+    survey: Survey
+    operator: ScriptedOperator
+    _next_order: int = FIRST_ORDER
+
+    def events(self, station: Station, now_ns: int) -> Iterator[Event]:
+        """Yield what the operator commands now."""
+        for action in self.operator.decide(view_of(station, now_ns), now_ns / NS_PER_S):
+            yield self._event(action)
+
+    def _event(self, action: OperatorAction) -> Event:
+        match action:
+            case PlanSurvey():
+                return SurveyAsked(replace(self.survey, id=SURVEY_ID), BY)
+            case StartDrones(serials):
+                return SurveyStarted(SURVEY_ID, serials, BY, takeoff=True)
+            case TakeAuthority(serial):
+                return AuthorityTaken(serial, AuthorityHolder.OPERATOR, BY)
+            case AbortSurvey():
+                return SurveyStopped(SURVEY_ID, BY, is_aborted=True)
+            case CallHome(serial):
+                self._next_order += 1
+                return OperatorOrder(self._next_order - 1, ReturnHome(), BY, serial=serial)
+
+
+def view_of(station: Station, now_ns: int) -> FieldView:
+    """Return what an operator sees of the station: vehicles with a serial, alarms, the survey."""
+    record = station.surveys.records.get(SURVEY_ID)
+    alarms = (each for each in station.alarms.alarms.values() if each.is_active)
+    at_risk = {each.condition.serial for each in alarms if each.condition.rule == BATTERY_RULE}
+    views = (_drone(station, record, serial, now_ns) for serial in station.fleet.vehicles)
+    vehicles = [replace(each, has_battery_alarm=each.serial in at_risk) for each in views]
+    return FieldView(vehicles, None if record is None else _stage(record))
+
+
+def _stage(record: SurveyRecord) -> SurveyStage:
+    if record.is_over:
+        return SurveyStage.FINISHED
+    if record.state is None:
+        return SurveyStage.PLANNING
+    return SurveyStage.FLYING if record.members else SurveyStage.PLANNED
+
+
+def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: int) -> DroneView:
+    vehicle = station.fleet.vehicles[serial]
+    member = None if record is None else record.members.get(serial)
+    is_live = staleness(vehicle, now_ns) is Staleness.LIVE
+    is_called_home = member is not None and member.homeward is not None
+    mode = vehicle.flight_mode.value
+    is_running = record is not None and record.is_running
+    return DroneView(
+        serial,
+        is_ready=is_live,
+        is_live=is_live,
+        is_flying=vehicle.is_flying.value,
+        is_descending=mode in DESCENDING,
+        battery_fraction=vehicle.battery_fraction.value,
+        is_stopped=not is_running or member is None or member.stopped is not None,
+        is_called_home=is_called_home,
+        is_flying_home=is_called_home and mode is FlightMode.GPS_WAYPOINT,
+        is_under_pilot=station.control(serial).authority.holder is AuthorityHolder.PILOT,
+    )

@@ -1,0 +1,234 @@
+"""Small scenarios flown to their ends by the whole station in virtual time.
+
+Each takes seconds, so the runs are shared: module-scoped fixtures, one short run for what needs no
+whole survey.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.score.scenes import SMALL, small
+
+from recon.model.geo import GeoPoint
+from recon.score import Methods, RunScore, Scenario, StationRun, run, tables
+from recon.score.forecast_metrics import HorizonCells
+from recon.score.run_score import shares_by, time_to_share
+from recon.score.true_paths import TruePath, encounters, times_begun
+from recon.sim.app.app import AppSettings, SimulatedApp
+from recon.sim.fleet import IMAGER_SERIAL
+from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.flight_modes import Hold
+from recon.sim.flight.kinematics import AircraftMotion
+
+TINY = SMALL.replace("[200.0, 0.0],", "[90.0, 0.0],").replace(
+    "[200.0, 150.0], [0.0, 150.0]", "[90.0, 60.0], [0.0, 60.0]"
+)
+CALM = TINY.replace('faults = ["pilot-takes:1:40:30"]', "")
+CLEAR = CALM.partition("[[clouds]]")[0]
+DARK = CLEAR + "[[clouds]]\ncover = 1.0\nmodulation = 0.0\n"
+SHORT = "limit_min = 1.5"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("scenarios")
+
+
+def guidance_alone(scenario: Scenario) -> Scenario:
+    """A run of it ends with the survey."""
+    return replace(scenario, methods=replace(scenario.methods, forecast="none"))
+
+
+@pytest.fixture(scope="module")
+def clear(folder: Path) -> RunScore:
+    return run(guidance_alone(small(folder, CLEAR)), 3)
+
+
+@pytest.fixture(scope="module")
+def cumulus(folder: Path) -> RunScore:
+    """With forecasts scored at 1, 3 and 5 min; the limit cuts the watching after the survey."""
+    return run(small(folder, CALM.replace("limit_min = 10.0", "limit_min = 7.0")), 3)
+
+
+@pytest.fixture(scope="module")
+def short(folder: Path) -> tuple[Scenario, RunScore]:
+    scenario = small(folder, CALM.replace("limit_min = 10.0", SHORT))
+    return scenario, run(scenario, 5)
+
+
+def test_a_field_in_sun_is_imaged_in_one_round(clear: RunScore) -> None:
+    assert clear.end == "all that the rows reach is imaged in sun"
+    assert clear.missions == 2
+    assert clear.to_95_imaged_s is not None
+    assert clear.to_95_in_sun_s == clear.to_95_imaged_s
+    assert clear.in_sun_share[-1] > 0.99
+    assert clear.photos > 10
+    assert (clear.shaded_photos, clear.wrongly_in_sun_share) == (0, 0.0)
+    assert clear.shade.iou is None
+    assert clear.survey_s < 300.0
+
+
+def test_all_drones_land_without_a_violation(clear: RunScore) -> None:
+    assert (clear.encounters, clear.breaches, clear.low_landings) == (0, 0, 0)
+    # Two drones, each in the air for part of the run.
+    assert 0.0 < clear.flight_s <= 2.0 * clear.survey_s
+
+
+def test_a_seed_repeats_to_the_bit(short: tuple[Scenario, RunScore]) -> None:
+    scenario, first = short
+    again = run(scenario, 5)
+    assert again == first
+    assert tables(scenario, [again]) == tables(scenario, [first])
+
+
+def test_another_seed_has_another_sky(short: tuple[Scenario, RunScore]) -> None:
+    scenario, first = short
+    assert run(scenario, 6).shade_share != first.shade_share
+
+
+def test_an_overcast_survey_ends_at_the_limit_and_all_return(folder: Path) -> None:
+    text = DARK.replace("limit_min = 10.0", "limit_min = 3.0")
+    scenario = guidance_alone(small(folder, text))
+    found = run(scenario, 0)
+    assert found.to_95_imaged_s is not None
+    assert found.to_95_in_sun_s is None
+    assert found.shaded_photos == found.photos > 0
+    assert max(found.in_sun_share, default=0.0) == 0.0
+    assert 180.0 < found.survey_s < 400.0
+    assert "abort" in found.end
+    printed = tables(scenario, [found, replace(found, seed=1)])
+    row = "| time to 95 % in sun, min | at least 3.0 | 3.0 to 3.0 | 0 of 2 within the limit |"
+    assert row in printed
+
+
+def test_flying_again_images_no_less_in_sun_than_once(folder: Path) -> None:
+    text = CALM.replace("limit_min = 10.0", "limit_min = 4.0")
+    scenario = guidance_alone(small(folder, text))
+    once, again = (
+        run(replace(scenario, survey=replace(scenario.survey, planner=name)), 3)
+        for name in ("lawnmower_once", "lawnmower_again")
+    )
+    assert once.to_95_imaged_s == again.to_95_imaged_s
+    assert once.missions <= again.missions
+    assert once.flight_s <= again.flight_s
+    assert (once.to_95_in_sun_s is None) or (again.to_95_in_sun_s is not None)
+
+
+def test_ideal_detection_has_no_error(cumulus: RunScore) -> None:
+    assert (cumulus.shade.iou, cumulus.known_share) == (1.0, 1.0)
+    assert cumulus.boundary_error_m in (0.0, None)
+    assert cumulus.wrongly_in_sun_share is not None
+    assert cumulus.wrongly_in_sun_share < 0.02
+
+
+def test_leads_within_and_beyond_the_horizon_add_up(cumulus: RunScore) -> None:
+    for lead_s in (60.0, 180.0, 300.0):
+        within, beyond, every = (cumulus.leads[lead_s, cells] for cells in HorizonCells)
+        assert every.cells == within.cells + beyond.cells > 0
+        assert every.brier is not None
+        assert 0.0 <= every.brier <= 1.0
+
+
+def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:
+    scenario = replace(small(folder, CALM), methods=Methods("otsu", "persistence"))
+    flown = StationRun(scenario, 2)
+    for _ in range(32):
+        flown.advance_a_second()
+    shade = flown.driver.station.shade.shade
+    assert shade is not None
+    assert shade.source_serials == (IMAGER_SERIAL,)
+    assert 0.5 < shade.valid.mean() <= 1.0
+    scored = flown.shade_score
+    assert scored.shade.iou is not None
+    assert scored.shade.iou < 1.0
+
+
+def test_frames_that_stop_leave_maps_unknown(folder: Path) -> None:
+    faults = 'faults = ["camera-stops:SIM-IMAGER:45:120"]\n[site]'
+    text = CALM.replace("[site]", faults).replace("limit_min = 10.0", SHORT)
+    assert 0.0 < run(small(folder, text), 0).known_share < 1.0
+
+
+def flown_to_the_surveys_end(scenario: Scenario, at_most_s: float) -> StationRun:
+    """Advance until the survey is over, landed or not."""
+    flown = StationRun(scenario, 3)
+    while not (flown.record is not None and flown.record.is_over) and flown.now_s < at_most_s:
+        flown.advance_a_second()
+    return flown
+
+
+@pytest.mark.parametrize("fault", ["gnss-loss:1:40:10", "telemetry-dropout:2:40:9"])
+def test_a_survey_is_completed_after_a_fault(folder: Path, fault: str) -> None:
+    text = CLEAR.replace("[site]", f'faults = ["{fault}"]\n[site]')
+    flown = flown_to_the_surveys_end(guidance_alone(small(folder, text)), 400.0)
+    assert flown.in_sun_share > 0.99
+    assert all(path.flown_s > 0.0 for path in flown.drones)
+
+
+def test_the_operator_resumes_drones_after_pilot_and_low_battery(
+    folder: Path, clear: RunScore
+) -> None:
+    faults = 'faults = ["pilot-takes:1:25:40", "low-battery:2:30"]\n[site]'
+    text = CLEAR.replace("[site]", faults).replace("[fleet]", "[fleet]\nswap_min = 1.0")
+    flown = run(guidance_alone(small(folder, text)), 4)
+    assert flown.to_95_imaged_s is not None
+    assert clear.to_95_imaged_s is not None
+    assert flown.to_95_imaged_s > clear.to_95_imaged_s + 10.0
+    assert flown.survey_s > flown.to_95_imaged_s
+    assert flown.low_landings == 1
+    assert (flown.encounters, flown.breaches) == (0, 0)
+
+
+def test_a_survey_continues_after_a_battery_change(folder: Path) -> None:
+    one = "survey_drones = 1\nendurance_min = 6.0\nswap_min = 0.5"
+    text = CLEAR.replace("survey_drones = 2", one).replace("90.0", "130.0").replace("60.0]", "150.0]")
+    found = run(guidance_alone(small(folder, text)), 0)
+    assert found.missions > 1
+    assert found.low_landings == 0
+    assert found.in_sun_share[-1] > 0.99
+    assert found.flight_s < found.survey_s - 30.0
+
+
+def test_rows_longer_than_the_shade_history_count_in_sun(folder: Path) -> None:
+    text = CLEAR.replace("90.0", "1200.0").replace("60.0]", "40.0]")
+    text = text.replace("radius_m = 160.0", "radius_m = 700.0\ncell_m = 20.0")
+    found = run(guidance_alone(small(folder, text)), 0)
+    assert found.end == "all that the rows reach is imaged in sun"
+    assert found.missions == 2
+
+
+def test_time_to_a_share_is_that_of_the_last_needed_cell() -> None:
+    first_s = np.array([50.0, 10.0, np.inf, 20.0])
+    assert time_to_share(first_s, 0.5, 100.0) == 20.0
+    assert time_to_share(first_s, 0.75, 100.0) == 50.0
+    assert time_to_share(first_s, 0.75, 40.0) is None
+    assert time_to_share(first_s, 0.95, 100.0) is None
+    assert shares_by(first_s, np.array([0.0, 10.0, 60.0])) == (0.0, 0.25, 0.75)
+
+
+def flying(east_m: list[float], height_m: float, is_up: bool = True) -> TruePath:
+    """A path eastwards, one position per second."""
+    app = SimulatedApp(
+        AppSettings(serial="SIM-1", home=GeoPoint(41.9, -93.6, 280.0)),
+        Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=Hold()),
+    )
+    at_s = [float(second) for second in range(len(east_m))]
+    places = [(east, 0.0, height_m) for east in east_m]
+    return TruePath(app, (0.0, 0.0, 0.0), at_s, places, [is_up] * len(places))
+
+
+def test_an_encounter_counts_once_level_and_in_the_air() -> None:
+    east_m = [float(e) for e in range(0, 100, 5)]
+    there, back = flying(east_m, 50.0), flying(east_m[::-1], 50.0)
+    assert encounters([there, back]) == 1
+    assert encounters([there, flying(east_m[::-1], 58.0)]) == 0
+    assert encounters([there, flying(east_m[::-1], 50.0, is_up=False)]) == 0
+    twice = [50.0, 5.0, 5.0, 50.0, 5.0, 50.0]
+    assert encounters([flying([0.0] * 6, 50.0), flying(twice, 50.0)]) == 2
+
+
+def test_each_turn_to_true_counts_once() -> None:
+    assert times_begun(np.array([True, True, False, True, False, False, True])) == 3
+    assert times_begun(np.zeros(4, dtype=np.bool_)) == 0
