@@ -44,9 +44,7 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--forecast", "magic"], "--forecast: expected none or global_shift or persistence, got"),
     ],
 )
-def test_invalid_options_are_one_line(
-    tmp_path: Path, options: list[str], words: str
-) -> None:
+def test_invalid_options_are_one_line(tmp_path: Path, options: list[str], words: str) -> None:
     done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
     assert (done.exit_code, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1

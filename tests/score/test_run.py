@@ -183,7 +183,9 @@ def test_the_operator_resumes_drones_after_pilot_and_low_battery(
 
 def test_a_survey_continues_after_a_battery_change(folder: Path) -> None:
     one = "survey_drones = 1\nendurance_min = 6.0\nswap_min = 0.5"
-    text = CLEAR.replace("survey_drones = 2", one).replace("90.0", "130.0").replace("60.0]", "150.0]")
+    text = (
+        CLEAR.replace("survey_drones = 2", one).replace("90.0", "130.0").replace("60.0]", "150.0]")
+    )
     found = run(guidance_alone(small(folder, text)), 0)
     assert found.missions > 1
     assert found.low_landings == 0
