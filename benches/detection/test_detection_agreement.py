@@ -27,9 +27,9 @@ def test_shade_iou(scene: str, capsys: pytest.CaptureFixture[str]) -> None:
         for method in DETECTORS:
             found[method].append(watch.mean_iou(shade_of(images, method)))
     with capsys.disabled():
-        told = ", ".join(
+        scores_text = ", ".join(
             f"{method} {np.mean(ious):.2f} ({min(ious):.2f} to {max(ious):.2f})"
             for method, ious in found.items()
         )
-        print(f"\nshade IoU, {scene}, {len(SEEDS)} seeds: {told}", flush=True)
+        print(f"\nshade IoU, {scene}, {len(SEEDS)} seeds: {scores_text}", flush=True)
     assert np.mean(found["brightness_ratio"]) > np.mean(found["otsu"])

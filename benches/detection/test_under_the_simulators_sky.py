@@ -43,7 +43,7 @@ class SkyShade(DriftingShade):
 
 
 @pytest.mark.parametrize("cover", [0.2, 0.4])
-def test_share_of_cells_told_wrongly(cover: float, capsys: pytest.CaptureFixture[str]) -> None:
+def test_share_of_wrong_cells(cover: float, capsys: pytest.CaptureFixture[str]) -> None:
     wrong: dict[str, list[float]] = {name: [] for name in SETTINGS}
     covers = []
     for seed in SEEDS:
@@ -54,12 +54,12 @@ def test_share_of_cells_told_wrongly(cover: float, capsys: pytest.CaptureFixture
         for name, settings in SETTINGS.items():
             maps = shade_of(images, name.split(",")[0], settings)
             pairs = list(zip(maps, is_shade, strict=True))[COUNTED_FROM:]
-            told = [(m.is_sunlit == truth)[FOOTPRINT].mean() for m, truth in pairs]
-            wrong[name].append(float(np.mean(told)))
+            right = [(m.is_sunlit == truth)[FOOTPRINT].mean() for m, truth in pairs]
+            wrong[name].append(float(np.mean(right)))
     with capsys.disabled():
-        told_ = "; ".join(
+        summary = "; ".join(
             f"{name} {np.mean(shares):.1%} ({min(shares):.1%} to {max(shares):.1%})"
             for name, shares in wrong.items()
         )
-        print(f"\nwrong, cover {cover} (there: {np.mean(covers):.2f}): {told_}", flush=True)
+        print(f"\nwrong, cover {cover} (there: {np.mean(covers):.2f}): {summary}", flush=True)
     assert np.mean(wrong["brightness_ratio, ten minutes"]) < np.mean(wrong["otsu"])

@@ -1,4 +1,4 @@
-"""What the sky costs: a lattice of 320 x 180 ground points, as the eye's pictures need it.
+"""Speed of the sky: a lattice of 320 x 180 ground points, as the imaging drone's frames need it.
 
 The baseline is scipy sampling as many tiles at as many points, and nothing else. Times are the
 processor's. Run: uv run python -m pytest benches/sim -s

@@ -88,8 +88,8 @@ def test_files_that_are_no_text_too_large_or_missing_are_refused(tmp_path: Path)
         load_camera(tmp_path)
 
 
-def complaint_about(text: str) -> str | None:
-    """What reading this says, None when it gives a camera."""
+def error_message(text: str) -> str | None:
+    """Return the error message of reading this, None when it gives a camera."""
     try:
         parse_camera(text, "lens.txt")
     except CalibrationError as problem:
@@ -99,10 +99,10 @@ def complaint_about(text: str) -> str | None:
 
 @given(st.text(max_size=300))
 def test_any_text_gives_a_named_line(text: str) -> None:
-    complaint = complaint_about(text)
-    assert complaint is not None
-    assert complaint.startswith("lens.txt, ")
-    assert complaint.isprintable()
+    message = error_message(text)
+    assert message is not None
+    assert message.startswith("lens.txt, ")
+    assert message.isprintable()
 
 
 numbers = st.one_of(
@@ -114,8 +114,8 @@ numbers = st.one_of(
 def test_any_five_lines_of_numbers_give_a_camera_or_a_named_line(lines: list) -> None:
     polynomials = [f"{len(line)} " + " ".join(map(str, line)) for line in lines[:2]]
     text = "\n".join(polynomials + [" ".join(map(str, line)) for line in lines[2:]])
-    complaint = complaint_about(text)
-    assert complaint is None or complaint.startswith("lens.txt, line ")
+    message = error_message(text)
+    assert message is None or message.startswith("lens.txt, line ")
 
 
 @given(
@@ -137,5 +137,5 @@ def test_wild_polynomials_give_a_camera_or_a_named_line(
             f"{side} {side}",
         ]
     )
-    complaint = complaint_about(text)
-    assert complaint is None or complaint.startswith("lens.txt, line ")
+    message = error_message(text)
+    assert message is None or message.startswith("lens.txt, line ")

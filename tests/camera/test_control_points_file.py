@@ -80,8 +80,8 @@ def test_no_points_and_too_many_are_refused() -> None:
         parse_control_points(many, "GCPs.txt")
 
 
-def complaint_about(text: str) -> str | None:
-    """What reading this says, None when it gives points."""
+def error_message(text: str) -> str | None:
+    """Return the error message of reading this, None when it gives points."""
     try:
         parsed = parse_control_points(text, "GCPs.txt")
     except ControlPointsError as problem:
@@ -92,12 +92,12 @@ def complaint_about(text: str) -> str | None:
 
 @given(st.text(max_size=300))
 def test_any_text_gives_points_or_a_named_line(text: str) -> None:
-    complaint = complaint_about(text)
-    assert complaint is None or complaint.startswith("GCPs.txt, line ")
-    assert complaint is None or complaint.isprintable()
+    message = error_message(text)
+    assert message is None or message.startswith("GCPs.txt, line ")
+    assert message is None or message.isprintable()
 
 
 @given(st.lists(st.text("0123456789.,-+eAnif \n#", max_size=40), max_size=8))
 def test_text_that_looks_like_points_gives_points_or_a_named_line(lines: list[str]) -> None:
-    complaint = complaint_about("\n".join(lines))
-    assert complaint is None or complaint.startswith("GCPs.txt, line ")
+    message = error_message("\n".join(lines))
+    assert message is None or message.startswith("GCPs.txt, line ")

@@ -1,4 +1,4 @@
-"""Frames' pixels, raw and from JPEG files that nobody vouches for."""
+"""Pixels of frames, raw and from untrusted JPEG files."""
 
 import cv2
 import numpy as np
@@ -91,7 +91,7 @@ def test_a_header_that_claims_a_huge_image_is_refused_before_decoding() -> None:
         (JPEG[: len(JPEG) // 2], "expected the end-of-image marker"),
     ],
 )
-def test_what_is_no_whole_jpeg_is_refused(data: bytes, message: str) -> None:
+def test_an_incomplete_jpeg_is_refused(data: bytes, message: str) -> None:
     with pytest.raises(FrameDecodeError, match=message):
         decode_jpeg(data)
 

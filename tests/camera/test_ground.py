@@ -119,7 +119,7 @@ def frame_of(rgb: np.ndarray | None = None, jpeg: bytes | None = None) -> Frame:
     return Frame(41, "IMAGER", 2_000, 1_000, 0.25, rgb=rgb, jpeg=jpeg)
 
 
-def test_the_ground_image_says_where_from_and_when() -> None:
+def test_the_ground_image_has_pose_and_time() -> None:
     rgb = np.full((720, 1280, 3), 90, np.uint8)
     image = GroundProjector(GRID, DEMO).lay(frame_of(rgb), POSE)
     assert (image.frame_id, image.serial, image.captured_at_ns) == (41, "IMAGER", 1_000)
@@ -170,7 +170,7 @@ def test_what_the_lens_cannot_see_is_invalid_however_it_is_turned(
     assert valid[(edge_px > 1.6) & (slack_deg > 0.3)].all()
 
 
-def test_the_circle_is_looked_for_until_a_frame_shows_it() -> None:
+def test_the_circle_is_searched_until_a_frame_shows_it() -> None:
     col, row = np.meshgrid(np.arange(1280.0), np.arange(720.0))
     is_lit = np.hypot(col - 640.0, row - 360.0) < 250.0
     lit = np.where(is_lit[..., np.newaxis], np.uint8(200), np.uint8(3)).repeat(3, axis=2)
@@ -183,7 +183,7 @@ def test_the_circle_is_looked_for_until_a_frame_shows_it() -> None:
     assert again == masked
 
 
-def test_a_laid_frame_is_not_changed_by_the_next_one() -> None:
+def test_a_ground_image_is_not_changed_by_the_next_one() -> None:
     projector = GroundProjector(GRID, DEMO)
     first_rgb, first_valid = projector.lay_pixels(frame_of_painted_ground(DEMO, POSE), POSE)
     kept_rgb, kept_valid = first_rgb.copy(), first_valid.copy()
@@ -212,13 +212,13 @@ def test_an_unreadable_frame_is_refused() -> None:
 
 
 @pytest.mark.parametrize("up_m", [0.5, 0.0, -40.0, float("nan"), float("inf")])
-def test_a_camera_on_the_ground_lays_nothing(up_m: float) -> None:
+def test_a_camera_on_the_ground_gives_no_ground_image(up_m: float) -> None:
     pose = replace(POSE, position_enu_m=np.array([0.0, 0.0, up_m]))
     with pytest.raises(PoseError, match="above the ground plane"):
         ground_maps(GRID, DEMO, pose)
 
 
-def test_a_real_frames_control_points_lie_where_the_pose_says(fisheye_data: Path) -> None:
+def test_a_real_frames_control_points_project_onto_their_marks(fisheye_data: Path) -> None:
     """A dot painted at a marked pixel appears at the control point's place, off by its residual."""
     camera = load_camera(fisheye_data / "camera-model.txt")
     points = load_control_points(fisheye_data / "elgin-5" / "GCPs.txt")

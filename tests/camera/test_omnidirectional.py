@@ -43,7 +43,7 @@ def worst_round_trip_px(camera: OmnidirectionalCamera) -> float:
     return float(np.abs(camera.project(camera.unproject(pixels)) - pixels).max())
 
 
-def test_round_trip_of_the_made_up_lens_is_exact_within_85_degrees() -> None:
+def test_round_trip_of_the_synthetic_lens_is_exact_within_85_degrees() -> None:
     assert worst_round_trip_px(DEMO) < 1e-6
     rays = rays_within(85.0, 20_000, seed=6)
     assert np.abs(DEMO.unproject(DEMO.project(rays)) - rays).max() < 1e-9

@@ -74,7 +74,7 @@ def noisy_solution(seed: int) -> PoseSolution:
 
 
 def test_the_standard_deviations_are_those_of_the_errors() -> None:
-    """Over many markings of the same points the errors scatter as the covariance says."""
+    """Over many markings of the same points the errors agree with the covariance."""
     solutions = [noisy_solution(seed) for seed in range(150)]
     errors = np.array(
         [
@@ -87,16 +87,16 @@ def test_the_standard_deviations_are_those_of_the_errors() -> None:
             for s in solutions
         ]
     )
-    said = np.mean([np.diag(s.pose.covariance) for s in solutions], axis=0)
+    variance = np.mean([np.diag(s.pose.covariance) for s in solutions], axis=0)
     # 150 samples of a variance scatter by 12 %; bounds at four times that.
-    assert np.all(np.abs(errors.var(axis=0) / said - 1.0) < 0.48)
+    assert np.all(np.abs(errors.var(axis=0) / variance - 1.0) < 0.48)
     true_tilt_deg = np.rad2deg(np.arccos(-TRUE_POSE.rotation_enu_camera[2, 2]))
     tilt_errors = np.array([s.tilt_deg - true_tilt_deg for s in solutions])
-    said_tilt = np.mean([s.tilt_sigma_deg**2 for s in solutions])
-    assert abs(tilt_errors.var() / said_tilt - 1.0) < 0.48
-    said_height = np.mean([s.height_sigma_m**2 for s in solutions])
+    tilt_variance = np.mean([s.tilt_sigma_deg**2 for s in solutions])
+    assert abs(tilt_errors.var() / tilt_variance - 1.0) < 0.48
+    height_variance = np.mean([s.height_sigma_m**2 for s in solutions])
     heights = np.array([s.height_above_ground_m for s in solutions])
-    assert abs(heights.var() / said_height - 1.0) < 0.48
+    assert abs(heights.var() / height_variance - 1.0) < 0.48
 
 
 def test_the_rms_is_the_root_of_the_mean_squared_two_dimensional_error() -> None:
@@ -108,7 +108,7 @@ def test_the_rms_is_the_root_of_the_mean_squared_two_dimensional_error() -> None
     assert np.mean(rms) == pytest.approx(expected_px, rel=0.1)
 
 
-def test_ground_residuals_say_where_a_moved_mark_points_to() -> None:
+def test_ground_residuals_point_to_a_moved_mark() -> None:
     points = control_points(DEMO, TRUE_POSE, field_points(60, 12))
     # One mark in sixty moved to where a place 5 m further east is seen: the fit barely follows.
     enu = field_points(60, 12)[7:8]

@@ -1,4 +1,4 @@
-"""Whole flights of the eye over a field, through one method."""
+"""Whole flights of the imaging drone over a field, through one method."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -64,6 +64,6 @@ class Watch:
         return float(np.mean([shade_iou(m.is_sunlit, m.valid, self.is_shade(m)) for m in counted]))
 
     def wrong_share(self, found: ShadeMap, where: np.ndarray) -> float:
-        """Of the footprint's cells `where`: the share told wrongly."""
+        """Return the share of the footprint's cells `where` that is wrong."""
         wrong = found.is_sunlit == self.is_shade(found)
         return float(wrong[where & FOOTPRINT].mean())

@@ -106,7 +106,7 @@ class Imager:
     def see(
         self, land: Land, shade: DriftingShade, time_s: float, gain: float = 1.0
     ) -> GroundImage:
-        """The frame taken at a moment, laid on this eye's grid."""
+        """Return the frame taken at a time, on this camera's grid."""
         wrong = GroundGrid(
             self.grid.frame,
             self.grid.west_m + self.offset_m[0],
@@ -126,7 +126,7 @@ class Imager:
         return self.image(rgb, time_s)
 
     def image(self, rgb: np.ndarray, time_s: float) -> GroundImage:
-        """A picture laid on this eye's grid."""
+        """Return an image on this camera's grid."""
         east_m, north_m = centres(self.grid)
         valid = np.hypot(east_m, north_m) < SEEN_RADIUS_M
         return GroundImage(

@@ -53,7 +53,7 @@ class TestExposure:
         assert np.mean(followed) > np.mean(locked) + 0.1, (steady, followed, locked)
 
     def test_an_even_dimming_of_everything_counts_as_the_cameras_unless_it_is_locked(self) -> None:
-        """What it cannot tell: the page says so, and the setting decides."""
+        """A documented limit; a setting decides."""
         land, clear = Land(1), DriftingShade(1, cover=0.001)
         imager = Imager()
         images = [imager.see(land, clear, 5.0 * i, 0.5 if i == 20 else 1.0) for i in range(21)]
@@ -64,7 +64,7 @@ class TestExposure:
 
 
 class TestWhatIsNotKnown:
-    def test_nothing_is_said_of_a_cell_before_it_was_seen_long_enough(self) -> None:
+    def test_a_cell_is_invalid_until_it_was_visible_long_enough(self) -> None:
         watch = Watch(9_100, lasts_s=30.0)
         maps = shade_of(watch.images(), METHOD)
         known = [(m.captured_at_ns / 1e9, bool(m.valid[FOOTPRINT].any())) for m in maps]

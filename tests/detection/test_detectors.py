@@ -50,7 +50,7 @@ def check(found: ShadeMap, image: GroundImage) -> None:
 @methods
 @settings(max_examples=40)
 @given(seed=st.integers(0, 2**32))
-def test_whatever_comes_maps_are_sound_and_runs_are_repeatable(method: str, seed: int) -> None:
+def test_any_frames_give_sound_and_repeatable_maps(method: str, seed: int) -> None:
     runs: list[list[ShadeMap | RejectedFrame]] = [[], []]
     for run in runs:
         rng = np.random.default_rng(seed)
@@ -92,7 +92,7 @@ def test_a_step_from_an_old_state_gives_the_same_again(method: str) -> None:
 
 
 @methods
-def test_a_dark_patch_that_comes_is_shade(method: str) -> None:
+def test_a_dark_patch_that_appears_is_shade(method: str) -> None:
     """On even ground, where any method must see it."""
     rng = np.random.default_rng(3)
     state, imager = DetectionState(), Imager(grid=SMALL)

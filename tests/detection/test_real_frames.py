@@ -1,6 +1,6 @@
 """Detection on real fisheye frames, laid on the ground with their own poses.
 
-There is one frame of each field, so time is made: the frame is placed anew with a hovering eye's
+There is one frame of each field, so time is simulated: the frame is repositioned with the hover
 wander, its sensor noise and exposure are drawn, and a shadow of known shape darkens its pixels.
 Everything else, the ground, the lens and the JPEG, is as it was photographed.
 """
@@ -32,7 +32,7 @@ WANDER_M = 0.5
 
 
 def laid(folder: Path, name: str) -> GroundImage:
-    """The field's frame on 512 m of ground around its eye."""
+    """The field's frame on 512 m of ground around its camera."""
     camera = load_camera(folder / "camera-model.txt")
     points = load_control_points(folder / name / "GCPs.txt")
     middle = np.mean([(p.latitude_deg, p.longitude_deg, p.ellipsoid_height_m) for p in points], 0)

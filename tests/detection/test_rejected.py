@@ -58,7 +58,7 @@ def test_the_good_frame_itself_is_read(detector: Detector, flown: DetectionState
 def test_black(detector: Detector, flown: DetectionState) -> None:
     noise = np.random.default_rng(1).integers(0, 9, (*good().valid.shape, 3), dtype=np.uint8)
     reason = rejected(detector, flown, IMAGER.image(noise, 60.0), FrameFault.BLACK)
-    assert reason.startswith("expected a picture, got black")
+    assert reason.startswith("expected an image, got black")
 
 
 @pytest.mark.parametrize("filled_with", [128, 0, 255])
@@ -66,16 +66,16 @@ def test_torn(detector: Detector, flown: DetectionState, filled_with: int) -> No
     rgb = good().rgb.copy()
     rgb[160:] = filled_with
     reason = rejected(detector, flown, IMAGER.image(rgb, 60.0), FrameFault.TORN)
-    assert f"at the one level {filled_with} of 255" in reason
+    assert f"at level {filled_with} of 255" in reason
 
 
-def test_the_same_picture_again(detector: Detector, flown: DetectionState) -> None:
+def test_repeated(detector: Detector, flown: DetectionState) -> None:
     again = IMAGER.image(IMAGER.see(LAND, SHADE, 55.0).rgb, 60.0)
-    assert "to the bit" in rejected(detector, flown, again, FrameFault.REPEATED)
+    assert "a copy of the last one" in rejected(detector, flown, again, FrameFault.REPEATED)
 
 
 @pytest.mark.parametrize("at_s", [55.0, 54.0, 0.0])
-def test_older_than_the_last_one(detector: Detector, flown: DetectionState, at_s: float) -> None:
+def test_not_newer(detector: Detector, flown: DetectionState, at_s: float) -> None:
     reason = rejected(detector, flown, IMAGER.see(LAND, SHADE, at_s), FrameFault.NOT_NEWER)
     assert f"taken {55.0 - at_s:.1f} s before" in reason
 
@@ -87,10 +87,10 @@ def test_of_another_place(detector: Detector, flown: DetectionState) -> None:
     beside = replace(good(), grid=replace(GRID, west_m=GRID.west_m + 900.0))
     assert "got 0.0%" in rejected(detector, flown, beside, FrameFault.OTHER_PLACE)
     unseen = replace(good(), valid=np.zeros_like(good().valid))
-    assert "nothing of it" in rejected(detector, flown, unseen, FrameFault.OTHER_PLACE)
+    assert "without any valid pixel" in rejected(detector, flown, unseen, FrameFault.OTHER_PLACE)
 
 
-def test_a_first_frame_that_is_bad_leaves_nothing_behind(detector: Detector) -> None:
+def test_a_rejected_first_frame_leaves_the_state_unchanged(detector: Detector) -> None:
     start = DetectionState()
     black = IMAGER.image(np.zeros((*good().valid.shape, 3), np.uint8), 0.0)
     rejected(detector, start, black, FrameFault.BLACK)

@@ -30,30 +30,30 @@ def shade_map(
 
 
 def drawn_velocity(seed: int, slowest: float = 2.0, fastest: float = 8.0) -> tuple[float, float]:
-    """Any direction; in m/s."""
+    """Return a random velocity, m/s east and north."""
     rng = np.random.default_rng(seed)
     speed, course = rng.uniform(slowest, fastest), rng.uniform(0.0, 2.0 * np.pi)
     return float(speed * np.cos(course)), float(speed * np.sin(course))
 
 
 def noisy_map(shade: DriftingShade, at_s: float) -> ShadeMap:
-    """With a detector's errors of a tenth."""
+    """Return a map with a detector's errors: 0.1 in transmittance."""
     rng = np.random.default_rng([shade.seed, round(at_s)])
     direct = shade.transmittance(FIELD, at_s)
     return shade_map(np.clip(direct + rng.normal(0.0, 0.1, direct.shape), 0.0, 1.0), at_s)
 
 
 def is_sunlit(shade: DriftingShade, at_s: float) -> np.ndarray:
-    """The truth."""
+    """Return the true cells in sun."""
     return shade.transmittance(FIELD, at_s) >= SUNLIT_TRANSMITTANCE
 
 
 def forecasts(
     method: str, maps: list[ShadeMap], settings: ForecastSettings | None = None
 ) -> list[SunForecast]:
-    """The forecast after each map."""
-    state, told = ForecastState(), []
+    """Return the forecast after each map."""
+    state, found = ForecastState(), []
     for one in maps:
         state, forecast = FORECASTERS[method](state, one, settings or ForecastSettings())
-        told.append(forecast)
-    return told
+        found.append(forecast)
+    return found

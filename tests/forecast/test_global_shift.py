@@ -17,7 +17,7 @@ from tests.forecast.moving_shade import (
 )
 
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
-from recon.forecast.global_shift import seen_upwind_s
+from recon.forecast.global_shift import visible_upwind_s
 from recon.forecast.motion import ShadowMotion, motion_of
 from recon.forecast.state import PairVelocity
 from recon.model.geo import GroundGrid
@@ -27,13 +27,13 @@ SEEDS = range(700, 710)
 SETTINGS = ForecastSettings(lead_s=(0.0, 30.0, 60.0, 120.0, 300.0))
 
 
-def brier(told: SunForecast, lead: int, truth: np.ndarray, where: np.ndarray) -> float:
-    chances = told.sun_probability[lead] / 255.0
+def brier(issued: SunForecast, lead: int, truth: np.ndarray, where: np.ndarray) -> float:
+    chances = issued.sun_probability[lead] / 255.0
     return float(((chances - truth) ** 2)[where].mean())
 
 
 class TestAgainstPersistence:
-    def test_a_minute_ahead_its_brier_score_is_half_where_it_foresees_and_no_worse_elsewhere(
+    def test_a_minute_ahead_its_brier_score_is_half_within_the_horizon_and_no_worse_beyond(
         self,
     ) -> None:
         seen: dict[str, list[float]] = {method: [] for method in FORECASTERS}
@@ -42,14 +42,14 @@ class TestAgainstPersistence:
             velocity = drawn_velocity(seed, fastest=5.0)
             shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
             maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 90.0, 5.0)]
-            told = {method: forecasts(method, maps, SETTINGS) for method in FORECASTERS}
+            issued = {method: forecasts(method, maps, SETTINGS) for method in FORECASTERS}
             for i in (13, 17):
                 truth = is_sunlit(shade, 5.0 * i + 60.0)
-                foreseen = told["global_shift"][i].horizon_s >= 60.0
-                assert foreseen.any()
+                near = issued["global_shift"][i].horizon_s >= 60.0
+                assert near.any()
                 for method in FORECASTERS:
-                    seen[method].append(brier(told[method][i], 2, truth, foreseen))
-                    unseen[method].append(brier(told[method][i], 2, truth, SEEN & ~foreseen))
+                    seen[method].append(brier(issued[method][i], 2, truth, near))
+                    unseen[method].append(brier(issued[method][i], 2, truth, SEEN & ~near))
         shifted, still = np.mean(seen["global_shift"]), np.mean(seen["persistence"])
         assert shifted < 0.5 * still, (shifted, still)
         assert shifted < 0.15, (shifted, still)
@@ -57,16 +57,16 @@ class TestAgainstPersistence:
         assert np.mean(unseen["global_shift"]) < np.mean(unseen["persistence"])
         assert np.mean(unseen["global_shift"]) < 0.27
 
-    def test_what_it_calls_likely_happens_as_often_as_it_says(self) -> None:
-        said, came = [], []
+    def test_probabilities_are_calibrated(self) -> None:
+        predicted, true = [], []
         for seed in SEEDS:
             shade = DriftingShade(seed, cover=0.5, velocity_mps=drawn_velocity(seed, fastest=5.0))
             maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 65.0, 5.0)]
-            told = forecasts("global_shift", maps, SETTINGS)[-1]
-            foreseen = told.horizon_s >= 30.0
-            said.append(told.sun_probability[1][foreseen] / 255.0)
-            came.append(is_sunlit(shade, 90.0)[foreseen])
-        chances, happened = np.concatenate(said), np.concatenate(came)
+            issued = forecasts("global_shift", maps, SETTINGS)[-1]
+            near = issued.horizon_s >= 30.0
+            predicted.append(issued.sun_probability[1][near] / 255.0)
+            true.append(is_sunlit(shade, 90.0)[near])
+        chances, happened = np.concatenate(predicted), np.concatenate(true)
         for low, high in ((0.0, 0.2), (0.2, 0.8), (0.8, 1.0)):
             among = (chances >= low) & (chances < high)
             assert abs(chances[among].mean() - happened[among].mean()) < 0.2, (low, high)
@@ -78,17 +78,17 @@ class TestMotion:
             velocity = drawn_velocity(seed)
             shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
             maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 45.0, 5.0)]
-            told = forecasts("global_shift", maps, SETTINGS)[-1]
-            assert told.velocity_mps == pytest.approx(velocity, abs=0.5), seed
+            issued = forecasts("global_shift", maps, SETTINGS)[-1]
+            assert issued.velocity_mps == pytest.approx(velocity, abs=0.5), seed
 
     def test_a_turn_of_the_wind_is_followed_within_its_window(self) -> None:
         before = DriftingShade(710, cover=0.4, velocity_mps=(6.0, 0.0))
         after = DriftingShade(711, cover=0.4, velocity_mps=(0.0, -5.0))
         maps = [noisy_map(before, at_s) for at_s in np.arange(0.0, 60.0, 5.0)]
         maps += [noisy_map(after, at_s) for at_s in np.arange(60.0, 130.0, 5.0)]
-        told = forecasts("global_shift", maps, SETTINGS)
-        assert told[11].velocity_mps == pytest.approx((6.0, 0.0), abs=0.5)
-        assert told[-1].velocity_mps == pytest.approx((0.0, -5.0), abs=0.5)
+        issued = forecasts("global_shift", maps, SETTINGS)
+        assert issued[11].velocity_mps == pytest.approx((6.0, 0.0), abs=0.5)
+        assert issued[-1].velocity_mps == pytest.approx((0.0, -5.0), abs=0.5)
 
     def test_it_is_the_median_so_that_some_wrong_pairs_do_no_harm(self) -> None:
         right = tuple(PairVelocity(i, 5.0 + 0.1 * (i % 3 - 1), -2.0) for i in range(9))
@@ -121,7 +121,7 @@ class TestHorizon:
         rng = np.random.default_rng(seed)
         grid = GroundGrid(FIELD.frame, 0.0, 0.0, 4.0, 12, 15)
         seen = rng.random((12, 15)) < share
-        found = seen_upwind_s(seen, grid, ShadowMotion(east_mps, north_mps, 0.3), SETTINGS)
+        found = visible_upwind_s(seen, grid, ShadowMotion(east_mps, north_mps, 0.3), SETTINGS)
         for row in range(12):
             for col in range(15):
                 slow_s = self.slow_s(seen, row, col, (east_mps / 4.0, -north_mps / 4.0))
@@ -149,29 +149,29 @@ class TestHorizon:
                 answers.add(horizon_s)
         return answers
 
-    def test_downwind_is_foreseen_longest_and_beyond_is_the_prior(self) -> None:
+    def test_downwind_has_the_longest_horizon_and_beyond_is_the_prior(self) -> None:
         shade = DriftingShade(712, cover=0.4, velocity_mps=(5.0, 0.0))
         maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 65.0, 5.0)]
-        told = forecasts("global_shift", maps, SETTINGS)[-1]
-        assert told.method == "global_shift"
-        middle = told.horizon_s[64]
+        issued = forecasts("global_shift", maps, SETTINGS)[-1]
+        assert issued.method == "global_shift"
+        middle = issued.horizon_s[64]
         assert middle[20] < middle[64] < middle[110]
         # 448 m of footprint lie upwind of its eastern edge: 90 s at 5 m/s.
         assert middle[SEEN[64]].max() == pytest.approx(480.0 / 5.0, abs=10.0)
-        beyond = told.horizon_s[np.newaxis] < told.lead_s[:, np.newaxis, np.newaxis]
+        beyond = issued.horizon_s[np.newaxis] < issued.lead_s[:, np.newaxis, np.newaxis]
         beyond |= ~SEEN
-        assert (told.sun_probability[beyond] == round(told.prior_sunlit * 255.0)).all()
+        assert (issued.sun_probability[beyond] == round(issued.prior_sunlit * 255.0)).all()
 
 
 class TestWithoutAMotion:
     @pytest.mark.parametrize("level", [0.0, 0.6, 1.0])
     def test_an_even_sky_persists(self, level: float) -> None:
         maps = [shade_map(np.full(SEEN.shape, level), 5.0 * i) for i in range(14)]
-        told = forecasts("global_shift", maps, SETTINGS)[-1]
-        assert (told.method, told.velocity_mps) == ("persistence", None)
+        issued = forecasts("global_shift", maps, SETTINGS)[-1]
+        assert (issued.method, issued.velocity_mps) == ("persistence", None)
         still = forecasts("persistence", maps, SETTINGS)[-1]
-        assert np.array_equal(told.sun_probability, still.sun_probability)
-        assert np.array_equal(told.horizon_s, still.horizon_s)
+        assert np.array_equal(issued.sun_probability, still.sun_probability)
+        assert np.array_equal(issued.horizon_s, still.horizon_s)
 
     def test_a_pattern_of_the_ground_in_the_maps_is_no_motion(self) -> None:
         """A detector's reference leaves the same errors at the same places in every map."""
@@ -192,8 +192,8 @@ class TestWithoutAMotion:
         shade = DriftingShade(741, cover=0.4)
         maps = [noisy_map(shade, 5.0 * i) for i in range(12)]
         moved = replace(maps[-1], grid=replace(FIELD, west_m=-200.0), captured_at_ns=60 * 10**9)
-        told = forecasts("global_shift", [*maps, moved], SETTINGS)
-        assert [t.method for t in told[-2:]] == ["global_shift", "persistence"]
+        issued = forecasts("global_shift", [*maps, moved], SETTINGS)
+        assert [t.method for t in issued[-2:]] == ["global_shift", "persistence"]
 
 
 def test_the_middle_of_the_field_is_the_middle_of_the_tests() -> None:

@@ -1,4 +1,4 @@
-"""Frames in, forecast out: detection's own maps carry the motion."""
+"""Frames in, forecast out: the maps of a detector are good enough for the motion."""
 
 import numpy as np
 import pytest
@@ -13,29 +13,29 @@ LEADS = ForecastSettings(lead_s=(0.0, 30.0, 60.0))
 
 
 def line(seed: int, velocity: tuple[float, float]) -> tuple[DriftingShade, dict[str, SunForecast]]:
-    """Two minutes of frames, placed a metre off, through detection and each forecaster."""
+    """Pass two minutes of frames, positioned a metre off, through detection and each forecaster."""
     land, shade = Land(seed), DriftingShade(seed, cover=0.4, velocity_mps=velocity)
     detection, states = DetectionState(), dict.fromkeys(FORECASTERS, ForecastState())
-    told: dict[str, SunForecast] = {}
+    latest: dict[str, SunForecast] = {}
     wrong_m = np.random.default_rng(seed).normal(0.0, 1.0, (25, 2))
     for i in range(25):
         image = Imager(offset_m=tuple(wrong_m[i])).see(land, shade, 5.0 * i)
         detection, found = DETECTORS["brightness_ratio"](detection, image, DetectionSettings())
         assert isinstance(found, ShadeMap), found
         for method, step in FORECASTERS.items():
-            states[method], told[method] = step(states[method], found, LEADS)
-    return shade, told
+            states[method], latest[method] = step(states[method], found, LEADS)
+    return shade, latest
 
 
-def test_the_motion_is_found_in_what_was_detected_and_helps() -> None:
+def test_the_motion_is_found_in_detected_maps_and_helps() -> None:
     scores: dict[str, list[float]] = {method: [] for method in FORECASTERS}
     for seed, velocity in ((800, (4.0, -2.0)), (801, (-3.0, -4.0)), (802, (0.5, 5.0))):
-        shade, told = line(seed, velocity)
-        assert told["global_shift"].grid == FIELD
-        assert told["global_shift"].velocity_mps == pytest.approx(velocity, abs=0.7)
+        shade, latest = line(seed, velocity)
+        assert latest["global_shift"].grid == FIELD
+        assert latest["global_shift"].velocity_mps == pytest.approx(velocity, abs=0.7)
         truth = is_sunlit(shade, 120.0 + 30.0)
-        foreseen = FOOTPRINT & (told["global_shift"].horizon_s >= 30.0)
-        for method, forecast in told.items():
-            chances = forecast.sun_probability[1] / 255.0
-            scores[method].append(float(((chances - truth) ** 2)[foreseen].mean()))
+        within_horizon = FOOTPRINT & (latest["global_shift"].horizon_s >= 30.0)
+        for method, forecast in latest.items():
+            probability = forecast.sun_probability[1] / 255.0
+            scores[method].append(float(((probability - truth) ** 2)[within_horizon].mean()))
     assert np.mean(scores["global_shift"]) < 0.6 * np.mean(scores["persistence"]), scores

@@ -36,7 +36,7 @@ def test_a_known_shift_is_found_to_a_fraction_of_a_cell(gap_s: float) -> None:
     assert max(errors_m) < 8.0, errors_m
 
 
-def test_nothing_moves_where_nothing_moves() -> None:
+def test_no_shift_without_motion() -> None:
     shade = DriftingShade(621, cover=0.4, velocity_mps=(0.0, 0.0))
     shift = shift_of(noisy_map(shade, 0.0), noisy_map(shade, 10.0))
     assert shift is not None
@@ -44,7 +44,7 @@ def test_nothing_moves_where_nothing_moves() -> None:
     assert (shift.east_m, shift.north_m) == pytest.approx((0.0, 0.0), abs=0.8)
 
 
-def test_the_edge_of_what_is_seen_is_no_shade_that_stands_still() -> None:
+def test_the_edge_of_the_visible_area_is_not_taken_as_standing_shade() -> None:
     """A patch that moves in front of a footprint that does not."""
     shade = DriftingShade(622, cover=0.5, velocity_mps=(8.0, 0.0))
     narrow = SEEN & (np.arange(FIELD.rows) > 40)[:, np.newaxis]
@@ -72,7 +72,7 @@ def test_an_even_sky_has_no_shift(level: float) -> None:
     assert shift_of(shade_map(even, 0.0, unseen), shade_map(even, 9.0)) is None
 
 
-def test_no_shift_faster_than_the_settings_is_looked_for() -> None:
+def test_no_faster_shift_than_the_settings_is_searched() -> None:
     shade = DriftingShade(661, cover=0.4, velocity_mps=(8.0, 0.0))
     slow = ForecastSettings(fastest_mps=4.0)
     shift = shift_of(noisy_map(shade, 0.0), noisy_map(shade, 10.0), slow)
@@ -80,7 +80,7 @@ def test_no_shift_faster_than_the_settings_is_looked_for() -> None:
     assert max(abs(shift.east_m), abs(shift.north_m)) <= 44.0
 
 
-def test_maps_are_read_not_changed() -> None:
+def test_maps_are_not_modified() -> None:
     maps: list[ShadeMap] = [noisy_map(DriftingShade(662), at_s) for at_s in (0.0, 10.0)]
     before = [(m.transmittance.copy(), m.valid.copy()) for m in maps]
     shift_of(maps[0], maps[1])

@@ -1,4 +1,4 @@
-"""The forecast asked for a time span, against a slow sum over moments."""
+"""The probability over a time span, compared with a slow sum over moments."""
 
 import numpy as np
 import pytest
@@ -21,11 +21,11 @@ def forecast(lead_s: list[float], seed: int = 0, prior: float = 0.4) -> SunForec
     return SunForecast(GRID, ISSUED_NS, leads, probability, horizon_s, prior, "drawn")
 
 
-def at_moment(told: SunForecast, row: int, col: int, at_s: float) -> float:
-    """The probability of one cell at one moment, as one would say it."""
-    if at_s > told.lead_s[-1]:
-        return told.prior_sunlit
-    return float(np.interp(at_s, told.lead_s, told.sun_probability[:, row, col] / 255.0))
+def at_moment(sun: SunForecast, row: int, col: int, at_s: float) -> float:
+    """Return the probability of one cell at one moment, by definition."""
+    if at_s > sun.lead_s[-1]:
+        return sun.prior_sunlit
+    return float(np.interp(at_s, sun.lead_s, sun.sun_probability[:, row, col] / 255.0))
 
 
 moments = st.integers(-50_000, 900_000).map(lambda ms: ms / 1000.0)
@@ -39,48 +39,48 @@ moments = st.integers(-50_000, 900_000).map(lambda ms: ms / 1000.0)
 def test_a_span_gives_the_mean_over_its_moments(
     leads: list[float], seed: int, span_s: list[float]
 ) -> None:
-    told = forecast(sorted(leads), seed)
+    sun = forecast(sorted(leads), seed)
     from_s, to_s = span_s
     cells = np.array([(row, col) for row in range(2) for col in range(3)])
-    got = told.probability_sunlit(
+    got = sun.probability_sunlit(
         cells, ISSUED_NS + round(from_s * NS_PER_S), ISSUED_NS + round(to_s * NS_PER_S)
     )
     middles_s = from_s + (np.arange(500) + 0.5) / 500 * (to_s - from_s)
     for (row, col), value in zip(cells, got, strict=True):
-        slow = np.mean([at_moment(told, row, col, s) for s in middles_s])
+        slow = np.mean([at_moment(sun, row, col, s) for s in middles_s])
         # A jump to the prior within the span falls into one of the 500 slices.
         assert value == pytest.approx(slow, abs=3e-3)
         assert 0.0 <= value <= 1.0
 
 
 def test_one_moment_is_interpolated_between_its_leads() -> None:
-    told = forecast([0.0, 30.0, 60.0])
+    sun = forecast([0.0, 30.0, 60.0])
     at_ns = ISSUED_NS + 40 * NS_PER_S
-    (got,) = told.probability_sunlit(np.array([[1, 2]]), at_ns, at_ns)
-    at_30, at_60 = told.sun_probability[1:, 1, 2] / 255.0
+    (got,) = sun.probability_sunlit(np.array([[1, 2]]), at_ns, at_ns)
+    at_30, at_60 = sun.sun_probability[1:, 1, 2] / 255.0
     assert got == pytest.approx(at_30 * 2 / 3 + at_60 / 3)
 
 
 def test_each_cell_may_have_its_own_times() -> None:
-    told = forecast([0.0, 30.0, 60.0])
+    sun = forecast([0.0, 30.0, 60.0])
     cells = np.array([[0, 0], [1, 2], [0, 1]])
     from_ns = ISSUED_NS + np.array([0, 10, 50]) * NS_PER_S
     to_ns = from_ns + 15 * NS_PER_S
-    together = told.probability_sunlit(cells, from_ns, to_ns)
+    together = sun.probability_sunlit(cells, from_ns, to_ns)
     alone = [
-        told.probability_sunlit(cells[i : i + 1], int(from_ns[i]), int(to_ns[i]))[0]
+        sun.probability_sunlit(cells[i : i + 1], int(from_ns[i]), int(to_ns[i]))[0]
         for i in range(3)
     ]
     assert together == pytest.approx(alone)
 
 
-def test_what_is_not_foreseen_is_the_prior() -> None:
-    told = forecast([0.0, 30.0], prior=0.7)
+def test_beyond_the_leads_and_the_grid_it_is_the_prior() -> None:
+    sun = forecast([0.0, 30.0], prior=0.7)
     late_ns = ISSUED_NS + 31 * NS_PER_S
     cells = np.array([[0, 0], [1, 1]])
-    assert told.probability_sunlit(cells, late_ns, late_ns + NS_PER_S) == pytest.approx([0.7, 0.7])
+    assert sun.probability_sunlit(cells, late_ns, late_ns + NS_PER_S) == pytest.approx([0.7, 0.7])
     outside = np.array([[-1, 0], [0, -1], [2, 0], [0, 3]])
-    assert told.probability_sunlit(outside, ISSUED_NS, ISSUED_NS) == pytest.approx([0.7] * 4)
+    assert sun.probability_sunlit(outside, ISSUED_NS, ISSUED_NS) == pytest.approx([0.7] * 4)
 
 
 def test_a_span_that_ends_before_it_begins_is_an_error() -> None:

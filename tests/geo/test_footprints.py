@@ -116,10 +116,10 @@ millimetres = st.floats(-30.0, 130.0).map(lambda value: round(value, 3))
     st.lists(st.tuples(*[millimetres] * 6), min_size=1, max_size=6),
     st.sampled_from([0.0, 0.5, 5.0, 20.0]),
 )
-def test_what_is_seen_without_geos_is_what_geos_says(
+def test_answers_without_geos_agree_with_geos(
     corners: list[tuple[float, ...]], inset_m: float
 ) -> None:
-    """The circle in the middle answers for most; it never says more than the exact question."""
+    """The inscribed circle answers most questions, and never more than the exact answer."""
     outline = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 90.0], [55.0, 40.0], [0.0, 100.0]])
     hole = np.array([[70.0, 10.0], [80.0, 10.0], [75.0, 20.0]])
     triangles_m = np.array(corners).reshape(-1, 3, 2)

@@ -83,7 +83,7 @@ def test_no_point_of_the_curve_is_farther_than_the_chord_error(
 
 
 @given(routes(), chord_errors)
-def test_the_path_hangs_together_and_is_no_longer_than_its_legs(
+def test_the_path_is_connected_and_no_longer_than_its_legs(
     route: tuple[np.ndarray, np.ndarray], chord_error_m: float
 ) -> None:
     points, radii = route
@@ -144,7 +144,7 @@ def test_radii_given_are_not_changed(route: tuple[np.ndarray, np.ndarray]) -> No
         ([], [], 0.1, "waypoints, got"),
     ],
 )
-def test_misuse_is_told(points: list, radii: list, error_m: float, message: str) -> None:
+def test_misuse_raises(points: list, radii: list, error_m: float, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         rounded_path(points, radii, error_m)
 

@@ -150,7 +150,7 @@ def test_legs_agree_with_dense_sampling(
         (SQUARE, [[(0, 50), (50, 0), (100, 50), (50, 100)]], "its holes cut it into pieces"),
     ],
 )
-def test_what_is_no_polygon_is_told_in_words(
+def test_the_fault_of_an_invalid_region_is_described(
     outline: list[tuple[float, float]], holes: list[list[tuple[float, float]]], fault: str
 ) -> None:
     region = Region(np.array(outline, float), tuple(np.array(hole, float) for hole in holes))

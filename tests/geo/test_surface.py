@@ -57,7 +57,7 @@ def test_a_peak_inside_a_triangle_counts_and_one_beside_a_leg_does_not() -> None
     assert ground.highest_within_m(in_line_with_it) == pytest.approx([0.0])
 
 
-def test_unknown_ground_is_on_the_careful_side() -> None:
+def test_unknown_ground_gives_the_safe_answer() -> None:
     heights = np.zeros((4, 4))
     heights[1, 1] = np.nan
     ground = surface(heights)
@@ -78,7 +78,7 @@ def test_unknown_ground_is_on_the_careful_side() -> None:
 
 
 @pytest.mark.parametrize("shape", [(1, 5), (5, 1), (2, 3)])
-def test_what_is_no_surface_is_refused(shape: tuple[int, int]) -> None:
+def test_an_invalid_surface_is_refused(shape: tuple[int, int]) -> None:
     with pytest.raises(ValueError, match="at least 2 each way"):
         Surface(GroundGrid(FRAME, 0.0, 0.0, 1.0, 2, 2), np.zeros(shape))
 
@@ -113,7 +113,7 @@ def test_extremes_are_those_of_dense_samples(seed: int) -> None:
 
 
 @given(seed=st.integers(0, 10_000), height=st.floats(-25.0, 25.0))
-def test_the_quick_answer_is_the_exact_one(seed: int, height: float) -> None:
+def test_the_fast_answer_is_the_exact_one(seed: int, height: float) -> None:
     random = np.random.default_rng(seed)
     ground = surface(random.uniform(-20.0, 20.0, (17, 23)))
     triangles = random.uniform(-0.05, 1.05, (12, 3, 2)) * np.array([220.0, -160.0])
@@ -124,7 +124,7 @@ def test_the_quick_answer_is_the_exact_one(seed: int, height: float) -> None:
     assert above.tolist() == (ground.lowest_within_m(triangles) >= height).tolist()
 
 
-def test_nothing_asked_nothing_answered() -> None:
+def test_empty_input_gives_empty_output() -> None:
     none = np.zeros((0, 3, 2))
     assert len(SADDLE.highest_within_m(none)) == 0
     assert len(SADDLE.is_below(none, np.zeros(0))) == 0

@@ -1,8 +1,9 @@
-"""Where the ground lies in shade: frames on the ground in, shade maps out.
+"""Shade detection: orthorectified frames in, shade maps out.
 
-A method is a pure function of one file, chosen by its name in `DETECTORS`. All of them check the
-frame first (`check`), bring it onto the field's own grid (`cells`), and answer with a `ShadeMap` on
-that grid, or with a `RejectedFrame`.
+A method is a pure function in a file of its own, chosen by name in `DETECTORS`; adding one needs
+that file, a line in the registry and a row in docs/detection-and-forecast.md. Every method begins
+with `take_frame` (checks, sampling on the field grid) and returns a `ShadeMap` on that grid, or a
+`RejectedFrame`.
 """
 
 from collections.abc import Callable, Mapping
@@ -30,10 +31,11 @@ Detector: TypeAlias = Callable[
     [DetectionState, GroundImage, DetectionSettings],
     tuple[DetectionState, ShadeMap | RejectedFrame],
 ]
-"""One frame: `(state, image, settings) -> (state, shade)`, beginning with `DetectionState()`.
+"""One frame: `(state, image, settings) -> (state, shade)`, starting from `DetectionState()`.
 
-Frames come in the order they were taken. The shade map is on the field's grid, the same for every
-frame of a flight. A rejected frame leaves the state as it was.
+`image` is a `GroundImage` (R, C, 3) on any grid of the field's local frame. Frames must come in the
+order they were taken. The shade map is on the field grid, the same for every frame of a flight. A
+rejected frame leaves the state unchanged. Pure: no clock, no random numbers, no files.
 """
 
 DETECTORS: Mapping[str, Detector] = MappingProxyType(

@@ -1,9 +1,18 @@
-"""Shade where a cell is darker than it was itself in the last two minutes.
+"""Shade where a cell is darker than its own recent maximum.
 
-Each cell's light is compared with the 90th percentile of its own samples, taken for its light in
-full sun. So the ground's own pattern cancels out: dark soil is not shade. It tells nothing of a
-cell that lay in shade for the whole window; such a cell looks like one in sun, and its confidence
-is that of a cell that did not change.
+Theory of operation, per frame:
+
+1. `take_frame` checks the frame and averages its light over each cell of the field grid.
+2. `gain_now` estimates how the camera's exposure changed since the first frame; light is divided by
+   that gain, so that samples of different frames are comparable.
+3. The sample joins the cell's history: at most 24 samples over two minutes.
+4. The 90th percentile of a cell's samples is taken as its light in full sun. Light over that, less
+   the diffuse share which shade keeps, is the transmittance of the direct beam.
+5. A cell with fewer than four samples is invalid. Confidence grows with the number of samples and
+   with the contrast that the cell has shown.
+
+The ground's own pattern cancels out: dark soil is not shade. A cell in shade for the whole window
+looks like one in sun; its confidence stays at that of a cell that did not change.
 """
 
 from dataclasses import replace
@@ -21,7 +30,7 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, ShadeMap
 def brightness_ratio(
     state: DetectionState, image: GroundImage, settings: DetectionSettings
 ) -> tuple[DetectionState, ShadeMap | RejectedFrame]:
-    """Return the state after a frame, and the shade it shows; see `recon.detection.Detector`."""
+    """Return the state after a frame, and its shade map; see `recon.detection.Detector`."""
     taken = take_frame(state, image, settings)
     if isinstance(taken, RejectedFrame):
         return state, taken
@@ -39,9 +48,9 @@ def brightness_ratio(
 
 
 def _confidence(light: FloatMap, history: LightHistory, settings: DetectionSettings) -> FloatMap:
-    """Return (R, C): how full the window is, times how much of sun and shade the cell has shown.
+    """Return (R, C): how full the window is, times how much contrast the cell has shown.
 
-    Having been as much darker as the edge of shade is, or being it now, counts in full.
+    Contrast counts in full once the cell was (or is) as dark as the edge of shade.
     """
     filled = np.minimum(history.count / settings.samples, 1.0)
     darkest = np.fmin(history.dark, light) / history.sunlit

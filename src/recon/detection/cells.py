@@ -1,4 +1,4 @@
-"""The light that reaches the camera from each cell of the field's grid."""
+"""Sampling of a frame on the field grid: mean light of each cell."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,7 +14,7 @@ from recon.model.imagery import GroundImage
 from recon.model.shade import FloatMap, MaskMap
 
 GREEN = 1
-"""White balance moves red and blue against green, and shade is bluer than sun: green is taken."""
+"""Channel used: white balance changes red and blue against green, and shade is bluer than sun."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,7 +26,7 @@ class CellLight:
 
 
 def field_grid(image_grid: GroundGrid, settings: DetectionSettings) -> GroundGrid:
-    """Return the grid that all shade maps are on."""
+    """Return the grid of all shade maps of a flight."""
     if settings.grid is not None:
         return settings.grid
     cell_m = max(settings.cell_m, image_grid.cell_m)
@@ -38,9 +38,10 @@ def field_grid(image_grid: GroundGrid, settings: DetectionSettings) -> GroundGri
 
 
 def cell_light(image: GroundImage, grid: GroundGrid, settings: DetectionSettings) -> CellLight:
-    """Return a frame's light averaged over each cell of `grid`, wherever the frame is laid.
+    """Return a frame's mean light over each cell of `grid`.
 
-    Both grids are of one local frame. Light is linear; pixels that show nothing do not count.
+    Both grids are of one local frame and may be offset by any amount. Light is linear (gamma
+    removed); invalid pixels do not count.
     """
     levels = np.ascontiguousarray(image.rgb[..., GREEN])
     shown = image.valid.astype(np.float32)
@@ -56,12 +57,12 @@ def _box_means(
 ) -> npt.NDArray[np.float32]:
     """Return (R, C, K) means of (r, c, K) values over boxes as large as a cell of `grid`.
 
-    Exact where the cells' edges meet; else interpolated between boxes. What lies outside counts 0.
+    Exact where the cells' edges coincide, else interpolated between boxes. Outside counts as 0.
     """
     ratio = grid.cell_m / laid.cell_m
     box = max(1, round(ratio))
     means = cv2.blur(values, (box, box), borderType=cv2.BORDER_CONSTANT)
-    # An even box's middle lies half a pixel before the pixel that OpenCV writes it to.
+    # OpenCV writes the mean of an even box half a pixel after the middle of the box.
     middle = -0.5 + (0.5 if box % 2 == 0 else 0.0)
     first_col = (grid.west_m - laid.west_m) / laid.cell_m + ratio / 2.0 + middle
     first_row = (laid.north_m - grid.north_m) / laid.cell_m + ratio / 2.0 + middle
@@ -78,7 +79,7 @@ def _box_means(
 
 @lru_cache(maxsize=4)
 def _light_of_levels(gamma: float) -> npt.NDArray[np.float32]:
-    """The light of each level; level 0 counts as a half, for ratios."""
+    """Return the light (256,) of each level; level 0 counts as 0.5, so that ratios are finite."""
     levels = np.maximum(np.arange(256), 0.5) / 255.0
     light: npt.NDArray[np.float32] = (levels**gamma).astype(np.float32)
     return light

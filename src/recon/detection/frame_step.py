@@ -1,4 +1,8 @@
-"""Steps all methods share: check the frame, sample it on the field grid, build the shade map."""
+"""Steps that all methods share: check a frame, sample it on the field grid, build the shade map.
+
+Checks reject what a camera or link defect would make look like shade: black, torn or overexposed,
+repeated, out of order, or of another place. A rejected frame changes nothing.
+"""
 
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -16,10 +20,10 @@ from recon.model.units import ns_to_seconds
 
 
 class FrameFault(Enum):
-    """What is wrong with a frame."""
+    """Why a frame was rejected."""
 
     OTHER_PLACE = "other_place"
-    """Laid in another local frame than the field's, or beside its grid."""
+    """In another local frame than the field's, or outside its grid."""
     NOT_NEWER = "not_newer"
     REPEATED = "repeated"
     BLACK = "black"
@@ -28,23 +32,23 @@ class FrameFault(Enum):
 
 @dataclass(frozen=True, slots=True)
 class RejectedFrame:
-    """A frame that was not used; the detection's state is as before."""
+    """A frame that was not used; the detection state is unchanged."""
 
     frame_id: int
     fault: FrameFault
     reason: str
-    """For people: what was expected, what came."""
+    """Message for the operator: what was expected, what was received."""
 
 
 def picture_fault(
     image: GroundImage, latest_ns: int | None, grid: GroundGrid, settings: DetectionSettings
 ) -> RejectedFrame | None:
-    """Return what is wrong with a frame by its place, its time or its levels.
+    """Return why to reject a frame by place, time or levels, else None.
 
-    `latest_ns` is when the last frame that was used was taken.
+    `latest_ns` is the capture time of the last accepted frame.
     """
     if image.grid.frame != grid.frame:
-        text = "expected a frame laid in the field's local frame, got one of another origin"
+        text = "expected a frame in the field's local frame, got one of another origin"
         return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
     if latest_ns is not None and image.captured_at_ns <= latest_ns:
         late_s = ns_to_seconds(latest_ns - image.captured_at_ns)
@@ -56,7 +60,7 @@ def picture_fault(
 def cells_fault(
     image: GroundImage, cells: CellLight, latest: CellLight | None, settings: DetectionSettings
 ) -> RejectedFrame | None:
-    """Return what is wrong with the cells' light: too little seen, or the very same as before."""
+    """Return why to reject a frame by its cells: too few visible, or identical to the last."""
     seen_share = float(cells.seen.mean())
     if seen_share < settings.least_image:
         text = (
@@ -65,40 +69,38 @@ def cells_fault(
         )
         return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
     if latest is not None and np.array_equal(cells.light, latest.light, equal_nan=True):
-        text = "expected a new picture, got the last one again to the bit: is the camera frozen?"
+        text = "expected a new frame, got a copy of the last one; check whether the camera froze"
         return RejectedFrame(image.frame_id, FrameFault.REPEATED, text)
     return None
 
 
 def _level_fault(image: GroundImage, settings: DetectionSettings) -> RejectedFrame | None:
-    """Black, or one single level over much of the picture."""
+    """Return why to reject a frame by its levels: black, or one level over much of the image."""
     levels = np.ascontiguousarray(image.rgb[..., GREEN])
     counted = cv2.calcHist([levels], [0], image.valid.astype(np.uint8), [256], [0, 256]).ravel()
     if counted.sum() == 0.0:
-        text = "expected a frame that shows some of the field, got one that shows nothing of it"
+        text = "expected a frame that shows part of the field, got one without any valid pixel"
         return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
     shares = counted / counted.sum()
     bright = int(np.searchsorted(np.cumsum(shares), 0.9))
     if bright < settings.black_level:
-        text = (
-            f"expected a picture, got black: nine tenths of it are at level {bright} of 255 or less"
-        )
+        text = f"expected an image, got black: 90 % of it is at level {bright} of 255 or less"
         return RejectedFrame(image.frame_id, FrameFault.BLACK, text)
     level = int(np.argmax(shares))
     if shares[level] > settings.flat_share:
         text = (
-            f"expected a whole picture, got {shares[level]:.0%} of it at the one level {level} of "
-            "255: torn, or overexposed"
+            f"expected an intact image, got {shares[level]:.0%} of it at level {level} of 255: "
+            "torn, or overexposed"
         )
         return RejectedFrame(image.frame_id, FrameFault.TORN, text)
     return None
 
 
 def metres_per_pixel(grid: GroundGrid, pose: CameraPose, pixels_per_radian: float) -> FloatMap:
-    """Return (R, C): the ground along a pixel's coarser side, outwards from below the camera.
+    """Return (R, C): the length of a pixel's footprint along its longer side, in metres.
 
-    A fisheye gives every direction about as many pixels a radian, so only distance and slant count:
-    d / f across the view and d^2 / (h f) along it, for a camera h above flat ground, d away.
+    A fisheye has about the same number of pixels per radian f in every direction, so only distance
+    d and height h over flat ground count: d / f across the view, d^2 / (h f) along it.
     """
     east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m - pose.position_enu_m[0]
     north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m - pose.position_enu_m[1]
@@ -111,9 +113,9 @@ def metres_per_pixel(grid: GroundGrid, pose: CameraPose, pixels_per_radian: floa
 def take_frame(
     state: DetectionState, image: GroundImage, settings: DetectionSettings
 ) -> tuple[DetectionState, GroundGrid, CellLight] | RejectedFrame:
-    """Return the state with this frame as its latest, the field's grid, and each cell's light.
+    """Return the state with this frame as its latest, the field grid, and each cell's light.
 
-    Another camera, or another grid in the settings, starts anew.
+    Another camera, or another grid in the settings, resets the state.
     """
     grid = state.grid
     if grid is None or (settings.grid is not None and grid != settings.grid):
@@ -136,9 +138,9 @@ def shade_map(
     found: tuple[FloatMap, MaskMap, FloatMap],
     settings: DetectionSettings,
 ) -> ShadeMap:
-    """Return the map of what a method found: transmittance, validity and confidence, each (R, C).
+    """Return the shade map of (transmittance, validity, confidence), each (R, C).
 
-    What is not valid is made NaN and of no confidence.
+    Invalid cells get NaN and confidence 0; transmittance and confidence are clipped to [0, 1].
     """
     transmittance, valid, confidence = found
     coarser_m = metres_per_pixel(grid, image.pose, settings.pixels_per_radian)

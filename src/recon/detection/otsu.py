@@ -1,7 +1,7 @@
-"""Shade where a single frame is dark: Otsu's threshold. For comparison.
+"""Shade where a single frame is dark, by Otsu's threshold. A baseline for comparison.
 
 N. Otsu, A threshold selection method from gray-level histograms, IEEE Trans. SMC 9 (1979). It
-needs no history, takes dark soil for shade, and always finds two classes, under a clear sky too.
+needs no history, takes dark soil for shade, and always finds two classes, even in clear sky.
 """
 
 import cv2
@@ -18,7 +18,7 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, ShadeMap
 def otsu(
     state: DetectionState, image: GroundImage, settings: DetectionSettings
 ) -> tuple[DetectionState, ShadeMap | RejectedFrame]:
-    """Return the state after a frame, and the shade it shows; see `recon.detection.Detector`."""
+    """Return the state after a frame, and its shade map; see `recon.detection.Detector`."""
     taken = take_frame(state, image, settings)
     if isinstance(taken, RejectedFrame):
         return state, taken
@@ -30,10 +30,10 @@ def otsu(
 
 
 def _two_classes(levels: FloatMap, seen: npt.NDArray[np.float32]) -> tuple[FloatMap, float]:
-    """Return the transmittance (R, C) that puts the threshold at the edge of shade; and how far
-    the two classes explain the levels' variance, in [0, 1].
+    """Return the transmittance (R, C), and the share of variance between the classes, in [0, 1].
 
-    The darker class's mean is full shade, the brighter one's full sun, linear on either side.
+    The threshold is the edge of shade, the darker class's mean full shade, the brighter one's full
+    sun; linear in between.
     """
     whole = np.rint(seen).astype(np.uint8)
     threshold, _ = cv2.threshold(whole, 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)

@@ -1,4 +1,4 @@
-"""What the detection of shade goes by, each with its reason."""
+"""Settings of shade detection, each with its reason."""
 
 from dataclasses import dataclass
 
@@ -13,63 +13,63 @@ class DetectionSettings:
     """A name in `recon.detection.DETECTORS`."""
 
     grid: GroundGrid | None = None
-    """The field's grid: all shade maps are on it, wherever the frames were laid. Without one it is
-    the first frame's grid in cells of `cell_m`."""
+    """The field grid of all shade maps. None: the area of the first frame's grid, in cells of
+    `cell_m`."""
 
     cell_m: float = 4.0
-    """Frames placed by telemetry are metres off, and shadows' edges are tens of metres wide."""
+    """Frames positioned by telemetry are metres off, and shadow edges are tens of metres wide."""
 
     least_seen: float = 0.5
     """Share of a cell that a frame must show."""
 
     gamma: float = 2.2
-    """Cameras write sRGB: light is about the level to this power."""
+    """Cameras output sRGB: light is about the level to this power."""
 
     diffuse_share: float = 0.25
-    """The sky's part of full light on the ground. Clear sky with a high sun gives 0.15, broken
-    cloud or a low sun 0.35; what is left of the light in deep shade."""
+    """Diffuse share of full light on the ground, which remains in deep shade. Clear sky with a high
+    sun gives 0.15, broken cloud or a low sun 0.35."""
 
     window_s: float = 120.0
-    """Two minutes: longer than the middle shadow (88 s), short against the sun's own way."""
+    """Longer than the median shadow (88 s), short compared with the sun's motion."""
 
     samples: int = 24
-    """Kept of each cell in the window: one in 5 s, in which a shadow moves less than its edge."""
+    """Samples per cell in the window: one per 5 s, in which a shadow moves less than its edge."""
 
     sunlit_quantile: float = 0.9
-    """Of a cell's samples, taken for its light in full sun; above it are glints and noise."""
+    """Quantile of a cell's samples taken as its light in full sun; above it: glints and noise."""
 
     least_samples: int = 4
-    """PositionSample for less than 15 s nothing is said of a cell: most shadows stay longer."""
+    """Fewer samples (15 s) leave a cell invalid: most shadows stay longer than that."""
 
     flat_confidence: float = 0.4
-    """Of a cell that did not change for the whole window: it may have been in shade throughout."""
+    """Confidence of a cell that did not change over the window: it may be in shade throughout."""
 
     unshaded_contrast: float = 0.1
-    """By this share a cell darkens without shade: sensor noise, and frames placed metres off."""
+    """Share by which a cell darkens without shade: sensor noise, and frames metres off."""
 
     follows_exposure: bool = True
-    """Off for cameras whose exposure is locked: then a dimming of the whole view is shade."""
+    """False for cameras with locked exposure: then a dimming of the whole view is shade."""
 
     exposure_step_s: float = 2.0
-    """Frames up to this far apart are compared: in it shadows move less than their edges are wide,
-    and what is told wrongly does not add up as fast as from frame to frame."""
+    """Least time between reference frames: shadows move less than the width of their edges, and
+    errors add up more slowly than from frame to frame."""
 
     exposure_gap_s: float = 10.0
-    """Across a longer gap most cells may have changed their light; no exposure is told then."""
+    """Across a longer gap most cells may have changed; the exposure is not estimated then."""
 
     exposure_spread: float = 0.04
-    """How alike a third of the cells must have changed (natural log of light) for it to be taken
-    for the camera's doing: noise and shifts of placement stay below, moving soft cloud above."""
+    """Largest spread (natural log of light) of the changes of a third of the cells to be taken as
+    an exposure change: noise and position errors stay below, moving soft clouds above."""
 
     least_image: float = 0.01
-    """Share of the grid that a frame must show at all."""
+    """Share of the grid that a frame must show."""
 
     black_level: int = 16
-    """A picture whose brightest tenth is darker than this is black."""
+    """A frame whose brightest tenth is darker than this level is black."""
 
     flat_share: float = 0.2
-    """More than this of a picture at one and the same level is no ground, which noise spreads over
-    many: decoders fill what is missing with one grey, and sensors run full at one white."""
+    """A larger share at one single level is not ground, which noise spreads over many levels:
+    decoders fill missing parts with one grey, and saturated sensors give one white."""
 
     pixels_per_radian: float = 250.0
-    """Of the eye's lens at 1280 columns: a fisheye of 170 degrees."""
+    """Of the imaging drone's lens at 1280 columns: a fisheye of 170 degrees."""

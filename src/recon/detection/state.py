@@ -14,27 +14,30 @@ from recon.model.shade import FloatMap
 from recon.model.units import seconds_to_ns
 
 DARK_QUANTILE = 0.1
-"""Of a cell's samples, taken for the darkest it was: below it is noise."""
+"""Quantile of a cell's samples taken as its darkest light; below it is noise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LightHistory:
-    """Samples of the field's cells, oldest first; light at the first frame's exposure."""
+    """Light of the cells over the window, at the exposure of the first frame."""
 
     samples: tuple[tuple[int, FloatMap], ...]
-    """When, and (R, C) light with NaN where unseen."""
+    """(capture time, (R, C) light, NaN where not visible), oldest first."""
     sunlit: FloatMap
-    """(R, C): the sunlit quantile of each cell's samples, NaN without any."""
+    """(R, C): the sunlit quantile of each cell's samples, NaN without samples."""
     dark: FloatMap
     """(R, C): the dark quantile."""
     count: npt.NDArray[np.int64]
-    """(R, C): samples that show the cell."""
+    """(R, C): number of samples that show the cell."""
 
     @classmethod
     def with_sample(
         cls, history: Self | None, at_ns: int, light: FloatMap, settings: DetectionSettings
     ) -> Self:
-        """Return the history with a frame in it: the first one in each slot of time is kept."""
+        """Return the history with a frame added; only the first in each time slot is kept.
+
+        Slots are fixed in time, so that the frame rate does not change which samples are kept.
+        """
         kept = () if history is None else history.samples
         spacing_ns = seconds_to_ns(settings.window_s) // settings.samples
         if history is not None and at_ns // spacing_ns == kept[-1][0] // spacing_ns:
@@ -55,7 +58,7 @@ class LightHistory:
 
 
 def _quantile(ordered: FloatMap, count: npt.NDArray[np.int64], share: float) -> FloatMap:
-    """Return (R, C): the quantile of the first `count` of (N, R, C), linear between neighbours."""
+    """Return (R, C): the quantile of the first `count` of (N, R, C), with linear interpolation."""
     place = np.maximum(count - 1, 0) * share
     below = np.floor(place).astype(np.int64)
     above = np.minimum(below + 1, np.maximum(count - 1, 0))
@@ -66,14 +69,14 @@ def _quantile(ordered: FloatMap, count: npt.NDArray[np.int64], share: float) -> 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DetectionState:
-    """One state for all methods, so that a method may be changed in flight."""
+    """One state for all methods, so that the method can be changed in flight."""
 
     grid: GroundGrid | None = None
-    """The field's grid, once a frame came."""
+    """The field grid, from the first frame on."""
     serial: str = ""
-    """Whose camera the rest is of."""
+    """Serial of the vehicle whose camera the rest belongs to."""
     latest: CellLight | None = None
-    """The newest frame that was used, and when it was taken."""
+    """The last accepted frame; `latest_ns` is its capture time."""
     latest_ns: int | None = None
     exposure: Exposure | None = None
     history: LightHistory | None = None

@@ -1,8 +1,9 @@
-"""Where the ground will lie in sun: shade maps in, probabilities by lead out.
+"""Sun forecast: shade maps in, probability of sun by cell and lead time out.
 
-A method is a pure function of one file, chosen by its name in `FORECASTERS`. Its answer is a
-`SunForecast` on the map's grid: for each cell and lead how likely sun is, and the horizon beyond
-which it knows nothing but the share in sun of late.
+A method is a pure function in a file of its own, chosen by name in `FORECASTERS`; adding one needs
+that file, a line in the registry and a row in docs/detection-and-forecast.md. It returns a
+`SunForecast` on the map's grid: the probability of sun per cell and lead, and each cell's horizon,
+beyond which only the recent share in sun is known.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,10 +21,11 @@ __all__ = ["FORECASTERS", "ForecastSettings", "ForecastState", "Forecaster"]
 Forecaster: TypeAlias = Callable[
     [ForecastState, ShadeMap, ForecastSettings], tuple[ForecastState, SunForecast]
 ]
-"""One shade map: `(state, shade, settings) -> (state, forecast)`, beginning with `ForecastState()`.
+"""One shade map: `(state, shade, settings) -> (state, forecast)`, starting from `ForecastState()`.
 
-Maps come in the order they were taken; one that is not newer raises `ValueError`. Leads count from
-the moment the map was taken.
+`shade` is (R, C); the forecast has (L, R, C) probabilities for the L leads of the settings, counted
+from the map's capture time. Maps must come in the order they were taken; one that is not newer
+raises `ValueError`. Pure: no clock, no random numbers, no files.
 """
 
 FORECASTERS: Mapping[str, Forecaster] = MappingProxyType(

@@ -1,8 +1,14 @@
-"""What is in sun now moves on as one, with one velocity.
+"""All shadows move on with one common velocity.
 
-A cell will be as the place is now that lies upwind of it, as long as that place is seen: that is
-its horizon. What is told blurs as the velocity's error grows with the lead, and pales towards the
-mean as clouds change. Without a clear motion it is persistence, and says so.
+Theory of operation, per map:
+
+1. Phase correlation with maps 10, 20 and 40 s older gives a velocity per pair (`motion`); the
+   median over the last minute is the motion. Without enough agreeing pairs the forecast is that
+   of `persistence`, and its `method` is reported as such.
+2. At each lead a cell gets the probability of the place now upwind of it, as long as that place is
+   visible now: this bounds the cell's horizon.
+3. The map is blurred by the growing error of the velocity, and fades to the prior as clouds change
+   shape (`shape_memory_s`).
 """
 
 import cv2
@@ -23,7 +29,7 @@ BOX_OVER_SIGMA = float(np.sqrt(12.0))
 def global_shift(
     state: ForecastState, shade: ShadeMap, settings: ForecastSettings
 ) -> tuple[ForecastState, SunForecast]:
-    """Return the state after a map, and the forecast; see `recon.forecast.Forecaster`."""
+    """Return the state after a map, and its forecast; see `recon.forecast.Forecaster`."""
     state = with_pairs(with_map(state, shade, settings), shade, settings)
     prior = prior_sunlit(state, settings)
     motion = motion_of(state, settings)
@@ -36,7 +42,7 @@ def _moving_on(
     shade: ShadeMap, motion: ShadowMotion, prior: float, settings: ForecastSettings
 ) -> SunForecast:
     lead_s = np.array(settings.lead_s, dtype=np.float64)
-    horizon_s = seen_upwind_s(shade.valid, shade.grid, motion, settings)
+    horizon_s = visible_upwind_s(shade.valid, shade.grid, motion, settings)
     now = sunlit_now(shade, prior, settings)
     shape = (len(lead_s), *now.shape)
     probability = np.full(shape, round(prior * SURE), dtype=np.uint8)
@@ -58,25 +64,25 @@ def _moving_on(
     )
 
 
-def seen_upwind_s(
+def visible_upwind_s(
     seen: MaskMap, grid: GroundGrid, motion: ShadowMotion, settings: ForecastSettings
 ) -> FloatMap:
-    """Return (R, C): how long what reaches each cell comes from a seen one, without a break.
+    """Return (R, C): for how long, in s, the place upwind of each cell is visible without a gap.
 
-    0 where the cell itself is not seen; at most the last lead.
+    0 where the cell itself is not visible; at most the last lead.
     """
     horizon_s = np.zeros(seen.shape, dtype=np.float32)
     alive = seen.copy()
     lead_s = 0.0
     while lead_s < settings.lead_s[-1] and alive.any():
         lead_s = min(lead_s + settings.horizon_step_s, settings.lead_s[-1])
-        alive &= _is_seen_upwind(seen, grid, motion, lead_s)
+        alive &= _is_visible_upwind(seen, grid, motion, lead_s)
         horizon_s[alive] = lead_s
     return horizon_s
 
 
 def _after(now: FloatMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> FloatMap:
-    """Return (R, C): the map of now at a lead, as blurred as its place is unsure by then."""
+    """Return (R, C): the current map moved to a lead, blurred by the position error then."""
     box = round(BOX_OVER_SIGMA * motion.spread_mps * lead_s / grid.cell_m) // 2 * 2 + 1
     blurred = cv2.blur(now, (box, box), borderType=cv2.BORDER_REPLICATE) if box > 1 else now
     to_now = _upwind(grid, motion, lead_s)
@@ -86,10 +92,10 @@ def _after(now: FloatMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float)
     return later.astype(np.float32, copy=False)
 
 
-def _is_seen_upwind(
+def _is_visible_upwind(
     seen: MaskMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float
 ) -> MaskMap:
-    """Return (R, C): whether the place whose shade is here at a lead is seen now."""
+    """Return (R, C): whether the place upwind of each cell at a lead is visible now."""
     to_now = _upwind(grid, motion, lead_s)
     size = (grid.cols, grid.rows)
     how = cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP
@@ -97,7 +103,7 @@ def _is_seen_upwind(
 
 
 def _upwind(grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> npt.NDArray[np.float64]:
-    """The affine map (2, 3) from a cell's column and row to those of where its shade is now."""
+    """Return the affine map (2, 3) from a cell's column and row to those of its upwind place."""
     right = motion.east_mps * lead_s / grid.cell_m
     down = -motion.north_mps * lead_s / grid.cell_m
     return np.array([[1.0, 0.0, -right], [0.0, 1.0, -down]])

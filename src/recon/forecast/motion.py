@@ -1,4 +1,4 @@
-"""How the shadows move, told from many pairs of shade maps."""
+"""The shadows' velocity: robust median over many pairs of shade maps."""
 
 from dataclasses import dataclass, replace
 from math import hypot
@@ -12,12 +12,12 @@ from recon.model.shade import ShadeMap
 from recon.model.units import ns_to_seconds, seconds_to_ns
 
 NORMAL_MAD = 1.4826
-"""A normal deviate's standard deviation over its median absolute deviation."""
+"""Standard deviation over median absolute deviation of a normal distribution."""
 
 
 @dataclass(frozen=True, slots=True)
 class ShadowMotion:
-    """The shadows' common velocity, and how far pairs spread around it (standard deviation)."""
+    """The shadows' common velocity, and the spread of pairs about it (standard deviation)."""
 
     east_mps: float
     north_mps: float
@@ -25,7 +25,7 @@ class ShadowMotion:
 
 
 def with_pairs(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
-    """Return the state with a map compared to those kept, if the last one kept is old enough."""
+    """Return the state with a map compared to those kept, once per `keep_every_s`."""
     at_ns = shade.captured_at_ns
     every_ns = seconds_to_ns(settings.keep_every_s)
     if state.kept and at_ns // every_ns == state.kept[-1].at_ns // every_ns:
@@ -43,7 +43,7 @@ def with_pairs(state: ForecastState, shade: ShadeMap, settings: ForecastSettings
 
 
 def motion_of(state: ForecastState, settings: ForecastSettings) -> ShadowMotion | None:
-    """Return the median of the late pairs' velocities; None when they are few or do not agree."""
+    """Return the median velocity of recent pairs; None when they are few or disagree."""
     if len(state.velocities) < settings.least_pairs:
         return None
     all_mps = np.array([(one.east_mps, one.north_mps) for one in state.velocities])
@@ -56,7 +56,7 @@ def motion_of(state: ForecastState, settings: ForecastSettings) -> ShadowMotion 
 
 
 def _partners(state: ForecastState, at_ns: int, settings: ForecastSettings) -> list[ShadeSpectrum]:
-    """The kept maps nearest to the wanted distances in time, each once."""
+    """Return the kept maps nearest to the wanted time differences, each once."""
     chosen: dict[int, ShadeSpectrum] = {}
     for wanted_s in settings.pair_s:
         slack_ns = seconds_to_ns(settings.keep_every_s)

@@ -1,4 +1,8 @@
-"""What lies in sun now stays so, less and less surely."""
+"""Sun and shade stay as they are, with decreasing certainty. The baseline of all forecasts.
+
+The probability decays exponentially from the current one to the prior (`persistence_memory_s`), and
+is the prior beyond `persistence_horizon_s`.
+"""
 
 import numpy as np
 
@@ -10,13 +14,13 @@ from recon.model.shade import SURE, ShadeMap, SunForecast
 def persistence(
     state: ForecastState, shade: ShadeMap, settings: ForecastSettings
 ) -> tuple[ForecastState, SunForecast]:
-    """Return the state after a map, and the forecast; see `recon.forecast.Forecaster`."""
+    """Return the state after a map, and its forecast; see `recon.forecast.Forecaster`."""
     state = with_map(state, shade, settings)
     return state, persisting(shade, prior_sunlit(state, settings), settings)
 
 
 def persisting(shade: ShadeMap, prior: float, settings: ForecastSettings) -> SunForecast:
-    """Return the forecast that leaves everything where it is."""
+    """Return the forecast by persistence of one map; other methods fall back to it."""
     lead_s = np.array(settings.lead_s, dtype=np.float64)
     kept = np.exp(-lead_s / settings.persistence_memory_s)
     kept[lead_s > settings.persistence_horizon_s] = 0.0

@@ -1,10 +1,10 @@
-"""By how much the shade of one map lies elsewhere in another: phase correlation.
+"""The shift between two shade maps, by phase correlation.
 
 C. D. Kuglin, D. C. Hines, The phase correlation image alignment method, Proc. Int. Conf. on
-Cybernetics and Society (1975). Two things are done first. The mean of the surroundings is taken off
-each cell, over seen cells only, and the rest fades out towards the edge of what is seen: that edge
-stays where it is, and would be found as a shift of nothing. And small details weigh less than
-large ones.
+Cybernetics and Society (1975). Two steps come first. The mean of the surroundings, over visible
+cells only, is subtracted from each cell, and the rest fades out towards the edge of the visible
+area: that edge does not move, and would be found as a shift of zero. And small details get less
+weight than large ones.
 """
 
 from dataclasses import dataclass
@@ -23,15 +23,15 @@ from recon.model.units import ns_to_seconds
 Waves: TypeAlias = npt.NDArray[np.complex64]
 
 FADES_OVER_CELLS = 12.0
-"""From the edge of what is seen inwards."""
+"""From the edge of the visible area inwards."""
 
 PEAK_CELLS = 12
-"""Around the best shift nothing counts as a rival to it: a peak is some cells wide."""
+"""Half width of the area around the best shift without rivals: a peak is some cells wide."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """East and north metres from the earlier map to the later one, and how clear that is."""
+    """Shift in metres east and north from the earlier map to the later one, and its quality."""
 
     east_m: float
     north_m: float
@@ -41,21 +41,21 @@ class Shift:
     """The next best shift's peak as a share of this one's."""
 
     def is_clear(self, settings: ForecastSettings) -> bool:
-        """Return whether this is a shift rather than chance."""
+        """Return whether the peak is significant."""
         return self.peak >= settings.least_peak and self.rival <= settings.most_rival
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShadeSpectrum:
-    """The waves in one shade map; what is kept of it to be compared with later ones."""
+    """The spectrum of one shade map, kept to be compared with later ones."""
 
     grid: GroundGrid
     at_ns: int
     shape: tuple[int, int]
-    """Rows and columns transformed: twice the grid, so that what leaves on one side is not taken
-    for what enters on the other."""
+    """Rows and columns transformed: twice the grid, so that circular correlation does not join
+    opposite edges."""
     waves: Waves | None
-    """None without any contrast."""
+    """None without contrast."""
 
 
 def spectrum_of(shade: ShadeMap, settings: ForecastSettings) -> ShadeSpectrum:
@@ -71,9 +71,9 @@ def spectrum_of(shade: ShadeMap, settings: ForecastSettings) -> ShadeSpectrum:
 def shift_between(
     before: ShadeSpectrum, now: ShadeSpectrum, settings: ForecastSettings
 ) -> Shift | None:
-    """Return the shift of the shade between two maps of one grid, or None without any contrast.
+    """Return the shift of the shade between two maps of one grid, or None without contrast.
 
-    Shifts faster than the settings allow, or longer than the grid, are not looked for.
+    Only shifts up to `fastest_mps`, and shorter than the grid, are searched.
     """
     if before.waves is None or now.waves is None:
         return None
@@ -89,7 +89,7 @@ def _contrast(shade: ShadeMap) -> float:
 
 
 def _details(shade: ShadeMap, blur_cells: float) -> FloatMap:
-    """Return (R, C): the transmittance less its surroundings' mean, fading out at the edge."""
+    """Return (R, C): the transmittance minus the local mean, fading out at the edge."""
     seen = shade.valid.astype(np.float32)
     direct = np.where(shade.valid, shade.transmittance, np.float32(0.0))
     means, shares = (cv2.GaussianBlur(a, (0, 0), blur_cells) for a in (direct, seen))
@@ -98,7 +98,7 @@ def _details(shade: ShadeMap, blur_cells: float) -> FloatMap:
 
 
 def _inwards(valid: MaskMap) -> FloatMap:
-    """Return (R, C): 0 where unseen or at the edge of what is seen, 1 far inside."""
+    """Return (R, C): 0 outside and at the edge of the visible area, 1 far inside."""
     framed = cv2.copyMakeBorder(valid.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
     cells = cv2.distanceTransform(framed, cv2.DIST_L2, 3)[1:-1, 1:-1]
     inside: FloatMap = np.clip(cells / FADES_OVER_CELLS, 0.0, 1.0).astype(np.float32)
@@ -108,7 +108,7 @@ def _inwards(valid: MaskMap) -> FloatMap:
 def _agreement(
     earlier: Waves, later: Waves, shape: tuple[int, int], smooth_cells: float
 ) -> FloatMap:
-    """Return (rows, cols) of `shape`, middle = no shift: the share of phases that agree on each."""
+    """Return (rows, cols) of `shape`, zero shift in the middle: share of phases that agree."""
     both = np.conj(earlier) * later
     by_row, by_col = (
         np.exp(-2.0 * (np.pi * smooth_cells * np.fft.fftfreq(size)) ** 2) for size in shape
@@ -116,7 +116,7 @@ def _agreement(
     weight = np.outer(by_row, by_col[: both.shape[1]]).astype(np.float32)
     phases = both / np.maximum(np.abs(both), np.float32(1e-12))
     found = fft.fftshift(fft.irfft2(weight * phases, shape))
-    # A perfect match has all weights in phase.
+    # Normalised by the value of a perfect match, in which all weights are in phase.
     shares: FloatMap = (found / (by_row.mean() * by_col.mean())).astype(np.float32)
     return shares
 
@@ -140,7 +140,7 @@ def _best(agreement: FloatMap, reach: int, cell_m: float) -> Shift:
 
 
 def _between(line: FloatMap, best: int) -> float:
-    """Return where between its neighbours a parabola through them peaks, in [-0.5, 0.5]."""
+    """Return the sub-cell peak of a parabola through three neighbours, in [-0.5, 0.5]."""
     if best in (0, len(line) - 1):
         return 0.0
     before, at, after = (float(line[best + i]) for i in (-1, 0, 1))

@@ -1,4 +1,4 @@
-"""What a forecaster remembers, and what that alone gives: the prior share in sun, each cell now."""
+"""The state of a forecaster, and what follows from it alone: the prior, and each cell now."""
 
 from dataclasses import dataclass, replace
 
@@ -12,7 +12,7 @@ from recon.model.units import ns_to_seconds
 
 @dataclass(frozen=True, slots=True)
 class PairVelocity:
-    """What one pair of shade maps said of the shadows' motion."""
+    """The shadows' velocity by one pair of shade maps."""
 
     at_ns: int
     east_mps: float
@@ -21,25 +21,25 @@ class PairVelocity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ForecastState:
-    """One state for all methods, so that a method may be changed in flight."""
+    """One state for all methods, so that the method can be changed in flight; bounded."""
 
     latest_ns: int | None = None
     sunlit_share: float | None = None
-    """Mean share in sun of what was seen lately; None before anything was."""
+    """Recent mean share of visible cells in sun; None before the first map."""
     seen_s: float = 0.0
-    """For how long that mean has been taken; no longer than it remembers."""
+    """Time that mean covers, at most `cover_memory_s`."""
     kept: tuple[ShadeSpectrum, ...] = ()
-    """Maps to compare with, oldest first."""
+    """Spectra of earlier maps to compare with, oldest first."""
     velocities: tuple[PairVelocity, ...] = ()
     """Oldest first."""
 
 
-EVEN = 0.5
-"""The share in sun before anything was seen."""
+NO_KNOWLEDGE = 0.5
+"""Prior before the first map."""
 
 
 def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
-    """Return the state with a map's share in sun in it; maps on another grid begin anew.
+    """Return the state with a map's share in sun added; a map on another grid drops the motion.
 
     Raises `ValueError` for a map that is not newer than the last one.
     """
@@ -58,21 +58,21 @@ def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) 
 
 
 def prior_sunlit(state: ForecastState, settings: ForecastSettings) -> float:
-    """Return the probability of sun where nothing is known."""
+    """Return the prior: the probability of sun where nothing is known."""
     if state.sunlit_share is None:
-        return EVEN
+        return NO_KNOWLEDGE
     views = state.seen_s / settings.cover_view_s
-    return (views * state.sunlit_share + EVEN) / (views + 1.0)
+    return (views * state.sunlit_share + NO_KNOWLEDGE) / (views + 1.0)
 
 
 def sunlit_now(shade: ShadeMap, prior: float, settings: ForecastSettings) -> FloatMap:
-    """Return (R, C): each cell's probability of sun as the map was taken; `prior` where unseen.
+    """Return (R, C): each cell's probability of sun at the map's capture time.
 
-    The less the detection had to go by, the nearer to the prior.
+    `prior` where the map is invalid; the lower the detection's confidence, the nearer to `prior`.
     """
-    told = (shade.transmittance - SUNLIT_TRANSMITTANCE) / (2.0 * settings.soft_edge) + 0.5
-    told = np.clip(told, 1.0 - settings.surest, settings.surest)
-    mixed = np.where(shade.valid, prior + shade.confidence * (told - prior), prior)
+    probability = (shade.transmittance - SUNLIT_TRANSMITTANCE) / (2.0 * settings.soft_edge) + 0.5
+    probability = np.clip(probability, 1.0 - settings.surest, settings.surest)
+    mixed = np.where(shade.valid, prior + shade.confidence * (probability - prior), prior)
     return mixed.astype(np.float32)
 
 
@@ -84,7 +84,7 @@ def _with_share(
         return state
     share = float(shade.is_sunlit[shade.valid].mean())
     before = share if state.sunlit_share is None else state.sunlit_share
-    # A plain mean until the memory is full, from then on one that forgets.
+    # A plain mean until the averaging time is reached, then an exponential one.
     seen_s = min(state.seen_s + passed_s, memory_s)
     weight = min(passed_s / seen_s, 1.0) if seen_s > 0.0 else 1.0
     return replace(state, sunlit_share=before + weight * (share - before), seen_s=seen_s)

@@ -1,4 +1,4 @@
-"""What the eye's pictures cost: 1280 x 720 at five a second or more on one core.
+"""Speed of rendering the imaging drone's frames: 1280 x 720 at 5 fps or more on one core.
 
 The baseline is the least any renderer of this kind does: two float maps and one remap of as many
 pixels, and a Gaussian random number for each value. Times are the processor's. Run:
@@ -60,7 +60,7 @@ def test_a_hovering_imager(height_m: float) -> None:
 
 
 def test_new_land() -> None:
-    """One square of tiles moves by a tile: what a picture waits for when the eye flies."""
+    """Moving one square of tiles by a tile: the delay of a frame when the imaging drone flies."""
     tiles, sun = LandTiles(lay_out(0), 0), Sky(SkySettings()).sun_at(0.0)
     tile_m = CELLS_M[0] * 256
     for step in range(2):
