@@ -18,7 +18,7 @@ from recon.model.report import CoreReport, ExtendedReport, ImageReport
 from recon.site import default_site
 from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
-from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
+from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.state.station import Station
 
 CONSOLE_PERIOD_S = 0.1
@@ -106,7 +106,7 @@ async def measure_station(load: Load) -> Outcome:
     await links.start("127.0.0.1", 0)
     state_ms: list[float] = []
     tasks = [asyncio.create_task(driver.run()), asyncio.create_task(_console(service, state_ms))]
-    spare_what_is_loaded()
+    freeze_loaded_objects()
     scheduled = ran_and_waited_ns()
     cpu_s, wall_s = time.process_time(), time.monotonic()
     sending = asyncio.create_task(_send(links.port, load))

@@ -22,7 +22,7 @@ from recon.sim.flight.flight_modes import Grounded
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
 from recon.station.kernel.worker import JobRunner
-from recon.station.state.fleet_return_record import Member, Stage
+from recon.station.state.fleet_return_record import ReturningVehicle, Stage
 
 FRAME = LocalFrame(HOME)
 LEAST_LEVEL_M, LEAST_HEIGHT_M = 15.0, 6.0
@@ -61,7 +61,7 @@ class ReturningWorld:
             answers.append((newest.phase, newest.note))
         return answers
 
-    def member(self, serial: str) -> Member:
+    def member(self, serial: str) -> ReturningVehicle:
         running = self.world.driver.station.fleet_return
         assert running is not None
         return running.members[serial]

@@ -174,7 +174,7 @@ class TestWhatComesBetween:
         stages = world.stages()
         member = world.member(waiting[-1].serial)
         assert stages.pop(member.serial) is Stage.RELEASED
-        assert "land, ordered by test" in member.reason
+        assert "replaced by land, ordered by test" in member.reason
         assert set(stages.values()) == {Stage.LANDED}
 
     def test_all_stop_ends_it_for_all_that_are_held(self) -> None:
@@ -330,7 +330,7 @@ class TestCalling:
             True,
             True,
         ]
-        assert "led by the pilot" in answers[1][1]
+        assert "controlled by the pilot" in answers[1][1]
         assert answers[2][1].startswith("flying")
         assert answers[3][1].startswith("reachable")
         again = world.called("SIM-1")

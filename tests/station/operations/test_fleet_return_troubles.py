@@ -43,7 +43,7 @@ class TestBeforeItsTurn:
         world.runs(14.0)
         world.call("SIM-1")
         world.runs(14.0)
-        assert "did not stand within 12 s" in reason(world, "SIM-1")
+        assert "did not stop within 12 s" in reason(world, "SIM-1")
 
     def test_one_that_falls_silent_while_it_waits(self) -> None:
         world = returning_world(TWO, ONE_PAD, faults=("telemetry-dropout:*:15:6",))
@@ -51,7 +51,7 @@ class TestBeforeItsTurn:
         world.runs(10.0)
         (waiting,) = [m.serial for m in map(world.member, world.pads_m) if m.mission_id is None]
         world.runs(6.5)
-        assert "has not been heard for 3 s" in reason(world, waiting)
+        assert "no telemetry for 3 s" in reason(world, waiting)
 
     def test_one_that_is_moved_while_it_waits(self) -> None:
         """By its pilot in position mode: no mode tells of it."""
@@ -61,7 +61,7 @@ class TestBeforeItsTurn:
         (waiting,) = [m.serial for m in map(world.member, world.pads_m) if m.mission_id is None]
         world.put(waiting, (150.0, 180.0, 55.0))
         assert world.runs_until_over(300.0)
-        assert "was moved" in reason(world, waiting)
+        assert "moved while it waited" in reason(world, waiting)
 
     def test_one_that_lands_by_itself(self) -> None:
         world = returning_world([(0, 100, 9), (60, 100, 9)], ONE_PAD)
@@ -97,7 +97,7 @@ class TestItsFlight:
         held = OperatorOrder(-999, Hover(), "station: separation", serial="SIM-1")
         world.world.driver.handle(held)
         world.runs(1.0)
-        assert "hover, ordered by station: separation" in reason(world, "SIM-1")
+        assert "replaced by hover, ordered by station: separation" in reason(world, "SIM-1")
 
     def test_one_that_hovers_on_its_way_is_not_ordered_anything_more(self) -> None:
         world = returning_world(ONE, [(0, 0)])
@@ -129,7 +129,7 @@ class TestThePlan:
         world = returning_world(ONE, [(0, 0)], plan_takes_s=30.0)
         world.call("SIM-1")
         world.runs(24.0)
-        assert "not planned for within 20 s" in reason(world, "SIM-1")
+        assert "not planned within 20 s" in reason(world, "SIM-1")
         world.runs(20.0)
         assert world.member("SIM-1").stage is Stage.LEFT_OUT
 
@@ -172,7 +172,7 @@ def test_one_that_has_told_no_place_is_refused_without_a_site() -> None:
     scene.opens(1, extended("A"), core(position=None))
     scene.happens(FleetReturnOrdered(1, ("A",), "test"))
     assert scene.phase(1) is Phase.REFUSED_BY_STATION
-    assert "expected a position" in scene.record(1).note
+    assert "no position received" in scene.record(1).note
     assert scene.station.fleet_return is None
 
 

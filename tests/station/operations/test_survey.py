@@ -280,4 +280,4 @@ class TestTheWayToTheRows:
         assert world.missions()[-1].phase is Phase.REFUSED_BY_STATION
         assert world.phase() is SurveyPhase.PAUSED
         assert "school" in world.state().reason
-        assert "nor is another height of its way" in world.state().reason
+        assert "no other height of its approach" in world.state().reason

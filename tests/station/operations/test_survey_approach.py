@@ -11,7 +11,7 @@ from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
-from recon.station.operations.survey.approach import with_approach, with_approaches
+from recon.station.operations.survey.mission_dispatch import with_approach, with_approaches
 
 LIMITS = FlightLimits()
 ROWS = square_mission(height_m=60.0)

@@ -198,7 +198,7 @@ class TestWithoutBattery:
         world.starts("SIM-1")
         for _ in range(600):
             world.runs(1.0)
-            if world.record().members["SIM-1"].homeward:
+            if world.record().members["SIM-1"].return_reason:
                 break
         world.runs(5.0)
         world.pauses()

@@ -11,7 +11,7 @@ from recon.geo.distance import moved_m
 from recon.model.command import GoTo, Hover, Phase
 from recon.model.event import AlarmAcknowledged, HazardDismissed
 from recon.station.api_views.hazard_view import hazard_view
-from recon.station.traffic.known_traffic import hazard, in_the_air, is_hazard_unseen
+from recon.station.traffic.known_traffic import hazard, in_the_air, is_dismissible
 
 NORTH_100 = moved_m(PLACE, 100.0, 0.0)
 
@@ -50,7 +50,7 @@ class TestHazard:
             vehicle = scene.station.fleet.vehicles["A"]
             assert hazard(scene.station, vehicle, scene.now_ns) is None
             assert hazard_view(scene.station, vehicle, scene.now_ns) is None
-            assert not is_hazard_unseen(scene.station, "A", scene.now_ns)
+            assert not is_dismissible(scene.station, "A", scene.now_ns)
 
     def test_nobody_knows_the_home_of_one_seen_first_in_the_air(self) -> None:
         scene = CommandedStation().opens(1, core(), extended("Z")).passes(60.0)
@@ -66,7 +66,7 @@ class TestDismissal:
         scene.happens(HazardDismissed("A", "Ann"))
         assert in_air(scene) == []
         assert hazard(scene.station, scene.station.fleet.vehicles["A"], scene.now_ns) is None
-        assert not is_hazard_unseen(scene.station, "A", scene.now_ns)
+        assert not is_dismissible(scene.station, "A", scene.now_ns)
         scene.passes(600.0)
         assert in_air(scene) == []
         scene.says(1, core())
@@ -92,10 +92,10 @@ class TestDismissal:
 
     def test_one_that_never_told_where_it_is_can_be_dismissed_too(self) -> None:
         scene = CommandedStation().opens(1, core(position=None), extended()).passes(1.0)
-        assert is_hazard_unseen(scene.station, "A", scene.now_ns)
+        assert is_dismissible(scene.station, "A", scene.now_ns)
         scene.happens(HazardDismissed("A", "Ann"))
         assert in_air(scene) == []
-        assert not is_hazard_unseen(scene.station, "A", scene.now_ns)
+        assert not is_dismissible(scene.station, "A", scene.now_ns)
 
 
 class TestWithoutASerial:
@@ -137,7 +137,7 @@ class TestWithoutASerial:
 
     def test_a_person_takes_it_out(self) -> None:
         scene = self.lost()
-        assert is_hazard_unseen(scene.station, "link-7", scene.now_ns)
+        assert is_dismissible(scene.station, "link-7", scene.now_ns)
         scene.happens(HazardDismissed("link-7", "Ann"))
         assert in_air(scene) == []
         again = self.lost().happens(HazardDismissed("unidentified link 7", "Ann"))

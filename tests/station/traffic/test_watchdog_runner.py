@@ -176,13 +176,13 @@ class TestSeparation:
 
     def test_it_looks_ten_times_a_second_however_often_time_is_told(self) -> None:
         two = Two(300.0).passes(1.0)
-        looked_ns = two.scene.station.watchdog_state.looked_at_ns
+        looked_ns = two.scene.station.watchdog_state.run_at_ns
         two.scene.now_ns += S // 20
         two.scene.happens(Tick())
-        assert two.scene.station.watchdog_state.looked_at_ns == looked_ns
+        assert two.scene.station.watchdog_state.run_at_ns == looked_ns
         two.scene.now_ns += S // 20
         two.scene.happens(Tick())
-        assert two.scene.station.watchdog_state.looked_at_ns == two.scene.now_ns
+        assert two.scene.station.watchdog_state.run_at_ns == two.scene.now_ns
 
     def test_two_links_of_one_serial_are_one_vehicle_here(self) -> None:
         scene = CommandedStation()

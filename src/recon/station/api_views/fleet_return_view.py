@@ -3,7 +3,7 @@
 from recon.api import schema
 from recon.model.units import ns_to_seconds
 from recon.station.operations.fleet_return.conditions import in_turn
-from recon.station.state.fleet_return_record import Member
+from recon.station.state.fleet_return_record import ReturningVehicle
 from recon.station.state.station import Station
 
 
@@ -20,7 +20,7 @@ def fleet_return_view(station: Station, now_ns: int) -> schema.FleetReturnView |
     )
 
 
-def _member(member: Member, now_ns: int) -> schema.ReturningView:
+def _member(member: ReturningVehicle, now_ns: int) -> schema.ReturningView:
     flight = member.flight
     return schema.ReturningView(
         serial=member.serial,

@@ -38,7 +38,7 @@ from recon.station.control import authority, preflight
 from recon.station.control.dry_run import CHECKED_ID, check
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
-from recon.station.traffic.known_traffic import is_hazard_unseen
+from recon.station.traffic.known_traffic import is_dismissible
 
 
 @dataclass(slots=True)
@@ -141,7 +141,7 @@ class Service:
 
     def dismiss_hazard(self, name: str, by: str) -> bool:
         """Take a vehicle that is not heard out of the air."""
-        if not is_hazard_unseen(self.driver.station, name, self.driver.now_ns()):
+        if not is_dismissible(self.driver.station, name, self.driver.now_ns()):
             return False
         self.driver.handle(HazardDismissed(name, by))
         return True

@@ -14,7 +14,7 @@ from recon.station.api_views.corners import corners_lon_lat
 from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.station import Station
-from recon.station.state.survey_record import SURVEYS_KEPT, Member, Place, SurveyRecord
+from recon.station.state.survey_record import SURVEYS_KEPT, EastNorth, SurveyRecord, SurveyVehicle
 
 DECIMALS = 7
 """Of a degree: a centimetre."""
@@ -76,7 +76,7 @@ def survey_ways(record: SurveyRecord) -> schema.SurveyWays | None:
 
 
 def _member(
-    station: Station, record: SurveyRecord, member: Member, now_ns: int
+    station: Station, record: SurveyRecord, member: SurveyVehicle, now_ns: int
 ) -> schema.SurveyingView:
     state = record.state
     assert state is not None  # members come with the start
@@ -90,7 +90,7 @@ def _member(
         is_flying_rows=is_flown(station, member),
         waits_for=waits,
         refused=None if refused is None else refused.reason,
-        has_come_home=member.homeward is not None and is_on_ground(station, member),
+        has_come_home=member.return_reason is not None and is_on_ground(station, member),
         mission_command_id=member.command_id,
     )
 
@@ -127,7 +127,7 @@ def _cells(state: SurveyState) -> schema.SurveyCellsView:
     )
 
 
-def _lon_lat(frame: LocalFrame, places_m: Iterable[Place]) -> list[tuple[float, float]]:
+def _lon_lat(frame: LocalFrame, places_m: Iterable[EastNorth]) -> list[tuple[float, float]]:
     """Return (longitude, latitude) of places in east-north metres of the frame."""
     points_m = np.array([(*place, 0.0) for place in places_m]).reshape(-1, 3)
     latitude_deg, longitude_deg, _ = geo_from_enu(frame, points_m)

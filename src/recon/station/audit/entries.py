@@ -88,7 +88,7 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
         case PreflightOverridden(serial=serial, by=by):
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
         case HazardDismissed(serial, by):
-            name = known_traffic.lost_as(before, serial) or serial
+            name = known_traffic.lost_key(before, serial) or serial
             yield _about(before, "hazard.dismissed", "hazard area dismissed", by, name)
         case SeparationHoldSwitched(is_on, by):
             word = "on" if is_on else "off"

@@ -8,7 +8,7 @@ from recon.safety.situation import NO_FACTS
 from recon.station.control import preflight
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import VehicleControl
-from recon.station.traffic.known_traffic import in_the_air, setting_out
+from recon.station.traffic.known_traffic import about_to_fly, in_the_air
 
 
 def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
@@ -64,7 +64,7 @@ def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tu
     """Every other vehicle that flies or was last known to, heard or not, or is about to fly."""
     about_to = tuple(
         Traffic(state, intent)
-        for state, intent in setting_out(station, now_ns)
+        for state, intent in about_to_fly(station, now_ns)
         if state.serial != serial
     )
     return about_to + tuple(

@@ -24,22 +24,21 @@ from recon.station.steering.setpoint_streams import next_due_ns
 TICK_NS = 50_000_000
 """Twenty times a second: takeovers, repeats and alarms are at most this late."""
 
-
 CLOCK_NS = 1_000_000_000
-"""Once a second it is looked whether somebody has set the computer's clock."""
+"""How often the computer's clock is read: a user or NTP may set it."""
 
 
 def station_clock() -> Callable[[], int]:
-    """Return a clock of nanoseconds that begins at UTC and never jumps within a run."""
+    """Return a clock in nanoseconds that starts at UTC and never jumps within a run."""
     offset_ns = time.time_ns() - time.monotonic_ns()
     return lambda: offset_ns + time.monotonic_ns()
 
 
-def spare_what_is_loaded() -> None:
-    """Take everything loaded so far out of the garbage collector's rounds.
+def freeze_loaded_objects() -> None:
+    """Exclude everything loaded so far from garbage collection.
 
-    Libraries are hundreds of thousands of objects that live as long as the process. Looking through
-    them stopped the event loop for 40 ms every few seconds, an emergency order with it.
+    Libraries are hundreds of thousands of objects that live as long as the process. Scanning them
+    stopped the event loop for 40 ms every few seconds, and delayed emergency orders by as much.
     """
     gc.collect()
     gc.freeze()
@@ -65,16 +64,16 @@ class AsyncioDriver:
         self._tick_ns = self._clock_ns = 0
 
     def handle(self, event: Event) -> None:
-        """Take an event; what a step's outputs cause is queued behind it."""
+        """Queue an event and step by it; events caused by its outputs are queued behind it."""
         self._queue.put(event)
 
     def handle_from_thread(self, event: Event) -> None:
-        """Take an event from another thread."""
+        """Queue an event from another thread."""
         if self._loop is not None and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self.handle, event)
 
     async def run(self) -> None:
-        """Let time pass until cancelled."""
+        """Run the timers until cancelled."""
         self._loop = asyncio.get_running_loop()
         self._loop.set_exception_handler(self._unhandled)
         self._tick_ns = self._clock_ns = self.now_ns() + TICK_NS
@@ -82,14 +81,14 @@ class AsyncioDriver:
             due_ns = next_due_ns(self.station)
             wake_ns = self._tick_ns if due_ns is None else min(self._tick_ns, due_ns)
             await asyncio.sleep(max(0, wake_ns - self.now_ns()) / NS_PER_S)
-            self._let_time_pass(due_ns, self.now_ns())
+            self._run_timers(due_ns, self.now_ns())
 
-    def _let_time_pass(self, due_ns: int | None, now_ns: int) -> None:
+    def _run_timers(self, due_ns: int | None, now_ns: int) -> None:
         if due_ns is not None and now_ns >= due_ns:
-            # Sticks go first: what a tick has to do would shift their beat.
+            # Setpoints go first: a tick's work would delay them.
             self.handle(SticksDue())
         if now_ns >= self._tick_ns:
-            # What was slept through is not caught up with.
+            # Missed ticks are not made up for.
             self._tick_ns = max(self._tick_ns + TICK_NS, now_ns)
             if self.links is not None:
                 self.links.tick()
@@ -99,7 +98,7 @@ class AsyncioDriver:
             self.handle(ClockRead(time.time_ns()))
 
     def _unhandled(self, _loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """Take what nobody else has caught in the loop: an alarm, not a traceback."""
+        """Turn an uncaught error of the event loop into an alarm."""
         fault = context.get("exception")
         what = str(context.get("message")) if fault is None else described(fault)
         self.handle(StationFaulted("in its event loop", what))
@@ -110,16 +109,16 @@ class AsyncioDriver:
             self.station, outputs = step(before, event, now_ns)
         except Exception as fault:
             self.station, outputs = after_fault(TICK_PARTS, before, event, fault, now_ns)
-        with self._contained("writing the audit", event):
+        with self._isolated("writing the audit", event):
             if self.observe is not None:
                 self.observe(before, self.station, event)
         for output in outputs:
-            with self._contained(f"carrying out {type(output).__name__}", event):
+            with self._isolated(f"carrying out {type(output).__name__}", event):
                 self._carry_out(output)
 
     @contextmanager
-    def _contained(self, where: str, event: Event) -> Iterator[None]:
-        """Make an alarm of a fault; but not of one that came of telling a fault."""
+    def _isolated(self, where: str, event: Event) -> Iterator[None]:
+        """Turn a fault into an alarm, except one that came from reporting a fault."""
         try:
             yield
         except Exception as fault:

@@ -1,4 +1,4 @@
-"""The one ordered queue of events that both drivers step the station by."""
+"""The one ordered queue of events of both drivers."""
 
 from collections import deque
 from collections.abc import Callable
@@ -7,9 +7,9 @@ from recon.model.event import Event
 
 
 class EventQueue:
-    """Hands events on one at a time: what handling one causes waits behind those already there.
+    """Hands events to a handler one at a time, in order; events it causes are queued behind.
 
-    So a step's outputs are all carried out before the next event is looked at, and no step runs
+    So a step's outputs are all carried out before the next event is handled, and no step runs
     inside another.
     """
 
@@ -19,7 +19,7 @@ class EventQueue:
         self._is_draining = False
 
     def put(self, event: Event) -> None:
-        """Take an event; unless one is being handled right now, handle it and all it causes."""
+        """Queue an event; unless one is being handled now, handle it and all it causes."""
         self._waiting.append(event)
         if self._is_draining:
             return

@@ -1,4 +1,4 @@
-"""`recon run`: the station on real sockets, until it is told to stop."""
+"""`recon run`: the station on real sockets, until SIGINT or SIGTERM."""
 
 import asyncio
 import errno
@@ -35,7 +35,7 @@ from recon.station.audit.start import (
     started_entry,
 )
 from recon.station.kernel.build import first_state
-from recon.station.kernel.driver import AsyncioDriver, spare_what_is_loaded, station_clock
+from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.recovery.restart import LastRun, restart_entries, restored
 from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
@@ -46,12 +46,12 @@ SHUTDOWN_S = 2
 
 
 class StartError(ReconError):
-    """The station cannot start; the text says why and what to do."""
+    """The station cannot start; the text states why, and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunConfig:
-    """How a station is started. Everything binds loopback unless told otherwise."""
+    """How a station is started. Everything binds loopback by default."""
 
     site: Site
     link_host: str = "127.0.0.1"
@@ -127,7 +127,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         worker.start()
         stack.callback(worker.stop)
         server = _http_server(config, service)
-        spare_what_is_loaded()
+        freeze_loaded_objects()
         stack.enter_context(_stopped_by_signals(server))
         serving = asyncio.create_task(server.serve(sockets=[http_socket]))
         started = _started(config, service, links, http_socket)

@@ -1,8 +1,7 @@
 """The driver in virtual time: the same sessions, bytes and steps without sockets or clock.
 
-Used by tests and studies. Things happen at whole steps of 10 ms, and steps at which nothing is due
-are left out; every order of things is fixed, so that the same peers and seeds give the same run to
-the bit.
+Used by tests and studies. Everything happens at whole steps of 10 ms, and idle steps are skipped.
+The order is always the same: the same peers and seeds give the same run to the bit.
 """
 
 import heapq
@@ -28,7 +27,7 @@ STEP_NS = 10_000_000
 TICK_EVERY_NS = 50_000_000
 FAR_NS = 2**63 - 1
 EPOCH_NS = 1_780_000_000_000_000_000
-"""What the computer's clock says when virtual time begins: a day in 2026."""
+"""What the computer's clock shows when virtual time begins: a day in 2026."""
 
 
 class Peer(Protocol):
@@ -38,19 +37,19 @@ class Peer(Protocol):
         """Take bytes from the station."""
 
     def advance(self, now_ns: int) -> list[bytes]:
-        """Return what it sends now."""
+        """Return the bytes that it sends now."""
 
     @property
     def next_due_ns(self) -> int:
-        """When `advance` has something to do next, if nothing is received before then."""
+        """When `advance` is due next, if nothing is received before then."""
 
 
 @dataclass(slots=True)
 class FakeLink:
-    """What a link does to bytes. TCP delivers in order, so delays only ever add up.
+    """A simulated TCP connection. It delivers in order, so a delay delays all that follows.
 
-    `damage` may change, cut or drop a chunk on its way to the station. A dead link swallows
-    everything without a word, as a phone that sleeps does.
+    `damage` may change, cut or drop a chunk on its way to the station. A dead link drops everything
+    silently, as a sleeping phone does.
     """
 
     delay_s: float = 0.02
@@ -91,9 +90,9 @@ class VirtualDriver:
         self.station = station
         self.now_ns = 0
         self.log: list[Event] = []
-        """Every event the station saw, in order; not kept in long studies, images fill memory."""
+        """Every event of the station, in order; not kept in long studies, images fill memory."""
         self.observe: Callable[[Station, Station, Event], None] | None = None
-        """Sees every step as the asyncio driver's observer does."""
+        """Called with every step, as the asyncio driver's observer is."""
         self._keeps_log = keeps_log
         self._jobs = jobs
         self._settings = link_settings or LinkSettings()
@@ -122,17 +121,17 @@ class VirtualDriver:
             self.handle(LinkClosed(link_id, reason))
 
     def is_connected(self, link_id: int) -> bool:
-        """Return whether a connection stands."""
+        """Return whether a connection is open."""
         return link_id in self._wires
 
     def handle(self, event: Event) -> None:
-        """Give the station an event now; what a step's outputs cause is queued behind it."""
+        """Step the station by an event now; events caused by its outputs are queued behind it."""
         self._queue.put(event)
 
     def run_for(self, seconds: float) -> None:
-        """Let virtual time pass, in whole steps; at its end every peer has come as far."""
+        """Let virtual time pass, in whole steps; every peer is advanced to its end."""
         end_ns = _step_from(self.now_ns + seconds_to_ns(seconds))
-        for wire in self._wires.values():  # somebody may have touched a peer meanwhile
+        for wire in self._wires.values():  # a test may have changed a peer meanwhile
             wire.peer_due_ns = min(wire.peer_due_ns, wire.peer.next_due_ns)
         while self.now_ns < end_ns:
             now_ns = min(end_ns, self._next_step_ns())
@@ -215,7 +214,7 @@ class VirtualDriver:
         self._at(wire.to_app_at_ns, lambda: self._reach_app(wire, data))
 
     def _reach_app(self, wire: _Wire, data: bytes) -> None:
-        # What was on its way when a connection ended must not come out of the peer's next one.
+        # Bytes under way when a connection ended must not arrive on the peer's next one.
         if self._wires.get(wire.session.link_id) is wire and not wire.link.is_dead:
             wire.peer.receive(data, self.now_ns)
             wire.peer_due_ns = self.now_ns  # it may have an answer

@@ -154,7 +154,7 @@ def _unidentified(station: Station, now_ns: int) -> Iterable[tuple[str, VehicleS
             continue
         if link.id not in station.watchdog_state.unidentified_since_ns:
             continue
-        if not identity_grace.may_yet_say_its_serial(station, state, now_ns):
+        if not identity_grace.may_yet_report_serial(station, state, now_ns):
             yield lost_name(link.id), state
 
 

@@ -1,4 +1,4 @@
-"""The newest of many things, numbered, so that what somebody has taken can be dropped later."""
+"""The newest of many items, numbered, so that those already processed can be dropped later."""
 
 from dataclasses import dataclass
 from typing import Generic, TypeVar
@@ -7,24 +7,24 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Tail(Generic[T]):
-    """`items` are the kept ones; the first of them is number `first` of all that ever came."""
+class NumberedBuffer(Generic[T]):
+    """`items` are those kept; the first of them has the number `first` of all that ever came."""
 
     items: tuple[T, ...] = ()
     first: int = 0
 
     @property
     def end(self) -> int:
-        """The number of the next one to come."""
+        """The number of the next item."""
         return self.first + len(self.items)
 
-    def with_one(self, item: T, kept: int) -> "Tail[T]":
-        """Return it with one more; more than `kept` drop the oldest."""
+    def with_one(self, item: T, kept: int) -> "NumberedBuffer[T]":
+        """Return it with one more; beyond `kept` items the oldest are dropped."""
         items = (*self.items, item)
         dropped = max(0, len(items) - kept)
-        return Tail(items[dropped:], self.first + dropped)
+        return NumberedBuffer(items[dropped:], self.first + dropped)
 
-    def from_number(self, number: int) -> "Tail[T]":
-        """Return it without those before a number."""
+    def from_number(self, number: int) -> "NumberedBuffer[T]":
+        """Return it without the items before a number."""
         dropped = min(max(0, number - self.first), len(self.items))
-        return Tail(self.items[dropped:], self.first + dropped)
+        return NumberedBuffer(self.items[dropped:], self.first + dropped)

@@ -1,4 +1,4 @@
-"""What the watch remembers from one look to the next."""
+"""What the watchdogs remember from one run to the next."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ class Kept:
 
 @dataclass(frozen=True, slots=True)
 class HoldRefused:
-    """A hold that the watchdogs wanted and that did not go to its vehicle: when, and why."""
+    """A hold that the watchdogs requested and that was not sent: when, and why."""
 
     at_ns: int
     why: str
@@ -26,7 +26,7 @@ class HoldRefused:
 
 @dataclass(frozen=True, slots=True)
 class StickCount:
-    """How many sticks a lease has sent, and when that number last changed."""
+    """How many setpoints a stream has sent, and when that number last changed."""
 
     started_at_ns: int
     sent: int
@@ -35,14 +35,14 @@ class StickCount:
 
 @dataclass(frozen=True)
 class WatchdogState:
-    """The watch's memory; everything by serial, or by finding's key.
+    """Everything by serial, or by the finding's key.
 
-    `dismissed` has for each hazard area that somebody took out of the air the time of its last
-    telemetry: anything newer brings the vehicle back. `lost` are vehicles that flew without ever
-    saying a serial when their links ended, by the name their hazard areas are dismissed by.
+    `dismissed` has the time of the last telemetry for each hazard area that an operator dismissed:
+    newer telemetry brings the vehicle back. `lost` are vehicles that flew without ever reporting a
+    serial when their links ended, by the name their hazard areas are dismissed by.
     """
 
-    looked_at_ns: int | None = None
+    run_at_ns: int | None = None
     findings: Mapping[str, Kept] = field(default_factory=dict)
     held: Mapping[str, CommandedHold] = field(default_factory=dict)
     holds_refused: Mapping[str, HoldRefused] = field(default_factory=dict)
@@ -53,5 +53,5 @@ class WatchdogState:
     """Since when each link has flown without a serial, by link id."""
     lost: Mapping[str, VehicleState] = field(default_factory=dict)
     is_hold_on: bool = True
-    """Whether the watchdogs' findings hold vehicles; switched by a person."""
+    """Whether the watchdogs' findings hold vehicles; switched by an operator."""
     switched_by: str = ""

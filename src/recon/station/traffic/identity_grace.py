@@ -1,8 +1,18 @@
-"""Who has only just come: most likely it is a vehicle that is known already.
+"""Identity grace: links that have not yet reported a serial; usually a known vehicle reconnecting.
 
-An app says its serial a second after its first telemetry. Until then its vehicle is two things
-here: a link without a serial, and the hazard area of a vehicle that is not heard. After a restart
-every vehicle in the air is. Nothing would be found but that each is near itself.
+An app reports its serial (extended telemetry) about a second after its first core telemetry. Until
+then its vehicle exists twice: as an unidentified link, and as the hazard area of a vehicle whose
+telemetry is lost. After a restart that is so for every vehicle in the air. Without a grace period
+the watchdogs would find each vehicle too near to itself. So a vehicle is left out of their picture:
+
+- *unidentified link*: from its first flying telemetry without a serial, for `serial_wait_s`; then
+  it counts as a vehicle of its own, with an alarm.
+- *restored vehicle*: one that flew when the last run ended, until it is connected again, for
+  `settle_s` after the restart at most; then its hazard area counts.
+- *lost unidentified vehicle* (no link at all): likewise for `settle_s` after a restart.
+
+The gate makes no such exception: for an order all of them are traffic. A link that ends without a
+serial leaves a lost vehicle behind, unless an identified vehicle was at that very place and time.
 """
 
 from dataclasses import replace
@@ -16,28 +26,28 @@ from recon.station.state.station import Station
 SAME_TIME_S = 1.0
 SAME_PLACE_M = 5.0
 SAME_HEIGHT_M = 2.0
-"""Two aircraft this near would have met: it is one, told by two connections of its phone."""
+"""Two aircraft this near would collide: it is one, reported on two connections of its phone."""
 
 
-def is_heard_by_serial(station: Station, unidentified: VehicleState) -> bool:
-    """Return whether what a link without a serial told of is heard by its serial at that moment."""
+def is_identified_elsewhere(station: Station, unidentified: VehicleState) -> bool:
+    """Return whether an identified vehicle was where an unidentified one was, at that time."""
     return any(_is_same(unidentified, vehicle) for vehicle in station.fleet.vehicles.values())
 
 
 def _is_same(unidentified: VehicleState, vehicle: VehicleState) -> bool:
-    """In doubt it is another one."""
+    """Whether both are one aircraft; in doubt they are not."""
     here, there = unidentified.position.value, vehicle.position.value
     high_m, other_m = (
         unidentified.height_above_takeoff_m.value,
         vehicle.height_above_takeoff_m.value,
     )
-    heard_ns, other_ns = unidentified.core_received_at_ns, vehicle.core_received_at_ns
+    received_ns, other_ns = unidentified.core_received_at_ns, vehicle.core_received_at_ns
     velocity = vehicle.velocity_ned.value
     if here is None or there is None or high_m is None or other_m is None or velocity is None:
         return False
-    if heard_ns is None or other_ns is None or vehicle.is_flying.value is not True:
+    if received_ns is None or other_ns is None or vehicle.is_flying.value is not True:
         return False
-    between_s = abs(heard_ns - other_ns) / NS_PER_S
+    between_s = abs(received_ns - other_ns) / NS_PER_S
     flown_m = hypot(velocity.north_mps, velocity.east_mps) * between_s
     climbed_m = abs(velocity.down_mps) * between_s
     return (
@@ -48,14 +58,14 @@ def _is_same(unidentified: VehicleState, vehicle: VehicleState) -> bool:
 
 
 def is_settling(station: Station, now_ns: int) -> bool:
-    """Return whether the station was restarted so lately that apps are still coming back."""
+    """Return whether the station restarted so recently that apps are still reconnecting."""
     restored_at_ns = station.restored_at_ns
     settle_ns = seconds_to_ns(station.settings.restart.settle_s)
     return restored_at_ns is not None and now_ns - restored_at_ns < settle_ns
 
 
 def awaited(station: Station, now_ns: int) -> tuple[VehicleState, ...]:
-    """Return the vehicles that flew before a restart a moment ago, and are not heard yet."""
+    """Return the vehicles that flew before a recent restart and have not reconnected yet."""
     if not is_settling(station, now_ns):
         return ()
     vehicles = station.fleet.vehicles
@@ -66,18 +76,18 @@ def awaited(station: Station, now_ns: int) -> tuple[VehicleState, ...]:
     )
 
 
-def is_new(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
-    """Return whether it is too early to watch a vehicle: by what is heard next, it is another."""
+def is_in_grace(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
+    """Return whether the watchdogs leave a vehicle out: it may soon turn out to be another."""
     if vehicle.serial is not None:
         is_restored = station.control(vehicle.serial).restored is not None
         return is_restored and is_settling(station, now_ns)
     if vehicle.link_id is None:
         return is_settling(station, now_ns)
-    return may_yet_say_its_serial(station, vehicle, now_ns)
+    return may_yet_report_serial(station, vehicle, now_ns)
 
 
 def with_unidentified(station: Station, now_ns: int) -> Station:
-    """Return the station that knows since when each link has flown without a serial."""
+    """Note since when each link has flown without a serial."""
     before = station.watchdog_state.unidentified_since_ns
     since_ns = {
         link.id: before.get(link.id, now_ns)
@@ -91,8 +101,8 @@ def with_unidentified(station: Station, now_ns: int) -> Station:
     )
 
 
-def may_yet_say_its_serial(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
-    """Return whether a vehicle has no serial and has not had the time to say it."""
+def may_yet_report_serial(station: Station, vehicle: VehicleState, now_ns: int) -> bool:
+    """Return whether a vehicle has no serial and has not had the time to report it."""
     since_ns = station.watchdog_state.unidentified_since_ns.get(vehicle.link_id or -1)
     wait_ns = seconds_to_ns(station.settings.serial_wait_s)
     return vehicle.serial is None and since_ns is not None and now_ns - since_ns < wait_ns

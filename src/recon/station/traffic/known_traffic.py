@@ -1,4 +1,9 @@
-"""What may be in the air: heard or not, identified or not; and hazard areas taken out of it."""
+"""Known traffic: every vehicle that may be in the air, and the dismissal of hazard areas.
+
+A vehicle is traffic until telemetry shows it on the ground: connected, lost, or unidentified. One
+whose telemetry is lost is a hazard area, which grows; an operator who knows where it is dismisses
+it, and newer telemetry brings it back.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -16,16 +21,16 @@ from recon.station.traffic import identity_grace
 
 LOST_KEPT = 16
 """Vehicles that flew without a serial and were lost: an app that connects again and again must not
-fill the air. The rest are one hazard that is nowhere known to be, and so everywhere."""
+fill the memory. The rest are one hazard without a position, which blocks all motion."""
 MANY_LOST = "many-lost"
-"""What that one is dismissed by."""
+"""The name by which that one is dismissed."""
 
 
 def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
     """Yield every vehicle, and every link without one, that flies or was last known to.
 
-    Beside it the serial that is claimed for it: a link in conflict claims another vehicle's. A
-    hazard area that somebody has dismissed is not among them until it is heard again.
+    With it the serial that is claimed for it: a link in conflict claims another vehicle's. A
+    dismissed hazard area is left out until new telemetry arrives.
     """
     for serial, vehicle in station.fleet.vehicles.items():
         if vehicle.is_flying.value is not False and not is_dismissed(station, vehicle):
@@ -37,11 +42,10 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
         yield state, None
 
 
-def setting_out(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, Intent]]:
-    """Yield who is about to fly a mission that telemetry does not show yet, and that mission.
+def about_to_fly(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, Intent]]:
+    """Yield each vehicle about to fly a mission that telemetry does not show yet, and its intent.
 
-    One whose mission still waits to be sent; and one on the ground that was sent one a moment ago,
-    for it may be taking off.
+    Its mission is queued; or it is on the ground, was sent one a moment ago, and may be taking off.
     """
     for record in station.orders.tracked:
         body, serial = record.command.body, record.command.serial
@@ -60,7 +64,7 @@ def setting_out(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, I
 
 
 def hazard(station: Station, vehicle: VehicleState, now_ns: int) -> HazardArea | None:
-    """Return where a vehicle may be that is not heard; None for one on the ground or dismissed."""
+    """Return where a lost vehicle may be; None for one on the ground or dismissed."""
     if vehicle.is_flying.value is False or vehicle.core_received_at_ns is None:
         return None
     if is_dismissed(station, vehicle):
@@ -73,40 +77,42 @@ def hazard(station: Station, vehicle: VehicleState, now_ns: int) -> HazardArea |
 
 
 def is_dismissed(station: Station, vehicle: VehicleState) -> bool:
-    """Return whether somebody has taken a vehicle out of the air, and it was not heard since."""
+    """Return whether an operator has dismissed a vehicle, without telemetry since."""
     dismissed, serial = station.watchdog_state.dismissed, vehicle.serial or ""
     return serial in dismissed and dismissed[serial] == vehicle.core_received_at_ns
 
 
-def is_hazard_unseen(station: Station, name: str, now_ns: int) -> bool:
-    """Return whether a name has a hazard area, or is a vehicle without any position."""
-    if lost_as(station, name) is not None:
+def is_dismissible(station: Station, name: str, now_ns: int) -> bool:
+    """Return whether a name has a hazard area, or is a lost vehicle without any position."""
+    if lost_key(station, name) is not None:
         return True
     vehicle = station.fleet.vehicles.get(name)
     if vehicle is None or vehicle.core_received_at_ns is None:
         return False
-    is_placeless = vehicle.position.value is None and not vehicle.track
+    has_no_position = vehicle.position.value is None and not vehicle.track
     may_fly = vehicle.is_flying.value is not False
     is_out = is_dismissed(station, vehicle)
-    return hazard(station, vehicle, now_ns) is not None or (is_placeless and may_fly and not is_out)
+    return hazard(station, vehicle, now_ns) is not None or (
+        has_no_position and may_fly and not is_out
+    )
 
 
 def dismiss(station: Station, event: HazardDismissed, now_ns: int) -> Station:
-    """Return the station with a hazard area dismissed; unchanged when there is none."""
-    if not is_hazard_unseen(station, event.serial, now_ns):
+    """Dismiss a hazard area; the station is unchanged if there is no such area."""
+    if not is_dismissible(station, event.serial, now_ns):
         return station
-    watch, key = station.watchdog_state, lost_as(station, event.serial)
+    watch, key = station.watchdog_state, lost_key(station, event.serial)
     if key is not None:
         lost = {name: state for name, state in watch.lost.items() if name != key}
         return replace(station, watchdog_state=replace(watch, lost=lost))
-    heard_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
-    dismissed = {**watch.dismissed, event.serial: heard_at_ns}
+    received_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
+    dismissed = {**watch.dismissed, event.serial: received_at_ns}
     station = replace(station, watchdog_state=replace(watch, dismissed=dismissed))
     return _with_room(station) if has_no_room(station.fleet) else station
 
 
 def _with_room(station: Station) -> Station:
-    """What a person has taken out of the air, and has no link, makes room for others."""
+    """Forget dismissed vehicles without a link: the fleet has no room for others."""
     gone = {
         serial
         for serial, vehicle in station.fleet.vehicles.items()
@@ -125,7 +131,7 @@ def keep_lost(station: Station, link_id: int) -> Station:
     link = station.fleet.links.get(link_id)
     if link is None or link.claimed_serial is not None or not link.own_state.is_flying.value:
         return station
-    if identity_grace.is_heard_by_serial(station, link.own_state):
+    if identity_grace.is_identified_elsewhere(station, link.own_state):
         return station
     state = link.own_state
     lost = with_lost(station.watchdog_state.lost, lost_name(link_id), state)
@@ -135,35 +141,35 @@ def keep_lost(station: Station, link_id: int) -> Station:
 def with_lost(
     lost: Mapping[str, VehicleState], name: str, state: VehicleState
 ) -> Mapping[str, VehicleState]:
-    """Return the lost with one more; when there are too many, with one that stands for the rest.
+    """Return the lost vehicles with one more; if too many, with one that stands for the rest.
 
-    It has no place, and the gate lets nothing set out while such a one may be in the air.
+    That one has no position, and the gate refuses all motion while it may be in the air.
     """
     if name != MANY_LOST and sum(key != MANY_LOST for key in lost) < LOST_KEPT:
         return {**lost, name: state}
-    somewhere = VehicleState(
+    rest = VehicleState(
         serial=None,
         profile=VehicleProfile(serial="", name="one of many lost vehicles"),
         is_flying=state.is_flying,
         core_received_at_ns=state.core_received_at_ns,
     )
-    return {**lost, MANY_LOST: somewhere}
+    return {**lost, MANY_LOST: rest}
 
 
 def lost_name(link_id: int) -> str:
-    """Return what the hazard area of a vehicle without a serial is dismissed by."""
+    """Return the name by which an unidentified vehicle's hazard area is dismissed."""
     return f"link-{link_id}"
 
 
 def dismissed_by(station: Station, vehicle: VehicleState) -> str:
-    """Return what a vehicle's hazard area is dismissed by, with a serial or without."""
+    """Return the name by which a vehicle's hazard area is dismissed."""
     lost = station.watchdog_state.lost.items()
     return vehicle.serial or next(
         (name for name, state in lost if state is vehicle), lost_name(vehicle.link_id or 0)
     )
 
 
-def lost_as(station: Station, name: str) -> str | None:
-    """Return which of the lost is meant: by what it is dismissed by, or as its alarm names it."""
+def lost_key(station: Station, name: str) -> str | None:
+    """Return the key of a lost vehicle, by that key or by its display name."""
     lost = station.watchdog_state.lost
     return next((key for key, s in lost.items() if name in (key, s.display_name)), None)

@@ -1,7 +1,9 @@
-"""The watch: ten times a second the watchdogs look at a picture of the air.
+"""The watchdog runner: ten times a second the watchdogs check a picture of all traffic.
 
-What they find becomes alarms, and holds: orders like any other, judged by the gate, on record and
-repeated until telemetry shows them.
+Their findings become alarms. A finding may want a vehicle held: the runner returns a `HoldRequest`,
+the kernel places it as an order like any other (judged by the gate, on record, repeated until
+telemetry shows it), and reports the outcome with `after_hold`. A hold that was refused is requested
+again after `hold_retry_s`; one that was sent lasts until a newer order or the landing.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -40,8 +42,8 @@ def run(
     station: Station, now_ns: int, watchdogs: Iterable[Watchdog]
 ) -> tuple[Station, tuple[HoldRequest, ...]]:
     """Return the station with the watchdogs' findings, if it is time, and the holds they want."""
-    looked_at_ns, settings = station.watchdog_state.looked_at_ns, station.settings.safety.watchdogs
-    if looked_at_ns is not None and now_ns - looked_at_ns < seconds_to_ns(settings.period_s):
+    run_at_ns, settings = station.watchdog_state.run_at_ns, station.settings.safety.watchdogs
+    if run_at_ns is not None and now_ns - run_at_ns < seconds_to_ns(settings.period_s):
         return station, ()
     station = identity_grace.with_unidentified(_with_stick_counts(station, now_ns), now_ns)
     refused = _lately_refused(station, now_ns)
@@ -60,7 +62,7 @@ def run(
     findings = [finding for watchdog in watchdogs for finding in watchdog(picture)]
     watch = replace(
         station.watchdog_state,
-        looked_at_ns=now_ns,
+        run_at_ns=now_ns,
         findings=_kept(kept, findings, now_ns, seconds_to_ns(settings.lingers_s)),
         before=_before(picture),
         held=_still_held(station),
@@ -78,8 +80,8 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
     watch, imager = station.watchdog_state, station.imaging.imager_serial
     for vehicle, claimed in in_the_air(station):
         if vehicle.serial != claimed:
-            continue  # a link in conflict: most likely it tells of the same aircraft
-        if identity_grace.is_new(station, vehicle, now_ns):
+            continue  # a link in conflict: most likely telemetry of the same aircraft
+        if identity_grace.is_in_grace(station, vehicle, now_ns):
             continue
         serial = vehicle.serial or ""
         control = station.control(serial)
@@ -99,15 +101,15 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
 
 
 def _with_stick_counts(station: Station, now_ns: int) -> Station:
-    """Note for each stream of sticks when its last one left."""
+    """Note for each setpoint stream when its last setpoint was sent."""
     if not station.leased and not station.watchdog_state.sticks:
         return station
     counts: dict[str, StickCount] = {}
-    for serial, lease in station.leases():
-        if lease.closing is not None:
+    for serial, stream in station.leases():
+        if stream.closing is not None:
             continue
         before = station.watchdog_state.sticks.get(serial)
-        known = (lease.started_at_ns, lease.packets_sent)
+        known = (stream.started_at_ns, stream.packets_sent)
         is_same = before is not None and (before.started_at_ns, before.sent) == known
         counts[serial] = before if before and is_same else StickCount(*known, now_ns)
     return replace(station, watchdog_state=replace(station.watchdog_state, sticks=counts))
@@ -116,7 +118,7 @@ def _with_stick_counts(station: Station, now_ns: int) -> Station:
 def _kept(
     kept: Mapping[str, Kept], findings: Iterable[Finding], now_ns: int, lingers_ns: int
 ) -> dict[str, Kept]:
-    """What is found now, and what was found a moment ago: alarms must not flicker."""
+    """Findings of now and of a moment ago: alarms must not flicker."""
     still = {key: one for key, one in kept.items() if now_ns - one.seen_ns <= lingers_ns}
     for finding in findings:
         before = still.get(finding.key)
@@ -126,7 +128,7 @@ def _kept(
 
 
 def _before(picture: TrafficPicture) -> dict[str, PreviousPosition]:
-    """Each vehicle's newest position, to compare the next one with."""
+    """Each vehicle's newest position, for comparison with the next one."""
     newest: dict[str, PreviousPosition] = {}
     for one in picture.watched:
         serial, position = one.state.serial, one.state.position
@@ -141,7 +143,7 @@ def _before(picture: TrafficPicture) -> dict[str, PreviousPosition]:
 
 
 def _still_held(station: Station) -> dict[str, CommandedHold]:
-    """The holds that nothing has ended: no newer order, and not the ground."""
+    """The holds in force: no newer order, and not landed."""
     return {
         serial: held
         for serial, held in station.watchdog_state.held.items()
@@ -151,7 +153,7 @@ def _still_held(station: Station) -> dict[str, CommandedHold]:
 
 
 def _lately_refused(station: Station, now_ns: int) -> dict[str, HoldRefused]:
-    """The holds that could not be given, until they are to be tried again."""
+    """The holds that were refused, until they are to be tried again."""
     retry_ns = seconds_to_ns(station.settings.safety.watchdogs.hold_retry_s)
     refused = station.watchdog_state.holds_refused.items()
     return {serial: one for serial, one in refused if now_ns - one.at_ns < retry_ns}

@@ -1,4 +1,4 @@
-"""Calling vehicles home: each is told to hold, so that the plan begins with vehicles that stand."""
+"""Calling vehicles home: each is commanded to hold, so that the plan begins with them at rest."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,7 +10,7 @@ from recon.record.audit import AuditEntry
 from recon.safety.datum import frame_for
 from recon.station.control import order_gateway
 from recon.station.operations.fleet_return.progress import is_still_left
-from recon.station.state.fleet_return_record import ENDED, FleetReturn, Member, Stage
+from recon.station.state.fleet_return_record import ENDED, FleetReturn, ReturningVehicle, Stage
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
@@ -19,7 +19,7 @@ RULE = "fleet_return"
 
 
 def call_home(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
-    """Begin a fleet return, or let more vehicles join the one that goes on.
+    """Begin a fleet return, or let more vehicles join the one under way.
 
     Each serial gets one order, with a number of its own: the hold that it begins with, or a
     refusal. Missions come later, each judged by the gate when its turn comes.
@@ -37,9 +37,9 @@ def call_home(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepp
 
 
 def join(station: Station, hold: OperatorOrder, by: str, now_ns: int) -> Stepped:
-    """Hold a vehicle, and let it join the return unless that is refused; see the hold's record.
+    """Hold a vehicle, and let it join the return unless its hold is refused.
 
-    The mission that follows is asked for as the hold is: as the operator's, or as guidance's.
+    The mission that follows is ordered under the same authority as the hold.
     """
     station, sent = order_gateway.place(station, hold, now_ns)
     if station.orders.records[hold.command_id].phase is not Phase.REFUSED_BY_STATION:
@@ -48,24 +48,24 @@ def join(station: Station, hold: OperatorOrder, by: str, now_ns: int) -> Stepped
 
 
 def refusal(station: Station, serial: str) -> Refusal | None:
-    """Return why a vehicle is not called at all; whether it flies is the gate's question.
+    """Return why a vehicle cannot be called home, else None; the gate judges its hold.
 
-    One that guidance leads is taken from it by its hold, as by any other.
+    One controlled by guidance is taken from it by the hold, as by any other order.
     """
     name, vehicle = _name(station, serial), station.fleet.vehicles.get(serial)
     if vehicle is not None and frame_for(station.airspace, vehicle) is None:
-        return Refusal(RULE, f"{name}: expected a position, it has told none: hold it, or land it")
+        return Refusal(RULE, f"{name}: no position received; hold it, or land it")
     authority = station.control(serial).authority
     if authority.holder is AuthorityHolder.PILOT:
         return Refusal(
             RULE,
-            f"{name} is controlled by the pilot ({authority.reason}): ask the "
-            "pilot, take control, then call it home",
+            f"{name} is controlled by the pilot ({authority.reason}); ask the pilot, take control, "
+            "then call it home",
         )
     running = station.fleet_return
     member = None if running is None else running.members.get(serial)
     if member is not None and member.stage not in ENDED:
-        return Refusal(RULE, f"{name} is already on its way home or waits for its turn")
+        return Refusal(RULE, f"{name} is already on its way home, or waits for its turn")
     return None
 
 
@@ -91,7 +91,7 @@ def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Sta
         running = FleetReturn(by, now_ns, frame, still)
     hold_id = order.command_id
     name = vehicle.display_name
-    member = Member(
+    member = ReturningVehicle(
         serial,
         name,
         vehicle.link_id,

@@ -1,4 +1,20 @@
-"""Carrying a fleet return on: who stands is planned, whose turn has come is sent its mission."""
+"""The execution of a fleet return: vehicles at rest are planned, and fly home in turn.
+
+Each vehicle goes through stages (`Stage`); five times a second they are read anew:
+
+- *Stopping*: it was commanded to hold. At rest within 12 s it waits; else it is left out.
+- *Waiting*: it hovers. When none is stopping, the worker plans all that wait: a layer, a wave and a
+  landing mission each. Then the first vehicle in turn begins whose layer, pad and path are free,
+  and only one at a time, for each changes what others may do. A refusal of the gate that time may
+  end (`WAITING_RULES`) is tried again every second, at most 30 s while no other flies. When all
+  that wait are blocked by something that does not end by itself, they are planned again.
+- *Ordered*, then *flying*: its mission was approved; telemetry shows it.
+- Ends: *landed*; *released*, when its pilot or a newer order controls it; *left out*, when anything
+  else went wrong, with an alarm and its reason. Nothing that went wrong is resumed by itself.
+
+A vehicle whose mission was ignored is held when it is left out: begun late, the mission would cross
+the paths of others. At the end, what guidance had called home goes back to the operator.
+"""
 
 from dataclasses import replace
 from math import dist
@@ -23,29 +39,35 @@ from recon.station.control import authority, order_gateway
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.operations.fleet_return import planning, positions
 from recon.station.operations.fleet_return.positions import is_same_pad
-from recon.station.operations.fleet_return.progress import seen
-from recon.station.operations.fleet_return.settings import SETTINGS, ReturnSettings
+from recon.station.operations.fleet_return.progress import updated
+from recon.station.operations.settings import RETURN_SETTINGS, ReturnSettings
 from recon.station.state.command_ids import take_id
-from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, FleetReturn, Member, Stage
+from recon.station.state.fleet_return_record import (
+    ENDED,
+    UNDER_WAY,
+    FleetReturn,
+    ReturningVehicle,
+    Stage,
+)
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
 
 WAITING_RULES = ("separation", "link_age")
-"""Refusals of the gate that time may end; any other stands."""
+"""Rules of the gate whose refusals may end with time; any other refusal stands."""
 
-MOVED = "it was moved from where it waited: its pilot has it, or it drifts"
+MOVED = "it moved while it waited: its pilot flies it, or it drifts"
 
 
-def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) -> Stepped:
-    """Return the station after a fleet return has gone on as far as it can now."""
+def advance(station: Station, now_ns: int, settings: ReturnSettings = RETURN_SETTINGS) -> Stepped:
+    """Advance the fleet return as far as it can go now."""
     station = _handed_back(station, now_ns)
     running = station.fleet_return
-    if running is None or running.is_over or now_ns < running.look_at_ns:
+    if running is None or running.is_over or now_ns < running.step_due_ns:
         return station, ()
-    running = replace(running, look_at_ns=now_ns + seconds_to_ns(settings.look_every_s))
+    running = replace(running, step_due_ns=now_ns + seconds_to_ns(settings.step_every_s))
     for member in running.members.values():
-        running = running.put(seen(station, member, settings, now_ns))
+        running = running.put(updated(station, member, settings, now_ns))
     station, stops = _stop_what_may_begin_late(station, running, now_ns)
     if running.at(Stage.STOPPING):
         return replace(station, fleet_return=running), stops
@@ -57,28 +79,28 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = SETTINGS) 
 
 
 def _handed_back(station: Station, now_ns: int) -> Station:
-    """Whom guidance called home, and who is there or is not flown any further, is the operator's.
+    """Give vehicles that guidance called home back to the operator at their end.
 
-    What somebody has given to guidance since is left to it.
+    Those given to guidance again since then stay with it.
     """
     running = station.fleet_return
     for member in () if running is None else running.at(*ENDED):
-        led_since_ns = station.control(member.serial).authority.since_ns
-        if member.asked_as is AuthorityHolder.GUIDANCE and led_since_ns <= member.since_ns:
-            why = f"its way home has ended: {member.reason or 'it has landed'}"
+        controlled_since_ns = station.control(member.serial).authority.since_ns
+        if member.asked_as is AuthorityHolder.GUIDANCE and controlled_since_ns <= member.since_ns:
+            why = f"its flight home has ended: {member.reason or 'it has landed'}"
             station = authority.hand_back(station, member.serial, member.by, why, now_ns)
     return station
 
 
 def _stop_what_may_begin_late(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
-    """Hold those whose mission was ignored so far: begun now, it would come into others' ways."""
+    """Hold vehicles whose mission was ignored: begun now, it would cross the paths of others."""
     outputs: list[Output] = []
     for member in running.at(Stage.LEFT_OUT):
         record = station.orders.records.get(member.mission_id or 0)
         if member.since_ns != now_ns or record is None or record.phase is not Phase.TIMED_OUT:
             continue
         station, number = take_id(station)
-        by = f"station: fleet return, for the mission of order {record.command.id} was ignored"
+        by = f"station: fleet return: the mission of order {record.command.id} was ignored"
         hold = OperatorOrder(number, Hover(), by, serial=member.serial)
         station, sent = order_gateway.place(station, hold, now_ns)
         outputs += sent
@@ -88,33 +110,33 @@ def _stop_what_may_begin_late(station: Station, running: FleetReturn, now_ns: in
 def _begin_one(
     station: Station, running: FleetReturn, settings: ReturnSettings, now_ns: int
 ) -> Stepped:
-    """Begin the first flight in turn that may; one at a time, for each changes what others may."""
-    running, ready = _with_a_free_layer(running, settings, now_ns)
+    """Begin the first flight in turn that may begin."""
+    running, ready = _with_free_layers(running, settings, now_ns)
     if ready:
-        seen = _Air(station, running, settings)
+        traffic = _Traffic(station, running, settings)
         for member in ready:
-            flight = seen.from_here(member)
+            flight = traffic.from_here(member)
             if flight is None:
                 running = running.put(member.at(Stage.LEFT_OUT, now_ns, MOVED))
                 continue
-            hindered = seen.hindrance(flight, running)
+            hindered = traffic.hindrance(flight, running)
             running = running.put(member.waits_for(hindered or ""))
             if hindered is None:
-                return _judged(station, running, member, flight, settings, now_ns)
-    return replace(station, fleet_return=_anew_if_stuck(running, settings, now_ns)), ()
+                return _order_mission(station, running, member, flight, settings, now_ns)
+    return replace(station, fleet_return=_replanned_if_stuck(running, settings, now_ns)), ()
 
 
-def _with_a_free_layer(
+def _with_free_layers(
     running: FleetReturn, settings: ReturnSettings, now_ns: int
-) -> tuple[FleetReturn, list[Member]]:
-    """Who waits for nothing but other vehicles' ways, in turn; the others get their reason."""
+) -> tuple[FleetReturn, list[ReturningVehicle]]:
+    """Return the vehicles whose layer and pad are free, in turn; give the others their reason."""
     before: list[Flight] = []
-    ready: list[Member] = []
+    ready: list[ReturningVehicle] = []
     flying = [m.flight for m in running.at(*UNDER_WAY) if m.flight is not None]
     for member in _waiting_in_turn(running):
         flight = member.flight
         assert flight is not None
-        clears = _to_be_cleared(running, flight, settings, now_ns)
+        clears = _vehicle_on_pad(running, flight, settings, now_ns)
         reason = layer_is_taken_by(flight, before, flying)
         if clears is not None:
             reason = f"its pad is being cleared of {clears}"
@@ -128,13 +150,13 @@ def _with_a_free_layer(
     return running, ready
 
 
-def _waiting_in_turn(running: FleetReturn) -> list[Member]:
+def _waiting_in_turn(running: FleetReturn) -> list[ReturningVehicle]:
     members = (running.members[serial] for serial in running.turns)
     return [m for m in members if m.stage is Stage.WAITING and m.flight is not None]
 
 
-class _Air:
-    """What is in the air now, looked up once for all that might begin."""
+class _Traffic:
+    """What is in the air now, collected once for all vehicles that might begin."""
 
     def __init__(self, station: Station, running: FleetReturn, settings: ReturnSettings) -> None:
         self._settings = settings
@@ -147,8 +169,8 @@ class _Air:
             if member.flight is not None
         ]
 
-    def from_here(self, member: Member) -> Flight | None:
-        """The flight from where the vehicle has drifted to since it was planned; None: too far."""
+    def from_here(self, member: ReturningVehicle) -> Flight | None:
+        """The flight from where the vehicle has drifted to since its plan; None if too far."""
         assert member.flight is not None
         start_m, place_m = member.flight.start_m, self._place_m(member)
         if dist(start_m, place_m) > self._settings.moved_m:
@@ -158,7 +180,7 @@ class _Air:
         )
 
     def hindrance(self, flight: Flight, running: FleetReturn) -> str | None:
-        """Why a flight whose layer is free must wait."""
+        """Why a flight whose layer is free must wait; None if it need not."""
         before: list[Claim] = []
         for member in _waiting_in_turn(running):
             if member.serial == flight.serial:
@@ -169,18 +191,18 @@ class _Air:
         hovering = [other for key, other in self._flying.items() if key not in not_hovering]
         return hindrance(flight, before, self._under_way, hovering, self._separation)
 
-    def _place_m(self, member: Member) -> Place:
-        """Where it was last heard; one that tells no place any more may be anywhere on its way,
-        and so counts as at its start."""
+    def _place_m(self, member: ReturningVehicle) -> Place:
+        """Its last known position; without one it may be anywhere on its path, and counts as at
+        its start."""
         assert member.flight is not None
-        heard = self._flying.get(member.serial)
-        return member.flight.start_m if heard is None else heard.place_m
+        known = self._flying.get(member.serial)
+        return member.flight.start_m if known is None else known.place_m
 
 
-def _anew_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) -> FleetReturn:
-    """Let those that wait be planned for anew when nothing they wait for will end by itself.
+def _replanned_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) -> FleetReturn:
+    """Have all that wait planned again if nothing that they wait for will end by itself.
 
-    So it is when somebody hovers where nobody did when the plan was made.
+    That is so when a vehicle hovers where none did when the plan was made.
     """
     waiting = running.at(Stage.WAITING)
     is_patient = any(member.clears or now_ns < member.judge_at_ns for member in waiting)
@@ -188,13 +210,13 @@ def _anew_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) 
         return running
     for member in waiting:
         running = running.put(replace(member, flight=None))
-    return replace(running, look_at_ns=now_ns + seconds_to_ns(settings.planned_again_s))
+    return replace(running, step_due_ns=now_ns + seconds_to_ns(settings.planned_again_s))
 
 
-def _to_be_cleared(
+def _vehicle_on_pad(
     running: FleetReturn, flight: Flight, settings: ReturnSettings, now_ns: int
 ) -> str | None:
-    """The vehicle that landed on this pad and might still stand there when this one comes."""
+    """The vehicle that landed on this pad and might still stand there when this one arrives."""
     arrives_ns = now_ns + seconds_to_ns(least_time_s(flight, settings.plan))
     clearing_ns = seconds_to_ns(settings.pad_clearing_s)
     for other in running.at(Stage.LANDED):
@@ -205,15 +227,15 @@ def _to_be_cleared(
     return None
 
 
-def _judged(
+def _order_mission(
     station: Station,
     running: FleetReturn,
-    member: Member,
+    member: ReturningVehicle,
     flight: Flight,
     settings: ReturnSettings,
     now_ns: int,
 ) -> Stepped:
-    """Ask the gate, and give the mission; while time may end a refusal, wait for that."""
+    """Order the mission if the gate approves it; wait while its refusal may end with time."""
     speed_mps = station.airspace.airspace.limits.max_speed_mps
     mission = mission_of(flight, running.frame, flight.start_m, settings.plan, speed_mps)
     order = OperatorOrder(
@@ -228,7 +250,7 @@ def _judged(
     if refusal is not None and _may_end(running, member, refusal, settings, now_ns):
         since_ns = now_ns if member.refused_since_ns is None else member.refused_since_ns
         waits = replace(
-            member.waits_for(f"the gate says not yet: {refusal.reason}"),
+            member.waits_for(f"refused for now: {refusal.reason}"),
             judge_at_ns=now_ns + seconds_to_ns(settings.judged_again_s),
             refused_since_ns=since_ns,
         )
@@ -240,12 +262,16 @@ def _judged(
 
 
 def _may_end(
-    running: FleetReturn, member: Member, refusal: Refusal, settings: ReturnSettings, now_ns: int
+    running: FleetReturn,
+    member: ReturningVehicle,
+    refusal: Refusal,
+    settings: ReturnSettings,
+    now_ns: int,
 ) -> bool:
     if refusal.rule not in WAITING_RULES:
         return False
     if running.at(*UNDER_WAY) or member.refused_since_ns is None:
         return True
     if member.asked_as is AuthorityHolder.GUIDANCE:
-        return True  # others fly rows for minutes; its battery ends the waiting
+        return True  # other vehicles may fly rows for minutes; the battery rule ends its waiting
     return now_ns - member.refused_since_ns < seconds_to_ns(settings.gate_waits_s)

@@ -1,4 +1,4 @@
-"""The plan is made by the worker: for a large fleet it takes longer than a step may."""
+"""The worker plans the fleet return: for a large fleet that takes longer than a step may."""
 
 from dataclasses import dataclass, replace
 
@@ -13,8 +13,8 @@ from recon.guidance.fleet_return import (
 from recon.model.airspace import Airspace
 from recon.model.units import seconds_to_ns
 from recon.station.operations.fleet_return import positions
-from recon.station.operations.fleet_return.settings import ReturnSettings
-from recon.station.state.fleet_return_record import UNDER_WAY, FleetReturn, Member, Stage
+from recon.station.operations.settings import ReturnSettings
+from recon.station.state.fleet_return_record import UNDER_WAY, FleetReturn, ReturningVehicle, Stage
 from recon.station.state.jobs import Job, JobKind
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
@@ -23,7 +23,7 @@ from recon.station.state.stepped import Stepped
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanWork:
-    """All that a plan needs. `ground_up_m` is the lowest and the highest ground on the ways."""
+    """All that a plan needs. `ground_up_m`: the lowest and the highest ground on the paths."""
 
     vehicles: tuple[Returning, ...]
     others: tuple[Hovering, ...]
@@ -53,12 +53,12 @@ def make_plan(work: PlanWork) -> ReturnPlan:
 def ask(
     station: Station, running: FleetReturn, settings: ReturnSettings, now_ns: int
 ) -> tuple[FleetReturn, tuple[Output, ...]]:
-    """Ask for a plan for all that wait, unless one is being made; give up one that never comes."""
+    """Request a plan for all that wait, unless one is being made; give up one that never comes."""
     if running.planning_since_ns is not None:
         within_s = settings.planned_within_s
         if now_ns - running.planning_since_ns < seconds_to_ns(within_s):
             return running, ()
-        return _left_out(running, f"it was not planned for within {within_s:g} s", now_ns), ()
+        return _left_out(running, f"it was not planned within {within_s:g} s", now_ns), ()
     vehicles: list[Returning] = []
     for member in running.at(Stage.WAITING):
         found = positions.returning(station, member.serial, running.frame)
@@ -95,7 +95,7 @@ def _not_planned(station: Station, job_id: int, error: str, now_ns: int) -> Step
     running = station.fleet_return
     if running is None or running.planning_since_ns != job_id:
         return station, ()
-    reason = f"its way home could not be planned: {error}"
+    reason = f"its flight home could not be planned: {error}"
     return replace(station, fleet_return=_left_out(running, reason, now_ns)), ()
 
 
@@ -129,8 +129,8 @@ def _work(
     )
 
 
-def _wave(member: Member) -> int:
-    """Whose wave has begun keeps it; those that wait are planned anew."""
+def _wave(member: ReturningVehicle) -> int:
+    """Vehicles whose wave has begun keep it; those that wait are planned again."""
     is_waiting = member.stage is Stage.WAITING
     return 0 if member.flight is None or is_waiting else member.flight.wave
 

@@ -1,4 +1,4 @@
-"""Where vehicles and pads are: the station's state in the words of the fleet return's plan."""
+"""Positions of vehicles and pads, as the fleet return's plan needs them."""
 
 from collections.abc import Sequence
 from math import dist
@@ -15,17 +15,17 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import home_enu_m, places_m, takeoff_up_m, vehicle_enu_m
 from recon.safety.separation_minima import gate_minima
-from recon.station.operations.fleet_return.settings import ReturnSettings
+from recon.station.operations.settings import ReturnSettings
 from recon.station.state.station import Station
 
 AROUND_M = 50.0
-"""Ground this far around all places and pads counts: detours leave the straight ways."""
+"""Ground this far around all positions and pads counts: detours leave the straight lines."""
 
 
 def in_the_air(station: Station, frame: LocalFrame) -> dict[str, Hovering]:
-    """Return where everything that flies, or may, was last heard to be; by serial, or by link.
+    """Return the last known position of everything that flies, or may; by serial, or by link.
 
-    What has never told where it is is not among them: the gate lets nothing begin meanwhile.
+    Vehicles without any known position are left out: the gate refuses all motion because of them.
     """
     flying = {
         serial: vehicle
@@ -35,10 +35,10 @@ def in_the_air(station: Station, frame: LocalFrame) -> dict[str, Hovering]:
     for link in station.fleet.unbound_links():
         if link.own_state.is_flying.value is True:
             flying[f"link {link.id}"] = link.own_state
-    told = [(k, v, v.position.value) for k, v in flying.items() if v.position.value is not None]
-    spots = places_m(frame, [position for _, _, position in told if position is not None])
+    known = [(k, v, v.position.value) for k, v in flying.items() if v.position.value is not None]
+    spots = places_m(frame, [position for _, _, position in known if position is not None])
     found: dict[str, Hovering] = {}
-    for (key, vehicle, _), (east_m, north_m) in zip(told, spots, strict=True):
+    for (key, vehicle, _), (east_m, north_m) in zip(known, spots, strict=True):
         base_m = takeoff_up_m(station.airspace, vehicle)
         height_m = vehicle.height_above_takeoff_m.value
         if base_m is not None and height_m is not None:
@@ -48,15 +48,15 @@ def in_the_air(station: Station, frame: LocalFrame) -> dict[str, Hovering]:
 
 
 def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | str:
-    """Return a vehicle as the plan needs it, or what is not known of it."""
+    """Return a vehicle as the plan needs it, or a sentence about what is unknown."""
     vehicle = station.fleet.vehicles[serial]
     found = vehicle_enu_m(station.airspace, vehicle, frame)
     takeoff_m = takeoff_up_m(station.airspace, vehicle)
     pad = _pad(station, vehicle, frame)
     if found is None or takeoff_m is None or pad is None:
         return (
-            "expected its position and its takeoff point to be known, for its heights count from "
-            "there; give it a pad in the site's file"
+            "its position or takeoff point is unknown, and its heights count from there; give it a "
+            "pad in the site's file"
         )
     place_m = float(found[0]), float(found[1]), float(found[2])
     battery = vehicle.battery_fraction.value
@@ -64,14 +64,14 @@ def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | s
 
 
 def ground_up_m(station: Station, vehicles: Sequence[Returning]) -> tuple[float, float]:
-    """Return the lowest and the highest ground on and around the ways of these vehicles."""
+    """Return the lowest and the highest ground on and around the paths of these vehicles."""
     spots = [v.place_m[:2] for v in vehicles] + [v.pad.east_north_m for v in vehicles]
     lowest_m, highest_m = station.airspace.ground_within_up_m(_box(spots))
     return float(np.min(lowest_m)), float(np.max(highest_m))
 
 
 def separation(station: Station, settings: ReturnSettings) -> Separation:
-    """Return how far apart the plan keeps vehicles."""
+    """Return how far apart the plan keeps vehicles: the gate's minima and some slack."""
     gate = gate_minima(station.airspace.airspace.limits, station.settings.safety)
     return Separation(
         gate.horizontal_m + settings.plan.horizontal_slack_m,
@@ -80,12 +80,12 @@ def separation(station: Station, settings: ReturnSettings) -> Separation:
 
 
 def is_same_pad(one: Pad, other: Pad, settings: ReturnSettings) -> bool:
-    """Return whether two vehicles could not stand on both."""
+    """Return whether two pads are so near that only one vehicle can stand there."""
     return dist(one.east_north_m, other.east_north_m) < settings.same_pad_m
 
 
 def _pad(station: Station, vehicle: VehicleState, frame: LocalFrame) -> Pad | None:
-    """Its own pad, of the layer or the profile; else where it took off."""
+    """Its own pad, from the site's layer or its profile; else its takeoff point."""
     for pad in station.airspace.airspace.landing_pads:
         if pad.serial is not None and pad.serial == vehicle.serial:
             return _pad_at(station, pad.name, pad.place, frame)

@@ -1,4 +1,4 @@
-"""What becomes of each vehicle of a fleet return, by what telemetry and the orders' lives show."""
+"""The stage of each vehicle of a fleet return, read from telemetry and from its orders."""
 
 from dataclasses import replace
 
@@ -6,8 +6,8 @@ from recon.link.outbox import Lane, lane_of
 from recon.model.command import Hover, Phase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
-from recon.station.operations.fleet_return.settings import ReturnSettings
-from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, Member, Stage
+from recon.station.operations.settings import ReturnSettings
+from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, ReturningVehicle, Stage
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.steering import neutral_setpoint
@@ -28,13 +28,15 @@ _NOT_FLOWN = (
 )
 
 
-def seen(station: Station, member: Member, settings: ReturnSettings, now_ns: int) -> Member:
-    """Return a member after what is known of it now."""
+def updated(
+    station: Station, member: ReturningVehicle, settings: ReturnSettings, now_ns: int
+) -> ReturningVehicle:
+    """Return a vehicle at the stage that telemetry and its orders show now."""
     if member.stage in ENDED:
         return member
     vehicle = station.fleet.vehicles.get(member.serial)
     if vehicle is None:
-        return member.at(Stage.LEFT_OUT, now_ns, "the station no longer knows it")
+        return member.at(Stage.LEFT_OUT, now_ns, "it was removed from the fleet")
     taken = _taken(station, member, now_ns)
     if taken is not None:
         return taken
@@ -44,14 +46,14 @@ def seen(station: Station, member: Member, settings: ReturnSettings, now_ns: int
     if broken is not None:
         return member.at(Stage.LEFT_OUT, now_ns, broken)
     if vehicle.is_flying.value is False:
-        return member.at(Stage.LANDED, now_ns, "it landed by itself or by its pilot")
+        return member.at(Stage.LANDED, now_ns, "it landed by itself or was landed by its pilot")
     return _stopping(member, vehicle, settings, now_ns)
 
 
 def newest_motion(station: Station, serial: str) -> OrderRecord | None:
-    """Return the newest accepted order to move or stop that a vehicle was given.
+    """Return the newest accepted order to move or stop of a vehicle.
 
-    The station's own zero at a stick's end counts for none.
+    The station's own neutral setpoint does not count.
     """
     for record in reversed(tuple(station.orders.records.values())):
         command = record.command
@@ -62,8 +64,8 @@ def newest_motion(station: Station, serial: str) -> OrderRecord | None:
     return None
 
 
-def is_still_left(station: Station, member: Member) -> bool:
-    """Return whether a vehicle left out still flies, and nobody has ordered it anything since."""
+def is_still_left(station: Station, member: ReturningVehicle) -> bool:
+    """Return whether a vehicle left out still flies, without any order since."""
     vehicle = station.fleet.vehicles.get(member.serial)
     if member.stage is not Stage.LEFT_OUT or vehicle is None or vehicle.is_flying.value is False:
         return False
@@ -71,17 +73,17 @@ def is_still_left(station: Station, member: Member) -> bool:
     return newest is None or newest.command.issued_at_ns <= member.since_ns
 
 
-def _taken(station: Station, member: Member, now_ns: int) -> Member | None:
-    """The pilot, or whoever ordered something newer, has the vehicle."""
+def _taken(station: Station, member: ReturningVehicle, now_ns: int) -> ReturningVehicle | None:
+    """The vehicle released or left out, if another holder or a newer order controls it."""
     authority = station.control(member.serial).authority
     if authority.holder is not member.asked_as:
-        words = f"it is led by {authority.holder.value} now ({authority.reason})"
+        words = f"it is controlled by {authority.holder.value} now ({authority.reason})"
         return member.at(Stage.RELEASED, now_ns, words)
     newest = newest_motion(station, member.serial)
     if newest is None or newest.command.id in (member.hold_id, member.mission_id):
         return None
     command = newest.command
-    words = f"{command.name.replace('_', ' ')}, ordered by {command.issued_by}, took its place"
+    words = f"replaced by {command.name.replace('_', ' ')}, ordered by {command.issued_by}"
     if not command.issued_by.startswith(STATION_ISSUER):
         return member.at(Stage.RELEASED, now_ns, words)
     if isinstance(command.body, Hover) and member.stage not in UNDER_WAY:
@@ -90,19 +92,19 @@ def _taken(station: Station, member: Member, now_ns: int) -> Member | None:
 
 
 def _broken(
-    vehicle: VehicleState, member: Member, settings: ReturnSettings, now_ns: int
+    vehicle: VehicleState, member: ReturningVehicle, settings: ReturnSettings, now_ns: int
 ) -> str | None:
-    """Why a vehicle that waits is not flown any further: its link was not whole since the call."""
+    """Why a vehicle that waits is left out: its connection was interrupted since the call."""
     if vehicle.link_id != member.link_id:
-        return "its link broke since it was called, and nothing is resumed by itself"
-    if not _is_heard(vehicle, settings.heard_within_s, now_ns):
-        return f"it has not been heard for {settings.heard_within_s:g} s"
+        return "its connection was interrupted since it was called; nothing resumes by itself"
+    if not _has_telemetry(vehicle, settings.telemetry_within_s, now_ns):
+        return f"no telemetry for {settings.telemetry_within_s:g} s"
     return None
 
 
 def _stopping(
-    member: Member, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
-) -> Member:
+    member: ReturningVehicle, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
+) -> ReturningVehicle:
     if member.stage is not Stage.STOPPING:
         return member
     velocity = vehicle.velocity_ned.value
@@ -115,17 +117,21 @@ def _stopping(
         FlightMode.JOYSTICK,
         FlightMode.AUTO_LANDING,
     )
-    if is_standing and is_new and is_stopped and _is_heard(vehicle, FRESH_S, now_ns):
+    if is_standing and is_new and is_stopped and _has_telemetry(vehicle, FRESH_S, now_ns):
         return member.at(Stage.WAITING, now_ns)
     if now_ns - member.since_ns < seconds_to_ns(settings.stands_within_s):
         return member
     within_s = settings.stands_within_s
-    return member.at(Stage.LEFT_OUT, now_ns, f"it did not stand within {within_s:g} s of its hold")
+    return member.at(Stage.LEFT_OUT, now_ns, f"it did not stop within {within_s:g} s of its hold")
 
 
 def _under_way(
-    station: Station, member: Member, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
-) -> Member:
+    station: Station,
+    member: ReturningVehicle,
+    vehicle: VehicleState,
+    settings: ReturnSettings,
+    now_ns: int,
+) -> ReturningVehicle:
     record = station.orders.records.get(member.mission_id or 0)
     if vehicle.is_flying.value is False and (vehicle.core_received_at_ns or 0) > member.since_ns:
         return member.at(Stage.LANDED, now_ns)
@@ -141,10 +147,9 @@ def _under_way(
 
 
 def _still_flying(
-    member: Member, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
-) -> Member:
-    """A flight that is out of its mission and does not land was ended by somebody, or by the
-    aircraft itself."""
+    member: ReturningVehicle, vehicle: VehicleState, settings: ReturnSettings, now_ns: int
+) -> ReturningVehicle:
+    """A flight out of its mission that does not land was ended by the pilot, app or aircraft."""
     mode = vehicle.flight_mode
     is_new = (mode.received_at_ns or 0) > member.since_ns
     if not is_new or mode.value is None or mode.value in _RETURN_MODES:
@@ -155,15 +160,15 @@ def _still_flying(
     if now_ns - since_ns < seconds_to_ns(settings.hovers_after_s):
         return member
     words = mode.value.name.lower().replace("_", " ")
-    return member.at(Stage.LEFT_OUT, now_ns, f"its mission ended before it had landed ({words})")
+    return member.at(Stage.LEFT_OUT, now_ns, f"its mission ended before it landed ({words})")
 
 
-def _is_in_return_mode(vehicle: VehicleState, member: Member) -> bool:
+def _is_in_return_mode(vehicle: VehicleState, member: ReturningVehicle) -> bool:
     mode = vehicle.flight_mode
     is_new = (mode.received_at_ns or 0) > member.since_ns
     return is_new and mode.value in _RETURN_MODES
 
 
-def _is_heard(vehicle: VehicleState, within_s: float, now_ns: int) -> bool:
-    heard_ns = vehicle.core_received_at_ns
-    return heard_ns is not None and now_ns - heard_ns <= seconds_to_ns(within_s)
+def _has_telemetry(vehicle: VehicleState, within_s: float, now_ns: int) -> bool:
+    received_ns = vehicle.core_received_at_ns
+    return received_ns is not None and now_ns - received_ns <= seconds_to_ns(within_s)

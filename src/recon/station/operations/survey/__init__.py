@@ -8,19 +8,23 @@ tick, `mission_dispatch` how missions become orders, `availability` which vehicl
 from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
 from recon.station.operations.operation import Operation
 from recon.station.operations.survey.audit import survey_entries
-from recon.station.operations.survey.commands import begin, stop
+from recon.station.operations.survey.commands import start_survey, stop_survey
 from recon.station.operations.survey.conditions import conditions
 from recon.station.operations.survey.execution import advance
-from recon.station.operations.survey.observations import see_shade, see_vehicle
-from recon.station.operations.survey.planning import ask
+from recon.station.operations.survey.observations import on_position, on_shade
+from recon.station.operations.survey.planning import ask_survey
 from recon.station.state.stepped import changing, on
 
 SURVEY = Operation(
     name="survey",
     tick=advance,
     conditions=conditions,
-    commands=(on(SurveyAsked, ask), changing(SurveyStarted, begin), on(SurveyStopped, stop)),
+    commands=(
+        on(SurveyAsked, ask_survey),
+        changing(SurveyStarted, start_survey),
+        on(SurveyStopped, stop_survey),
+    ),
     audit=survey_entries,
-    on_position=see_vehicle,
-    on_shade=see_shade,
+    on_position=on_position,
+    on_shade=on_shade,
 )

@@ -1,4 +1,4 @@
-"""What the audit is told of surveys: what people said to them, and how they went on."""
+"""Audit entries of surveys: operator commands, and changes of phase."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -14,31 +14,33 @@ from recon.station.state.station import Station
 def survey_entries(
     before: Station, event: Event, after: Station, now_ns: int
 ) -> Iterator[AuditEntry]:
-    """Yield an entry for each word on a survey, and for each change of its phase."""
+    """Yield an entry for each command to a survey, and for each change of its phase."""
     match event:
         case SurveyAsked(survey, by):
             refusal = refusal_of(before)
             details = {"id": survey.id, "planner": survey.planner}
-            yield _word("asked", f"survey {survey.name}", "is to be planned", by, refusal, details)
+            yield _command(
+                "asked", f"survey {survey.name}", "is being planned", by, refusal, details
+            )
         case SurveyStarted(number, serials, by, takeoff):
             refusal = start_refusal(before, event, now_ns)
-            word = "may take off for it" if takeoff else "no takeoff was said"
-            text = f"starts with {', '.join(serials)}; {word}"
+            permission = "takeoff allowed" if takeoff else "takeoff not allowed"
+            text = f"starts with {', '.join(serials)}; {permission}"
             details = {"id": number, "serials": list(serials), "takeoff": takeoff}
-            yield _word("started", _name(before, number), text, by, refusal, details)
+            yield _command("started", _name(before, number), text, by, refusal, details)
         case SurveyStopped(number, by, is_aborted):
             refusal = stop_refusal(before, event, now_ns)
             record = before.surveys.records.get(number)
             kind = "aborted" if is_aborted else "paused"
             text = f"is {kind}; its vehicles hold"
             if record is not None and record.is_over and refusal is None:
-                kind, text = "held", "is over; its vehicles on their way home hold"
-            yield _word(kind, _name(before, number), text, by, refusal, {"id": number})
+                kind, text = "held", "is over; vehicles on their way home hold"
+            yield _command(kind, _name(before, number), text, by, refusal, {"id": number})
     if after.surveys is not before.surveys:
         yield from _changes(before, event, after)
 
 
-def _word(
+def _command(
     kind: str, name: str, text: str, by: str, refusal: Refusal | None, details: dict[str, Any]
 ) -> AuditEntry:
     if refusal is None:
@@ -48,7 +50,7 @@ def _word(
 
 
 def _changes(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
-    """What a survey became without anybody's word: planned, impossible, done, paused by itself."""
+    """Changes of phase without a command: planned, impossible, done, paused by itself."""
     if isinstance(event, SurveyStarted | SurveyStopped | SurveyAsked):
         return
     for number, record in after.surveys.records.items():

@@ -14,11 +14,11 @@ from recon.safety.energy import consumption
 from recon.safety.settings import EnergySettings
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
-from recon.station.state.survey_record import Member, SurveyRecord
+from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
 
 
-def surveyors(station: Station, record: SurveyRecord, now_ns: int) -> Iterator[Surveyor]:
-    """Yield the survey's vehicles whose place is known, as its planner must know them."""
+def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> Iterator[Surveyor]:
+    """Yield the survey's vehicles with a known position, as its planner needs them."""
     for member in record.members.values():
         vehicle = station.fleet.vehicles.get(member.serial)
         if vehicle is None:
@@ -37,67 +37,64 @@ def surveyors(station: Station, record: SurveyRecord, now_ns: int) -> Iterator[S
         )
 
 
-def hindrance(station: Station, member: Member, now_ns: int) -> str | None:
-    """Return why a vehicle flies nothing (more) for its survey now; None when it can or does."""
-    if member.stopped is not None:
-        return member.stopped
-    if member.homeward is not None:
-        return _homeward(station, member, member.homeward)
+def hindrance(station: Station, member: SurveyVehicle, now_ns: int) -> str | None:
+    """Return why a vehicle cannot fly for its survey now; None if it can or does."""
+    if member.stop_reason is not None:
+        return member.stop_reason
+    if member.return_reason is not None:
+        verb = "has flown" if is_on_ground(station, member) else "was called"
+        return f"it {verb} home: {member.return_reason}"
     authority = station.control(member.serial).authority
     if authority.holder is not AuthorityHolder.GUIDANCE:
-        return f"it is led by the {authority.holder.value} ({authority.reason})"
+        return f"it is controlled by the {authority.holder.value} ({authority.reason})"
     vehicle = station.fleet.vehicles.get(member.serial)
     if vehicle is None or frame_for(station.airspace, vehicle) is None:
-        return "its place is not known"
+        return "its position is unknown"
     if is_flown(station, member):
         return None
     if staleness(vehicle, now_ns) is not Staleness.LIVE:
-        return "it is not heard now"
+        return "no telemetry now"
     if vehicle.is_flying.value is not True and not member.may_take_off:
-        return "it is on the ground, and nobody has said that it may take off (again)"
+        return "it is on the ground; takeoff was not allowed"
     return None
 
 
-def _homeward(station: Station, member: Member, why: str) -> str:
-    vehicle = station.fleet.vehicles.get(member.serial)
-    if vehicle is None or vehicle.is_flying.value is not False:
-        return f"it was called home: {why}"
-    return f"it has come home: {why}"
-
-
-def is_on_ground(station: Station, member: Member) -> bool:
+def is_on_ground(station: Station, member: SurveyVehicle) -> bool:
     """Return whether telemetry shows a vehicle on the ground."""
     vehicle = station.fleet.vehicles.get(member.serial)
     return vehicle is not None and vehicle.is_flying.value is False
 
 
-def is_flown(station: Station, member: Member) -> bool:
-    """Return whether the vehicle's newest mission of its survey still lives."""
+def is_flown(station: Station, member: SurveyVehicle) -> bool:
+    """Return whether the vehicle's newest mission of its survey has not ended."""
     order = _order(station, member)
     return order is not None and not order.phase.is_final
 
 
-def looked_at(station: Station, member: Member) -> tuple[Member, OrderRecord | None]:
-    """Return the member after a look at its mission, and the order that has just ended badly.
+def after_mission(
+    station: Station, member: SurveyVehicle
+) -> tuple[SurveyVehicle, OrderRecord | None]:
+    """Return the vehicle, stopped if its mission ended unfinished, and that mission's order.
 
-    A mission that has ended in any way but flown to its end is not given again by itself: somebody
-    must have a look, and start the vehicle again.
+    Such a mission is not flown again by itself: an operator must check and start it again.
     """
     order = _order(station, member)
-    if order is None or member.stopped is not None or not order.phase.is_final:
+    if order is None or member.stop_reason is not None or not order.phase.is_final:
         return member, None
     if order.phase is Phase.DONE:
         return member, None
     words = order.phase.value.replace("_", " ")
-    why = f"its mission was not flown to its end: {words}, {order.note}"
-    return replace(member, stopped=why), order
+    why = f"its mission ended unfinished: {words}: {order.note}"
+    return replace(member, stop_reason=why), order
 
 
 def time_left_s(
     vehicle: VehicleState, airspace: PreparedAirspace, energy: EnergySettings
 ) -> float | None:
-    """Return how long a vehicle can fly level and still land with the site's reserve; None: nobody
-    knows. The ways there and home are the planner's matter, and the gate's, which is stricter."""
+    """Return how long a vehicle can fly level and still land with the reserve; None: unknown.
+
+    The planner adds the flights there and home; the gate judges all of it, more strictly.
+    """
     uses = consumption(vehicle, airspace, energy)
     has, height_m = vehicle.battery_fraction.value, vehicle.height_above_takeoff_m.value
     if uses is None or has is None or height_m is None:
@@ -108,7 +105,7 @@ def time_left_s(
     return max(0.0, left) / uses.fraction(energy.level_load)
 
 
-def _order(station: Station, member: Member) -> OrderRecord | None:
+def _order(station: Station, member: SurveyVehicle) -> OrderRecord | None:
     if member.command_id is None:
         return None
     return station.orders.records.get(member.command_id)

@@ -1,4 +1,4 @@
-"""What people say to a survey: start, pause, abort. Each refused as a whole, or carried out."""
+"""Operator commands to a survey: start, pause, abort. Each is refused or accepted as a whole."""
 
 from dataclasses import replace
 from types import MappingProxyType
@@ -21,7 +21,7 @@ from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
-from recon.station.state.survey_record import Member, SurveyRecord
+from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
 
 
 def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusal | None:
@@ -39,11 +39,11 @@ def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusa
     return None
 
 
-def begin(station: Station, event: SurveyStarted, now_ns: int) -> Station:
-    """Return the station with a survey that flies, its vehicles given to guidance by this word.
+def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Station:
+    """Start a survey, and give the named vehicles to guidance.
 
-    Said of a running survey it lets the named vehicles join it, or fly for it again. Unchanged when
-    it is refused: no vehicle is given away unless all can be.
+    For a running survey the named vehicles join it, or fly for it again. Nothing changes if any of
+    them is refused.
     """
     if start_refusal(station, event, now_ns) is not None:
         return station
@@ -56,10 +56,10 @@ def begin(station: Station, event: SurveyStarted, now_ns: int) -> Station:
         station = authority.take(station, taken, now_ns)
     named = {
         serial: replace(
-            record.members.get(serial, Member(serial)),
+            record.members.get(serial, SurveyVehicle(serial)),
             may_take_off=event.takeoff,
-            stopped=None,
-            homeward=None,
+            stop_reason=None,
+            return_reason=None,
         )
         for serial in serials
     }
@@ -68,15 +68,15 @@ def begin(station: Station, event: SurveyStarted, now_ns: int) -> Station:
         for serial, member in record.members.items()
         if record.is_running or is_under_way(station, member)
     }
-    fresh = {serial: _forgiven(station, member) for serial, member in named.items()}
+    fresh = {serial: _without_ended_mission(station, member) for serial, member in named.items()}
     record = replace(
         record,
         state=state,
         started_by=event.by,
         members=MappingProxyType({**kept, **fresh}),
-        look_at_ns=now_ns,
+        step_due_ns=now_ns,
     )
-    surveys = station.surveys.without_look(event.survey_id)
+    surveys = station.surveys.without_pending(event.survey_id)
     return replace(station, surveys=surveys.put(record))
 
 
@@ -89,32 +89,32 @@ def stop_refusal(station: Station, event: SurveyStopped, now_ns: int) -> Refusal
     return stopped if isinstance(stopped, Refusal) else None
 
 
-def stop(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
-    """Return the station with a survey paused or aborted, and the holds of its vehicles.
+def stop_survey(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
+    """Pause or abort a survey, and hold its vehicles.
 
-    The holds take them from guidance: whoever starts the survey again says with whom.
+    The holds take them from guidance: the next start names its vehicles again.
     """
     if stop_refusal(station, event, now_ns) is not None:
         return station, ()
     record = station.surveys.records[event.survey_id]
     state = _stopped(station, record, event, now_ns)
     assert isinstance(state, SurveyState)  # or it was refused
-    surveys = station.surveys.without_look(event.survey_id)
+    surveys = station.surveys.without_pending(event.survey_id)
     station = replace(station, surveys=surveys.put(replace(record, state=state)))
-    word = "aborted" if event.is_aborted else "paused"
+    verb = "aborted" if event.is_aborted else "paused"
     outputs: tuple[Output, ...] = ()
     for member in record.members.values():
         is_its = record.is_running or is_under_way(station, member)
         if is_its and station.control(member.serial).authority.holder is AuthorityHolder.GUIDANCE:
-            by = f"{event.by}: survey {record.survey.name} {word}"
+            by = f"{event.by}: survey {record.survey.name} {verb}"
             station, sent = _hold(station, member, by, now_ns)
             outputs += sent
             station = authority.hand_back(station, member.serial, event.by, by, now_ns)
     return station, outputs
 
 
-def _hold(station: Station, member: Member, by: str, now_ns: int) -> Stepped:
-    """Hold a vehicle; one on the ground whose mission may yet make it take off is told to land."""
+def _hold(station: Station, member: SurveyVehicle, by: str, now_ns: int) -> Stepped:
+    """Hold a vehicle; land one on the ground, if its mission may yet make it take off."""
     vehicle = station.fleet.vehicles.get(member.serial)
     may_set_out = is_flown(station, member)
     if vehicle is None or (vehicle.is_flying.value is False and not may_set_out):
@@ -130,8 +130,8 @@ def _hold(station: Station, member: Member, by: str, now_ns: int) -> Stepped:
     return station, (*sent, *landing)
 
 
-def _forgiven(station: Station, member: Member) -> Member:
-    """A mission that has ended is no reason any more; one that is flown stays the member's."""
+def _without_ended_mission(station: Station, member: SurveyVehicle) -> SurveyVehicle:
+    """Forget a finished mission; keep the one in flight."""
     return member if is_flown(station, member) else replace(member, command_id=None)
 
 
@@ -140,7 +140,7 @@ def _started(record: SurveyRecord, event: SurveyStarted, now_ns: int) -> SurveyS
         return record.refusal
     state = record.state
     if state is None:
-        return Refusal(RULE, f"the rows of the survey {record.survey.name} are being worked out")
+        return Refusal(RULE, f"the rows of the survey {record.survey.name} are still being planned")
     if not record.is_running or not event.serials:
         return start(state, event.serials, now_ns)
     named = frozenset(event.serials)
@@ -157,9 +157,9 @@ def _stopped(
     if record.refusal is not None:
         return record.refusal
     if record.state is None:
-        return Refusal(RULE, f"the rows of the survey {record.survey.name} are being worked out")
+        return Refusal(RULE, f"the rows of the survey {record.survey.name} are still being planned")
     if record.is_over and any(is_under_way(station, each) for each in record.members.values()):
-        return record.state  # it stays what it is; those on their way home are held
+        return record.state  # unchanged; its vehicles on their way home are held
     if event.is_aborted:
         return abort(record.state, now_ns)
     return pause(record.state, now_ns)
@@ -173,14 +173,14 @@ def _vehicle_refusal(
         return given
     name = station.fleet.vehicles[serial].display_name
     if serial == station.imaging.imager_serial:
-        return Refusal(RULE, f"{name} is the eye: it stays where it sees the field")
+        return Refusal(RULE, f"{name} is the imaging drone and cannot join a survey")
     other = station.surveys.running_with(serial)
     if other is not None and other.survey.id != record.survey.id:
-        return Refusal(RULE, f"{name} flies for the survey {other.survey.name}: pause that first")
+        return Refusal(RULE, f"{name} flies for the survey {other.survey.name}; pause that first")
     running = station.fleet_return
     member = None if running is None else running.members.get(serial)
     if member is not None and member.stage not in ENDED:
-        return Refusal(RULE, f"{name} is on its way home: hold it first, or let it land")
+        return Refusal(RULE, f"{name} is on its way home; hold it first, or let it land")
     return None
 
 

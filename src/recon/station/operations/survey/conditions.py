@@ -5,13 +5,13 @@ from dataclasses import replace
 
 from recon.model.survey import SurveyPhase
 from recon.station.operations.fleet_return.progress import newest_motion
+from recon.station.operations.settings import SURVEY_TIMES
 from recon.station.operations.survey.availability import is_on_ground
 from recon.station.operations.survey.return_to_home import is_under_way
-from recon.station.operations.survey.settings import SETTINGS
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.station import Station
-from recon.station.state.survey_record import Member, SurveyRecord
+from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
 
 RULE = "survey"
 RULE_LEFT = "survey_over"
@@ -19,56 +19,60 @@ RULE_HOME = "survey_home"
 
 
 def conditions(station: Station) -> Iterator[Condition]:
-    """Yield what somebody must see to: surveys that stand still, vehicles that fly no more."""
+    """Yield what an operator must see to: surveys that have stopped, vehicles that have stopped."""
     for record in station.surveys.records.values():
         state = record.state
         if state is not None and state.phase is SurveyPhase.PAUSED and state.refusals:
-            text = f"the survey {record.survey.name} has paused by itself: {state.reason}"
+            text = f"survey {record.survey.name} has paused by itself: {state.reason}"
             key = f"{RULE}:{record.survey.id}"
-            yield Condition(key, Severity.WARNING, RULE, "", f"{text}; start it again, or abort it")
+            yield Condition(key, Severity.WARNING, RULE, "", f"{text}. Start it again, or abort it")
         if record.is_running and record.trouble is not None:
-            text = f"the survey {record.survey.name} is not carried on: {record.trouble}"
+            text = f"survey {record.survey.name} cannot continue: {record.trouble}"
             key = f"{RULE}_trouble:{record.survey.id}"
-            yield Condition(key, Severity.ERROR, RULE, "", f"{text}; pause it")
+            yield Condition(key, Severity.ERROR, RULE, "", f"{text}. Pause it")
         for member in record.members.values():
-            yield from _of_member(station, record, member)
+            yield from _of_vehicle(station, record, member)
 
 
-def _of_member(station: Station, record: SurveyRecord, member: Member) -> Iterator[Condition]:
+def _of_vehicle(
+    station: Station, record: SurveyRecord, member: SurveyVehicle
+) -> Iterator[Condition]:
     name = record.survey.name
-    if record.is_running and member.stopped is not None:
-        text = f"flies no more rows of the survey {name}: {member.stopped}"
-        yield _about(station, member, RULE, f"{text}; look, then start it again")
+    if record.is_running and member.stop_reason is not None:
+        text = f"stopped flying survey {name}: {member.stop_reason}"
+        yield _about(station, member, RULE, f"{text}. Check it, then start it again")
     elif is_under_way(station, member):
         yield from _waits_long(station, member)
-    elif record.is_running and member.homeward is not None and is_on_ground(station, member):
-        text = f"has come home, {member.homeward}: change its battery, then let it join the survey"
+    elif record.is_running and member.return_reason is not None and is_on_ground(station, member):
+        text = (
+            f"has flown home: {member.return_reason}. Change its battery, then let it join survey"
+        )
         again = f"recon survey start {record.survey.id} {member.serial} --takeoff"
         yield _about(station, member, RULE, f"{text} {name} again ({again})")
     elif record.is_over and _hovers_since(station, member):
-        text = f"hovers, for the survey {name} is over: call it home, or fly it on"
+        text = f"hovers: survey {name} is over. Call it home, or give it an order"
         yield _about(station, member, RULE_LEFT, text)
 
 
-def _waits_long(station: Station, member: Member) -> Iterator[Condition]:
-    """A way home that is not free for long is told: its battery is what it waits with."""
+def _waits_long(station: Station, member: SurveyVehicle) -> Iterator[Condition]:
+    """A vehicle that waits long for its way home: its battery is limited."""
     running = station.fleet_return
     returning = None if running is None else running.members.get(member.serial)
     if returning is not None and returning.stage in (Stage.STOPPING, Stage.WAITING):
         why = returning.reason or "its turn has not come"
-        condition = _about(station, member, RULE_HOME, f"still waits to fly home: {why}")
-        yield replace(condition, after_s=SETTINGS.home_waits_s)
+        condition = _about(station, member, RULE_HOME, f"is waiting to fly home: {why}")
+        yield replace(condition, after_s=SURVEY_TIMES.home_waits_s)
 
 
-def _hovers_since(station: Station, member: Member) -> bool:
-    """Whether a vehicle is in the air, and a mission of the survey is the last it was told."""
+def _hovers_since(station: Station, member: SurveyVehicle) -> bool:
+    """Whether a vehicle is in the air, and a mission of the survey is its newest order."""
     vehicle = station.fleet.vehicles.get(member.serial)
     newest = newest_motion(station, member.serial)
     is_up = vehicle is not None and vehicle.is_flying.value is True
     return is_up and newest is not None and newest.command.id == member.command_id
 
 
-def _about(station: Station, member: Member, rule: str, text: str) -> Condition:
+def _about(station: Station, member: SurveyVehicle, rule: str, text: str) -> Condition:
     vehicle = station.fleet.vehicles.get(member.serial)
     name = member.serial if vehicle is None else vehicle.display_name
     link_id = None if vehicle is None else vehicle.link_id

@@ -1,4 +1,20 @@
-"""A running survey carried on: looked at once a second, its missions given through the gate."""
+"""The execution of surveys: a step once a second, its missions ordered through the gate.
+
+A survey is planned, created, running, paused, and in the end aborted or done (`SurveyPhase`). Only
+an operator starts, pauses or aborts it; it becomes done, or pauses itself, by its own step:
+
+1. On a tick, at most once a second, the survey that has waited longest is due. The outcome of each
+   vehicle's mission is read: a vehicle whose mission ended unfinished is stopped until an operator
+   starts it again. If its mission was ignored it is held, for it might begin late.
+2. The worker counts the positions and shade maps since the last step, and decides which vehicle
+   flies what next. One step at a time; after 30 s without an answer it counts as lost. A command
+   to the survey meanwhile makes the answer count for nothing.
+3. Each mission is ordered under guidance, with an approach of its own. A refusal goes back to the
+   planner, which tries other rows or another vehicle.
+4. A vehicle with a battery too low for any row, and every vehicle of a survey that is done, flies
+   home if the survey is to return. Those of a survey that is over, or has paused itself, otherwise
+   hover and go back to the operator.
+"""
 
 from dataclasses import replace
 
@@ -10,80 +26,78 @@ from recon.model.survey import MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
 from recon.safety.rules.battery import RULE as BATTERY
 from recon.station.control import authority, order_gateway
-from recon.station.operations.survey.availability import looked_at, surveyors
+from recon.station.operations.settings import SURVEY_TIMES, SurveyTimes
+from recon.station.operations.survey.availability import after_mission, available_vehicles
 from recon.station.operations.survey.mission_dispatch import order_of
 from recon.station.operations.survey.planning import StepSurvey, SurveyStepped, step_survey
 from recon.station.operations.survey.return_to_home import (
     IS_DONE,
     NO_BATTERY,
-    comes_home,
-    flies_home,
+    is_done_and_returns,
     is_under_way,
+    returns_home,
     send_home,
 )
-from recon.station.operations.survey.settings import SETTINGS, SurveyCarrying
 from recon.station.state.command_ids import take_id
 from recon.station.state.jobs import Job, JobKind
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
-from recon.station.state.survey_record import Look, SurveyRecord
+from recon.station.state.survey_record import PendingStep, SurveyRecord
 
 
-def advance(station: Station, now_ns: int, settings: SurveyCarrying = SETTINGS) -> Stepped:
-    """Return the station after looking whether a survey is due, and the work for the one that is.
-
-    One at a time: the survey that has waited longest.
-    """
+def advance(station: Station, now_ns: int, settings: SurveyTimes = SURVEY_TIMES) -> Stepped:
+    """Start the step of the survey that has waited longest, if one is due and none is pending."""
     surveys = station.surveys
     if not surveys.records:
         return station, ()
-    look = surveys.look
-    if look is not None:
-        if now_ns - look.asked_at_ns < seconds_to_ns(settings.answered_within_s):
+    pending = surveys.pending
+    if pending is not None:
+        if now_ns - pending.asked_at_ns < seconds_to_ns(settings.answered_within_s):
             return station, ()
-        surveys = replace(surveys, look=None)
-    due = [r for r in surveys.records.values() if _is_alive(r) and now_ns >= r.look_at_ns]
+        surveys = replace(surveys, pending=None)
+    due = [r for r in surveys.records.values() if _needs_steps(r) and now_ns >= r.step_due_ns]
     if not due:
         return replace(station, surveys=surveys), ()
-    record = min(due, key=lambda each: each.look_at_ns)
-    station, held = _look_at_members(replace(station, surveys=surveys), record, now_ns)
-    station, work = _ask(station, record.survey.id, settings, now_ns)
-    return station, (*held, *work)
+    record = min(due, key=lambda each: each.step_due_ns)
+    station, held = _read_missions(replace(station, surveys=surveys), record, now_ns)
+    station, job = _start_step(station, record.survey.id, settings, now_ns)
+    return station, (*held, *job)
 
 
 def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) -> Stepped:
     """Take the survey's new state, and order its missions as far as the gate approves them."""
-    station, record = _without_look(station, job_id)
+    station, record = _without_pending(station, job_id)
     if record is None:
         return station, ()
+    survey_id = record.survey.id
     record = replace(record, state=result.state, trouble=None)
     station = replace(station, surveys=station.surveys.put(record))
     outputs: tuple[Output, ...] = ()
     for mission in result.missions:
-        station, sent = _give(station, record.survey.id, mission, now_ns)
+        station, sent = _order_mission(station, survey_id, mission, now_ns)
         outputs += sent
-    if comes_home(record):
-        for serial in result.spent:
-            station, sent = send_home(station, record.survey.id, serial, NO_BATTERY, now_ns)
+    if returns_home(record):
+        for serial in result.out_of_battery:
+            station, sent = send_home(station, survey_id, serial, NO_BATTERY, now_ns)
             outputs += sent
-    station, sent = _over(station, record.survey.id, now_ns)
+    station, sent = _release_vehicles(station, survey_id, now_ns)
     return station, (*outputs, *sent)
 
 
 def _not_stepped(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
-    station, record = _without_look(station, job_id)
+    station, record = _without_pending(station, job_id)
     if record is None:
         return station, ()
     return replace(station, surveys=station.surveys.put(replace(record, trouble=error))), ()
 
 
 def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
-    """The next step counts the same observations."""
-    look = station.surveys.look
-    if look is None or look.job_id != job_id:
+    """Forget the step; the next one counts the same observations."""
+    pending = station.surveys.pending
+    if pending is None or pending.job_id != job_id:
         return station, ()
-    return replace(station, surveys=replace(station.surveys, look=None)), ()
+    return replace(station, surveys=replace(station.surveys, pending=None)), ()
 
 
 STEP_SURVEY: JobKind[StepSurvey, SurveyStepped] = JobKind(
@@ -92,35 +106,39 @@ STEP_SURVEY: JobKind[StepSurvey, SurveyStepped] = JobKind(
 """Counts observations and decides which vehicle flies what next."""
 
 
-def _without_look(station: Station, job_id: int) -> tuple[Station, SurveyRecord | None]:
-    """End the look that a job was for: return its survey without the observations it counted.
+def _without_pending(station: Station, job_id: int) -> tuple[Station, SurveyRecord | None]:
+    """End the pending step: return its survey without the observations that the step counted.
 
-    None for a job that nothing waits for. Observations that could not be counted are dropped too.
+    None if the job is not the pending one. A step that failed drops its observations too: they
+    might make the next one fail again.
     """
-    surveys, look = station.surveys, station.surveys.look
-    if look is None or look.job_id != job_id:
+    surveys, pending = station.surveys, station.surveys.pending
+    if pending is None or pending.job_id != job_id:
         return station, None
-    surveys = replace(surveys, look=None)
-    record = surveys.records.get(look.survey_id)
+    surveys = replace(surveys, pending=None)
+    record = surveys.records.get(pending.survey_id)
     if record is None or record.state is None:
         return replace(station, surveys=surveys), None
-    seen, shade = record.seen.from_number(look.seen_end), record.shade.from_number(look.shade_end)
-    record = replace(record, seen=seen, shade=shade)
+    record = replace(
+        record,
+        positions=record.positions.from_number(pending.positions_end),
+        shade_maps=record.shade_maps.from_number(pending.shade_maps_end),
+    )
     return replace(station, surveys=surveys.put(record)), record
 
 
-def _is_alive(record: SurveyRecord) -> bool:
-    """Whether time and positions still change it: it runs, or something flown is not counted."""
+def _needs_steps(record: SurveyRecord) -> bool:
+    """Whether it runs, or is paused with positions that are not counted yet."""
     is_paused = record.state is not None and record.state.phase is SurveyPhase.PAUSED
-    return record.is_running or (is_paused and bool(record.seen.items))
+    return record.is_running or (is_paused and bool(record.positions.items))
 
 
-def _look_at_members(station: Station, record: SurveyRecord, now_ns: int) -> Stepped:
-    """Take in how the missions have ended; stop a vehicle that might begin one late."""
+def _read_missions(station: Station, record: SurveyRecord, now_ns: int) -> Stepped:
+    """Read the outcome of each vehicle's mission; hold a vehicle that might begin one late."""
     outputs: tuple[Output, ...] = ()
     for member in record.members.values():
-        seen, order = looked_at(station, member)
-        record = record.put(seen)
+        updated, order = after_mission(station, member)
+        record = record.put(updated)
         if order is not None and order.phase is Phase.TIMED_OUT and record.is_running:
             station, number = take_id(station)
             why = f"the mission of order {order.command.id} was ignored"
@@ -133,20 +151,22 @@ def _look_at_members(station: Station, record: SurveyRecord, now_ns: int) -> Ste
     return replace(station, surveys=station.surveys.put(record)), outputs
 
 
-def _ask(station: Station, survey_id: int, settings: SurveyCarrying, now_ns: int) -> Stepped:
+def _start_step(station: Station, survey_id: int, settings: SurveyTimes, now_ns: int) -> Stepped:
     surveys = station.surveys
     record = surveys.records[survey_id]
     assert record.state is not None  # or it would not be due
-    who = tuple(surveyors(station, record, now_ns))
-    work = StepSurvey(record.state, record.seen.items, record.shade.items, who, now_ns)
-    look = Look(surveys.next_job_id, survey_id, now_ns, record.seen.end, record.shade.end)
-    record = replace(record, look_at_ns=now_ns + seconds_to_ns(settings.look_every_s))
-    surveys = replace(surveys.put(record), look=look, next_job_id=look.job_id + 1)
-    return replace(station, surveys=surveys), (Job(look.job_id, STEP_SURVEY, work),)
+    vehicles = tuple(available_vehicles(station, record, now_ns))
+    positions, shade_maps = record.positions, record.shade_maps
+    work = StepSurvey(record.state, positions.items, shade_maps.items, vehicles, now_ns)
+    job = Job(surveys.next_job_id, STEP_SURVEY, work)
+    pending = PendingStep(job.id, survey_id, now_ns, positions.end, shade_maps.end)
+    record = replace(record, step_due_ns=now_ns + seconds_to_ns(settings.step_every_s))
+    surveys = replace(surveys.put(record), pending=pending, next_job_id=job.id + 1)
+    return replace(station, surveys=surveys), (job,)
 
 
-def _give(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> Stepped:
-    """Order one mission, as guidance; tell the survey when the gate refuses it."""
+def _order_mission(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> Stepped:
+    """Order one mission under guidance; give a refusal back to the survey."""
     record = station.surveys.records[survey_id]
     member, state = record.members.get(given.serial), record.state
     vehicle = station.fleet.vehicles.get(given.serial)
@@ -161,29 +181,26 @@ def _give(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> S
     else:
         station, sent = order_gateway.place(station, order, now_ns)
     placed = station.orders.records[number]
-    words = placed.note if isinstance(why, Refusal) else placed.note + why
-    if placed.phase is Phase.REFUSED_BY_STATION:
-        state = refused(state, given.serial, given.number, words, now_ns)
-        record = replace(record, state=state)
-        station = replace(station, surveys=station.surveys.put(record))
-        if comes_home(record) and placed.note.startswith(f"{BATTERY}: "):
-            return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
-    else:
+    if placed.phase is not Phase.REFUSED_BY_STATION:
         used = replace(member, number=given.number, command_id=number, may_take_off=False)
-        record = record.put(used)
-    return replace(station, surveys=station.surveys.put(record)), sent
+        return replace(station, surveys=station.surveys.put(record.put(used))), sent
+    text = placed.note if isinstance(why, Refusal) else placed.note + why
+    record = replace(record, state=refused(state, given.serial, given.number, text, now_ns))
+    station = replace(station, surveys=station.surveys.put(record))
+    if returns_home(record) and placed.note.startswith(f"{BATTERY}: "):
+        return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
+    return station, sent
 
 
-def _over(station: Station, survey_id: int, now_ns: int) -> Stepped:
-    """A survey that has ended calls its vehicles home if it was asked to; one that is over, or has
-    paused by itself, leads nobody else any more: they hover."""
+def _release_vehicles(station: Station, survey_id: int, now_ns: int) -> Stepped:
+    """After the end of a survey send its vehicles home, if it returns, or else release them."""
     record = station.surveys.records[survey_id]
     if record.is_running or record.state is None:
         return station, ()
     outputs: tuple[Output, ...] = ()
-    why = f"the survey {record.survey.name} is {record.state.phase.value}: {record.state.reason}"
+    why = f"survey {record.survey.name} is {record.state.phase.value}: {record.state.reason}"
     for member in record.members.values():
-        if flies_home(record) and member.stopped is None:
+        if is_done_and_returns(record) and member.stop_reason is None:
             station, sent = send_home(station, survey_id, member.serial, IS_DONE, now_ns)
             outputs += sent
         if not is_under_way(station, station.surveys.records[survey_id].members[member.serial]):

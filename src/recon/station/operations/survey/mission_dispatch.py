@@ -1,11 +1,20 @@
-"""A survey's mission as an order: its way there at the first height that the gate lets it fly."""
+"""A survey's mission as an order, with an approach to its first row and an exit from its last.
 
-from collections.abc import Iterator
+All rows are flown at one height. A vehicle that crosses other rows at that height, or hovers at the
+end of its own, comes too near to other vehicles, and the gate would refuse their missions until it
+is gone. So each vehicle of a survey has heights of its own: it flies to its first row at one of
+them, and climbs or sinks back to it after the last row.
+"""
+
 from dataclasses import replace
 
+from recon.geo.distance import horizontal_distance_m
+from recon.model.airspace import FlightLimits
 from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Refusal
 from recon.model.event import OperatorOrder
+from recon.model.geo import LatLon
+from recon.model.mission import Mission
 from recon.model.survey import MissionFor
 from recon.model.vehicle import VehicleState
 from recon.safety import judge
@@ -15,12 +24,26 @@ from recon.safety.rules.max_height import RULE as MAX_HEIGHT
 from recon.safety.rules.min_height import RULE as MIN_HEIGHT
 from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control.situation_builder import command_of, situation
-from recon.station.operations.survey.approach import with_approaches
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 
 HEIGHT_RULES = frozenset({HEIGHT_ZONES, KEEP_OUT, MAX_HEIGHT, MIN_HEIGHT})
-"""What another height of the way may mend; any other refusal stands at every height."""
+"""Rules that another height of the approach may satisfy; others refuse every height."""
+
+LAYER_M = 8.0
+"""Between two approach heights: the same as between two layers of a fleet return."""
+
+SPARE_M = 5.0
+"""Under the site's ceiling: the ground under an approach may lie higher than the takeoff point."""
+
+LOWEST_M = 20.0
+"""No approach is lower: trees and buildings are in a zone, or lower than this."""
+
+NEAR_M = 20.0
+"""A vehicle this near to its first row, at its height, flies straight there."""
+
+LEVEL_M = 3.0
+"""Heights that differ by less count as the same: barometers are no better."""
 
 
 def order_of(
@@ -30,13 +53,14 @@ def order_of(
     vehicle: VehicleState,
     now_ns: int,
 ) -> tuple[OperatorOrder, Refusal | str]:
-    """Return the order, without its number; and why it is not asked for, or words for its refusal.
+    """Return the order without its number; and a refusal to record instead of placing it, or words
+    to add to the gate's refusal.
 
-    Limits and zones are the gate's alone: where it refuses every height, the first is ordered, so
-    that its refusal is on record. A mission that would come too near to another vehicle is not
-    ordered but waits: the other vehicle may soon have flown on.
+    The first height is taken that no height rule refuses. If all are refused, the first is ordered,
+    so that the gate's refusal is on record. A mission refused for separation is not placed but
+    recorded as refused and planned again: the other vehicle may soon have flown on.
     """
-    orders = tuple(_orders(station, record, given, vehicle))
+    orders = _orders(station, record, given, vehicle)
     for order in orders:
         command = command_of(station, order, now_ns)
         refusal = judge(command, situation(station, command, now_ns))
@@ -44,13 +68,13 @@ def order_of(
             return order, refusal
         if refusal is None or refusal.rule not in HEIGHT_RULES:
             return order, ""
-    tried = "" if len(orders) == 1 else "; nor is another height of its way to the first row free"
+    tried = "" if len(orders) == 1 else "; no other height of its approach is free"
     return orders[0], tried
 
 
 def _orders(
     station: Station, record: SurveyRecord, given: MissionFor, vehicle: VehicleState
-) -> Iterator[OperatorOrder]:
+) -> tuple[OperatorOrder, ...]:
     member = record.members[given.serial]
     number, count = tuple(record.members).index(given.serial), len(record.members)
     limits = station.airspace.airspace.limits
@@ -62,5 +86,68 @@ def _orders(
         takeoff=member.may_take_off and vehicle.is_flying.value is False,
         asked_as=AuthorityHolder.GUIDANCE,
     )
-    for mission in with_approaches(given.mission, vehicle, number, count, limits):
-        yield replace(order, body=FlyMission(mission))
+    missions = with_approaches(given.mission, vehicle, number, count, limits)
+    return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
+
+
+def with_approach(
+    mission: Mission, vehicle: VehicleState, number: int, count: int, limits: FlightLimits
+) -> Mission:
+    """Return the mission with its approach at the first of the vehicle's heights.
+
+    `number` counts the survey's `count` vehicles from 0; if there are too many for the available
+    heights, they share the last one.
+    """
+    return with_approaches(mission, vehicle, number, count, limits)[0]
+
+
+def with_approaches(
+    mission: Mission, vehicle: VehicleState, number: int, count: int, limits: FlightLimits
+) -> tuple[Mission, ...]:
+    """Return the mission with each possible approach: straight up or down, across, onto the first
+    row; and off the last row to the same height.
+
+    One for each of the vehicle's heights, the nearest to the rows first: no two of the survey's
+    `count` vehicles share a height, as long as there are enough. Zones are left to the gate.
+    """
+    rows_m = mission.waypoints[0].height_above_takeoff_m
+    layers_m = _layers_m(rows_m, limits)
+    own_m = layers_m[number::count] or layers_m[-1:]
+    flown = tuple(_with_approach(mission, vehicle, layer_m) for layer_m in own_m)
+    if count > 1:
+        flown = tuple(_with_end(each, layer_m) for each, layer_m in zip(flown, own_m, strict=True))
+    return tuple(dict.fromkeys(flown))
+
+
+def _with_approach(mission: Mission, vehicle: VehicleState, layer_m: float) -> Mission:
+    here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
+    if here is None or height_m is None:
+        return mission
+    first = mission.waypoints[0]
+    far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
+    is_level = abs(height_m - first.height_above_takeoff_m) < LEVEL_M
+    if far_m < NEAR_M and (is_level or far_m < 1.0):
+        return mission
+    plain = replace(first, gimbal_pitch_deg=None)
+    above = replace(plain, latitude_deg=here.latitude_deg, longitude_deg=here.longitude_deg)
+    if far_m < NEAR_M:
+        return replace(mission, waypoints=(above, *mission.waypoints))
+    approach = (replace(each, height_above_takeoff_m=layer_m) for each in (above, plain))
+    return replace(mission, waypoints=(*approach, *mission.waypoints))
+
+
+def _with_end(mission: Mission, layer_m: float) -> Mission:
+    """Leave the rows' height at the end, so that the vehicle does not hover in others' rows."""
+    last = mission.waypoints[-1]
+    if abs(layer_m - last.height_above_takeoff_m) < LEVEL_M:
+        return mission
+    end = replace(last, height_above_takeoff_m=layer_m, gimbal_pitch_deg=None)
+    return replace(mission, waypoints=(*mission.waypoints, end))
+
+
+def _layers_m(rows_m: float, limits: FlightLimits) -> list[float]:
+    """The heights of approaches: above the rows, below, and so on; without room the rows' own."""
+    ceiling_m = limits.max_height_above_ground_m - SPARE_M
+    steps = range(1, 1 + int(max(ceiling_m, rows_m) // LAYER_M))
+    outwards = [rows_m + sign * step * LAYER_M for step in steps for sign in (1.0, -1.0)]
+    return [height_m for height_m in outwards if LOWEST_M <= height_m <= ceiling_m] or [rows_m]

@@ -1,4 +1,7 @@
-"""Rows and looks are worked out by the worker: both may take longer than a step may."""
+"""The worker's two jobs for surveys: planning rows, and the survey's step once a second.
+
+Both may take longer than a step of the station may.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,14 +31,14 @@ from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
 from recon.station.state.survey_record import SURVEYS_KEPT, SurveyRecord
 
-NO_SITE = "a survey needs a site with a place: start the station with --site FOLDER"
-TOO_MANY = f"{SURVEYS_KEPT} surveys are under way: abort one of them first"
-PUSHED_OUT = "another survey was asked for at the same moment: ask for this one again"
+NO_SITE = "a survey needs a site with an origin; start the station with --site FOLDER"
+TOO_MANY = f"{SURVEYS_KEPT} surveys are under way; abort one of them first"
+PUSHED_OUT = "another survey was requested at the same moment; request this one again"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanSurvey:
-    """What is asked for, and what the site leaves to fly over."""
+    """The requested survey, and where the site allows it to fly."""
 
     survey: Survey
     frame: LocalFrame
@@ -44,23 +47,23 @@ class PlanSurvey:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StepSurvey:
-    """A survey, what was seen since the last look, and its vehicles as they are now."""
+    """A survey, its observations since the last step, and its vehicles as they are now."""
 
     state: SurveyState
-    seen: tuple[tuple[str, PositionSample], ...]
-    shade: tuple[ShadeMap, ...]
-    surveyors: tuple[Surveyor, ...]
+    positions: tuple[tuple[str, PositionSample], ...]
+    shade_maps: tuple[ShadeMap, ...]
+    vehicles: tuple[Surveyor, ...]
     now_ns: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyStepped:
-    """The survey a moment later, and the missions to give."""
+    """The survey after the step, and the missions to order."""
 
     state: SurveyState
     missions: tuple[MissionFor, ...]
-    spent: tuple[str, ...] = ()
-    """Who waits in the air, or on the ground, with a battery that lasts for no row."""
+    out_of_battery: tuple[str, ...] = ()
+    """Serials of vehicles that wait with a battery too low for any row."""
 
 
 def make_rows(work: PlanSurvey) -> SurveyPlan | Refusal:
@@ -71,16 +74,16 @@ def make_rows(work: PlanSurvey) -> SurveyPlan | Refusal:
 def step_survey(work: StepSurvey) -> SurveyStepped:
     """Add the new observations and take a survey's step: the worker's part."""
     state = work.state
-    for shade in work.shade:
+    for shade in work.shade_maps:
         state = observe_shade(state, shade)
-    for serial, seen in _by_vehicle(work.seen).items():
-        state = observe(state, serial, seen)
-    state, missions = step(state, work.surveyors, work.now_ns)
-    return SurveyStepped(state, missions, spent(state, work.surveyors))
+    for serial, samples in _by_vehicle(work.positions).items():
+        state = observe(state, serial, samples)
+    state, missions = step(state, work.vehicles, work.now_ns)
+    return SurveyStepped(state, missions, spent(state, work.vehicles))
 
 
-def ask(station: Station, event: SurveyAsked, now_ns: int) -> Stepped:
-    """Return the station with a survey whose rows are being worked out, or that is refused."""
+def ask_survey(station: Station, event: SurveyAsked, now_ns: int) -> Stepped:
+    """Record a requested survey, and start planning its rows unless it is refused."""
     record = SurveyRecord(event.survey, event.by, now_ns)
     refusal = refusal_of(station)
     if refusal is not None:
@@ -92,7 +95,7 @@ def ask(station: Station, event: SurveyAsked, now_ns: int) -> Stepped:
 
 
 def refusal_of(station: Station) -> Refusal | None:
-    """Return why no survey can be asked for now, else None."""
+    """Return why no survey can be requested now, else None."""
     if station.airspace.airspace.frame is None:
         return Refusal(RULE, NO_SITE)
     alive = [each for each in station.surveys.records.values() if not each.is_over]
@@ -100,10 +103,10 @@ def refusal_of(station: Station) -> Refusal | None:
 
 
 def surroundings(station: Station) -> Surroundings:
-    """Return what the site leaves: its boundary, and all keep-out zones, whatever their heights."""
+    """Return the site's boundary and all its keep-out zones, whatever their heights."""
     air = station.airspace.airspace
-    shut = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
-    return Surroundings(air.boundary, shut, air.limits.boundary_margin_m)
+    keep_out = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
+    return Surroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
 
 
 def _planned(station: Station, survey_id: int, plan: SurveyPlan | Refusal, _now_ns: int) -> Stepped:
@@ -139,8 +142,10 @@ def _put(station: Station, record: SurveyRecord) -> Station:
     return replace(station, surveys=station.surveys.put(record))
 
 
-def _by_vehicle(seen: Sequence[tuple[str, PositionSample]]) -> Mapping[str, list[PositionSample]]:
+def _by_vehicle(
+    samples: Sequence[tuple[str, PositionSample]],
+) -> Mapping[str, list[PositionSample]]:
     each: dict[str, list[PositionSample]] = {}
-    for serial, place in seen:
-        each.setdefault(serial, []).append(place)
+    for serial, sample in samples:
+        each.setdefault(serial, []).append(sample)
     return each

@@ -1,8 +1,8 @@
-"""A survey's vehicles fly home when there is nothing more to fly for them.
+"""A survey's vehicles fly home when there is nothing left for them to fly.
 
-They join the fleet return: a hold, then a landing mission at a height of its own, each when its
-turn has come. All of it is asked for as guidance, by the word of whoever started the survey, and
-goes through the gate; whoever leads the vehicle from then on (an operator's hold, a pilot) ends it.
+They join the fleet return: a hold, then a landing mission at a height of its own, each in its turn.
+All of it is ordered under guidance, for the user that started the survey, and goes through the
+gate. It ends when an operator or a pilot takes control of the vehicle.
 """
 
 from dataclasses import replace
@@ -17,36 +17,36 @@ from recon.station.state.command_ids import take_id
 from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
-from recon.station.state.survey_record import Member, SurveyRecord
+from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
 
-NO_BATTERY = "its battery lasts for no row that is left"
+NO_BATTERY = "its battery is too low for any row that is left"
 IS_DONE = "the survey is done"
 
 
-def flies_home(record: SurveyRecord) -> bool:
-    """Return whether the survey is done, and its vehicles are to come home then."""
+def is_done_and_returns(record: SurveyRecord) -> bool:
+    """Return whether the survey is done and its vehicles are to fly home then."""
     is_done = record.state is not None and record.state.phase is SurveyPhase.DONE
-    return is_done and comes_home(record)
+    return is_done and returns_home(record)
 
 
-def comes_home(record: SurveyRecord) -> bool:
-    """Return whether a survey's vehicles come home when there is nothing to fly for them."""
+def returns_home(record: SurveyRecord) -> bool:
+    """Return whether a survey's vehicles fly home when there is nothing left for them to fly."""
     return record.survey.when_done is WhenDone.RETURN_HOME
 
 
-def is_under_way(station: Station, member: Member) -> bool:
-    """Return whether a vehicle is on its way home for its survey, or waits for its turn."""
+def is_under_way(station: Station, member: SurveyVehicle) -> bool:
+    """Return whether a vehicle flies home for its survey, or waits for its turn."""
     running = station.fleet_return
     returning = None if running is None else running.members.get(member.serial)
-    if member.homeward is None or returning is None or returning.stage in ENDED:
+    if member.return_reason is None or returning is None or returning.stage in ENDED:
         return False
     return returning.asked_as is AuthorityHolder.GUIDANCE
 
 
 def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: int) -> Stepped:
-    """Call one of a survey's vehicles home, if guidance leads it and it flies.
+    """Call one of a survey's vehicles home, if guidance controls it and it flies.
 
-    What cannot be called is the operator's again, with the reason; an alarm says that it hovers.
+    One that cannot be called goes back to the operator, with the reason; it hovers, with an alarm.
     """
     record = station.surveys.records[survey_id]
     member, vehicle = record.members[serial], station.fleet.vehicles.get(serial)
@@ -56,7 +56,7 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
         return station, ()
     refusal = commands.refusal(station, serial)
     if refusal is not None:
-        return _not_called(station, record, serial, refusal.reason, now_ns), ()
+        return _hand_back(station, record, serial, refusal.reason, now_ns), ()
     station, number = take_id(station)
     by = f"{record.started_by}: survey {record.survey.name}"
     hold = OperatorOrder(
@@ -65,13 +65,13 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
     station, sent = commands.join(station, hold, by, now_ns)
     placed = station.orders.records[number]
     if placed.phase is Phase.REFUSED_BY_STATION:
-        return _not_called(station, record, serial, placed.note, now_ns), sent
-    record = record.put(replace(member, homeward=why, may_take_off=False))
+        return _hand_back(station, record, serial, placed.note, now_ns), sent
+    record = record.put(replace(member, return_reason=why, may_take_off=False))
     return replace(station, surveys=station.surveys.put(record)), sent
 
 
-def _not_called(
+def _hand_back(
     station: Station, record: SurveyRecord, serial: str, why: str, now_ns: int
 ) -> Station:
-    words = f"the survey {record.survey.name} could not call it home: {why}"
+    words = f"the survey {record.survey.name} could not send it home: {why}"
     return authority.hand_back(station, serial, record.started_by, words, now_ns)

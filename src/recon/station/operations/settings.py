@@ -1,0 +1,81 @@
+"""Times and bounds of the operations, each with its reason."""
+
+from dataclasses import dataclass, field
+
+from recon.guidance.fleet_return import FleetReturnSettings
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnSettings:
+    """Of fleet returns. Times in seconds."""
+
+    plan: FleetReturnSettings = field(default_factory=FleetReturnSettings)
+
+    step_every_s: float = 0.2
+    """How often the turns are checked; each flight lasts a minute or so."""
+
+    stands_within_s: float = 12.0
+    """From 15 m/s an aircraft stands within 6 s of a hold, which is sent up to 2 s late."""
+
+    telemetry_within_s: float = 3.0
+    """A waiting vehicle without telemetry for so long may do anything: it is left out."""
+
+    judged_again_s: float = 1.0
+    """A flight that the gate refuses for now is judged again after this."""
+
+    planned_within_s: float = 20.0
+    """A plan takes a tenth of a second, behind one frame's job or two. After this the worker counts
+    as broken, and vehicles that hover must not wait for it."""
+
+    planned_again_s: float = 2.0
+    """Between two plans for the same vehicles, when another vehicle blocks their way."""
+
+    gate_waits_s: float = 30.0
+    """With no vehicle of the return flying before it, a mission may wait this long for telemetry or
+    for other vehicles; then the gate's refusal stands."""
+
+    pad_clearing_s: float = 30.0
+    """From a landing to the next one at the same pad, at least: time to carry the first vehicle
+    away. An alarm requests it."""
+
+    same_pad_m: float = 5.0
+    """Pads nearer than this count as one: two vehicles could not stand on both."""
+
+    moved_m: float = 10.0
+    """A waiting vehicle this far from where it was has been moved by its pilot, or drifts without
+    holding its position; either way it is left out."""
+
+    hovers_after_s: float = 3.0
+    """A flight out of its mission and its landing for so long was ended by the pilot, the app or
+    the aircraft."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyTimes:
+    """Of running surveys. Times in seconds."""
+
+    step_every_s: float = 1.0
+    """A row takes half a minute; a second of battery counts for nothing."""
+
+    answered_within_s: float = 30.0
+    """A step takes milliseconds, behind a frame's job or two; the first of a round over 60 ha some
+    tenths of a second. After this it counts as lost."""
+
+    positions_kept: int = 4_000
+    """Between two steps: eight vehicles at 10 Hz for as long as a step may take."""
+
+    shade_maps_kept: int = 16
+    """Between two steps: as many as a survey keeps itself."""
+
+    home_waits_s: float = 60.0
+    """A turn to fly home comes within a minute; a vehicle that waits longer raises an alarm."""
+
+    track_step_m: float = 5.0
+    """A flown path is drawn with corners this far apart."""
+
+    track_corners: int = 2_000
+    """Of one mission: ten kilometres."""
+
+
+RETURN_SETTINGS = ReturnSettings()
+SURVEY_TIMES = SurveyTimes()
