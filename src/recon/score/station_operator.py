@@ -89,7 +89,7 @@ def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: i
     vehicle = station.fleet.vehicles[serial]
     member = None if record is None else record.members.get(serial)
     is_live = staleness(vehicle, now_ns) is Staleness.LIVE
-    is_called_home = member is not None and member.homeward is not None
+    is_called_home = member is not None and member.return_reason is not None
     mode = vehicle.flight_mode.value
     is_running = record is not None and record.is_running
     return DroneView(
@@ -99,7 +99,7 @@ def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: i
         is_flying=vehicle.is_flying.value,
         is_descending=mode in DESCENDING,
         battery_fraction=vehicle.battery_fraction.value,
-        is_stopped=not is_running or member is None or member.stopped is not None,
+        is_stopped=not is_running or member is None or member.stop_reason is not None,
         is_called_home=is_called_home,
         is_flying_home=is_called_home and mode is FlightMode.GPS_WAYPOINT,
         is_under_pilot=station.control(serial).authority.holder is AuthorityHolder.PILOT,
