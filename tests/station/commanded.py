@@ -112,6 +112,11 @@ class CommandedStation:
     def phase(self, order: int) -> Phase:
         return self.record(order).phase
 
+    def refusal_rule(self, order: int) -> str | None:
+        """The rule that refused an order or its next part."""
+        refusal = self.record(order).refusal
+        return None if refusal is None else refusal.rule
+
     def phases(self, order: int) -> list[Phase]:
         return [change.phase for change in self.record(order).history]
 

@@ -118,6 +118,11 @@ class Steered:
     def note(self, order: int) -> str:
         return self.w.record(order).note
 
+    def refusal_rule(self, order: int) -> str | None:
+        """The rule that refused an order or one of its setpoints."""
+        refusal = self.w.record(order).refusal
+        return None if refusal is None else refusal.rule
+
     def distance_m(self, north_m: float, east_m: float = 0.0) -> float:
         """True distance of the vehicle from a place north and east of its start."""
         motion = self.aircraft.motion

@@ -1,5 +1,7 @@
 """What became of an order so far, as the station tells it."""
 
+from collections.abc import Mapping
+
 import msgspec
 
 from recon.model.command import Phase
@@ -26,6 +28,10 @@ class Life(msgspec.Struct, frozen=True):
     history: tuple[PhaseChange, ...]
     part: str | None = None
     """The part of a mission that is flown now, as in `part 2 of 3`; None for a mission of one."""
+    rule: str | None = None
+    """The safety rule that refused it; `note` is the reason."""
+    parameters: Mapping[str, float | int | str] = {}
+    """The refusal's measured values and limits, by name with unit."""
 
     @property
     def is_seen(self) -> bool:

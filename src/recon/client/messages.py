@@ -1,5 +1,6 @@
 """The station's messages, as far as the client reads them. Keys it does not know are left alone."""
 
+from collections.abc import Mapping
 from typing import Any, TypeVar
 
 import msgspec
@@ -9,6 +10,7 @@ from recon.client.life import Life
 from recon.client.returning import FleetReturnMessage
 from recon.client.telemetry import Telemetry
 from recon.client.watched import Alarm
+from recon.model.command import Refusal
 from recon.model.units import seconds_to_ns
 
 M = TypeVar("M")
@@ -48,8 +50,15 @@ class ResultMessage(msgspec.Struct, frozen=True):
     command_id: int
     rule: str | None
     reason: str | None
+    parameters: Mapping[str, float | int | str] = {}
     repairs: tuple[str, ...] = ()
     parts: int = 0
+
+    @property
+    def refusal(self) -> Refusal:
+        """The refusal, of a result that was not accepted."""
+        rule, reason = self.rule or "unnamed", self.reason or "no reason was given"
+        return Refusal(rule, reason, parameters=self.parameters)
 
 
 class OrderMessage(msgspec.Struct, frozen=True):

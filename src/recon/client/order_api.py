@@ -66,7 +66,7 @@ class OrderDesk:
         (result,) = answer.results
         if result.accepted:
             return None
-        return Refusal(result.rule or "unnamed", result.reason or "no reason was given")
+        return result.refusal
 
     async def all_stop(self) -> tuple[VehicleAnswer, ...]:
         """Hold everything that flies."""
@@ -115,7 +115,7 @@ class OrderDesk:
                 result.parts,
             )
         else:
-            answer = Refusal(result.rule or "unnamed", result.reason or "no reason was given")
+            answer = result.refusal
         return VehicleAnswer(result.serial, result.link_id, result.vehicle_name, answer)
 
 

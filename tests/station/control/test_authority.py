@@ -46,9 +46,9 @@ class TestByHand:
         scene = says(CommandedStation().opens(1), 6.0)
         assert led_by(scene) is AuthorityHolder.PILOT
         refused = scene.record(scene.order(mission()))
-        assert refused.note.startswith(
-            "authority: A is controlled by pilot (it moves, and nothing has been"
-        )
+        assert refused.refusal is not None
+        assert refused.refusal.rule == "authority"
+        assert refused.note.startswith("A is controlled by pilot (it moves, and nothing has been")
         assert scene.alarms() == set()
         takes(says(scene, 6.0), AuthorityHolder.OPERATOR)
         assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR

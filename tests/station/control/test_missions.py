@@ -170,7 +170,8 @@ class TestBrokenOff:
         flies(scene, 0.0, 10.0, 20.0)
         said = (at(20.0, GPS)[0], replace(at(20.0, GPS)[1], gnss_signal_level=0))
         scene.keeps_saying(1, *said).passes(0.5)
-        self.ended(scene, order, "gnss")
+        self.ended(scene, order, "GNSS signal level")
+        assert scene.refusal_rule(order) == "gnss"
 
     def test_the_pilot_ends_it_at_once(self) -> None:
         scene, order = in_parts()

@@ -44,7 +44,8 @@ class TestOverride:
     def test_without_it_the_mission_is_refused_with_it_sent(self, scene: CommandedStation) -> None:
         refused = scene.order(mission(), takeoff=True)
         assert scene.phase(refused) is Phase.REFUSED_BY_STATION
-        assert scene.record(refused).note.startswith("preflight: A: its preflight checklist is not")
+        assert scene.refusal_rule(refused) == "preflight"
+        assert scene.record(refused).note.startswith("A: its preflight checklist is not")
         assert scene.phase(overrides(scene).order(mission(), takeoff=True)) is Phase.SENT
 
     def test_who_when_and_why_is_kept(self, scene: CommandedStation) -> None:

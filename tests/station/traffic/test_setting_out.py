@@ -30,7 +30,7 @@ def two_on_the_ground() -> CommandedStation:
 def refused(scene: CommandedStation, order: int) -> bool:
     record = scene.record(order)
     is_refused = record.phase is Phase.REFUSED_BY_STATION
-    assert not is_refused or record.note.startswith("separation: ")
+    assert not is_refused or scene.refusal_rule(order) == "separation"
     return is_refused
 
 

@@ -69,7 +69,8 @@ export function busyState(elapsed_s: number): StationState {
         vehicle_name: "Elm",
         phase: "refused_by_station",
         history: [{ phase: "refused_by_station", age_s: 3, note: "" }],
-        note: "flying: On the ground; takeoff was not allowed",
+        rule: "flying",
+        note: "On the ground; takeoff was not allowed",
       }),
     ],
     ground_image: {

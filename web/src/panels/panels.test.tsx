@@ -146,7 +146,11 @@ describe("alarms", () => {
 
 describe("commands", () => {
   it("are listed newest first with their phases and the reason of a refusal", () => {
-    const refused = command(9, { phase: "refused_by_station", note: "flying: on the ground" });
+    const refused = command(9, {
+      phase: "refused_by_station",
+      rule: "flying",
+      note: "on the ground",
+    });
     const root = show(CommandList, station([], { commands: [refused, command(8)] }));
     const rows = [...root.querySelectorAll("[data-testid^=command-]")];
     expect(rows.map((row) => row.getAttribute("data-testid"))).toEqual(["command-9", "command-8"]);
@@ -246,9 +250,10 @@ describe("a command", () => {
   });
 
   it("names the rule that refused it in plain words", () => {
-    const note = "keep_out: the way leads through the Barn";
+    const note = "the way leads through the Barn";
     const one = command(1, {
       phase: "refused_by_station",
+      rule: "keep_out",
       note,
       history: [{ phase: "refused_by_station", age_s: 3, note }],
     });

@@ -801,8 +801,18 @@ export interface components {
             kind: string;
             /** Link Id */
             link_id: number | null;
-            /** Note */
+            /**
+             * Note
+             * @description the newest phase's note; of a refused command the reason
+             */
             note: string;
+            /**
+             * Parameters
+             * @description the refusal's measured values and limits, by name with unit
+             */
+            parameters: {
+                [key: string]: number | string;
+            };
             /**
              * Part
              * @description the part of a mission flown now, as in 'part 2 of 3'
@@ -818,6 +828,11 @@ export interface components {
              * @description what was changed in a mission so that DJI accepts it
              */
             repairs: string[];
+            /**
+             * Rule
+             * @description the safety rule that refused it, else null
+             */
+            rule: string | null;
             /**
              * Sent Altitudes
              * @description which altitudes a mission was sent with
@@ -1226,6 +1241,13 @@ export interface components {
             is_simulated: boolean;
             /** Link Id */
             link_id: number | null;
+            /**
+             * Parameters
+             * @description a refusal's measured values and limits, by name with unit
+             */
+            parameters: {
+                [key: string]: number | string;
+            };
             /**
              * Parts
              * @description in how many parts a mission is flown; 0 for other orders

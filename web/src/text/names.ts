@@ -47,11 +47,9 @@ export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
 };
 
 /** A phase's note; a refusal by the station starts with its rule's name. */
-export function noteText(phase: Phase, note: string): string {
-  const match = /^([a-z0-9_]+): (.*)$/s.exec(note);
-  if (phase !== "refused_by_station" || match === null) return note;
-  const [, rule = "", reason = ""] = match;
-  return `rule ${plainWords(rule)}: ${reason}`;
+export function noteText(command: Pick<CommandView, "rule">, phase: Phase, note: string): string {
+  if (phase !== "refused_by_station" || command.rule === null) return note;
+  return `rule ${plainWords(command.rule)}: ${note}`;
 }
 
 export type Tone = "good" | "bad" | "over" | "underway";

@@ -24,6 +24,9 @@ class OrderResult(Message):
     command_id: int
     rule: str | None
     reason: str | None
+    parameters: dict[str, float | int | str] = Field(
+        description="a refusal's measured values and limits, by name with unit"
+    )
     repairs: list[str] = Field(description="what was changed in a mission so that DJI accepts it")
     parts: int = Field(description="in how many parts a mission is flown; 0 for other orders")
 

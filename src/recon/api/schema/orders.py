@@ -42,7 +42,11 @@ class CommandView(Message):
     age_s: float
     phase: PhaseWord
     is_final: bool
-    note: str
+    note: str = Field(description="the newest phase's note; of a refused command the reason")
+    rule: str | None = Field(description="the safety rule that refused it, else null")
+    parameters: dict[str, float | int | str] = Field(
+        description="the refusal's measured values and limits, by name with unit"
+    )
     times_sent: int
     takeoff: bool
     sent_altitudes: str | None = Field(description="which altitudes a mission was sent with")

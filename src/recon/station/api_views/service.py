@@ -299,6 +299,7 @@ def _not_taken(command_id: int, serial: str | None) -> schema.OrderResult:
         command_id=command_id,
         rule="station_fault",
         reason=f"a fault in the station's own code, see the alarm; nothing was sent: {TO_DO}",
+        parameters={},
         repairs=[],
         parts=0,
     )
@@ -311,7 +312,7 @@ def _is_simulated(station: Station, record: OrderRecord) -> bool:
 
 def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
     is_refused = record.phase is Phase.REFUSED_BY_STATION
-    rule, _, reason = record.note.partition(": ")
+    refusal = record.refusal if is_refused else None
     return schema.OrderResult(
         serial=record.command.serial,
         link_id=record.command.link_id,
@@ -319,8 +320,9 @@ def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
         is_simulated=is_simulated,
         accepted=not is_refused,
         command_id=record.command.id,
-        rule=rule if is_refused else None,
-        reason=reason if is_refused else record.note or None,
+        rule=None if refusal is None else refusal.rule,
+        reason=record.note or None,
+        parameters={} if refusal is None else dict(refusal.parameters),
         repairs=[] if record.plan is None else list(record.plan.repairs),
         parts=0 if record.plan is None else len(record.plan.parts),
     )

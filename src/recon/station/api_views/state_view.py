@@ -217,6 +217,8 @@ def _command(record: OrderRecord, times_sent: int, now_ns: int) -> schema.Comman
         phase=record.phase.value,
         is_final=record.phase.is_final,
         note=record.note,
+        rule=None if record.refusal is None else record.refusal.rule,
+        parameters={} if record.refusal is None else dict(record.refusal.parameters),
         times_sent=times_sent,
         takeoff=command.takeoff,
         sent_altitudes=record.altitudes,

@@ -98,6 +98,9 @@ def _entry(record: OrderRecord, change: PhaseChange) -> AuditEntry:
         "phase": phase,
         "note": change.note,
     }
+    if record.refusal is not None and change is record.history[-1]:
+        details["rule"] = record.refusal.rule
+        details["parameters"] = dict(record.refusal.parameters)
     if command.link_id is not None:
         details["link_id"] = command.link_id
     if change is record.history[0]:
@@ -146,7 +149,8 @@ def _trouble(
 ) -> tuple[StickStream, Iterator[AuditEntry] | tuple[AuditEntry, ...]]:
     """Write each kind of problem once a stream."""
     refused = stream.refused + (change.phase is Phase.REFUSED_BY_STATION)
-    kind = f"{change.phase.value}:{change.note.partition(':')[0]}"
+    cause = change.note if record.refusal is None else record.refusal.rule
+    kind = f"{change.phase.value}:{cause}"
     is_known = kind in stream.problems
     stream = replace(stream, refused=refused, problems=stream.problems | {kind})
     return stream, () if is_known else (_entry(record, change),)

@@ -91,7 +91,8 @@ def _send_next(
     order = replace(record.command, issued_at_ns=now_ns, expires_at_ns=expires_at_ns, takeoff=False)
     judged = ask(station, present_part(order, following))
     if isinstance(judged, Refusal):
-        return _broken_off(station, record, f"{judged.rule}: {judged.reason}", now_ns), ()
+        refused = replace(record, refusal=judged)
+        return _broken_off(station, refused, judged.reason, now_ns), ()
     queued = orders.changed(record, Phase.QUEUED, now_ns, following.label)
     queued = replace(
         queued,

@@ -23,9 +23,8 @@ def refused_record(
     station: Station, command: Command, refusal: Refusal, now_ns: int
 ) -> OrderRecord:
     """Return the record of an order that ends where it began."""
-    note = f"{refusal.rule}: {refusal.reason}"
-    change = PhaseChange(Phase.REFUSED_BY_STATION, now_ns, note)
-    return OrderRecord(command, name_of(station, command), (change,))
+    change = PhaseChange(Phase.REFUSED_BY_STATION, now_ns, refusal.reason)
+    return OrderRecord(command, name_of(station, command), (change,), refusal=refusal)
 
 
 def may_wait(command: Command, refusal: Refusal) -> bool:

@@ -16,6 +16,7 @@ from recon.model.command import (
     Hover,
     LandNow,
     Phase,
+    Refusal,
     ReturnHome,
     VirtualStick,
 )
@@ -64,6 +65,8 @@ class OrderRecord:
     alarm: str | None = None
     plan: FlightPlan | None = None
     """Of a mission: its parts, and which one is flown."""
+    refusal: Refusal | None = None
+    """The gate's refusal that ended it: of the order, a mission's later part or a setpoint."""
 
     @property
     def phase(self) -> Phase:

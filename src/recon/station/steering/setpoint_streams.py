@@ -165,8 +165,8 @@ def _send(
 ) -> StreamUpdate:
     station, answer, lease = judge_setpoint(update.station, lease, now_ns, judge)
     if isinstance(answer, Refusal):
-        reason = f"the gate refused its stick: {answer.rule}: {answer.reason}"
-        update = replace(update, station=station)
+        reason = f"the gate refused its setpoint: {answer.reason}"
+        update = replace(update, station=stream_ends.with_refusal(station, lease, answer))
         return stream_ends.abort(update, serial, lease, reason, now_ns, judge)
     station = with_lease(station, serial, lease)
     return replace(update, station=station, outputs=(*update.outputs, SendCommand(answer)))

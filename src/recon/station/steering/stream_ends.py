@@ -86,6 +86,15 @@ def change_phase(
     return replace(station, orders=orders.put(station.orders, changed, kept))
 
 
+def with_refusal(station: Station, lease: SetpointLease, refusal: Refusal) -> Station:
+    """Return the station with the refusal of a setpoint in the stream's order."""
+    record = station.orders.records.get(lease.command.id)
+    if record is None:
+        return station
+    refused, kept = replace(record, refusal=refusal), station.settings.orders_kept
+    return replace(station, orders=orders.put(station.orders, refused, kept))
+
+
 def judge_setpoint(
     station: Station, lease: SetpointLease, now_ns: int, judge: Judge
 ) -> tuple[Station, ApprovedCommand | Refusal, SetpointLease]:

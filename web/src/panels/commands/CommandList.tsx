@@ -61,7 +61,7 @@ function CommandRow(props: { command: CommandView }) {
         <Repairs repairs={props.command.repairs} />
       </Show>
       <Show when={!isNoteInHistory(props.command)}>
-        <p class="wire-text">{noteText(props.command.phase, props.command.note)}</p>
+        <p class="wire-text">{noteText(props.command, props.command.phase, props.command.note)}</p>
       </Show>
     </li>
   );
@@ -96,7 +96,10 @@ function PhaseHistory(props: { command: CommandView }) {
           <li>
             {PHASE_NAMES[phase.phase].toLowerCase()}{" "}
             <span class="muted">+{formatAge(props.command.age_s - phase.age_s)}</span>
-            <Show when={phase.note !== ""}> ({noteText(phase.phase, phase.note)})</Show>
+            <Show when={phase.note !== ""}>
+              {" "}
+              ({noteText(props.command, phase.phase, phase.note)})
+            </Show>
           </li>
         )}
       </For>

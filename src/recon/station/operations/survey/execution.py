@@ -187,7 +187,8 @@ def _order_mission(station: Station, survey_id: int, given: MissionFor, now_ns: 
     text = placed.note if isinstance(why, Refusal) else placed.note + why
     record = replace(record, state=refused(state, given.serial, given.number, text, now_ns))
     station = replace(station, surveys=station.surveys.put(record))
-    if returns_home(record) and placed.note.startswith(f"{BATTERY}: "):
+    refusal = placed.refusal
+    if returns_home(record) and refusal is not None and refusal.rule == BATTERY:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     return station, sent
 
