@@ -314,20 +314,20 @@ class TestStick:
 class TestUnknown:
     def test_without_a_position(self) -> None:
         told = unknown(goto(9.0, 9.0), flier(position=Stamped()))
-        assert told == "A does not say where it is: wait until its GNSS has a position"
+        assert told == "A: position unknown; wait for a GNSS fix"
 
     def test_without_a_height(self) -> None:
         told = unknown(stick(1.0, 0.0), flier(height_above_takeoff_m=Stamped()))
-        assert told == "A does not say how high it is: look at its app"
+        assert told == "A: no height telemetry; check its companion app"
 
     def test_without_a_home(self) -> None:
         told = unknown(TestMission.square, flier(takeoff_point=None))
-        assert told.startswith("A: its home is not known")
+        assert told.startswith("A: home unknown")
 
     def test_without_ground_at_home(self) -> None:
         air = airspace(elevation=hills([[0.0, 0.0], [0.0, 0.0]]))
         told = unknown(HoldPosition(), flier(takeoff_point=place(500.0, 0.0)), air)
-        assert "tells no ground where it took off" in told
+        assert "has no ground at its takeoff point" in told
 
 
 def test_several_rules_share_one_path() -> None:

@@ -60,7 +60,7 @@ class TestGnss:
         found = checked(gnss, vehicle(flight_mode=FlightMode.ATTI))
         assert (found.state, found.text) == (
             FAILS,
-            "it flies in ATTI, without GNSS: the pilot has to steer it",
+            "flies in ATTI, without GNSS; the pilot must steer it",
         )
 
 

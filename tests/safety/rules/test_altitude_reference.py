@@ -42,7 +42,7 @@ def test_unset_is_refused_and_says_how_to_set_it(profile: VehicleProfile | None)
     assert refused_by(answer) == "altitude_reference"
     assert isinstance(answer, Refusal)
     assert answer.reason == (
-        "A: what its app takes a waypoint's altitude for is not set; write waypoint_altitude = "
+        "A: the altitude reference of its app is not set; write waypoint_altitude = "
         '"takeoff" (the public iOS app) or "wgs84" (an app built to the first ICD) under '
         '[[vehicles]] serial = "A" in site.toml'
     )
@@ -92,21 +92,21 @@ class TestWgs84:
         [
             (
                 vehicle(WGS84, offset_m=None),
-                "A reports no altitude to relate WGS84 to its takeoff point",
+                "A reports no altitude: WGS84 cannot be related to its takeoff point",
             ),
             (
                 vehicle(WGS84, altitude_offset_m=aged(2.5)),
-                "A: its altitude is 2.5 s old, 2 s at most is needed",
+                "A: altitude must be at most 2 s old; got 2.5 s",
             ),
             (
                 vehicle(WGS84, offset_m=-12_000.0),
-                "A reports an altitude -12000 m from its height above takeoff: no altitude on "
-                "earth; wait until it reports a sound one",
+                "A: altitude must be within 10000 m of the height above takeoff; got -12000 m; "
+                "wait until it reports a valid altitude",
             ),
             (
                 vehicle(WGS84, offset_m=257.0),
-                "A: its WGS84 altitude has jumped by 3.0 m against its height above takeoff since "
-                "takeoff; land and take off again",
+                "A: WGS84 altitude must stay within 2 m of the height above takeoff; got a jump of "
+                "3.0 m since takeoff; land and take off again",
             ),
         ],
     )

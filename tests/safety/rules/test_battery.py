@@ -127,15 +127,15 @@ class TestWarning:
         [
             (
                 BatteryWarning.SERIOUS,
-                "the aircraft warns of a seriously low battery: land it, or call it home, now",
+                "the aircraft reports a critically low battery; land it or call it home now",
             ),
             (
                 BatteryWarning.LOW,
-                "the aircraft warns of a low battery: only what brings it nearer to home is flown",
+                "the aircraft reports a low battery: only motion towards home is accepted",
             ),
             (
                 None,
-                "its app does not tell whether the aircraft warns of its battery: look at the app",
+                "battery warning unknown; check its companion app",
             ),
         ],
     )
@@ -150,19 +150,19 @@ class TestUnknown:
     def test_endurance_and_how_to_tell_it(self, profile: VehicleProfile | None) -> None:
         told = reason(HoldPosition(), replace(out(), profile=profile))
         assert told == (
-            "how long its battery lasts is not told, so not whether it comes home: write "
+            "endurance unknown, so the way home cannot be checked; write "
             'endurance_min = MINUTES under [[vehicles]] serial = "A" in site.toml'
         )
 
     def test_charge(self) -> None:
         assert reason(NEARER, out(battery_fraction=None)) == (
-            "its battery's charge is not known, so not whether it comes home: look at the app"
+            "battery charge unknown; check its companion app"
         )
 
     @pytest.mark.parametrize("lost", [{"position": Stamped()}, {"takeoff_point": None}])
     def test_place_or_home(self, lost: dict[str, object]) -> None:
         assert reason(FAR, out(**lost)) == (
-            "its place or its home is not known, so not how much battery the way home takes"
+            "position or home unknown, so the way home cannot be checked"
         )
 
 
@@ -170,18 +170,18 @@ class TestNumbers:
     def test_a_missions_refusal_says_what_it_needs_and_where(self) -> None:
         body = mission(waypoint(200.0), waypoint(700.0, speed_mps=10.0), waypoint(650.0))
         assert reason(body, out(battery_fraction=0.459)) == (
-            "the mission needs 47 % of its battery, it has 45 %: 9 % to waypoint 3, 12 % home "
-            "from there, and 25 % to be left; fly less far, or change the battery"
+            "the mission needs 47 % of its battery; got 45 %: 9 % to waypoint 3, 12 % home "
+            "from there, and 25 % reserve; fly less far, or change the battery"
         )
 
     def test_of_a_steered_order_there_is_only_its_end(self) -> None:
         assert reason(FAR, out(battery_fraction=0.3)) == (
-            "the goto needs 38 % of its battery, it has 30 %: 4 % to its end, 9 % home from there, "
-            "and 25 % to be left; fly less far, or change the battery"
+            "the goto needs 38 % of its battery; got 30 %: 4 % to its end, 9 % home from there, "
+            "and 25 % reserve; fly less far, or change the battery"
         )
         assert reason(HoldPosition(), out(battery_fraction=0.1)) == (
-            "the hold position needs 18 % of its battery, it has 10 %: 7 % home from there, and "
-            "10 % to be left; fly less far, or change the battery"
+            "the hold position needs 18 % of its battery; got 10 %: 7 % home from there, and "
+            "10 % reserve; fly less far, or change the battery"
         )
 
     def test_whole_percents_are_rounded_to_the_careful_side(self) -> None:
@@ -189,8 +189,8 @@ class TestNumbers:
         now = replace(situation(), airspace=PreparedAirspace(Airspace(limits)))
         told = reason(FAR, out(battery_fraction=0.29), now)
         assert told is not None
-        assert "it has 29 %" in told
-        assert "and 62 % to be left" in told
+        assert "got 29 %" in told
+        assert "and 62 % reserve" in told
 
     def test_a_whole_percent_is_not_rounded_up_to_the_next(self) -> None:
         limits = FlightLimits(battery_reserve_fraction=0.62)
@@ -198,7 +198,7 @@ class TestNumbers:
         endless = replace(TAKEOFF, endurance_s=1e300)
         told = reason(FAR, out(endless, battery_fraction=0.5), now)
         assert told is not None
-        assert "the goto needs 62 % of its battery, it has 50 %" in told
+        assert "the goto needs 62 % of its battery; got 50 %" in told
 
     def test_what_no_battery_could_do_is_said_so(self) -> None:
         endless = replace(TAKEOFF, endurance_s=5e-324)

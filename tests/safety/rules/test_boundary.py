@@ -112,8 +112,8 @@ class TestMissions:
         assert "leg 1 to 2 goes" in reason(asked(boundary, body, holed))
 
     def test_a_vehicle_that_is_nowhere_known_is_refused(self) -> None:
-        assert "does not say where it is" in told(self.inside, flier(position=Stamped()))
-        assert "home is not known" in told(self.inside, flier(takeoff_point=None))
+        assert "position unknown" in told(self.inside, flier(position=Stamped()))
+        assert "home unknown" in told(self.inside, flier(takeoff_point=None))
 
 
 class TestSteered:
@@ -133,7 +133,7 @@ class TestSteered:
     def test_holding_the_place_is_allowed_wherever_it_is(self) -> None:
         for east_m in (0.0, 48.0, 90.0):
             assert is_allowed(HoldPosition(), flier(east_m, 300.0))
-        assert "where it is" in told(HoldPosition(), flier(position=Stamped()))
+        assert "position unknown" in told(HoldPosition(), flier(position=Stamped()))
 
     @pytest.mark.parametrize(("speed_mps", "allowed"), [(9.9, True), (10.1, False)])
     def test_a_stick_reaches_as_far_as_it_brakes(self, speed_mps: float, allowed: bool) -> None:
@@ -145,7 +145,7 @@ class TestSteered:
             assert is_allowed(stick(0.0, 0.0), state)
 
     def test_a_stick_with_velocity_needs_to_know_where(self) -> None:
-        assert "where it is" in told(stick(0.1, 0.0), flier(position=Stamped()))
+        assert "position unknown" in told(stick(0.1, 0.0), flier(position=Stamped()))
 
 
 class TestAlreadyOutside:
@@ -160,8 +160,8 @@ class TestAlreadyOutside:
 
     def test_farther_out_is_not(self) -> None:
         assert told(stick(0.0, 1.0), self.out) == (
-            "A: the stick's way goes 21.2 m beyond the site's boundary; it is 20.00 m outside now "
-            "and may not be sent farther out, only back in"
+            "A: the stick's way goes 21.2 m beyond the site's boundary; the vehicle is 20.00 m "
+            "outside now and may only be moved back in"
         )
 
     def test_along_the_edge_it_may_be_moved(self) -> None:
@@ -183,13 +183,13 @@ class TestAlreadyOutside:
     def test_in_the_margin_it_is_the_same(self, east_mps: float, allowed: bool) -> None:
         near = flier(47.0, 300.0)
         assert is_allowed(stick(0.0, east_mps), near) is allowed
-        assert allowed or "it is 3.00 m inside now" in told(stick(0.0, east_mps), near)
+        assert allowed or "is 3.00 m inside now" in told(stick(0.0, east_mps), near)
 
     def test_close_to_the_edge_the_words_say_which_side(self) -> None:
         assert "comes within 0.50 m of the site's boundary" in told(
             mission((0.0, 300.0, 40.0), (49.5, 300.0, 40.0))
         )
-        assert "it is 0.50 m inside now" in told(stick(0.0, 0.1), flier(49.5, 300.0))
+        assert "is 0.50 m inside now" in told(stick(0.0, 0.1), flier(49.5, 300.0))
 
     def test_on_the_margin_itself_it_may_be_moved_inwards(self) -> None:
         """The margin is counted as kept only beyond it: there, the way in must still be open."""
@@ -202,7 +202,7 @@ class TestAlreadyOutside:
         exact = airspace(boundary=L_SHAPE, limits=replace(WIDE, boundary_margin_m=margin_m))
         assert asked(boundary, stick(0.0, -1.0), exact, state) is None
         assert reason(asked(boundary, stick(0.0, 1.0), exact, state)).endswith(
-            "; it is 5.00 m inside now and may not be sent farther out, only back in"
+            "; the vehicle is 5.00 m inside now and may only be moved back in"
         )
 
     def test_the_edge_itself_is_called_inside(self) -> None:
@@ -211,7 +211,7 @@ class TestAlreadyOutside:
         assert isinstance(path, PathVolume)
         east = airspace(boundary=square(float(path.here_m[0]), -400.0, 400.0, 400.0))
         assert reason(asked(boundary, stick(0.0, -1.0), east, state)).endswith(
-            "; it is 0.00 m inside now and may not be sent farther out, only back in"
+            "; the vehicle is 0.00 m inside now and may only be moved back in"
         )
 
     def test_a_path_that_touches_the_edge_is_not_beyond_it(self) -> None:
@@ -233,4 +233,4 @@ class TestAlreadyOutside:
 
 def test_telemetry_of_no_position_at_all_is_refused() -> None:
     state = flier(position=Stamped(None, NOW))
-    assert "where it is" in told(goto(0.0, 0.0), state)
+    assert "position unknown" in told(goto(0.0, 0.0), state)

@@ -56,10 +56,10 @@ def test_in_a_frame_rate(value: float) -> None:
     [
         (
             mission(waypoint(0.0), waypoint(50.0, speed_mps=nan)),
-            "mission waypoints 2 speed_mps is nan: a finite number is needed",
+            "mission waypoints 2 speed_mps must be a finite number; got nan",
         ),
-        (replace(STICK, yaw_deg=-inf), "yaw_deg is -inf: a finite number is needed"),
-        (StartCamera(10**400), f"fps_hz is {10**400}: a finite number is needed"),
+        (replace(STICK, yaw_deg=-inf), "yaw_deg must be a finite number; got -inf"),
+        (StartCamera(10**400), f"fps_hz must be a finite number; got {10**400}"),
     ],
 )
 def test_a_refusal_says_where_it_is(body: Body, reason: str) -> None:

@@ -78,7 +78,7 @@ class TestWithTakeoff:
     def test_no_other_order_takes_the_word(self, body: Body, is_flying: bool) -> None:
         judged = flying(command(body, takeoff=True), situation(vehicle(flying=is_flying)))
         assert judged is not None
-        assert judged.reason.startswith(f"takeoff was said with {command(body).name}, which never")
+        assert f"got {command(body).name}. Give" in judged.reason
 
     @pytest.mark.parametrize("body", [Hover(), mission(), STICK])
     def test_an_app_that_does_not_say_whether_it_flies_takes_off_for_nobody(
@@ -137,26 +137,26 @@ class TestWhatItSays:
     @pytest.mark.parametrize(
         ("flying_said", "age_s", "reason", "is_stale"),
         [
-            (False, 0.1, "it is on the ground, and the order does not say takeoff", False),
-            (False, 3.0, "it is on the ground, and the order does not say takeoff", False),
+            (False, 0.1, "on the ground; takeoff was not allowed", False),
+            (False, 3.0, "on the ground; takeoff was not allowed", False),
             (
                 None,
                 0.1,
-                "its app does not say whether it flies, and the order could start a takeoff",
+                "its app does not report whether it flies; the order could start a takeoff",
                 False,
             ),
             (
                 True,
                 3.5,
-                "telemetry is 3.5 s old; if it has landed, the order would start a takeoff. "
-                "Land is always sent",
+                "telemetry must be at most 3 s old; got 3.5 s; if it has landed, the order would "
+                "start a takeoff. Land is always sent",
                 True,
             ),
             (
                 False,
                 3.5,
-                "telemetry is 3.5 s old; if it has landed, the order would start a takeoff. "
-                "Land is always sent",
+                "telemetry must be at most 3 s old; got 3.5 s; if it has landed, the order would "
+                "start a takeoff. Land is always sent",
                 False,
             ),
         ],
@@ -171,7 +171,7 @@ class TestWhatItSays:
     def test_before_any_telemetry(self) -> None:
         unheard = vehicle(is_flying=Stamped(None, None))
         assert flying(command(Hover()), situation(unheard)) == Refusal(
-            "flying", "A: no telemetry says that it flies, and the order could start a takeoff"
+            "flying", "A: no telemetry shows flight; the order could start a takeoff"
         )
 
     def test_telemetry_of_just_the_age_is_not_too_old_to_be_heard(self) -> None:
@@ -183,14 +183,13 @@ class TestWhatItSays:
         asked = command(Hover(), takeoff=True)
         assert flying(asked, situation(vehicle(flying=None))) == Refusal(
             "flying",
-            "A: its app does not say whether it flies, so not whether it would take off: "
-            "look at the app",
+            "A: its app does not report whether it flies, so takeoff is uncertain; check the app",
         )
 
     def test_a_takeoff_by_an_order_that_never_takes_off(self) -> None:
         asked = command(LandNow(), takeoff=True)
         assert flying(asked, situation()) == Refusal(
             "flying",
-            "takeoff was said with land, which never takes off; it goes with hover, mission, "
-            "stick only. Give the order again without it",
+            "Takeoff is accepted with hover, mission, stick only; got land. Give the order again "
+            "without takeoff",
         )

@@ -33,7 +33,7 @@ def judged(body: Body = MOVES[0], *, flying: bool | None = True, **changes: obje
 @pytest.mark.parametrize("body", MOVES)
 def test_motion_needs_a_fix(body: Body) -> None:
     assert judged(body) is None
-    assert judged(body, position=Stamped()) == "A: it reports no position: wait for a fix"
+    assert judged(body, position=Stamped()) == "A: no position reported; wait for a fix"
 
 
 @pytest.mark.parametrize("body", [ZERO, Hover(), StopCamera()])
@@ -73,33 +73,32 @@ def test_modes_without_gnss_are_the_pilots(mode: FlightMode | None) -> None:
     [
         (
             {"gnss_satellite_count": None},
-            "how many satellites it sees is not known: wait for extended telemetry",
+            "satellite count unknown; wait for extended telemetry",
         ),
         (
             {"gnss_satellite_count": 7},
-            "it sees 7 satellites, 8 are needed: wait, or go where the sky is open",
+            "at least 8 satellites are needed; got 7; wait, or move to open sky",
         ),
         (
             {"gnss_signal_level": None},
-            "its GNSS signal level is none or unknown, 3 of 5 is needed: wait, or go where the sky "
-            "is open",
+            "GNSS signal level unknown, at least 3 of 5 is needed; wait, or move to open sky",
         ),
         (
             {"gnss_signal_level": 2},
-            "its GNSS signal level is 2, 3 of 5 is needed: wait, or go where the sky is open",
+            "GNSS signal level must be at least 3 of 5; got 2; wait, or move to open sky",
         ),
         (
             {"gnss_signal_level": 3, "flying": False},
-            "its GNSS signal level is 3, 4 of 5 is needed before a takeoff, to record its home: "
-            "wait, or go where the sky is open",
+            "GNSS signal level must be at least 4 of 5 before takeoff, to record the home point; "
+            "got 3; wait, or move to open sky",
         ),
         (
             {"flight_mode": None},
-            "its flight mode is not known, so neither whether it holds its place by GNSS",
+            "flight mode unknown, so position hold is uncertain",
         ),
         (
             {"flight_mode": FlightMode.ATTI},
-            "it flies in ATTI, without GNSS: the pilot has to steer it",
+            "flies in ATTI, without GNSS; the pilot must steer it",
         ),
     ],
 )

@@ -198,7 +198,7 @@ class TestAsked:
 
     def test_a_vehicle_that_is_nowhere_known(self) -> None:
         nowhere = flier(position=Stamped())
-        assert "where it is" in told(across(60.0), FLOOR, nowhere)
+        assert "position unknown" in told(across(60.0), FLOOR, nowhere)
         assert is_allowed(stick(0.0, 0.0), FLOOR, nowhere)
 
     def test_a_zero_has_slack_below(self) -> None:

@@ -32,7 +32,7 @@ def test_a_link_without_identity_gets_nothing_else(body: Body) -> None:
     order = replace(command(body), serial=None, link_id=1)
     assert approve(order, unidentified()) == Refusal(
         "identified",
-        "link 1 has not said its serial: it takes emergency orders without takeoff only",
+        "Link 1 has not reported its serial: only emergency orders without takeoff are accepted",
     )
 
 
@@ -47,8 +47,8 @@ def test_a_vehicle_with_rivals_gets_nothing_else(body: Body) -> None:
     now = situation(vehicle(), Stamped(True, NOW))
     assert approve(command(body), now) == Refusal(
         "identified",
-        "A: links 1 and 2 claim this serial; only hold, land and return, none with takeoff, are "
-        "sent until one of them closes or falls silent",
+        "A: links 1 and 2 claim this serial; only hold, land and return without takeoff are sent "
+        "until one of them closes or becomes silent",
     )
 
 

@@ -62,7 +62,7 @@ class TestBeside:
         assert is_allowed(body, state=state) is allowed
         assert allowed or told(body, state=state) == (
             "A: leg 1 to 2 comes within 4.90 m of the keep-out zone 'yard' at 40.0 m above "
-            "takeoff; 5 m must be kept beside it"
+            "takeoff; the margin is 5 m horizontally"
         )
 
     def test_a_leg_through_it_is_refused_though_its_ends_are_outside(self) -> None:
@@ -96,7 +96,7 @@ class TestBeside:
 
     def test_a_vehicle_that_is_nowhere_known_is_refused(self) -> None:
         nowhere = flier(position=Stamped())
-        assert "where it is" in told(across(40.0), state=nowhere)
+        assert "position unknown" in told(across(40.0), state=nowhere)
         assert is_allowed(across(40.0), airspace(), nowhere)
         assert is_allowed(stick(0.0, 0.0), state=nowhere)
 
@@ -110,7 +110,7 @@ class TestAboveAndBelow:
         assert is_allowed(across(height_m), LOW, state) is allowed
         assert allowed or told(across(height_m), LOW, state) == (
             "A: leg 1 to 2 goes through the keep-out zone 'yard' (up to 40 m above ground) at "
-            "45.0 m above takeoff; 5 m must be kept beside it, or 5 m above or below"
+            "45.0 m above takeoff; the margin is 5 m horizontally or 5 m vertically"
         )
 
     @pytest.mark.parametrize(("height_m", "allowed"), [(55.0, True), (55.01, False)])

@@ -29,7 +29,7 @@ def test_a_body_no_rule_knows_is_refused() -> None:
 def test_a_refusal_names_it_and_what_is_known() -> None:
     assert known_order(command(Loop()), situation()) == Refusal(  # type: ignore[arg-type]
         "known_order",
-        "Loop is no order the gate can judge; known are hover, land, return_home, camera_start, "
+        "Order type Loop is unknown; known types: hover, land, return_home, camera_start, "
         "camera_stop, mission, stick, goto, nudge, hold_position",
     )
 

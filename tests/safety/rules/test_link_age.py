@@ -79,11 +79,11 @@ def test_what_moves_nothing_needs_no_young_telemetry(body: Body) -> None:
 def test_a_refusal_says_the_age_and_what_is_needed() -> None:
     assert judged(mission(), 1.25, 0.1) == Refusal(
         "link_age",
-        "A: its core telemetry is 1.2 s old, 1 s at most is needed to set it in motion: wait until "
-        "the link is back. Hold, land and return are open",
+        "A: core telemetry must be at most 1 s old for motion; got 1.2 s; wait for the link, or "
+        "order hold, land or return",
     )
     assert judged(mission(), None, 0.1) == Refusal(
-        "link_age", "A: its app has sent no core telemetry yet: wait for it, or look at the app"
+        "link_age", "A: core telemetry not received yet; check its companion app"
     )
 
 

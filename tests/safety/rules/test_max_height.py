@@ -53,8 +53,8 @@ class TestFlatGround:
     def test_the_limit(self, height_m: float, allowed: bool) -> None:
         assert is_allowed(level(height_m)) is allowed
         assert allowed or told(level(height_m)) == (
-            "A: the way to waypoint 1 is up to 100.0 m above ground (the ground is taken for "
-            "flat), at most 100 m is allowed"
+            "A: the way to waypoint 1 must be at most 100 m above ground (flat ground "
+            "assumed); got 100.0 m"
         )
 
     def test_the_default_is_120_metres(self) -> None:
@@ -69,7 +69,8 @@ class TestFlatGround:
     def test_corners_count(self) -> None:
         """On the legs it is refused as well; nothing else is as high."""
         body = mission((0.0, 50.0, 90.0), (100.0, 50.0, 110.0), (200.0, 90.0, 90.0), curved=True)
-        assert told(body).startswith("A: leg 1 to 2 is up to 110.0 m")
+        assert told(body).startswith("A: leg 1 to 2 must be")
+        assert told(body).endswith("got 110.0 m")
 
 
 class TestTheWayHome:
@@ -78,9 +79,9 @@ class TestTheWayHome:
         state = flier(go_home_m=go_home_m)
         assert is_allowed(level(40.0), state=state) is allowed
         assert allowed or told(level(40.0), state=state) == (
-            "A: the way home from the way to waypoint 1 is up to 101.0 m above ground (the ground "
-            "is taken for flat), at most 100 m is allowed; set a lower go-home height in the "
-            "aircraft and in site.toml"
+            "A: the way home from the way to waypoint 1 must be at most 100 m above ground (flat "
+            "ground assumed); got 101.0 m; set a lower go-home height in the aircraft and in "
+            "site.toml"
         )
 
     @pytest.mark.parametrize("failsafe", [Failsafe.HOVER, Failsafe.LAND])
@@ -90,8 +91,8 @@ class TestTheWayHome:
 
     def test_one_that_nobody_knows_is_refused(self) -> None:
         expected = (
-            "A: the height at which it goes home is not known; write go_home_height_m, as it is "
-            'set in the aircraft, into site.toml under [[vehicles]] serial = "A"'
+            "A: go-home height unknown; write go_home_height_m, as set in the aircraft, "
+            'into site.toml under [[vehicles]] serial = "A"'
         )
         assert told(level(40.0), state=flier(go_home_m=None)) == expected
         assert told(Nudge(1.0, 0.0, 0.0), state=flier(go_home_m=None)) == expected
@@ -107,7 +108,7 @@ class TestValleys:
         low_home = flier(0.0, 50.0, 60.0, go_home_m=60.0)
         assert is_allowed(level(70.0), over(PIT), low_home)
         assert told(level(71.0), over(PIT), low_home) == (
-            "A: leg 1 to 2 is up to 101.0 m above ground, at most 100 m is allowed"
+            "A: leg 1 to 2 must be at most 100 m above ground; got 101.0 m"
         )
 
     def test_a_valley_under_the_way_home_counts(self) -> None:
@@ -129,7 +130,7 @@ class TestValleys:
     def test_ground_that_nobody_knows_is_refused(self) -> None:
         body = mission((100.0, 50.0, 20.0), (700.0, 50.0, 20.0))
         assert told(body, over(PIT)) == (
-            "A: leg 1 to 2 goes over ground whose height the site's elevation model does not tell"
+            "A: leg 1 to 2 goes over ground outside the site's elevation model"
         )
 
 
@@ -142,9 +143,10 @@ class TestAlreadyTooHigh:
         assert is_allowed(mission((150.0, 0.0, 90.0), (0.0, 0.0, 90.0)), state=self.high)
 
     def test_it_may_not_climb_and_a_mission_may_not_stay_there(self) -> None:
-        assert "up to 141.0 m" in told(Nudge(0.0, 0.0, 1.0), state=self.high)
-        assert "leg 1 to 2 is up to 130.0 m" in told(
-            mission((150.0, 0.0, 130.0), (0.0, 0.0, 130.0)), state=self.high
+        assert "got 141.0 m" in told(Nudge(0.0, 0.0, 1.0), state=self.high)
+        assert (
+            "leg 1 to 2 must be at most 100 m above ground (flat ground assumed); got 130.0 m"
+            in (told(mission((150.0, 0.0, 130.0), (0.0, 0.0, 130.0)), state=self.high))
         )
 
     def test_over_lower_ground_it_would_be_higher(self) -> None:
@@ -169,7 +171,7 @@ class TestZeroAndUnknown:
             body = stick(0.0, 0.0, height_m)
             assert is_allowed(body, state=state) is allowed
         assert allowed or told(stick(0.0, 0.0, height_m), state=nowhere) == (
-            "102.1 m above takeoff: at most 100 m is allowed here"
+            "Height must be at most 100 m above takeoff; got 102.1 m"
         )
 
     def test_a_zero_where_it_is_stays_however_high_that_is(self) -> None:
@@ -183,8 +185,8 @@ class TestZeroAndUnknown:
 
     def test_a_vehicle_that_is_nowhere_known(self) -> None:
         nowhere = flier(position=Stamped())
-        assert "where it is" in told(level(40.0), state=nowhere)
-        assert "where it is" in told(stick(0.1, 0.0), state=nowhere)
+        assert "position unknown" in told(level(40.0), state=nowhere)
+        assert "position unknown" in told(stick(0.1, 0.0), state=nowhere)
 
     @pytest.mark.parametrize(("height_m", "allowed"), [(102.0, True), (103.0, False)])
     def test_a_zero_of_one_whose_height_is_unknown_too(
@@ -196,5 +198,5 @@ class TestZeroAndUnknown:
         refusal = max_height(command(stick(0.0, 0.0, height_m)), now)
         assert (refusal is None) is allowed
         assert allowed or reason(refusal) == (
-            "103.0 m above takeoff: at most 100 m is allowed here"
+            "Height must be at most 100 m above takeoff; got 103.0 m"
         )

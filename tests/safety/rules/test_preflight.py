@@ -34,8 +34,8 @@ def test_a_vehicle_whose_list_is_passed_flies() -> None:
 
 def test_one_whose_list_is_not_says_which_point_and_what_to_do() -> None:
     assert reason(mission(), now=UNFENCED) == (
-        "A: its preflight checklist is not passed: Fence: no boundary is loaded (name one in "
-        "site.toml under [layers]). Mend that, or override the checklist with a reason"
+        "A: preflight checklist not passed: Fence: no boundary is loaded (name one in "
+        "site.toml under [layers]). Resolve these points, or override the checklist with a reason"
     )
 
 

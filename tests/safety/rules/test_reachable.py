@@ -14,14 +14,14 @@ LAND = command(LandNow())
 
 def test_nobody_of_that_serial() -> None:
     assert approve(LAND, Situation(NOW, None, ())) == Refusal(
-        "reachable", "A is not known: no app has said this serial"
+        "reachable", "A is unknown: no app has reported this serial"
     )
 
 
 def test_nobody_on_that_link() -> None:
     unsaid = replace(LAND, serial=None, link_id=7)
     assert approve(unsaid, Situation(NOW, None, ())) == Refusal(
-        "reachable", "link 7 is not known: no app has said this serial"
+        "reachable", "link 7 is unknown: no app has reported this serial"
     )
 
 
@@ -32,7 +32,7 @@ def test_a_vehicle_without_a_connection(flying: bool | None, is_stale: bool) -> 
     assert isinstance(answer, Refusal)
     assert (answer.rule, answer.reason) == (
         "reachable",
-        "A has no connection: its app must connect first",
+        "A is not connected: its companion app must connect first",
     )
     assert answer.is_stale is is_stale
 

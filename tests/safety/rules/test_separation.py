@@ -42,9 +42,9 @@ class TestStanding:
         found = judged(NORTH, own, other)
         assert found is not None
         assert found.reason == (
-            "A: between waypoints 1 and 2, about 17 s from now, it could come within 10 m and 0 m "
-            "in height of B (while it hovers); 18 m, or 7.5 m in height, must be kept: fly at "
-            "another height, elsewhere, or later"
+            "A: between waypoints 1 and 2, about 17 s from now, it must keep 18 m, or 7.5 m in "
+            "height, from B (while it hovers); got 10 m and 0 m in height: fly at another height, "
+            "elsewhere, or later"
         )
 
     @pytest.mark.parametrize(("east_m", "height_m"), [(18.5, 40.0), (0.0, 48.0), (10.0, 32.0)])
@@ -239,7 +239,7 @@ class TestLeadingApart:
         """It is 8 m higher, and was told to come down to here."""
         above = Traffic(aircraft("B", height_m=44.0), flies(route((0.0, 0.0, 36.0), stays)))
         own = aircraft("A", height_m=36.0)
-        refused(judged(route((0.0, 0.0, 36.0), (0.0, 0.0, 36.0)), own, above), "of B")
+        refused(judged(route((0.0, 0.0, 36.0), (0.0, 0.0, 36.0)), own, above), "from B")
 
     @pytest.mark.parametrize("age_s", [0.0, 0.2, 1.0])
     def test_one_that_is_leaving_already_may_go_on(self, age_s: float) -> None:
@@ -254,7 +254,7 @@ class TestLeadingApart:
         """At 10 m/s towards B it comes 20 m nearer before it flies back, be the stick ever so."""
         back = VirtualStick(StickFrame.GROUND, 0.0, -12.0, 0.0, 40.0, 1.0)
         rushing = aircraft("A", velocity=(10.0, 0.0, 0.0))
-        refused(judged(back, rushing, aircraft("B", (32.0, 0.0))), "of B")
+        refused(judged(back, rushing, aircraft("B", (32.0, 0.0))), "from B")
         assert judged(back, rushing, aircraft("B", (65.0, 0.0))) is None
 
 
@@ -328,15 +328,15 @@ class TestUnseen:
     def test_an_app_without_an_aircraft_is_no_traffic_and_hides_none(self) -> None:
         app = VehicleState("B", link_id=2)
         assert judged(NORTH, aircraft("A"), app) is None
-        refused(judged(NORTH, aircraft("A"), app, aircraft("C", (100.0, 0.0))), "of C")
+        refused(judged(NORTH, aircraft("A"), app, aircraft("C", (100.0, 0.0))), "from C")
 
     def test_the_order_of_traffic_does_not_matter(self) -> None:
         wall, far = aircraft("B", (100.0, 0.0)), aircraft("C", (0.0, 60.0))
-        refused(judged(NORTH, aircraft("A"), wall, far), "of B")
-        refused(judged(NORTH, aircraft("A"), far, wall), "of B")
+        refused(judged(NORTH, aircraft("A"), wall, far), "from B")
+        refused(judged(NORTH, aircraft("A"), far, wall), "from B")
 
     def test_a_vehicle_that_does_not_know_where_it_is_does_not_move_among_others(self) -> None:
-        words = "A: it does not tell where it is, and others are in the air"
+        words = "A: no position telemetry, and other vehicles are in the air"
         for airspace in (AIR, PreparedAirspace(Airspace())):
             found = judged(NORTH, aircraft("A", None), aircraft("B"), airspace=airspace)
             assert found is not None
@@ -402,5 +402,5 @@ class TestOtherIntents:
     def test_one_flown_by_hand_may_go_anywhere_near(self) -> None:
         past = route((0.0, 0.0), (300.0, 0.0))
         fast = aircraft("B", (150.0, 60.0), velocity=(0.0, 10.0, 0.0))
-        refused(judged(past, aircraft("A"), fast), "wherever it is flown by hand")
+        refused(judged(past, aircraft("A"), fast), "under manual control")
         assert judged(past, aircraft("A"), aircraft("B", (150.0, 60.0))) is None

@@ -3,7 +3,7 @@
 from recon.model.stamped import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.check import Check, Point
-from recon.safety.rules.gnss import gnss_fault
+from recon.safety.rules.gnss import gnss_refusal
 from recon.safety.situation import Situation
 
 LINK = Point("link", "Link")
@@ -44,9 +44,9 @@ def battery(vehicle: VehicleState, situation: Situation) -> Check:
 
 def gnss(vehicle: VehicleState, situation: Situation) -> Check:
     """It knows where it is, by the gate's own measure."""
-    fault = gnss_fault(vehicle, situation.settings)
-    if fault is not None:
-        return GNSS.fails(fault, "wait for a better fix, or go where the sky is open")
+    refusal = gnss_refusal(vehicle, situation.settings)
+    if refusal is not None:
+        return GNSS.fails(refusal.reason, "wait for a better fix, or move to open sky")
     count, level = vehicle.gnss_satellite_count.value, vehicle.gnss_signal_level.value
     return GNSS.ok(f"{count} satellites, signal level {level}")
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from math import inf
+from math import inf, isfinite
 
 import numpy as np
 import numpy.typing as npt
@@ -53,19 +53,19 @@ def departure(situation: Situation, vehicle: VehicleState) -> Departure | Unknow
     name, position, home = vehicle.display_name, vehicle.position.value, datum.home(vehicle)
     height_m = vehicle.height_above_takeoff_m.value
     if position is None:
-        return UnknownPath(f"{name} does not say where it is: wait until its GNSS has a position")
+        return UnknownPath(f"{name}: position unknown; wait for a GNSS fix")
     if height_m is None:
-        return UnknownPath(f"{name} does not say how high it is: look at its app")
+        return UnknownPath(f"{name}: no height telemetry; check its companion app")
     if home is None:
         return UnknownPath(
-            f"{name}: its home is not known, for it took off before the station heard it; write "
-            "its pad into site.toml, or let its pilot land it and take off again"
+            f"{name}: home unknown: it took off before telemetry was received; write its pad into "
+            "site.toml, or let its pilot land it and take off again"
         )
     frame, takeoff_m = datum.frame_for(airspace, vehicle), datum.takeoff_up_m(airspace, vehicle)
     if frame is None or takeoff_m is None:
         return UnknownPath(
-            f"{name}: the elevation model tells no ground where it took off, so its heights cannot "
-            "be compared with anything; write its pad's altitude into site.toml"
+            f"{name}: the elevation model has no ground at its takeoff point, so its heights "
+            "cannot be related to the site; write its pad's altitude into site.toml"
         )
     places: list[OnGlobe] = [position, home]
     (east_m, north_m), (home_east_m, home_north_m) = datum.places_m(frame, places)
@@ -193,6 +193,16 @@ class PathVolume:
         low = "the ground" if low_m == -inf else f"{low_m - takeoff_m:.1f} m"
         high = "an unknown go-home height" if high_m == inf else f"{high_m - takeoff_m:.1f} m"
         return f"{high} above takeoff" if low == high else f"{low} to {high} above takeoff"
+
+    def height_parameters(self, index: int) -> dict[str, float]:
+        """Return a piece's finite heights above takeoff as a refusal's parameters."""
+        low_m, high_m = float(self.pieces.low_m[index]), float(self.pieces.high_m[index])
+        heights_m = {"lowest_above_takeoff_m": low_m, "highest_above_takeoff_m": high_m}
+        return {
+            name: up_m - self.departure.takeoff_m
+            for name, up_m in heights_m.items()
+            if isfinite(up_m)
+        }
 
     def of_kinds(self, *kinds: Kind) -> BoolArray:
         """Return which pieces are of these kinds, (N,)."""

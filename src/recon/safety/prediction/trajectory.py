@@ -21,7 +21,7 @@ FOREVER_S = 1.0e6
 """Longer than any battery; times never go beyond, so that sums stay finite."""
 
 ALL_HEIGHTS_M = 1.0e5
-"""Above and below every aircraft: the band of one whose height nobody knows."""
+"""Above and below every aircraft: the band of one whose height is unknown."""
 
 (START_S, END_S, EAST_0, NORTH_0, EAST_1, NORTH_1, LOW_0, HIGH_0, LOW_1, HIGH_1) = range(10)
 (RADIUS_0, RADIUS_1, CURVE, PART) = range(10, 14)
@@ -53,8 +53,8 @@ _WORDS = {
     FlightPart.STOPPING: "while it stops",
     FlightPart.STEERED: "under the sticks",
     FlightPart.GOING_TO: "on its way to its target",
-    FlightPart.FREE: "wherever it is flown by hand",
-    FlightPart.HAZARD: "anywhere about the place it was last heard from",
+    FlightPart.FREE: "under manual control",
+    FlightPart.HAZARD: "in its hazard area",
 }
 
 

@@ -1,4 +1,4 @@
-"""Only the holder of control authority may set a vehicle in motion; anybody may stop it."""
+"""Only the holder of control authority sets a vehicle in motion; any client may stop it."""
 
 from recon.model.authority import AuthorityHolder
 from recon.model.command import Command, Refusal
@@ -14,7 +14,7 @@ _WHAT_TO_DO = {
 
 
 def authority(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse a motion order from anybody but the vehicle's authority holder.
+    """Refuse a motion order not issued by the vehicle's authority holder.
 
     The station's own neutral setpoint carries the authority of the stick it ends, so it passes too.
     """

@@ -1,4 +1,4 @@
-"""Nothing is flown that leaves too little battery to come home, from any point of it."""
+"""From every point of a flight the battery must suffice for the way home and a reserve."""
 
 from math import ceil, floor, isfinite
 
@@ -16,60 +16,73 @@ ROUNDING = 1e-9
 def battery(command: Command, situation: Situation) -> Refusal | None:
     """Refuse motion after which home is not reached with the site's reserve.
 
-    What does not lead away from home is held to a landing's least instead of the reserve; a takeoff
-    leads away. A stick that only stops the vehicle needs nothing.
+    Motion that does not lead away from home must leave the minimum for a landing instead of the
+    reserve; a takeoff leads away. A stick that only stops the vehicle needs nothing.
     """
     vehicle, body = situation.vehicle, command.body
     if vehicle is None or not command.moves or is_stop(command, situation):
         return None
-    is_away = command.takeoff or leads_away(
-        body, vehicle, situation.airspace, situation.settings.energy
-    )
-    reason = _warned(vehicle, is_away) or _short(vehicle, body, is_away, situation)
-    return None if reason is None else Refusal(RULE, f"{vehicle.display_name}: {reason}")
+    energy = situation.settings.energy
+    is_away = command.takeoff or leads_away(body, vehicle, situation.airspace, energy)
+    return _warned(vehicle, is_away) or _short(vehicle, body, is_away, situation)
 
 
-def _warned(vehicle: VehicleState, is_away: bool) -> str | None:
-    """What the aircraft's own two thresholds say counts, whatever the model says."""
+def _warned(vehicle: VehicleState, is_away: bool) -> Refusal | None:
+    """The aircraft's own two thresholds count, whatever the energy model computes."""
     warning = vehicle.battery_warning.value
     if warning is BatteryWarning.SERIOUS:
-        return "the aircraft warns of a seriously low battery: land it, or call it home, now"
+        return _refused(
+            vehicle, "the aircraft reports a critically low battery; land it or call it home now"
+        )
     if not is_away or warning is BatteryWarning.NONE:
         return None
     if warning is None:
-        return "its app does not tell whether the aircraft warns of its battery: look at the app"
-    return "the aircraft warns of a low battery: only what brings it nearer to home is flown"
+        return _refused(vehicle, "battery warning unknown; check its companion app")
+    return _refused(
+        vehicle, "the aircraft reports a low battery: only motion towards home is accepted"
+    )
 
 
-def _short(vehicle: VehicleState, body: Body, is_away: bool, situation: Situation) -> str | None:
-    """What the energy model says; what it cannot say is refused."""
+def _short(
+    vehicle: VehicleState, body: Body, is_away: bool, situation: Situation
+) -> Refusal | None:
+    """The energy model's answer; while that is unknown the motion is refused."""
     energy = situation.settings.energy
     uses = consumption(vehicle, situation.airspace, energy)
     if uses is None:
-        return (
-            "how long its battery lasts is not told, so not whether it comes home: write "
-            f'endurance_min = MINUTES under [[vehicles]] serial = "{vehicle.serial}" in site.toml'
+        return _refused(
+            vehicle,
+            "endurance unknown, so the way home cannot be checked; write endurance_min = MINUTES "
+            f'under [[vehicles]] serial = "{vehicle.serial}" in site.toml',
         )
     has = vehicle.battery_fraction.value
     if has is None:
-        return "its battery's charge is not known, so not whether it comes home: look at the app"
+        return _refused(vehicle, "battery charge unknown; check its companion app")
     need = need_of(uses, vehicle, body)
     if need is None:
-        return "its place or its home is not known, so not how much battery the way home takes"
+        return _refused(vehicle, "position or home unknown, so the way home cannot be checked")
     reserve = situation.airspace.airspace.limits.battery_reserve_fraction
     left = reserve if is_away else energy.landing_fraction
-    return None if need.whole + left <= has else _text_of_need(body, need, left, has)
+    return None if need.whole + left <= has else _too_little(vehicle, body, need, left, has)
 
 
-def _text_of_need(body: Body, need: Need, left: float, has: float) -> str:
+def _too_little(vehicle: VehicleState, body: Body, need: Need, left: float, has: float) -> Refusal:
     name = BODY_NAMES[type(body)].replace("_", " ")
     end = f"waypoint {need.at}" if isinstance(body, FlyMission) else "its end"
     flown = f"{_near(need.flown)} % to {end}, " if need.at > 0 else ""
-    return (
-        f"the {name} needs {_up(need.whole + left)} % of its battery, it has {_down(has)} %: "
-        f"{flown}{_near(need.back)} % home from there, and {_near(left)} % to be left; fly less "
-        "far, or change the battery"
+    return _refused(
+        vehicle,
+        f"the {name} needs {_up(need.whole + left)} % of its battery; got {_down(has)} %: "
+        f"{flown}{_near(need.back)} % home from there, and {_near(left)} % reserve; fly less far, "
+        "or change the battery",
+        battery_fraction=has,
+        min_fraction=need.whole + left,
+        reserve_fraction=left,
     )
+
+
+def _refused(vehicle: VehicleState, reason: str, **parameters: float) -> Refusal:
+    return Refusal(RULE, f"{vehicle.display_name}: {reason}", parameters=parameters)
 
 
 def _up(fraction: float) -> str:

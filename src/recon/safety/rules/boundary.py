@@ -20,7 +20,7 @@ def boundary(command: Command, situation: Situation) -> Refusal | None:
     `boundary_margin_m` from its edge and its holes' edges, at every height. A vehicle that is
     already closer to the edge, or outside, may be moved if every piece that begins where it is (its
     way home from there too) goes no farther out than it is now; all else must keep the margin.
-    A stick without velocity goes nowhere and is not asked. Without a boundary nothing is refused.
+    A stick without velocity moves nowhere and is not judged. Without a boundary nothing is refused.
     """
     fence = situation.airspace.boundary
     if fence is None or is_stop(command, situation):
@@ -37,7 +37,7 @@ def boundary(command: Command, situation: Situation) -> Refusal | None:
     outside = _worse(outside, path, fence, margin_m, situation.settings.fences.not_worse_m)
     if len(outside) == 0:
         return None
-    return Refusal(RULE, _reason(path, int(outside[0]), fence, margin_m))
+    return _refusal(path, int(outside[0]), fence, margin_m)
 
 
 def _worse(
@@ -59,7 +59,7 @@ def _worse(
     return np.sort(np.concatenate([outside[~entries], begins[is_worse]]))
 
 
-def _reason(path: PathVolume, index: int, fence: Polygon, margin_m: float) -> str:
+def _refusal(path: PathVolume, index: int, fence: Polygon, margin_m: float) -> Refusal:
     what = path.subject(index)
     room_m = float(fence.room_m(path.footprints.only(np.array([index])))[0])
     if room_m < 0.0:
@@ -68,6 +68,8 @@ def _reason(path: PathVolume, index: int, fence: Polygon, margin_m: float) -> st
         fault = f"{what} comes within {room_m:.2f} m of the site's boundary"
     here_m = float(fence.room_m(path.here)[0])
     if here_m > margin_m or not path.pieces.is_entry[index]:
-        return f"{fault}; it must stay inside, {margin_m:g} m from the edge"
-    place = f"{here_m:.2f} m inside" if here_m >= 0.0 else f"{-here_m:.2f} m outside"
-    return f"{fault}; it is {place} now and may not be sent farther out, only back in"
+        reason = f"{fault}; it must stay inside, {margin_m:g} m from the edge"
+    else:
+        place = f"{here_m:.2f} m inside" if here_m >= 0.0 else f"{-here_m:.2f} m outside"
+        reason = f"{fault}; the vehicle is {place} now and may only be moved back in"
+    return Refusal(RULE, reason, parameters={"distance_inside_m": room_m, "min_m": margin_m})

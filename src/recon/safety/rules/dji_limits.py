@@ -1,9 +1,8 @@
-"""What DJI's SDK takes. It rejects the rest silently, so the station says it aloud."""
+"""Limits of DJI's SDK. It rejects values beyond them without a report; the gate reports."""
 
-import struct
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from math import hypot, inf
+from math import hypot
 from typing import Any
 
 from recon.geo.distance import horizontal_distance_m
@@ -19,6 +18,7 @@ from recon.model.command import (
 from recon.model.dji import DJI
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
+from recon.safety.path.order_path import as_sent
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation
 
@@ -27,135 +27,218 @@ CORNER_TOLERANCE_M = 1e-6
 
 
 def dji_limits(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse what the aircraft's controller would drop without a word."""
+    """Refuse numbers that the aircraft's controller would reject without a report."""
     check = _CHECKS.get(type(command.body))
-    if check is None:
-        return None
-    fault = next(check(command.body, situation), None)
-    return None if fault is None else Refusal(RULE, fault)
+    return None if check is None else next(check(command.body, situation), None)
 
 
-def _camera(body: StartCamera, situation: Situation) -> Iterator[str]:
+def _range(
+    what: str, name: str, value: float, least: float, most: float, unit: str, datum: str = ""
+) -> Refusal:
+    """Refuse a value outside a closed range; `name` is the parameter's, without its unit."""
+    return _refused(
+        f"{what} must be {least:g} to {most:g} {unit}{datum}; got {value:g} {unit}",
+        **{f"{name}_{_SUFFIX[unit]}": value},
+        **{f"min_{_SUFFIX[unit]}": least, f"max_{_SUFFIX[unit]}": most},
+    )
+
+
+def _above_zero(what: str, name: str, value: float, most: float, unit: str, why: str) -> Refusal:
+    """Refuse a value that is not above 0, or that is above `most`."""
+    return _refused(
+        f"{what} must be above 0 and at most {most:g} {unit}{why}; got {value:g} {unit}",
+        **{f"{name}_{_SUFFIX[unit]}": value},
+        **{f"min_{_SUFFIX[unit]}": 0.0, f"max_{_SUFFIX[unit]}": most},
+    )
+
+
+def _position(latitude_deg: float, longitude_deg: float, what: str) -> Refusal:
+    return _refused(
+        f"{what} must be within 90 deg latitude and 180 deg longitude; got {latitude_deg:g}, "
+        f"{longitude_deg:g}",
+        latitude_deg=latitude_deg,
+        longitude_deg=longitude_deg,
+        max_latitude_deg=90.0,
+        max_longitude_deg=180.0,
+    )
+
+
+def _refused(reason: str, **parameters: float | int | str) -> Refusal:
+    return Refusal(RULE, reason, parameters=parameters)
+
+
+_SUFFIX = {"m": "m", "s": "s", "m/s": "mps", "deg": "deg", "Hz": "hz"}
+_ABOVE_TAKEOFF = " above takeoff"
+
+
+def _camera(body: StartCamera, situation: Situation) -> Iterator[Refusal]:
     limit_hz = situation.settings.max_camera_fps_hz
-    if not 0.0 < _as_sent(body.fps_hz) <= limit_hz:
-        yield f"{body.fps_hz:g} frames per second: more than 0 and up to {limit_hz:g} are possible"
+    if not 0.0 < as_sent(body.fps_hz) <= limit_hz:
+        yield _above_zero("Frame rate", "frame_rate", body.fps_hz, limit_hz, "Hz", "")
 
 
-def _stick(body: VirtualStick, situation: Situation) -> Iterator[str]:
+def _stick(body: VirtualStick, situation: Situation) -> Iterator[Refusal]:
     limits = situation.settings
+    most_mps = limits.max_stick_speed_mps
     for name, speed_mps in (("x", body.velocity_x_mps), ("y", body.velocity_y_mps)):
-        if abs(speed_mps) > limits.max_stick_speed_mps:
-            yield f"velocity {name} is {speed_mps:g} m/s, at most 15 m/s either way is accepted"
-    if not 0.0 <= body.height_above_takeoff_m <= limits.max_stick_height_m:
-        yield f"height {body.height_above_takeoff_m:g} m: 0 to 500 m above takeoff are accepted"
-    if not 0.0 < _as_sent(body.timeout_s) <= limits.max_stick_timeout_s:
-        yield (
-            f"timeout {body.timeout_s:g} s: more than 0 and up to "
-            f"{limits.max_stick_timeout_s:g} s are allowed, for the app flies on by itself so long"
-        )
+        if abs(speed_mps) > most_mps:
+            what = f"Stick velocity {name}"
+            yield _range(what, f"velocity_{name}", speed_mps, -most_mps, most_mps, "m/s")
+    yield from _steered_height(body.height_above_takeoff_m, limits)
+    if not 0.0 < as_sent(body.timeout_s) <= limits.max_stick_timeout_s:
+        why = ", the time for which the app keeps flying it without a new stick"
+        most_s = limits.max_stick_timeout_s
+        yield _above_zero("Stick timeout", "timeout", body.timeout_s, most_s, "s", why)
 
 
-def _goto(body: GoTo, situation: Situation) -> Iterator[str]:
-    """A goto becomes sticks: what they could not say is refused as a whole."""
-    limits, target = situation.settings, body.target
+def _goto(body: GoTo, situation: Situation) -> Iterator[Refusal]:
+    """A goto becomes sticks: numbers that these cannot carry are refused as a whole."""
+    target = body.target
     if not target.is_valid():
-        yield f"{target.latitude_deg:g}, {target.longitude_deg:g} is no place on the globe"
-    if not 0.0 <= body.height_above_takeoff_m <= limits.max_stick_height_m:
-        yield f"height {body.height_above_takeoff_m:g} m: 0 to 500 m above takeoff are accepted"
-    yield from _steering_speed(body.speed_mps, limits)
-
-
-def _nudge(body: Nudge, situation: Situation) -> Iterator[str]:
-    longest_m = situation.settings.max_nudge_m
-    for name, moved_m in (("north", body.north_m), ("east", body.east_m), ("up", body.up_m)):
-        if abs(moved_m) > longest_m:
-            yield f"{moved_m:g} m {name}: a nudge is {longest_m:g} m at most; farther is a goto"
+        yield _position(target.latitude_deg, target.longitude_deg, "Target")
+    yield from _steered_height(body.height_above_takeoff_m, situation.settings)
     yield from _steering_speed(body.speed_mps, situation.settings)
 
 
-def _steering_speed(speed_mps: float, limits: SafetySettings) -> Iterator[str]:
-    if not limits.min_steering_mps <= speed_mps <= limits.max_stick_speed_mps:
-        yield f"speed {speed_mps:g} m/s: {limits.min_steering_mps:g} to 15 m/s are accepted"
+def _steered_height(height_m: float, limits: SafetySettings) -> Iterator[Refusal]:
+    most_m = limits.max_stick_height_m
+    if not 0.0 <= height_m <= most_m:
+        name = "height_above_takeoff"
+        yield _range("Height", name, height_m, 0.0, most_m, "m", _ABOVE_TAKEOFF)
 
 
-def _mission(body: FlyMission, situation: Situation) -> Iterator[str]:
+def _nudge(body: Nudge, situation: Situation) -> Iterator[Refusal]:
+    longest_m = situation.settings.max_nudge_m
+    for name, moved_m in (("north", body.north_m), ("east", body.east_m), ("up", body.up_m)):
+        if abs(moved_m) > longest_m:
+            yield _refused(
+                f"Nudge {name} must be {-longest_m:g} to {longest_m:g} m; got {moved_m:g} m; use "
+                "a goto for larger distances",
+                **{f"{name}_m": moved_m},
+                min_m=-longest_m,
+                max_m=longest_m,
+            )
+    yield from _steering_speed(body.speed_mps, situation.settings)
+
+
+def _steering_speed(speed_mps: float, limits: SafetySettings) -> Iterator[Refusal]:
+    least_mps, most_mps = limits.min_steering_mps, limits.max_stick_speed_mps
+    if not least_mps <= speed_mps <= most_mps:
+        yield _range("Speed", "speed", speed_mps, least_mps, most_mps, "m/s")
+
+
+def _mission(body: FlyMission, situation: Situation) -> Iterator[Refusal]:
     mission, limits = body.mission, situation.settings
     yield from _count(mission, situation)
     for number, waypoint in enumerate(mission.waypoints, start=1):
-        for fault in _waypoint(waypoint, mission.curved, limits):
-            yield f"waypoint {number}: {fault}"
+        for refusal in _waypoint(waypoint, mission.curved, limits):
+            yield _refused(
+                f"Waypoint {number}: {refusal.reason[0].lower()}{refusal.reason[1:]}",
+                waypoint=number,
+                **refusal.parameters,
+            )
     yield from _legs(mission, limits)
     if mission.curved:
         yield from _corners(mission, limits)
 
 
-def _count(mission: Mission, situation: Situation) -> Iterator[str]:
+def _count(mission: Mission, situation: Situation) -> Iterator[Refusal]:
     profile = situation.vehicle.profile if situation.vehicle is not None else None
     most = DJI.max_waypoints if profile is None else min(DJI.max_waypoints, profile.max_waypoints)
     count, least = len(mission.waypoints), situation.settings.min_waypoints
     if not least <= count <= most:
-        yield f"{count} waypoints: this vehicle's app takes {least} to {most}"
+        yield _refused(
+            f"Mission must have {least} to {most} waypoints for this vehicle's app; got {count}",
+            waypoint_count=count,
+            min_count=least,
+            max_count=most,
+        )
 
 
-def _waypoint(waypoint: Waypoint, curved: bool, limits: SafetySettings) -> Iterator[str]:
+def _waypoint(waypoint: Waypoint, curved: bool, limits: SafetySettings) -> Iterator[Refusal]:
     if not LatLon(waypoint.latitude_deg, waypoint.longitude_deg).is_valid():
-        yield f"{waypoint.latitude_deg:g}, {waypoint.longitude_deg:g} is no place on the globe"
-    height_m = waypoint.height_above_takeoff_m
-    if not limits.min_height_m <= height_m <= limits.max_height_m:
-        yield f"height {height_m:g} m: -200 to 500 m above takeoff are accepted"
-    if not 0.0 < _as_sent(waypoint.speed_mps) <= limits.max_speed_mps:
-        yield f"speed {waypoint.speed_mps:g} m/s: more than 0 and up to 15 m/s are accepted"
+        yield _position(waypoint.latitude_deg, waypoint.longitude_deg, "Position")
+    height_m, least_m, most_m = (
+        waypoint.height_above_takeoff_m,
+        limits.min_height_m,
+        limits.max_height_m,
+    )
+    if not least_m <= height_m <= most_m:
+        name = "height_above_takeoff"
+        yield _range("Height", name, height_m, least_m, most_m, "m", _ABOVE_TAKEOFF)
+    if not 0.0 < as_sent(waypoint.speed_mps) <= limits.max_speed_mps:
+        yield _above_zero("Speed", "speed", waypoint.speed_mps, limits.max_speed_mps, "m/s", "")
     if curved and (waypoint.loiter_s is not None or waypoint.gimbal_pitch_deg is not None):
-        yield "a curved mission carries no loiter or gimbal action (the SDK ignores them)"
+        yield _refused(
+            "A curved mission cannot have loiter or gimbal actions: the SDK ignores them"
+        )
     yield from _actions(waypoint, limits)
 
 
-def _actions(waypoint: Waypoint, limits: SafetySettings) -> Iterator[str]:
+def _actions(waypoint: Waypoint, limits: SafetySettings) -> Iterator[Refusal]:
     loiter_s, pitch_deg = waypoint.loiter_s, waypoint.gimbal_pitch_deg
     if loiter_s is not None and not 0.0 <= loiter_s <= limits.max_loiter_s:
-        yield f"loiter {loiter_s:g} s: 0 to {limits.max_loiter_s:g} s are accepted"
+        yield _range("Loiter", "loiter", loiter_s, 0.0, limits.max_loiter_s, "s")
     lowest_deg, highest_deg = limits.min_gimbal_pitch_deg, limits.max_gimbal_pitch_deg
     if pitch_deg is not None and not lowest_deg <= pitch_deg <= highest_deg:
-        yield f"gimbal pitch {pitch_deg:g} deg: -90 to 0 deg are accepted"
+        yield _range("Gimbal pitch", "gimbal_pitch", pitch_deg, lowest_deg, highest_deg, "deg")
 
 
-def _legs(mission: Mission, limits: SafetySettings) -> Iterator[str]:
+def _legs(mission: Mission, limits: SafetySettings) -> Iterator[Refusal]:
     path_m = 0.0
     for number, (a, b) in enumerate(pairwise(mission.waypoints), start=1):
         leg_m = _distance_m(a, b)
         path_m += leg_m
-        if not limits.min_leg_m <= leg_m <= limits.max_leg_m:
-            yield f"waypoints {number} and {number + 1} are {leg_m:.2f} m apart: {_SPAN}"
+        yield from _span(f"Waypoints {number} and {number + 1}", leg_m, limits)
     closing_m = _distance_m(mission.waypoints[0], mission.waypoints[-1])
-    if not limits.min_leg_m <= closing_m <= limits.max_leg_m:
-        yield f"the first and the last waypoint are {closing_m:.2f} m apart: {_SPAN}"
+    yield from _span("The first and the last waypoint", closing_m, limits)
     if path_m > limits.max_path_m:
-        yield f"the path is {path_m / 1000:.1f} km long: 30 km at most are accepted"
+        yield _refused(
+            f"Mission path must be at most {limits.max_path_m / 1000:g} km long; got "
+            f"{path_m / 1000:.1f} km",
+            path_m=path_m,
+            max_m=limits.max_path_m,
+        )
 
 
-_SPAN = "0.5 m to 2 km are accepted"
+def _span(which: str, distance_m: float, limits: SafetySettings) -> Iterator[Refusal]:
+    least_m, most_m = limits.min_leg_m, limits.max_leg_m
+    if not least_m <= distance_m <= most_m:
+        yield _refused(
+            f"{which} must be {least_m:g} to {most_m:g} m apart; got {distance_m:.2f} m",
+            distance_m=distance_m,
+            min_m=least_m,
+            max_m=most_m,
+        )
 
 
-def _corners(mission: Mission, limits: SafetySettings) -> Iterator[str]:
-    smallest_m = limits.min_corner_radius_m
+def _corners(mission: Mission, limits: SafetySettings) -> Iterator[Refusal]:
+    least_m, most_m = limits.min_corner_radius_m, limits.max_corner_radius_m
     for number, waypoint in enumerate(mission.waypoints, start=1):
         radius_m = waypoint.corner_radius_m
         is_end = number in (1, len(mission.waypoints))
-        if is_end and abs(radius_m - smallest_m) > CORNER_TOLERANCE_M:
-            yield f"waypoint {number}: the first and last corner radius must be {smallest_m:g} m"
-        if not smallest_m - CORNER_TOLERANCE_M <= radius_m <= limits.max_corner_radius_m:
-            yield f"waypoint {number}: corner radius {radius_m:g} m: 0.2 to 1000 m are accepted"
+        if is_end and abs(radius_m - least_m) > CORNER_TOLERANCE_M:
+            yield _refused(
+                f"Waypoint {number}: the first and last corner radius must be {least_m:g} m; got "
+                f"{radius_m:g} m",
+                waypoint=number,
+                corner_radius_m=radius_m,
+                min_m=least_m,
+                max_m=least_m,
+            )
+        if not least_m - CORNER_TOLERANCE_M <= radius_m <= most_m:
+            yield _range(
+                f"Waypoint {number}: corner radius", "corner_radius", radius_m, least_m, most_m, "m"
+            )
     for number, (a, b) in enumerate(pairwise(mission.waypoints), start=1):
-        if a.corner_radius_m + b.corner_radius_m >= _distance_m(a, b):
-            yield f"waypoints {number} and {number + 1}: their corners are wider than their leg"
-
-
-def _as_sent(value: float) -> float:
-    """The number a 32-bit float of the wire makes of it: what is tiny becomes 0."""
-    try:
-        return float(struct.unpack(">f", struct.pack(">f", value))[0])
-    except OverflowError:
-        return inf
+        both_m, leg_m = a.corner_radius_m + b.corner_radius_m, _distance_m(a, b)
+        if both_m >= leg_m:
+            yield _refused(
+                f"Waypoints {number} and {number + 1}: the corner radii must sum to less than "
+                f"their leg of {leg_m:.2f} m; got {both_m:.2f} m",
+                corner_radii_m=both_m,
+                max_m=leg_m,
+            )
 
 
 def _distance_m(a: Waypoint, b: Waypoint) -> float:
@@ -165,7 +248,7 @@ def _distance_m(a: Waypoint, b: Waypoint) -> float:
     return hypot(across_m, b.height_above_takeoff_m - a.height_above_takeoff_m)
 
 
-_CHECKS: dict[type, Callable[[Any, Situation], Iterator[str]]] = {
+_CHECKS: dict[type, Callable[[Any, Situation], Iterator[Refusal]]] = {
     StartCamera: _camera,
     VirtualStick: _stick,
     GoTo: _goto,

@@ -10,10 +10,14 @@ from recon.safety.situation import Situation
 
 
 def finite_numbers(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse a command that carries a number which is none."""
+    """Refuse a command containing NaN or infinity."""
     for name, value in _numbers(command.body, ""):
         if not _is_finite(value):
-            return Refusal("finite_numbers", f"{name} is {value}: a finite number is needed")
+            return Refusal(
+                "finite_numbers",
+                f"{name} must be a finite number; got {value}",
+                parameters={"field": name, "value": str(value)},
+            )
     return None
 
 

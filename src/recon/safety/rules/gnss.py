@@ -1,6 +1,7 @@
-"""What is set in motion must know where it is."""
+"""Motion needs a good GNSS fix."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from recon.model.command import Command, Refusal
 from recon.model.vehicle import FlightMode, VehicleState
@@ -12,14 +13,16 @@ RULE = "gnss"
 
 
 def gnss(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse motion without a fix of quality; what only stops it needs none."""
+    """Refuse motion without a good fix; a stop needs none."""
     vehicle = situation.vehicle
     if vehicle is None or not command.moves:
         return None
     if is_stop(command, situation):
         return None
-    fault = gnss_fault(vehicle, situation.settings)
-    return None if fault is None else Refusal(RULE, f"{vehicle.display_name}: {fault}")
+    refusal = gnss_refusal(vehicle, situation.settings)
+    if refusal is None:
+        return None
+    return replace(refusal, reason=f"{vehicle.display_name}: {refusal.reason}")
 
 
 _WITHOUT_GNSS = {
@@ -30,40 +33,51 @@ _WITHOUT_GNSS = {
 """In these modes the aircraft drifts with the wind and flies no mission and no stick's velocity."""
 
 
-def gnss_fault(vehicle: VehicleState, settings: SafetySettings) -> str | None:
-    """Return in words what is wrong with a vehicle's GNSS, or None.
+def gnss_refusal(vehicle: VehicleState, settings: SafetySettings) -> Refusal | None:
+    """Return what is wrong with a vehicle's GNSS, without its name; None if nothing is.
 
-    On the ground more is asked than in the air: there the home point is still to be recorded. Ages
-    are not looked at: that is the rule link_age.
+    On the ground the signal must be better than in the air: the home point is still to be recorded.
+    Ages are judged by the rule link_age.
     """
-    return next(_faults(vehicle, settings), None)
+    return next(_refusals(vehicle, settings), None)
 
 
-def _faults(vehicle: VehicleState, settings: SafetySettings) -> Iterator[str]:
+def _refusals(vehicle: VehicleState, settings: SafetySettings) -> Iterator[Refusal]:
+    least = settings.min_satellites
     if vehicle.position.value is None:
-        yield "it reports no position: wait for a fix"
+        yield Refusal(RULE, "no position reported; wait for a fix")
     count = vehicle.gnss_satellite_count.value
     if count is None:
-        yield "how many satellites it sees is not known: wait for extended telemetry"
-    elif count < settings.min_satellites:
-        yield f"it sees {count} satellites, {settings.min_satellites} are needed: {_OPEN_SKY}"
+        yield Refusal(RULE, "satellite count unknown; wait for extended telemetry")
+    elif count < least:
+        yield Refusal(
+            RULE,
+            f"at least {least} satellites are needed; got {count}; {_OPEN_SKY}",
+            parameters={"satellite_count": count, "min_count": least},
+        )
     yield from _signal(vehicle, settings)
     mode = vehicle.flight_mode.value
     if mode is None or mode is FlightMode.UNKNOWN:
-        yield "its flight mode is not known, so neither whether it holds its place by GNSS"
+        yield Refusal(RULE, "flight mode unknown, so position hold is uncertain")
     elif mode in _WITHOUT_GNSS:
-        yield f"it flies in {_WITHOUT_GNSS[mode]}, without GNSS: the pilot has to steer it"
+        reason = f"flies in {_WITHOUT_GNSS[mode]}, without GNSS; the pilot must steer it"
+        yield Refusal(RULE, reason)
 
 
-def _signal(vehicle: VehicleState, settings: SafetySettings) -> Iterator[str]:
+def _signal(vehicle: VehicleState, settings: SafetySettings) -> Iterator[Refusal]:
     level = vehicle.gnss_signal_level.value
     on_ground = vehicle.is_flying.value is False
     least = settings.min_gnss_level_on_ground if on_ground else settings.min_gnss_level
     if level is None:
-        yield f"its GNSS signal level is none or unknown, {least} of 5 is needed: {_OPEN_SKY}"
+        reason = f"GNSS signal level unknown, at least {least} of 5 is needed; {_OPEN_SKY}"
+        yield Refusal(RULE, reason, parameters={"min_level": least})
     elif level < least:
-        why = " before a takeoff, to record its home" if on_ground else ""
-        yield f"its GNSS signal level is {level}, {least} of 5 is needed{why}: {_OPEN_SKY}"
+        why = " before takeoff, to record the home point" if on_ground else ""
+        yield Refusal(
+            RULE,
+            f"GNSS signal level must be at least {least} of 5{why}; got {level}; {_OPEN_SKY}",
+            parameters={"signal_level": level, "min_level": least},
+        )
 
 
-_OPEN_SKY = "wait, or go where the sky is open"
+_OPEN_SKY = "wait, or move to open sky"

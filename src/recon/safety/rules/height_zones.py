@@ -24,7 +24,7 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
     says which, and a place where a mission lands is none in a zone. When the vehicle is in the zone
     now, a piece that begins where it is may be as high above the ceiling's datum as it is. A stick
     without velocity is held to zones that the vehicle is in, with `stop_slack_m`; where the vehicle
-    is not known to be, it is not asked.
+    is not known to be, it is not judged.
     """
     airspace = situation.airspace
     path = path_volume(command, situation) if airspace.zones_of(ZoneKind.HEIGHT) else None
@@ -35,13 +35,15 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
         return None if stops else Refusal(RULE, path.reason)
     margin_m = airspace.airspace.limits.boundary_margin_m
     for zone in airspace.zones_near(ZoneKind.HEIGHT, path.footprints, margin_m):
-        reason = _fault(zone, path, situation, stops)
-        if reason is not None:
-            return Refusal(RULE, reason)
+        refusal = _fault(zone, path, situation, stops)
+        if refusal is not None:
+            return refusal
     return None
 
 
-def _fault(zone: PreparedZone, path: PathVolume, situation: Situation, stops: bool) -> str | None:
+def _fault(
+    zone: PreparedZone, path: PathVolume, situation: Situation, stops: bool
+) -> Refusal | None:
     airspace, settings, pieces = situation.airspace, situation.settings.fences, path.pieces
     margin_m = 0.0 if stops else airspace.airspace.limits.boundary_margin_m
     slack_m = settings.stop_slack_m if stops else 0.0
@@ -55,7 +57,7 @@ def _fault(zone: PreparedZone, path: PathVolume, situation: Situation, stops: bo
             is_low &= ~columns(path, situation, stops)[near]
         if is_low.any():
             limit = f"fly no lower than {height_text(floor_m, datum)} there"
-            return _reason(zone, path, int(near[is_low][0]), limit)
+            return _refusal(zone, path, int(near[is_low][0]), limit)
     if ceiling_m is not None:
         high_m = pieces.high_m[near] - slack_m
         is_high = ~stays_below(airspace, triangles_m, high_m, ceiling_m, datum)
@@ -66,12 +68,19 @@ def _fault(zone: PreparedZone, path: PathVolume, situation: Situation, stops: bo
             is_high &= ~(pieces.is_entry[near] & is_no_higher)
         if is_high.any():
             limit = f"fly no higher than {height_text(ceiling_m, datum)} there"
-            return _reason(zone, path, int(near[is_high][0]), limit)
+            return _refusal(zone, path, int(near[is_high][0]), limit)
     return None
 
 
-def _reason(zone: PreparedZone, path: PathVolume, index: int, limit: str) -> str:
-    return (
+def _refusal(zone: PreparedZone, path: PathVolume, index: int, limit: str) -> Refusal:
+    limits = {"min_m": zone.zone.floor_m, "max_m": zone.zone.ceiling_m}
+    return Refusal(
+        RULE,
         f"{path.subject(index)} is at {path.heights(index)} in the height zone "
-        f"{zone.zone.name!r}; {limit}"
+        f"{zone.zone.name!r}; {limit}",
+        parameters={
+            "zone": zone.zone.name,
+            **path.height_parameters(index),
+            **{name: limit_m for name, limit_m in limits.items() if limit_m is not None},
+        },
     )

@@ -16,7 +16,7 @@ def home_distance(command: Command, situation: Situation) -> Refusal | None:
 
     The distance is horizontal. Flights count: a corner and the way home are nowhere farther than
     the legs they begin on. A piece that begins where the vehicle is may go as far as the vehicle is
-    now. A stick without velocity goes nowhere and is not asked.
+    now. A stick without velocity moves nowhere and is not judged.
     """
     if is_stop(command, situation):
         return None
@@ -39,6 +39,6 @@ def home_distance(command: Command, situation: Situation) -> Refusal | None:
     index = int(far[0])
     return Refusal(
         RULE,
-        f"{path.subject(index)} leads {far_m[index]:.1f} m away from home, at most {limit_m:g} m "
-        "is allowed",
+        f"{path.subject(index)} must stay within {limit_m:g} m of home; got {far_m[index]:.1f} m",
+        parameters={"distance_from_home_m": float(far_m[index]), "max_m": limit_m},
     )

@@ -1,11 +1,11 @@
-"""Orders go to vehicles that are who they say; only emergency orders go further."""
+"""Orders need a vehicle with an undisputed serial, except emergency orders."""
 
 from recon.model.command import Command, Refusal
 from recon.safety.situation import Situation
 
 
 def identified(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse anything but an emergency order without a serial, or while its owner is unsettled.
+    """Refuse all but emergency orders without a serial, or while two links claim it.
 
     An emergency order that may take off is one order for one known aircraft, and no exception.
     """
@@ -15,15 +15,15 @@ def identified(command: Command, situation: Situation) -> Refusal | None:
     if vehicle.serial is None:
         return Refusal(
             "identified",
-            f"link {command.link_id} has not said its serial: "
-            "it takes emergency orders without takeoff only",
+            f"Link {command.link_id} has not reported its serial: "
+            "only emergency orders without takeoff are accepted",
         )
     if vehicle.rival_link_ids:
         return Refusal(
             "identified",
             f"{vehicle.display_name}: links {_listed(situation)} claim this serial; "
-            "only hold, land and return, none with takeoff, are sent until one of them closes or "
-            "falls silent",
+            "only hold, land and return without takeoff are sent until one of them closes or "
+            "becomes silent",
         )
     return None
 

@@ -34,7 +34,7 @@ def keep_out(command: Command, situation: Situation) -> Refusal | None:
     A vehicle that is itself too close to a zone may be moved if every piece that begins where it is
     goes no deeper: no farther in, from above the ceiling no lower, from below the floor no higher.
     A stick without velocity is held to the zones without the margins, and may be `stop_slack_m`
-    beyond their floors and ceilings; where the vehicle is not known to be, it is not asked.
+    beyond their floors and ceilings; where the vehicle's position is unknown, it is not judged.
     """
     airspace = situation.airspace
     path = path_volume(command, situation) if airspace.zones_of(ZoneKind.KEEP_OUT) else None
@@ -47,7 +47,7 @@ def keep_out(command: Command, situation: Situation) -> Refusal | None:
     for zone in airspace.zones_near(ZoneKind.KEEP_OUT, path.footprints, margin_m):
         entered = _Judged(zone, path, situation, stops).worse()
         if entered is not None:
-            return Refusal(RULE, _reason(zone, path, entered, situation))
+            return _refusal(zone, path, entered, situation)
     return None
 
 
@@ -93,7 +93,7 @@ class _Judged:
         return ~(is_over | is_under)
 
     def _is_in_it(self) -> bool:
-        """Whether the vehicle's height is one of the zone's: who is beside it will be deeper."""
+        """Whether the vehicle's height is one of the zone's: one beside it would go deeper."""
         up_m = self.path.here_m[2:]
         return bool(self._meets(self.path.here_triangle_m, up_m, up_m)[0])
 
@@ -114,15 +114,22 @@ class _Judged:
         return no_deeper
 
 
-def _reason(zone: PreparedZone, path: PathVolume, index: int, situation: Situation) -> str:
+def _refusal(zone: PreparedZone, path: PathVolume, index: int, situation: Situation) -> Refusal:
     margin_m = situation.airspace.airspace.limits.boundary_margin_m
     vertical_m = situation.settings.fences.zone_vertical_margin_m
     gap_m = float(zone.polygon.gap_m(path.footprints.only(np.array([index])))[0])
     way = "goes through" if gap_m == 0.0 else f"comes within {gap_m:.2f} m of"
-    return (
+    return Refusal(
+        RULE,
         f"{path.subject(index)} {way} the keep-out zone {zone.zone.name!r}{_extent(zone.zone)} at "
-        f"{path.heights(index)}; {margin_m:g} m must be kept beside it"
-        f"{_vertically(zone.zone, vertical_m)}"
+        f"{path.heights(index)}; the margin is {margin_m:g} m horizontally"
+        f"{_vertically(zone.zone, vertical_m)}",
+        parameters={
+            "zone": zone.zone.name,
+            "gap_m": gap_m,
+            "min_m": margin_m,
+            "min_vertical_m": vertical_m,
+        },
     )
 
 
@@ -137,4 +144,4 @@ def _extent(zone: Zone) -> str:
 
 def _vertically(zone: Zone, margin_m: float) -> str:
     has_end = zone.floor_m is not None or zone.ceiling_m is not None
-    return f", or {margin_m:g} m above or below" if has_end else ""
+    return f" or {margin_m:g} m vertically" if has_end else ""

@@ -1,4 +1,4 @@
-"""What sets a vehicle in motion needs to know where it is now, not where it was."""
+"""Motion needs recent telemetry: the position must be the present one."""
 
 from recon.model.command import Command, Refusal
 from recon.model.units import ns_to_seconds
@@ -11,7 +11,7 @@ RULE = "link_age"
 def link_age(command: Command, situation: Situation) -> Refusal | None:
     """Refuse motion on core telemetry older than 1 s, or extended telemetry older than 3 s.
 
-    A stick that only stops the vehicle may go as long as telemetry still tells whether
+    A stick that only stops the vehicle is accepted while telemetry still shows whether
     it flies, whatever the extended telemetry's age.
     """
     vehicle, limits = situation.vehicle, situation.settings
@@ -19,20 +19,25 @@ def link_age(command: Command, situation: Situation) -> Refusal | None:
         return None
     stops = is_stop(command, situation)
     core_s = limits.fresh_telemetry_s if stops else limits.motion_telemetry_s
-    fault = _fault("core", vehicle.core_received_at_ns, core_s, situation)
-    if fault is None and not stops:
-        heard_at_ns = vehicle.extended_received_at_ns
-        fault = _fault("extended", heard_at_ns, limits.motion_extended_s, situation)
-    return None if fault is None else Refusal(RULE, f"{vehicle.display_name}: {fault}")
+    name = vehicle.display_name
+    refusal = _late(f"{name}: core", vehicle.core_received_at_ns, core_s, situation)
+    if refusal is None and not stops:
+        extended_at_ns = vehicle.extended_received_at_ns
+        refusal = _late(f"{name}: extended", extended_at_ns, limits.motion_extended_s, situation)
+    return refusal
 
 
-def _fault(kind: str, heard_at_ns: int | None, most_s: float, situation: Situation) -> str | None:
-    if heard_at_ns is None:
-        return f"its app has sent no {kind} telemetry yet: wait for it, or look at the app"
-    age_s = ns_to_seconds(situation.now_ns - heard_at_ns)
+def _late(
+    what: str, received_at_ns: int | None, most_s: float, situation: Situation
+) -> Refusal | None:
+    if received_at_ns is None:
+        return Refusal(RULE, f"{what} telemetry not received yet; check its companion app")
+    age_s = ns_to_seconds(situation.now_ns - received_at_ns)
     if age_s <= most_s:
         return None
-    return (
-        f"its {kind} telemetry is {age_s:.1f} s old, {most_s:g} s at most is needed to set it in "
-        "motion: wait until the link is back. Hold, land and return are open"
+    return Refusal(
+        RULE,
+        f"{what} telemetry must be at most {most_s:g} s old for motion; got {age_s:.1f} s; wait "
+        "for the link, or order hold, land or return",
+        parameters={"age_s": age_s, "max_s": most_s},
     )

@@ -21,11 +21,11 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path that goes too high above ground.
 
     Every flight, corner and way home must be at most `max_height_above_ground_m` above the lowest
-    ground under the whole piece; without an elevation model the ground is taken for flat. A way
-    home is at the go-home height; when nobody has told it, the path is refused. A piece that begins
+    ground under the whole piece; without an elevation model the ground is assumed flat. A way
+    home is at the go-home height; while that is unknown, the path is refused. A piece that begins
     where the vehicle is may be as high above the lowest ground under it as the vehicle is above
-    ground now. A stick without velocity may be `stop_slack_m` higher; where the vehicle is not
-    known to be, its height above takeoff counts.
+    ground now. A stick without velocity may be `stop_slack_m` higher; while the vehicle's
+    position is unknown, its height above takeoff counts.
     """
     path = path_volume(command, situation)
     if path is None:
@@ -39,7 +39,7 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME)
     high = _higher(path, np.flatnonzero(judged), situation, most_m)
     high = _worse(path, high, situation, settings.not_worse_m)
-    return None if len(high) == 0 else Refusal(RULE, _reason(path, int(high[0]), situation))
+    return None if len(high) == 0 else _refusal(path, int(high[0]), situation)
 
 
 def _higher(path: PathVolume, indices: IntArray, situation: Situation, most_m: float) -> IntArray:
@@ -65,7 +65,7 @@ def _worse(path: PathVolume, high: IntArray, situation: Situation, rounding_m: f
 
 
 def _blind(command: Command, situation: Situation, unknown: UnknownPath) -> Refusal | None:
-    """A stop of a vehicle that is nowhere known still asks for a height."""
+    """A stop of a vehicle without a position still requests a height."""
     body = command.body
     if not isinstance(body, VirtualStick) or not is_stop(command, situation):
         return Refusal(RULE, unknown.reason)
@@ -76,29 +76,34 @@ def _blind(command: Command, situation: Situation, unknown: UnknownPath) -> Refu
     no_higher_m = -inf if here_m is None else here_m + settings.not_worse_m
     if height_m <= max(limit_m + settings.stop_slack_m, no_higher_m):
         return None
-    return Refusal(RULE, f"{height_m:.1f} m above takeoff: at most {limit_m:g} m is allowed here")
+    return Refusal(
+        RULE,
+        f"Height must be at most {limit_m:g} m above takeoff; got {height_m:.1f} m",
+        parameters={"height_above_takeoff_m": height_m, "max_m": limit_m},
+    )
 
 
-def _reason(path: PathVolume, index: int, situation: Situation) -> str:
+def _refusal(path: PathVolume, index: int, situation: Situation) -> Refusal:
     limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
     pieces = path.pieces
     if pieces.high_m[index] == inf:
         vehicle = path.departure.vehicle
-        return (
-            f"{vehicle.display_name}: the height at which it goes home is not known; write "
-            "go_home_height_m, as it is set in the aircraft, into site.toml under [[vehicles]] "
-            f'serial = "{vehicle.serial}"'
+        return Refusal(
+            RULE,
+            f"{vehicle.display_name}: go-home height unknown; write go_home_height_m, as set in "
+            f'the aircraft, into site.toml under [[vehicles]] serial = "{vehicle.serial}"',
         )
     what = path.subject(index)
     triangle_m = pieces.triangles_m[[index]]
     lowest_m = float(situation.airspace.ground_within_up_m(triangle_m)[0][0])
     if lowest_m == -inf:
-        return f"{what} goes over ground whose height the site's elevation model does not tell"
+        return Refusal(RULE, f"{what} goes over ground outside the site's elevation model")
     above_m = float(pieces.high_m[index]) - lowest_m
-    flat = " (the ground is taken for flat)" if is_ground_assumed_flat(situation.airspace) else ""
+    flat = " (flat ground assumed)" if is_ground_assumed_flat(situation.airspace) else ""
     is_home = pieces.kinds[index] == Kind.WAY_HOME
-    advice = "; set a lower go-home height in the aircraft and in site.toml" if is_home else ""
-    return (
-        f"{what} is up to {above_m:.1f} m above ground{flat}, at most {limit_m:g} m is "
-        f"allowed{advice}"
+    lower = "; set a lower go-home height in the aircraft and in site.toml" if is_home else ""
+    return Refusal(
+        RULE,
+        f"{what} must be at most {limit_m:g} m above ground{flat}; got {above_m:.1f} m{lower}",
+        parameters={"height_above_ground_m": above_m, "max_m": limit_m},
     )

@@ -1,4 +1,4 @@
-"""No path is nearer to the ground than the site allows, but to take off and to land."""
+"""No path is lower above ground than the site allows, except for takeoff and landing."""
 
 import numpy as np
 
@@ -11,19 +11,17 @@ from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 
 RULE = "min_height"
-_CLIMB_FIRST = (
-    "; it must climb straight up first, where it is (a mission's first waypoint may be right above)"
-)
+_CLIMB_FIRST = "; climb straight up first (a mission's first waypoint may be above the vehicle)"
 
 
 def min_height(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path that comes too near to the ground.
 
     Every flight, corner and way home must be at least `min_height_above_ground_m` above the highest
-    ground under the whole piece; without an elevation model the ground is taken for flat. Exempt
-    are landings and what keeps to a column of takeoff or landing: `columns` says which. Where the
-    model tells no ground, the path is refused. A stick without velocity may be `stop_slack_m`
-    lower; where the vehicle is not known to be, it is not asked.
+    ground under the whole piece; without an elevation model the ground is assumed flat. Exempt
+    are landings and what keeps to a column of takeoff or landing: `columns` says which. Outside the
+    elevation model the path is refused. A stick without velocity may be `stop_slack_m`
+    lower; where the vehicle's position is unknown, it is not judged.
     """
     path = path_volume(command, situation)
     if path is None:
@@ -42,22 +40,24 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
     if len(low) == 0:
         return None
     low = low[~columns(path, situation, stops)[low]]
-    return None if len(low) == 0 else Refusal(RULE, _reason(path, int(low[0]), situation))
+    return None if len(low) == 0 else _refusal(path, int(low[0]), situation)
 
 
-def _reason(path: PathVolume, index: int, situation: Situation) -> str:
+def _refusal(path: PathVolume, index: int, situation: Situation) -> Refusal:
     least_m = situation.airspace.airspace.limits.min_height_above_ground_m
     pieces = path.pieces
     what = path.subject(index)
     triangle_m = pieces.triangles_m[[index]]
     highest_m = float(situation.airspace.ground_within_up_m(triangle_m)[1][0])
     if highest_m == np.inf:
-        return f"{what} goes over ground whose height the site's elevation model does not tell"
+        return Refusal(RULE, f"{what} goes over ground outside the site's elevation model")
     above_m = float(pieces.low_m[index]) - highest_m
-    flat = " (the ground is taken for flat)" if is_ground_assumed_flat(situation.airspace) else ""
+    flat = " (flat ground assumed)" if is_ground_assumed_flat(situation.airspace) else ""
     low_now = path.here_m[2] <= pieces.low_m[index] and bool(pieces.is_entry[index])
-    advice = _CLIMB_FIRST if low_now else ""
-    return (
-        f"{what} comes down to {above_m:.1f} m above ground{flat}, at least {least_m:g} m is "
-        f"needed outside takeoff and landing{advice}"
+    what_to_do = _CLIMB_FIRST if low_now else ""
+    return Refusal(
+        RULE,
+        f"{what} must be at least {least_m:g} m above ground{flat} outside takeoff and landing; "
+        f"got {above_m:.1f} m{what_to_do}",
+        parameters={"height_above_ground_m": above_m, "min_m": least_m},
     )

@@ -1,4 +1,4 @@
-"""Missions and takeoffs ask for a checklist that is passed, or overridden in so many words."""
+"""Missions and takeoffs need a passed preflight checklist, or an explicit override."""
 
 from recon.model.command import Command, FlyMission, Refusal
 from recon.safety.preflight import checklist
@@ -11,8 +11,8 @@ RULE = "preflight"
 def preflight(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a mission, or any takeoff, while a point of the checklist fails or is unknown.
 
-    A mission that only brings a vehicle down ends a flight, and is not held back: what the list
-    asks for makes a flight safe to begin, and a refusal would only leave the vehicle in the air.
+    A mission that only brings a vehicle down is not held back: the checklist makes a flight safe
+    to begin, and a refusal would only leave the vehicle in the air.
     """
     vehicle, body = situation.vehicle, command.body
     if vehicle is None or not (isinstance(body, FlyMission) or command.takeoff):
@@ -27,6 +27,6 @@ def preflight(command: Command, situation: Situation) -> Refusal | None:
     points = "; ".join(f"{check.name}: {check.text} ({check.to_do})" for check in unmet)
     return Refusal(
         RULE,
-        f"{vehicle.display_name}: its preflight checklist is not passed: {points}. Mend that, or "
-        "override the checklist with a reason",
+        f"{vehicle.display_name}: preflight checklist not passed: {points}. Resolve these points, "
+        "or override the checklist with a reason",
     )

@@ -1,9 +1,22 @@
-"""Vehicles keep apart: predicted paths are compared in space and time.
+"""Separation of predicted trajectories in space and time.
 
-The trajectory of the order is predicted to its end, and so is that of every other vehicle in the
-air, from its state and what it was last told. They must stay apart horizontally or vertically at
-all times that they may be there together; how exactly those times are known falls with the time
-ahead. A vehicle that is not heard any more is a hazard about its last place and along its way home.
+Theory of operation. The order's trajectory is predicted to its end: its mission to the last
+waypoint and the hover or landing there, a goto and its hover, a stick with reaction and braking
+distance. So is the trajectory of every other vehicle in the air, from its state and its intent
+(what it was last commanded). Both are cut into protected volumes: a straight piece with a radius, a
+band of heights, and the time it may be occupied. That time widens with the time ahead (10 % and
+some seconds), and a mission that has not begun may begin 8 s late.
+
+A conflict is a pair of volumes that overlap in time and are nearer than the gate's minima both
+horizontally and vertically (`separation_minima.py`: more than the watchdog's, so an order that
+passes is not held a second later). Two vehicles that violate the minima already may be led apart:
+for `escape_s` only volumes nearer than now count.
+
+A vehicle whose telemetry is lost is a hazard area about its last position and along its way home;
+one that was sent a mission may also still fly it.
+
+Order of work, cheapest first: bounds of the order's trajectory, vehicles that can reach them,
+trajectories that touch them, boxes of volumes, and last the exact distances.
 """
 
 from math import ceil
@@ -33,32 +46,32 @@ from recon.safety.separation_minima import SeparationMinima, gate_minima
 from recon.safety.situation import Situation
 
 RULE = "separation"
-NOWHERE = "it does not tell where it is, and others are in the air"
+NO_POSITION = "no position telemetry, and other vehicles are in the air"
 
 
 def separation(command: Command, situation: Situation) -> Refusal | None:
-    """Refuse a path that comes too near to another vehicle's, or to where one may be lost."""
+    """Refuse a path in conflict with another vehicle's, or with a lost vehicle's hazard area."""
     body, vehicle = command.body, situation.vehicle
     if not command.moves or is_stop(command, situation) or not situation.traffic:
         return None
     if vehicle is None:
         return None
-    prediction, need = situation.settings.prediction, _minima(situation)
+    prediction, minima = situation.settings.prediction, _minima(situation)
     frame = frame_for(situation.airspace, vehicle)
     if frame is None:
-        return _refusal(vehicle.display_name, NOWHERE)
+        return _refusal(vehicle.display_name, NO_POSITION)
     plane = Plane(frame.origin)
     own = _placed(vehicle, plane, situation)
     if own is None:
-        return _refusal(vehicle.display_name, NOWHERE)
+        return _refusal(vehicle.display_name, NO_POSITION)
     trajectory = predict_order(own, body, prediction)
     others = _others(own, trajectory, plane, situation)
     if isinstance(others, Refusal):
         return others
-    conflict = first_conflict(trajectory, others, need, prediction)
+    conflict = first_conflict(trajectory, others, minima, prediction)
     if conflict is None:
         return None
-    return _refusal(own.name, _text(conflict, others[conflict.other], need))
+    return _conflict(own, conflict, others[conflict.other], minima)
 
 
 def _placed(vehicle: VehicleState, plane: Plane, situation: Situation) -> VehicleMotion | None:
@@ -71,20 +84,20 @@ def _others(
 ) -> tuple[Trajectory, ...] | Refusal:
     """The trajectories of all traffic that can come near the order's trajectory while it lasts."""
     prediction = situation.settings.prediction
-    around = trajectory_bounds(trajectory, _minima(situation), prediction)
+    bounds = trajectory_bounds(trajectory, _minima(situation), prediction)
     trajectories: list[Trajectory] = []
     for other in situation.traffic:
         seen = _placed(other.vehicle, plane, situation)
         if seen is None:
             if other.vehicle.core_received_at_ns is None:
-                continue  # an app without an aircraft: nothing has said that it flies
+                continue  # an app without an aircraft: no telemetry shows flight
             name = other.vehicle.display_name
-            text = f"{name} may be in the air and has never told where: land it or dismiss it"
+            text = f"{name} may be in the air at an unknown position: land it or dismiss it"
             return _refusal(own.name, text)
-        if may_enter(seen, other.intent, around, prediction):
-            predicted = predict_traffic(seen, other.intent, prediction, around.until_s)
+        if may_enter(seen, other.intent, bounds, prediction):
+            predicted = predict_traffic(seen, other.intent, prediction, bounds.until_s)
             trajectories += (
-                trajectory for trajectory in predicted if may_conflict(trajectory, around)
+                trajectory for trajectory in predicted if may_conflict(trajectory, bounds)
             )
     return tuple(trajectories)
 
@@ -93,21 +106,35 @@ def _minima(situation: Situation) -> SeparationMinima:
     return gate_minima(situation.airspace.airspace.limits, situation.settings)
 
 
-def _text(conflict: Conflict, other: Trajectory, need: SeparationMinima) -> str:
+def _conflict(
+    own: VehicleMotion, conflict: Conflict, other: Trajectory, minima: SeparationMinima
+) -> Refusal:
     where, when_s = part_text(conflict.own_part), ceil(conflict.at_s)
+    when = f"{where}, about {when_s} s from now,"
     if conflict.other_part == FlightPart.HAZARD:
-        return (
-            f"{where}, about {when_s} s from now, it would come within "
-            f"{conflict.horizontal_m:.0f} m of where {other.name} may be, telemetry lost; "
-            "wait until it reconnects, or dismiss its hazard area once you have located it"
+        reason = (
+            f"{when} it would come within {conflict.horizontal_m:.0f} m of where {other.name} may "
+            "be, telemetry lost; wait until it reconnects, or dismiss its hazard area once you "
+            "have located it"
         )
-    return (
-        f"{where}, about {when_s} s from now, it could come within {conflict.horizontal_m:.0f} m "
-        f"and {conflict.vertical_m:.0f} m in height of {other.name} "
-        f"({part_text(conflict.other_part)}); {need.horizontal_m:g} m, or {need.vertical_m:g} m in "
-        "height, must be kept: fly at another height, elsewhere, or later"
+    else:
+        reason = (
+            f"{when} it must keep {minima.horizontal_m:g} m, or {minima.vertical_m:g} m in height, "
+            f"from {other.name} ({part_text(conflict.other_part)}); got "
+            f"{conflict.horizontal_m:.0f} m and {conflict.vertical_m:.0f} m in height: fly at "
+            "another height, elsewhere, or later"
+        )
+    return _refusal(
+        own.name,
+        reason,
+        other=other.name,
+        time_s=conflict.at_s,
+        horizontal_m=conflict.horizontal_m,
+        vertical_m=conflict.vertical_m,
+        min_horizontal_m=minima.horizontal_m,
+        min_vertical_m=minima.vertical_m,
     )
 
 
-def _refusal(name: str, why: str) -> Refusal:
-    return Refusal(RULE, f"{name}: {why}")
+def _refusal(name: str, why: str, **parameters: float | str) -> Refusal:
+    return Refusal(RULE, f"{name}: {why}", parameters=parameters)

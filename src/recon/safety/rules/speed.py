@@ -18,7 +18,9 @@ def speed(command: Command, situation: Situation) -> Refusal | None:
     for what, speed_mps in _speeds_mps(command.body):
         if not speed_mps <= most_mps:
             return Refusal(
-                RULE, f"{what} is {speed_mps:.2f} m/s, at most {limit_mps:g} m/s is allowed"
+                RULE,
+                f"{what} must be at most {limit_mps:g} m/s; got {speed_mps:.2f} m/s",
+                parameters={"speed_mps": speed_mps, "max_mps": limit_mps},
             )
     return None
 
@@ -27,9 +29,9 @@ def _speeds_mps(body: Body) -> Iterator[tuple[str, float]]:
     match body:
         case FlyMission(mission):
             for number, waypoint in enumerate(mission.waypoints, start=1):
-                yield f"the speed at waypoint {number}", as_sent(waypoint.speed_mps)
+                yield f"Speed at waypoint {number}", as_sent(waypoint.speed_mps)
         case GoTo() | Nudge():
-            yield "the speed", as_sent(body.speed_mps)
+            yield "Speed", as_sent(body.speed_mps)
         case VirtualStick():
             north_mps, east_mps = as_sent(body.velocity_x_mps), as_sent(body.velocity_y_mps)
-            yield "the stick's horizontal speed", hypot(north_mps, east_mps)
+            yield "Horizontal stick speed", hypot(north_mps, east_mps)
