@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
+from tests.oracles.places import FloatArray
 
 from recon.guidance.survey import (
     Flight,
@@ -25,7 +26,6 @@ from recon.guidance.survey import (
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey
 from recon.model.zone import Region
-from studies.places import FloatArray
 
 FRAME = LocalFrame(GeoPoint(44.99, -93.2, 250.0))
 COUNTS = (1, 3, 8)

@@ -10,7 +10,7 @@ the same apps flying as long with nobody listening, and a loop of plain Python. 
 from time import process_time
 
 import pytest
-from studies.eight_vehicles import EightVehicles, eight_vehicles
+from tests.oracles.eight_vehicles import EightVehicles, eight_vehicles
 
 BEGIN_S = 25.0
 """By then every drone flies its first mission."""

@@ -1,6 +1,6 @@
 """The fence rules say what an independent, slow checker measures; `make study` draws 10,000."""
 
-from studies.fences import RULES, compare
+from tests.oracles.drawn_fences import RULES, compare
 
 from recon.geo import Footprints
 from recon.model.command import Command, Refusal

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import hypot
 
 import pytest
-from studies.fleets import NAMES, compare
+from tests.oracles.drawn_fleets import NAMES, compare
 
 from recon.geo.distance import offset_north_east_m
 from recon.model.command import Command, Refusal

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from studies.shadow_passages import SHADE_INDEX, Passages, edge_s
-from studies.sky_statistics import MEASURED, Mixture, figures, table, watch
+from tests.oracles.shadow_passages import SHADE_INDEX, Passages, edge_s
+from tests.oracles.sky_statistics import MEASURED, Mixture, figures, table, watch
 
 PAGE = Path(__file__).parents[3] / "docs" / "world.md"
 ROW = re.compile(r"^\| ([^|]+) \| ([^|]+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", re.MULTILINE)

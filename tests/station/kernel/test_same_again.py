@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies.eight_vehicles import eight_vehicles
-from studies.run_digest import RunDigest, parts_of
-from studies.same_again import FAULTS, HASH_SEEDS, in_another_process
+from tests.oracles.eight_vehicles import eight_vehicles
+from tests.oracles.run_digest import RunDigest, parts_of
+from tests.oracles.same_again import FAULTS, HASH_SEEDS, in_another_process
 
 from recon.model.event import CommandAnswered, CommandSent, Event, LinkClosed
 from recon.station.state.jobs import JobDone

@@ -1,8 +1,8 @@
 """The study of the session in short; `make study` runs it for 100,000 simulated seconds."""
 
 import pytest
-from studies.counting_app import CountingApp
-from studies.session import SessionStudy
+from tests.oracles.counting_app import CountingApp
+from tests.oracles.session_study import SessionStudy
 
 
 @pytest.mark.parametrize("seed", [101, 102])

@@ -1,9 +1,15 @@
 """Fleets drawn by chance: an order to move for one vehicle, and one to five others in its air."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from math import hypot
 
 import numpy as np
+from tests.oracles import sampled_orders as sampled
+from tests.oracles.agreement import Agreement, over
+from tests.oracles.places import NOW_NS, ORIGIN, FloatArray, degrees, lat_lon
+from tests.oracles.sampled_fleets import Course, Need, margin
+from tests.oracles.sampled_flights import EAST, HIGH, LOW, NORTH, Aircraft, Flight
 
 from recon.model.airspace import Airspace, FlightLimits
 from recon.model.command import (
@@ -22,10 +28,8 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.stamped import Stamped
 from recon.model.vehicle import Attitude, Failsafe, VehicleProfile, VehicleState, VelocityNed
 from recon.safety import PreparedAirspace, Situation, Traffic
-from studies import sampled_orders as sampled
-from studies.places import NOW_NS, ORIGIN, FloatArray, degrees, lat_lon
-from studies.sampled_fleets import Course, Need
-from studies.sampled_flights import EAST, HIGH, LOW, NORTH, Aircraft, Flight
+from recon.safety.rules import Rule
+from recon.safety.rules.separation import separation
 
 TRAFFIC = ("mission", "set out", "goto", "stick", "hover", "return", "landing", "free", "hazard")
 TRAFFIC_SHARES = (0.16, 0.12, 0.13, 0.12, 0.12, 0.12, 0.09, 0.09, 0.05)
@@ -272,3 +276,25 @@ def _vehicle(
         core_received_at_ns=at_ns,
         takeoff_point=lat_lon(aircraft.home_m),
     )
+
+
+NAMES = (*TRAFFIC, *(f"order: {name}" for name in ORDERS))
+
+
+def compare(seeds: range, rule: Rule = separation, progress: bool = False) -> Agreement:
+    """Return how the rule and the sampling agree on the scenes of these seeds."""
+    return over(seeds, partial(_compare, rule), progress)
+
+
+def _compare(rule: Rule, seed: int, found: Agreement) -> None:
+    scene = draw(seed)
+    margins = [margin(scene.own, other, scene.need) for other in scene.others]
+    worst = min(margins, key=lambda each: (not each.is_broken, each.possible_m))
+    names = (worst.kind, f"order: {scene.order}")
+    if not worst.is_broken and not worst.is_kept:
+        found.unsure.update(names)
+        return
+    margin_m = worst.certain_m if worst.is_broken else worst.possible_m
+    refusal = rule(scene.command, scene.situation)
+    found.compare(f"scene {seed}, order: {scene.order}", worst.kind, margin_m, refusal)
+    (found.broken if worst.is_broken else found.kept)[names[1]] += 1

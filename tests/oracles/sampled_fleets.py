@@ -16,8 +16,7 @@ negative, broken. Nothing of `recon.safety` or `recon.geo` is asked here.
 from dataclasses import dataclass
 
 import numpy as np
-
-from studies.sampled_flights import (
+from tests.oracles.sampled_flights import (
     AT_S,
     CARRIED_M,
     EARLY_S,

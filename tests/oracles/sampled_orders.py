@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from math import hypot
 
 import numpy as np
-
-from studies.sampled_flights import (
+from tests.oracles.sampled_flights import (
     ALL_HEIGHTS_M,
     BRAKING_MPS2,
     CLIMB_MPS,
