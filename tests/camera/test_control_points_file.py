@@ -53,8 +53,8 @@ def test_the_real_files_are_read(fisheye_data: Path, site: str, count: int) -> N
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("C, 1, 2, 45, -93", r"expected 6 values by commas .* got 5: 'C, 1, 2, 45, -93'"),
-        ("C, 1, 2, 45, -93, 288, 7", r"expected 6 values by commas .* got 7"),
+        ("C, 1, 2, 45, -93", r"expected 6 comma-separated values .* got 5: 'C, 1, 2, 45, -93'"),
+        ("C, 1, 2, 45, -93, 288, 7", r"expected 6 comma-separated values .* got 7"),
         ("C, 1; 2, 45, -93, 288, 7", r"column: expected a number from -0.5 to 65535, got '1; 2'"),
         ("C, 1, 2, 145, -93, 288", r"latitude: expected a number from -90 to 90, got '145'"),
         ("C, 1, 2, 45, -193, 288", r"longitude: expected a number from -180 to 180, got '-193'"),
@@ -63,7 +63,7 @@ def test_the_real_files_are_read(fisheye_data: Path, site: str, count: int) -> N
         ("C, 1, -7, 45, -93, 288", r"row: expected a number .* got '-7'"),
         (", 1, 2, 45, -93, 288", r"expected an identifier of 1 to 32 printable characters, got ''"),
         ("\x1b[2J, 1, 2, 45, -93, 288", r"expected an identifier .* got '\\x1b\[2J'"),
-        ("x" * 5000, r"expected 6 values by commas .* got 1: 'x{60}\.\.\.'"),
+        ("x" * 5000, r"expected 6 comma-separated values .* got 1: 'x{60}\.\.\.'"),
         ("A, 1, 2, 45, -93, 288", r"expected a new identifier, got 'A' again \(first on line 3\)"),
     ],
 )

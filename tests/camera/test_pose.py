@@ -148,7 +148,7 @@ def refusal(points: list, camera: OmnidirectionalCamera = DEMO) -> str:
 @pytest.mark.parametrize("count", [0, 1, 2, 3])
 def test_fewer_than_four_points_are_refused_with_the_reason(count: int) -> None:
     points = control_points(DEMO, TRUE_POSE, field_points(max(count, 1), 5))[:count]
-    assert f"at least 4 control points, got {count}: three leave up to four" in refusal(points)
+    assert f"at least 4 control points, got {count}: three allow up to four" in refusal(points)
 
 
 def test_points_on_one_line_are_refused() -> None:

@@ -1,4 +1,9 @@
-"""Camera models, poses, and frames laid on the ground."""
+"""Camera models, poses, and orthorectification of frames onto the ground plane.
+
+From files to a ground image: `load_camera` (lens), `load_control_points` and `pose_from_points`
+(pose of the marked frame), `displaced_pose` (pose now, by telemetry), `GroundProjector` (frame on a
+grid). Files and image formats end here; nothing in this room knows of the station or the protocol.
+"""
 
 from recon.camera.calibration_file import format_camera, load_camera, parse_camera
 from recon.camera.control_points_file import (

@@ -1,9 +1,9 @@
-"""The lens's file, as Scaramuzza's toolbox exports it (calib_results.txt).
+"""The calibration file, as exported by Scaramuzza's toolbox (calib_results.txt).
 
-Five lines of numbers, comments (#) and empty lines between: the direct polynomial and the inverse
-one, each led by its number of coefficients, lowest power first (the exporting tool writes the
-inverse one lowest power first too); the centre as row and column from 0; the affine c, d, e; the
-image's height and width.
+Five lines of numbers, with comments (#) and empty lines between: the direct and the inverse
+polynomial, each preceded by its number of coefficients, lowest power first (the exporting tool
+writes the inverse one lowest power first too); the centre as row and column from 0; the affine
+parameters c, d, e; image height and width.
 """
 
 import math
@@ -53,7 +53,7 @@ def parse_camera(text: str, source: str) -> OmnidirectionalCamera:
 
 
 def format_camera(camera: OmnidirectionalCamera) -> str:
-    """Return the text of a calibration file that `parse_camera` reads back to the same camera."""
+    """Return the text of a calibration file; `parse_camera` reads it back to an equal camera."""
     rows = (
         (len(camera.direct), *camera.direct),
         (len(camera.inverse), *camera.inverse),
@@ -125,6 +125,6 @@ def _side(value: float, line: DataLine, source: str) -> int:
 
 
 def _section_of(problem: str) -> int:
-    """Which of the five lines a complaint of the camera itself is about."""
+    """Return the index of the line that an error of the camera model refers to."""
     starts = ("direct", "inverse", "centre", "affine", "image")
     return next((i for i, start in enumerate(starts) if problem.startswith(start)), 0)

@@ -1,7 +1,7 @@
-"""The control points' file (GCPs.txt): where marked points are in the frame and on the globe.
+"""The control points file (GCPs.txt): marked points in the frame and on the globe.
 
-One point per line: identifier, column, row, latitude, longitude, WGS84 altitude, by commas. The
-centre of the frame's upper-left pixel has column 0 and row 0. Comments start with #.
+One point per line: identifier, column, row, latitude, longitude, WGS84 altitude, comma-separated.
+The centre of the frame's upper-left pixel has column 0 and row 0. Comments start with #.
 """
 
 import math
@@ -26,7 +26,7 @@ LONGEST_NAME = 32
 
 @dataclass(frozen=True, slots=True)
 class ControlPoint:
-    """A marked point: its pixel in the marked frame and its place on the globe."""
+    """A marked point: pixel in the marked frame (col, row from 0) and WGS84 position."""
 
     name: str
     col_px: float
@@ -37,7 +37,7 @@ class ControlPoint:
 
     @property
     def place(self) -> GeoPoint:
-        """Where the point is on the globe."""
+        """Position on the globe."""
         return GeoPoint(self.latitude_deg, self.longitude_deg, self.ellipsoid_height_m)
 
 
@@ -49,7 +49,7 @@ def load_control_points(path: Path) -> tuple[ControlPoint, ...]:
 def parse_control_points(text: str, source: str) -> tuple[ControlPoint, ...]:
     """Return the points of a file's text; `source` is its name for messages.
 
-    Raises `ControlPointsError`. How many points a pose needs is the pose's business.
+    Raises `ControlPointsError`. `pose_from_points` checks how many points a pose needs.
     """
     lines = data_lines(text)
     if not lines:
@@ -76,7 +76,7 @@ def parse_control_points(text: str, source: str) -> tuple[ControlPoint, ...]:
 
 
 def format_control_points(points: tuple[ControlPoint, ...]) -> str:
-    """Return the text of a control points' file that reads back to the same points."""
+    """Return the text of a control points file; parsing it gives equal points."""
     header = (
         "# Ground control points: identifier, column, row (pixels of the marked frame),\n"
         "# latitude, longitude (degrees), WGS84 altitude (m).\n"
@@ -93,7 +93,7 @@ def _point(line: DataLine, source: str) -> ControlPoint:
     words = [word.strip() for word in line.text.split(",")]
     if len(words) != 1 + len(FIELDS):
         raise ControlPointsError(
-            f"{source}, line {line.number}: expected {1 + len(FIELDS)} values by commas "
+            f"{source}, line {line.number}: expected {1 + len(FIELDS)} comma-separated values "
             f"(identifier, {', '.join(FIELDS)}), got {len(words)}: {shown(line.text)}"
         )
     name = words[0]

@@ -1,4 +1,4 @@
-"""Lines of a small text file that people edit and nobody vouches for."""
+"""Data lines of small, hand-edited, untrusted text files."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 from recon.camera.errors import CameraError
 
 LARGEST_FILE_BYTES = 64 * 1024
-"""The real files have under 2 KiB; anything much larger is another file."""
+"""Real files have under 2 KiB; anything much larger is a wrong file."""
 
 SHOWN_CHARACTERS = 60
 
@@ -45,13 +45,14 @@ def read_small_text(path: Path, error: type[CameraError]) -> str:
 
 def data_lines(text: str) -> list[DataLine]:
     """Return the lines that carry data; a comment starts with # and fills its line."""
-    # Only \n and \r\n end a line, so that the numbers are those an editor shows.
+    # str.splitlines also splits at form feeds and the like: line numbers would differ from an
+    # editor's.
     numbered = enumerate(text.split("\n"), start=1)
     stripped = (DataLine(number, line.strip()) for number, line in numbered)
     return [line for line in stripped if line.text and not line.text.startswith("#")]
 
 
 def shown(text: str) -> str:
-    """Return the text quoted, shortened and free of control characters, for a message."""
+    """Return the text quoted, shortened and without control characters, for a message."""
     short = text if len(text) <= SHOWN_CHARACTERS else text[:SHOWN_CHARACTERS] + "..."
     return ascii(short)

@@ -1,4 +1,4 @@
-"""A frame's pixels: raw as they came, or out of a JPEG file nobody vouches for."""
+"""Pixels of a frame: raw, or decoded from an untrusted JPEG file."""
 
 import cv2
 import numpy as np
@@ -14,14 +14,14 @@ _END = b"\xff\xd9"
 _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 _WITHOUT_LENGTH = frozenset({0x01, *range(0xD0, 0xD8)})
 _TRAILER_BYTES = 64
-"""Some encoders pad after the end marker; a cut file has no end marker near its end."""
+"""The end marker must be within this: some encoders pad after it; a truncated file has none."""
 
 
 def decode_frame(frame: Frame, most_pixels: int = MOST_PIXELS) -> RgbImage:
     """Return the frame's pixels (rows, cols, 3) uint8 RGB; raises `FrameDecodeError`.
 
-    A JPEG's size is read from its header before anything is decoded, so a few bytes cannot claim
-    gigabytes of memory. Orientation tags are ignored: the lens's calibration knows the sensor.
+    The size of a JPEG is read from its header before decoding, so that a few bytes cannot make it
+    allocate gigabytes. Orientation tags are ignored: the calibration is for the sensor's axes.
     """
     if frame.rgb is not None:
         return _checked_raw(frame.rgb, most_pixels)
@@ -36,7 +36,7 @@ def decode_jpeg(data: bytes, most_pixels: int = MOST_PIXELS) -> RgbImage:
     _refuse_size(rows, cols, most_pixels)
     if _END not in data[-_TRAILER_BYTES:]:
         raise FrameDecodeError(
-            f"JPEG: expected the end-of-image marker, got a file cut after {len(data)} bytes"
+            f"JPEG: expected the end-of-image marker, got a file truncated after {len(data)} bytes"
         )
     flags = cv2.IMREAD_COLOR_RGB | cv2.IMREAD_IGNORE_ORIENTATION
     try:
@@ -45,7 +45,7 @@ def decode_jpeg(data: bytes, most_pixels: int = MOST_PIXELS) -> RgbImage:
         raise FrameDecodeError(f"JPEG: expected a readable image, got: {problem.err}") from problem
     if pixels is None or pixels.shape != (rows, cols, 3):
         raise FrameDecodeError(
-            f"JPEG: expected {cols} x {rows} pixels as the header says, got "
+            f"JPEG: expected {cols} x {rows} pixels as in the header, got "
             f"{'none' if pixels is None else pixels.shape}; the file is damaged"
         )
     return pixels.astype(np.uint8, copy=False)
@@ -72,7 +72,7 @@ def jpeg_size(data: bytes) -> tuple[int, int]:
             at += 2 + int.from_bytes(data[at + 2 : at + 4])
     raise FrameDecodeError(
         f"JPEG: expected a frame header with the size, got none in {len(data)} bytes; "
-        "the file is damaged or cut"
+        "the file is damaged or truncated"
     )
 
 

@@ -1,37 +1,37 @@
-"""Everything that can be wrong in this room, as one tree.
+"""Errors of the camera room, as one tree.
 
     CameraError (a ReconError)
-    |-- CalibrationError       the lens's file or its numbers make no camera
-    |-- ControlPointsError     the control points' file is malformed
-    |-- PoseError              these control points give no pose
-    |-- FrameSizeError         a frame has another size or aspect ratio than the model
-    `-- FrameDecodeError       the bytes are no image of an acceptable size
+    |-- CalibrationError       the calibration file or its numbers are invalid
+    |-- ControlPointsError     the control points file is malformed
+    |-- PoseError              the control points do not determine a pose
+    |-- FrameSizeError         a frame's size or aspect ratio does not match the camera
+    `-- FrameDecodeError       the bytes are not an image of an acceptable size
 
-Each message says what was expected, what came and what to do about it.
+Each message gives what was expected, what was found, and what to do.
 """
 
 from recon.model.errors import ReconError
 
 
 class CameraError(ReconError):
-    """Base of what this room raises."""
+    """Base of the errors of the camera room."""
 
 
 class CalibrationError(CameraError):
-    """The lens's file or its numbers make no usable camera."""
+    """The calibration file or its numbers are invalid."""
 
 
 class ControlPointsError(CameraError):
-    """The control points' file is malformed."""
+    """The control points file is malformed."""
 
 
 class PoseError(CameraError):
-    """These control points give no pose."""
+    """The control points do not determine a pose, or a pose is not usable."""
 
 
 class FrameSizeError(CameraError):
-    """A frame has another size or aspect ratio than the camera model."""
+    """A frame's size or aspect ratio does not match the camera model."""
 
 
 class FrameDecodeError(CameraError):
-    """The bytes are no image of an acceptable size."""
+    """The bytes are not an image of an acceptable size."""

@@ -1,10 +1,10 @@
-"""Frames laid on the ground: east-north rasters seen straight from above.
+"""Orthorectification: frames projected onto an east-north grid on the ground plane.
 
-`recon.camera.ground_maps` tells which pixel sees each cell, `cv2.remap` fetches the colours. The
-ground is the plane at the frame's origin height: terrain that rises above it by h is seen displaced
-outwards by h tan(angle from the vertical).
+`recon.camera.ground_maps` gives the pixel that sees each cell, `cv2.remap` samples the colours. The
+ground is the plane at the local frame's origin height: terrain that rises above it by h appears
+displaced outwards by h tan(angle from the vertical).
 
-Callers that bound their threads call `cv2.setNumThreads(1)` once; the result does not depend on it.
+Callers that limit threads call `cv2.setNumThreads(1)` once; the result does not depend on it.
 """
 
 from collections import OrderedDict
@@ -26,28 +26,28 @@ MaskArray = npt.NDArray[np.uint8]
 
 MOST_SIZES_KEPT = 4
 MOST_CIRCLE_SEARCHES = 5
-"""Frames of one size searched for the lit circle: a first frame may be dark or half received."""
+"""Frames of one size searched for the image circle: a first frame may be dark or incomplete."""
 ROWS_AT_ONCE = 128
-"""Rows of a mask computed together: bounds the memory, which is large at 3840 x 2160."""
+"""Rows of a mask computed together, to bound memory at 3840 x 2160."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Source:
-    """What is known of frames of one size: the camera there and which pixels show something."""
+    """Camera model and valid pixels for frames of one size."""
 
     camera: OmnidirectionalCamera
     mask: MaskArray
     """(rows, cols): 255 where a pixel lies in the image circle, else 0."""
     searches_left: int
-    """How many more frames are searched for the lit circle; 0 once it is known."""
+    """How many more frames are searched for the image circle; 0 once it is known."""
 
 
 class GroundProjector:
-    """Lays frames of one camera on one grid.
+    """Projects frames of one camera onto one grid.
 
-    `circle` is the lens's lit circle at the model's size; without it, it is looked for in the first
-    frames of each size, and the same frames in the same order give the same ground images. Nothing
-    but a few frame sizes' masks is kept from one call to the next. For one thread at a time.
+    `circle` is the image circle at the model's size; None: it is searched for in the first frames
+    of each size, and the same frames in the same order give the same ground images. Only the masks
+    of a few frame sizes are kept between calls. Not thread-safe.
     """
 
     def __init__(
@@ -57,17 +57,17 @@ class GroundProjector:
         self.camera = camera
         self._circle = circle
         self._sources: OrderedDict[tuple[int, int], _Source] = OrderedDict()
-        # Room that is used again from frame to frame; what is returned is always fresh.
+        # Buffers reused from frame to frame; returned arrays are always new.
         self._scratch = MapScratch()
         self._whole: cv2.typing.MatLike | None = None
         self._fraction: cv2.typing.MatLike | None = None
         self._laid: cv2.typing.MatLike | None = None
 
     def lay(self, frame: Frame, pose: CameraPose) -> GroundImage:
-        """Return the frame on the ground.
+        """Return the frame as a ground image, marked as not aligned.
 
-        Raises `FrameDecodeError` for an unreadable frame, `FrameSizeError` for one of another
-        aspect ratio than the camera's, `PoseError` for a camera that is not above the ground.
+        Raises `FrameDecodeError` for an unreadable frame, `FrameSizeError` for another aspect ratio
+        than the camera's, `PoseError` for a camera that is not above the ground.
         """
         rgb, valid = self.lay_pixels(decode_frame(frame), pose)
         return GroundImage(
@@ -82,10 +82,10 @@ class GroundProjector:
         )
 
     def lay_pixels(self, rgb: RgbImage, pose: CameraPose) -> tuple[RgbImage, npt.NDArray[np.bool_]]:
-        """Return (R, C, 3) colours, black where invalid, and (R, C) validity; raises as `lay`."""
+        """Return (R, C, 3) RGB, black where invalid, and (R, C) validity; raises as `lay`."""
         source = self._source(rgb)
         maps = ground_maps(self.grid, source.camera, pose, self._scratch)
-        # Fixed-point maps (1/32 px) remap twice as fast as float ones, conversion included.
+        # Fixed-point maps (1/32 px) are twice as fast as float maps, conversion included.
         self._whole, self._fraction = cv2.convertMaps(
             *maps, cv2.CV_16SC2, dstmap1=self._whole, dstmap2=self._fraction
         )
@@ -115,7 +115,7 @@ class GroundProjector:
 
 
 def source_mask(camera: OmnidirectionalCamera, circle: ImageCircle | None) -> MaskArray:
-    """Return (rows, cols) uint8: 255 for pixels in the lens's valid range and lit circle, else 0.
+    """Return (rows, cols) uint8: 255 for pixels in the lens's valid range and image circle, else 0.
 
     The frame's outermost pixels are left out: interpolation there would reach outside.
     """

@@ -1,7 +1,7 @@
-"""Which pixel sees each cell of a ground grid.
+"""The pixel that sees each cell of a ground grid.
 
-The pixel is computed on a coarse lattice and interpolated bilinearly; the lattice is as fine as the
-camera's height asks, so that this costs under 0.1 px.
+Pixels are computed on a coarse lattice and interpolated bilinearly. The lattice spacing follows
+from the camera's height, so that the error stays under 0.1 px.
 """
 
 import cv2
@@ -17,29 +17,29 @@ FloatArray = npt.NDArray[np.float64]
 MapArray = npt.NDArray[np.float32]
 
 LARGEST_LATTICE_STEP = 16
-"""In cells. Coarser saves nothing more: remap dominates."""
+"""In cells. Coarser saves nothing: `cv2.remap` dominates."""
 INTERPOLATION_BUDGET_PX = 0.09
-"""What bilinear interpolation may miss; the test's bound is 0.1 px."""
+"""Allowed error of the interpolation; the test's bound is 0.1 px."""
 BENDING = 0.85
-"""The maps bend by at most BENDING f / h^2 along the ground, f in px/rad, h the height: 0.46 was
-measured for a camera that looks straight down, 0.77 for one tilted by 60 degrees; a test over
-random poses holds it."""
+"""Bound of the maps' second derivative along the ground, in units of f / h^2 (f in px/rad, h the
+height): 0.46 measured for a camera pointing straight down, 0.77 for a tilt of 60 degrees; a test
+over random poses checks it."""
 LEAST_HEIGHT_M = 1.0
-"""Under this a camera is on the ground and sees no field."""
+"""Lower, the camera is on the ground and sees no field."""
 
 
 class MapScratch:
-    """Room for one pair of maps, used again from frame to frame.
+    """Buffers for one pair of maps, reused from frame to frame.
 
-    Fresh megabytes for each frame cost more than the maps themselves: the system hands them out
-    page by page.
+    Allocating megabytes for each frame takes longer than computing the maps: the kernel maps new
+    memory page by page.
     """
 
     def __init__(self) -> None:
         self._planes: tuple[MapArray, MapArray] | None = None
 
     def planes(self, rows: int, cols: int) -> tuple[MapArray, MapArray]:
-        """Return two (rows, cols) float32 arrays of any content, the same while the size is."""
+        """Return two uninitialised (rows, cols) float32 arrays, the same ones for the same size."""
         if self._planes is None or self._planes[0].shape != (rows, cols):
             shape = (rows, cols)
             self._planes = np.empty(shape, dtype=np.float32), np.empty(shape, dtype=np.float32)
@@ -54,9 +54,9 @@ def ground_maps(
 ) -> tuple[MapArray, MapArray]:
     """Return the pixel column and row, each (R, C) float32, that see each cell's centre.
 
-    Beyond the lens's range the numbers go on smoothly and mean nothing: mask them. With `scratch`
-    the arrays are views of it, good until its next use. Raises `PoseError` for a camera that is
-    not above the ground.
+    Beyond the lens's range the values continue smoothly and are meaningless: mask them. With
+    `scratch` the arrays are views of it, valid until its next use. Raises `PoseError` for a camera
+    that is not above the ground.
     """
     height_m = float(pose.position_enu_m[2])
     numbers = (*pose.rotation_enu_camera.ravel(), *pose.position_enu_m)
@@ -66,8 +66,8 @@ def ground_maps(
             f"{height_m:.2f} m; no ground image is made on the ground"
         )
     step = lattice_step(grid, camera, height_m)
-    # Lattice nodes lie where cv2.resize by `step` expects them: in the middle of blocks of cells,
-    # with one block more on each side, so that no cell lies outside the lattice.
+    # cv2.resize by `step` takes its input as the middles of blocks of cells: place the nodes there,
+    # with one more block on each side, so that no cell lies outside the lattice.
     east = grid.west_m + (_lattice(grid.cols, step) + 0.5) * grid.cell_m
     north = grid.north_m - (_lattice(grid.rows, step) + 0.5) * grid.cell_m
     nodes = _pixels_seeing(camera, pose, east, north)
@@ -80,9 +80,9 @@ def ground_maps(
 
 
 def lattice_step(grid: GroundGrid, camera: OmnidirectionalCamera, height_m: float) -> int:
-    """Return the lattice's spacing in cells that keeps the interpolation inside its budget.
+    """Return the lattice spacing in cells that keeps the interpolation error within its budget.
 
-    Bilinear interpolation misses at most step^2 / 8 times the bending along each of two axes.
+    The error of bilinear interpolation is at most step^2 / 8 times the second derivative per axis.
     """
     bending = BENDING * camera.profile.steepest_px_per_rad() / height_m**2
     step_m = np.sqrt(4.0 * INTERPOLATION_BUDGET_PX / bending)

@@ -1,7 +1,8 @@
-"""The lit circle that a fisheye lens throws on its sensor; outside it a frame shows nothing.
+"""The image circle of a fisheye lens: outside it a frame is black.
 
-The calibration does not tell it (its polynomial goes on), so the site's file may, else it is found
-in a frame: from each direction inwards, the first pixel that is clearly lit; a circle through them.
+The calibration does not contain it (its polynomial continues), so it comes from the site's file, or
+is found in a frame: a circle is fitted to the first clearly lit pixel from outside, in each of 180
+directions.
 """
 
 from dataclasses import dataclass
@@ -16,31 +17,31 @@ FloatArray = npt.NDArray[np.float64]
 
 DIRECTIONS = 180
 LIT_LEVEL = 32
-"""Of 255. Stray light outside the circle stays under about 15 in real frames."""
+"""Of 255. Stray light outside the circle is below about 15 in real frames."""
 LEAST_HIT_SHARE = 0.4
-"""Of the directions: fewer, and the lens fills the frame or the frame is dark."""
+"""Share of directions with an edge; fewer: the lens fills the frame, or the frame is dark."""
 LARGEST_SPREAD_SHARE = 0.02
-"""Of the radius: edges further from one circle than this are scenery, not the lens's rim."""
+"""Of the radius: edges farther than this from one circle belong to the scene, not the rim."""
 RIM_SHARE = 0.02
-"""The outermost part of the radius is left out: it is dark and blurred."""
+"""Outer part of the radius that is left out: it is dark and blurred."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImageCircle:
-    """The circle within which frames of one size show something."""
+    """The image circle of frames of one size, in pixels."""
 
     centre_col_px: float
     centre_row_px: float
     radius_px: float
 
     def contains(self, col_px: FloatArray, row_px: FloatArray) -> npt.NDArray[np.bool_]:
-        """Return whether pixels lie within; shapes broadcast."""
+        """Return whether pixels lie within the circle; shapes broadcast."""
         across_squared = (col_px - self.centre_col_px) ** 2 + (row_px - self.centre_row_px) ** 2
         is_inside: npt.NDArray[np.bool_] = across_squared <= self.radius_px**2
         return is_inside
 
     def scaled(self, scale: float) -> "ImageCircle":
-        """Return the circle in frames that are `scale` times as large."""
+        """Return the circle in frames `scale` times as large (pixel centres, as `scaled_to`)."""
         return ImageCircle(
             (self.centre_col_px + 0.5) * scale - 0.5,
             (self.centre_row_px + 0.5) * scale - 0.5,
@@ -49,14 +50,15 @@ class ImageCircle:
 
 
 def find_image_circle(rgb: RgbImage, camera: OmnidirectionalCamera) -> ImageCircle | None:
-    """Return the lit circle of a frame (rows, cols, 3), or None when it shows none.
+    """Return the image circle of a frame (rows, cols, 3), or None without one.
 
-    `camera` is the model at the frame's size; its centre is where the search starts.
+    `camera` is the model at the frame's size; its centre is the start of the search.
     """
     edge = _outermost_lit(rgb.max(axis=2) >= LIT_LEVEL, camera)
     if len(edge) < LEAST_HIT_SHARE * DIRECTIONS:
         return None
     circle = _circle_through(edge)
+    # Three rounds of rejecting outliers: bright scenery and dark sectors pull the first fit.
     for _ in range(3):
         misses = np.abs(np.hypot(edge[:, 0] - circle[0], edge[:, 1] - circle[1]) - circle[2])
         kept = edge[misses <= max(2.0 * float(np.median(misses)), 1.0)]
@@ -69,7 +71,7 @@ def find_image_circle(rgb: RgbImage, camera: OmnidirectionalCamera) -> ImageCirc
 
 
 def _outermost_lit(is_lit: npt.NDArray[np.bool_], camera: OmnidirectionalCamera) -> FloatArray:
-    """Return (N, 2) col, row of the outermost lit pixel in each direction that has a dark rim."""
+    """Return (N, 2) col, row of the outermost lit pixel in each direction with a dark rim."""
     angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
     radii = np.arange(1.0, np.hypot(camera.rows, camera.cols))
     cols = camera.centre_col_px + np.outer(np.cos(angles), radii)

@@ -1,8 +1,7 @@
-"""The marked frame's pose, moved by what telemetry says has changed since.
+"""The camera's pose now: the marked frame's pose, moved by the change of telemetry since.
 
-Only differences of telemetry are used, so a constant error of the aircraft's position, height or
-compass cancels. What is left (drift of the barometer, GNSS wander, compass) is not known here:
-a moved pose has no covariance.
+Only differences of telemetry are used, so a constant error of position, height or compass cancels.
+What remains (drift of barometer, GNSS and compass) is unknown here: a moved pose has no covariance.
 """
 
 from dataclasses import dataclass
@@ -21,7 +20,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class TelemetryReference:
-    """Where the aircraft said it was and how it lay at one moment.
+    """Position and attitude of the aircraft by telemetry, at one moment.
 
     Height is above takeoff (barometric); yaw clockwise from north, pitch nose up, roll right side
     down, as in core telemetry (ICD 3.1.1).
@@ -41,7 +40,7 @@ class TelemetryReference:
         height_above_takeoff_m: float | None,
         attitude: Attitude | None,
     ) -> Self | None:
-        """Return the reference that a telemetry report gives, None when a part is unknown."""
+        """Return the reference of a telemetry report, None when a part is missing or not finite."""
         if position is None or height_above_takeoff_m is None or attitude is None:
             return None
         values = (
@@ -62,11 +61,12 @@ def displaced_pose(
     shift_m: FloatArray,
     mount: Mount,
 ) -> CameraPose:
-    """Return the camera's pose at `now`, given its pose when telemetry said `marked`.
+    """Return the camera's pose at `now`, given its pose when telemetry was `marked`.
 
-    `shift_m` (2,) is how far east and north the aircraft has gone since (`recon.geo` tells). The
-    camera turns with the aircraft's yaw always, with pitch and roll only on a fixed mount (a gimbal
-    takes those out). The camera's arm about the aircraft's position is neglected.
+    `shift_m` (2,) is the aircraft's displacement east and north since (`recon.geo`'s
+    `shift_east_north_m`). The camera turns with the aircraft's yaw, and on a fixed mount also with
+    pitch and roll (a gimbal compensates them). The lever arm between aircraft and camera is
+    neglected.
     """
     turn = _body_rotation(now, mount) @ _body_rotation(marked, mount).T
     climb_m = now.height_above_takeoff_m - marked.height_above_takeoff_m
@@ -77,7 +77,7 @@ def displaced_pose(
 
 
 def _body_rotation(telemetry: TelemetryReference, mount: Mount) -> FloatArray:
-    """Return the rotation that takes forward-right-down vectors to east-north-up."""
+    """Return the rotation (3, 3) from forward-right-down to east-north-up."""
     is_fixed = mount is Mount.FIXED
     yaw, pitch, roll = np.deg2rad(
         [
@@ -96,6 +96,6 @@ def _body_rotation(telemetry: TelemetryReference, mount: Mount) -> FloatArray:
 
 
 def level_pose(telemetry: TelemetryReference, position_enu_m: FloatArray) -> CameraPose:
-    """Return the pose of a camera that looks straight down, the frame's top towards the yaw."""
+    """Return the pose of a camera pointing straight down, the top of the frame towards the yaw."""
     forward, right, down = _body_rotation(telemetry, Mount.GIMBAL).T
     return CameraPose(np.stack([right, -forward, down], axis=1), position_enu_m)

@@ -4,8 +4,8 @@ Omnidirectional Cameras", IROS 2006), vectorised.
 Axes of rays here: x right (along the image's columns), y down (along its rows), z forward along the
 optical axis. Pixels are (col, row) with the origin at the centre of the upper-left pixel.
 
-The calibration file thinks otherwise: its first image axis is the row, its second the column, and
-its third axis points backwards (f is negative at the centre). So file x = our y, file y = our x,
+The calibration file differs: its first image axis is the row, its second the column, and its third
+axis points backwards (f is negative at the centre). So file x = our y, file y = our x,
 file z = -our z, and with u' = (row, col) - centre and A = [[c, d], [e, 1]]:
 
     A^-1 u' = r (cos, sin),    ray = (r cos, r sin, f(r)) in the file's axes.
@@ -23,7 +23,7 @@ from recon.camera.radial_profile import RadialProfile
 FloatArray = npt.NDArray[np.float64]
 
 INVERSE_MISMATCH_SHARE = 0.005
-"""The file's inverse polynomial may miss its direct one by this share of the image's width."""
+"""Allowed difference of the two polynomials, as a share of the image's width."""
 
 COMPARED_ANGLES_RAD = np.deg2rad(np.linspace(0.0, 85.0, 86))
 
@@ -32,9 +32,9 @@ COMPARED_ANGLES_RAD = np.deg2rad(np.linspace(0.0, 85.0, 86))
 class OmnidirectionalCamera:
     """A lens and the size of the images it was calibrated at.
 
-    `direct` and `inverse` are the file's polynomials, lowest power first. The inverse one is only
-    an approximation: it is kept for writing the file again and must agree with the direct one,
-    which alone is used. Raises `CalibrationError` on numbers that make no camera.
+    `direct` and `inverse` are the file's polynomials, lowest power first. The inverse one is an
+    approximation: it must agree with the direct one and is kept for writing the file, but only the
+    direct one is used. Raises `CalibrationError` for invalid numbers.
     """
 
     direct: tuple[float, ...]
@@ -60,7 +60,7 @@ class OmnidirectionalCamera:
 
     @property
     def largest_angle_rad(self) -> float:
-        """Rays further from the axis than this are not projected."""
+        """Largest angle from the axis, in radians, at which rays are projected."""
         return self.profile.largest_angle_rad
 
     def project(self, rays: npt.ArrayLike) -> FloatArray:
@@ -79,10 +79,10 @@ class OmnidirectionalCamera:
         return pixels
 
     def project_beyond_range(self, rays: FloatArray, *, fast: bool = False) -> FloatArray:
-        """Return pixels (..., 2) of rays (..., 3), continued smoothly past the valid range.
+        """Return pixels (..., 2) of rays (..., 3), continued smoothly beyond the valid range.
 
-        For optimisers and interpolation, which need numbers on both sides of the edge. `fast` takes
-        the radius from a table, good to 0.01 px.
+        For optimisers and interpolation, which need values on both sides of the edge. `fast` takes
+        the radius from a table, accurate to 0.01 px.
         """
         right, down, forward = rays[..., 0], rays[..., 1], rays[..., 2]
         across = np.hypot(right, down)
@@ -110,7 +110,7 @@ class OmnidirectionalCamera:
         return unit_rays
 
     def is_in_frame(self, pixels: FloatArray) -> npt.NDArray[np.bool_]:
-        """Return (N,) whether pixels (N, 2) lie on the frame's area; NaN does not."""
+        """Return (N,) whether pixels (N, 2) lie within the frame; False for NaN."""
         col, row = pixels[:, 0], pixels[:, 1]
         is_inside: npt.NDArray[np.bool_] = (
             (col >= -0.5) & (col <= self.cols - 0.5) & (row >= -0.5) & (row <= self.rows - 0.5)
@@ -118,7 +118,7 @@ class OmnidirectionalCamera:
         return is_inside
 
     def is_in_range(self, pixels: FloatArray) -> npt.NDArray[np.bool_]:
-        """Return (...) whether pixels (..., 2) have a ray, wherever the frame ends."""
+        """Return (...) whether pixels (..., 2) have a ray, inside the frame or not."""
         radius = np.hypot(*self._sensor_offsets(pixels))
         is_near: npt.NDArray[np.bool_] = radius <= self.profile.largest_radius_px * (1.0 + 1e-12)
         return is_near
@@ -126,15 +126,15 @@ class OmnidirectionalCamera:
     def scaled_to(self, rows: int, cols: int) -> "OmnidirectionalCamera":
         """Return the same lens for frames of another size: pixel u becomes (u + 0.5) s - 0.5.
 
-        Raises `FrameSizeError` for another aspect ratio: such a frame was cropped or stretched, and
-        how cannot be known.
+        Raises `FrameSizeError` for another aspect ratio: such a frame was cropped or stretched in
+        an unknown way.
         """
         if (rows, cols) == (self.rows, self.cols):
             return self
         return _scaled(self, rows, cols)
 
     def _sensor_offsets(self, pixels: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Undo centre and affine: offsets along rows and along columns."""
+        """Return offsets along rows and columns, with centre and affine part undone."""
         col = pixels[..., 0] - self.centre_col_px
         row = pixels[..., 1] - self.centre_row_px
         determinant = self.affine_c - self.affine_d * self.affine_e
@@ -161,7 +161,7 @@ def _scaled(camera: OmnidirectionalCamera, rows: int, cols: int) -> Omnidirectio
 
 
 def scale_between(from_size_px: tuple[int, int], to_size_px: tuple[int, int]) -> float:
-    """Return the factor from one (cols, rows) to another; `FrameSizeError` if there is none."""
+    """Return the factor from one (cols, rows) to another; `FrameSizeError` if not possible."""
     from_cols, from_rows = from_size_px
     to_cols, to_rows = to_size_px
     is_positive = min(from_cols, from_rows, to_cols, to_rows) > 0
@@ -206,7 +206,7 @@ def _refuse_bad_geometry(camera: OmnidirectionalCamera) -> None:
 
 
 def _refuse_foreign_inverse(camera: OmnidirectionalCamera) -> None:
-    """A mixed-up or mistyped file shows by its two polynomials belonging to different lenses."""
+    """Raise `CalibrationError` when the polynomials are of different lenses: a mistyped file."""
     is_covered = camera.largest_angle_rad >= COMPARED_ANGLES_RAD
     angles = COMPARED_ANGLES_RAD[is_covered]
     with np.errstate(over="ignore", invalid="ignore"):

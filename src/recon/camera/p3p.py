@@ -1,8 +1,8 @@
 """The camera's pose from three points and the rays to them (perspective three-point problem).
 
 Grunert (1841) as set out by Haralick, Lee, Ottenberg and Noelle (IJCV 13, 1994): the law of cosines
-in the three triangles of camera and points gives a quartic in the ratio of two distances. Rays are
-bearings, so nothing here minds a field of view of more than 180 degrees.
+in the three triangles of camera and points gives a quartic in the ratio of two distances. Inputs
+are rays, not image points, so fields of view over 180 degrees work as well.
 """
 
 import numpy as np
@@ -11,7 +11,8 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 LARGEST_IMAGINARY_PART = 1e-3
-"""Roots this near the real line count as real: a double root splits under marking noise."""
+"""Roots this near the real axis count as real: under marking noise a double root splits into a
+complex pair."""
 
 
 def solve_p3p(rays: FloatArray, points_m: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
@@ -58,7 +59,7 @@ def _distances(rays: FloatArray, points_m: FloatArray) -> list[FloatArray]:
 
 
 def _quartic(a: float, c: float, cos_a: float, cos_b: float, cos_c: float) -> FloatArray:
-    """Coefficients, highest power first; `a`, `c` are squared sides over the squared side b."""
+    """Return coefficients, highest power first; `a`, `c` are the squared sides a, c over b^2."""
     d, s = a - c, a + c
     return np.array(
         [
@@ -82,7 +83,7 @@ def _quartic(a: float, c: float, cos_a: float, cos_b: float, cos_c: float) -> Fl
 def _align(
     camera_points_m: FloatArray, points_m: FloatArray
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Return the rotation and position that carry camera points onto world points, or None."""
+    """Return rotation and position that map camera points to world points, None if degenerate."""
     camera_axes = _triad(camera_points_m)
     world_axes = _triad(points_m)
     if camera_axes is None or world_axes is None:
@@ -93,7 +94,7 @@ def _align(
 
 
 def _triad(points_m: FloatArray) -> FloatArray | None:
-    """Return right-handed axes (columns) fixed to a triangle, None when it is a line."""
+    """Return right-handed axes (columns) fixed to a triangle, None for points on a line."""
     along = points_m[1] - points_m[0]
     normal = np.cross(along, points_m[2] - points_m[0])
     along_length, normal_length = np.linalg.norm(along), np.linalg.norm(normal)

@@ -1,4 +1,4 @@
-"""The camera's pose from ground control points, and how well it is known."""
+"""The camera's pose from ground control points, with its uncertainty."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ FloatArray = npt.NDArray[np.float64]
 
 FEWEST_POINTS = 4
 LARGEST_RMS_SHARE = 0.03
-"""Of the image's height. Real markings give 0.2 to 0.5 %; beyond 3 % points are mixed up."""
+"""Of the image's height. Real markings give 0.2 to 0.5 %; beyond 3 % points were swapped."""
 LARGEST_POSITION_SIGMA_SHARE = 0.5
-"""Of the camera's height: a pose less certain than this is no pose."""
+"""Of the camera's height: less certain poses are rejected."""
 
 
 @dataclass(frozen=True, slots=True)
 class PointResidual:
-    """How far the pose is off at one control point (observed minus predicted)."""
+    """Residual at one control point (observed minus predicted), in pixels and on the ground."""
 
     name: str
     col_px: float
@@ -44,11 +44,11 @@ class PointResidual:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PoseSolution:
-    """A solved pose and how well it is known.
+    """A solved pose and its uncertainty.
 
     `rms_px` is the root of the mean squared two-dimensional residual, at the model's size. Sigmas
-    are standard deviations. Height trades against focal length: a lens calibrated 1 % too long
-    shows as a height 1 % too large, which no sigma here tells.
+    are standard deviations. Height and focal length are correlated: a focal length 1 % too long
+    gives a height 1 % too large, which no sigma here includes.
     """
 
     pose: CameraPose
@@ -70,14 +70,14 @@ def pose_from_points(
     """Return the pose, in the local frame, of the camera that took the marked frame.
 
     `points_enu_m` (N, 3) are the places of the N points in that frame. `marked_size_px` is
-    (cols, rows) of the frame the points were marked on; pixels are brought to the model's size by
+    (cols, rows) of the frame the points were marked on; pixels are scaled to the model's size by
     pixel centres. Height is above the mean control point. Raises `PoseError` for fewer than four
     points and for points that fix no pose, `FrameSizeError` for another aspect ratio.
     """
     if len(points) < FEWEST_POINTS:
         raise PoseError(
-            f"expected at least {FEWEST_POINTS} control points, got {len(points)}: three leave up "
-            "to four poses to choose from and nothing to check them by; mark more points"
+            f"expected at least {FEWEST_POINTS} control points, got {len(points)}: three allow up "
+            "to four poses and no check; mark more points"
         )
     pixels = _pixels_at_model_size(camera, points, marked_size_px)
     _refuse_unseen(camera, points, pixels)
@@ -143,9 +143,9 @@ def _report(
 def _ground_errors_m(
     camera: OmnidirectionalCamera, pixels: FloatArray, points_enu: FloatArray, fit: PoseFit
 ) -> FloatArray:
-    """Where each pixel's ray meets the point's own level, minus the point: (N, 2) east, north.
+    """Return (N, 2) east, north: where each pixel's ray meets the point's height, minus the point.
 
-    NaN for a ray that does not go down.
+    NaN for a ray that does not point down.
     """
     rays = camera.unproject(pixels) @ fit.rotation.T
     drop = np.where(rays[:, 2] < 0.0, rays[:, 2], np.nan)
@@ -166,7 +166,7 @@ def _refuse_bad_fit(
         worst = max(residuals, key=lambda r: r.size_px)
         raise PoseError(
             f"expected control points that fit to {LARGEST_RMS_SHARE * camera.rows:.1f} px, got "
-            f"{rms_px:.1f} px (worst: {worst.name}, {worst.size_px:.1f} px); a point is mixed up, "
+            f"{rms_px:.1f} px (worst: {worst.name}, {worst.size_px:.1f} px); points are swapped, "
             "or the camera file is of another lens"
         )
     position_sigma_m = float(np.sqrt(np.trace(covariance[3:, 3:])))

@@ -1,8 +1,8 @@
-"""A camera pose fitted to pixels and points: every triple proposes, all points decide.
+"""A camera pose fitted to pixels and points: P3P over all triples, then least squares.
 
-Each triple's P3P solutions are scored on all points; the best starts a least-squares fit of the
-reprojection error in pixels of the camera model. The fit's covariance is that of the pose when the
-markings err independently with the scatter that the residuals show.
+Each triple's P3P solutions are scored on all points; the best one starts a least-squares fit of the
+reprojection error, in pixels of the camera model. The covariance assumes independent marking errors
+with the scatter of the residuals.
 """
 
 from collections.abc import Iterator
@@ -22,11 +22,11 @@ from recon.camera.p3p import solve_p3p
 FloatArray = npt.NDArray[np.float64]
 
 MOST_TRIPLES = 1_500
-"""All triples of 21 points; of more points an even selection, so that loading stays quick."""
+"""All triples of 21 points; of more points an even selection, to bound the time of loading."""
 LEAST_SPREAD_RATIO = 0.02
-"""Points nearer to one line than this share of its length leave the turn about it open."""
+"""Points nearer to one line than this share of its length do not fix the rotation about it."""
 LEAST_SEPARATION_RATIO = 0.01
-"""Of the points' extent: two points nearer than this are one place marked twice."""
+"""Of the points' extent: two points nearer than this count as one place marked twice."""
 FEWEST_PLACES = 4
 
 
@@ -40,9 +40,9 @@ class PoseFit:
 
 
 def fit_pose(camera: OmnidirectionalCamera, pixels: FloatArray, points_enu: FloatArray) -> PoseFit:
-    """Return the pose that sees `points_enu` (N, 3) nearest to `pixels` (N, 2), at least four.
+    """Return the pose with the least reprojection error of `points_enu` (N, 3) at `pixels` (N, 2).
 
-    Raises `PoseError` for points on one line, or that fit or fix no pose.
+    N is at least 4. Raises `PoseError` for points on one line, or that do not determine a pose.
     """
     _refuse_degenerate(points_enu)
     return _refine(camera, pixels, points_enu, _best_start(camera, pixels, points_enu))
@@ -59,7 +59,7 @@ def _refuse_degenerate(points_enu: FloatArray) -> None:
     if places < FEWEST_PLACES:
         raise PoseError(
             f"expected control points at {FEWEST_PLACES} places or more, got {len(points_enu)} at "
-            f"{places}: three places leave up to four poses to choose from; mark another place"
+            f"{places}: three places allow up to four poses; mark another place"
         )
 
 
@@ -93,7 +93,7 @@ def _best_start(
                 best = (cost, (rotation, position))
     if best is None:
         raise PoseError(
-            "expected control points that fit a camera above the ground, got none such: no three "
+            "expected control points that fit a camera above the ground, got none: no three "
             "of them agree with any pose; check that columns, rows and coordinates are not mixed up"
         )
     return best[1]
@@ -118,7 +118,7 @@ def _refine(
     start: tuple[FloatArray, FloatArray],
 ) -> PoseFit:
     rotation, position = start
-    # The step's units: one radian moves the image as much as this many metres do.
+    # Scale of the step: one radian moves the image about as much as this many metres.
     lever_m = float(position[2] - points_enu[:, 2].mean())
     step_sizes = np.array([1.0, 1.0, 1.0, lever_m, lever_m, lever_m])
     # Twice, so that the Jacobian of the second fit is taken about the solution itself.
@@ -159,13 +159,13 @@ def _fit_step(
 
 
 def _covariance(jacobian: FloatArray, sum_of_squares: float, step_sizes: FloatArray) -> FloatArray:
-    """Return the step's covariance (6, 6); raises `PoseError` when the points leave it open."""
+    """Return the step's covariance (6, 6); raises `PoseError` when it is not determined."""
     scaled = jacobian * step_sizes
     singular = np.linalg.svd(scaled, compute_uv=False)
     if not singular[-1] > 1e-6 * singular[0]:
         raise PoseError(
             "expected control points that fix the camera's position and direction, got points that "
-            "leave some motion of it unseen; mark points that are spread out further"
+            "leave a motion undetermined; mark points that are spread out further"
         )
     freedom = jacobian.shape[0] - jacobian.shape[1]
     information = np.linalg.inv(scaled.T @ scaled)

@@ -1,9 +1,9 @@
-"""How far from the image's centre a ray falls, as a function of its angle from the axis.
+"""Radius in the image as a function of a ray's angle from the optical axis, and its inverse.
 
 Scaramuzza's direct polynomial gives, for a point at radius r (pixels) from the centre, the ray
-(r, depth(r)) with depth(r) = -f(r): the angle from the optical axis is atan2(r, depth(r)). Here
-this is turned around: a dense table of the direct polynomial gives a start, Newton's method the
-rest, so project and unproject are inverses of each other to rounding.
+(r, depth(r)) with depth(r) = -f(r): the angle from the optical axis is atan2(r, depth(r)). The
+inverse takes a start from a dense table and refines it by Newton's method, so project and unproject
+are inverses of each other to rounding.
 """
 
 from dataclasses import dataclass
@@ -17,17 +17,17 @@ from recon.camera.errors import CalibrationError
 FloatArray = npt.NDArray[np.float64]
 
 TABLE_ROWS = 4096
-"""Radii in the table: at this density linear interpolation alone is good to about 0.0001 px."""
+"""Radii in the table: linear interpolation alone is accurate to about 0.0001 px."""
 
 NEWTON_STEPS = 2
-"""Each squares the error left by the table; two reach rounding."""
+"""Each step squares the error of the table; two reach rounding."""
 
 LEAST_SLOPE_SHARE = 0.2
-"""Of the angle per pixel at the centre. With less, a polynomial is about to fold back: no lens does
-so, and near the fold a radius says nothing of the angle."""
+"""Of the angle per pixel at the centre. With less, the polynomial is about to fold back: no lens
+does, and near the fold a radius does not determine the angle."""
 
 LARGEST_ANGLE_RAD = float(np.deg2rad(100.0))
-"""No lens here sees further from its axis; a polynomial beyond this is extrapolating."""
+"""No supported lens sees farther from its axis; beyond it a polynomial extrapolates."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,10 +43,10 @@ class RadialProfile:
 
     @classmethod
     def over(cls, polynomial: tuple[float, ...], corner_radius_px: float) -> Self:
-        """Return the profile out to the image's corner, or as far as the polynomial is sound.
+        """Return the profile up to the image's corner, or as far as the polynomial is valid.
 
-        It ends where the angle all but stops growing or passes 100 degrees. Raises
-        `CalibrationError` when the centre itself does not look along the axis.
+        It ends where the angle stops growing or passes 100 degrees. Raises `CalibrationError` when
+        the polynomial is invalid from the centre on.
         """
         if not polynomial or not np.isfinite(polynomial).all() or polynomial[0] >= 0.0:
             raise CalibrationError(
@@ -80,10 +80,10 @@ class RadialProfile:
         return np.arctan2(radius_px, self.depth_px(radius_px))
 
     def radius_px(self, angle_rad: FloatArray) -> FloatArray:
-        """Return the radius at these angles; beyond the range it goes on as a straight line.
+        """Return the radius at these angles; beyond the range it continues as a straight line.
 
-        The straight continuation lets optimisers and interpolation work across the edge; callers
-        mask it by `largest_angle_rad`.
+        The continuation lets optimisers and interpolation work across the edge; callers mask it by
+        `largest_angle_rad`.
         """
         inside = np.minimum(angle_rad, self.largest_angle_rad)
         radius = np.interp(inside, self._angles_rad, self._radii_px)
@@ -96,7 +96,7 @@ class RadialProfile:
         return radius + (angle_rad - inside) * self._edge_slope()
 
     def table_radius_px(self, angle_rad: FloatArray) -> FloatArray:
-        """Return `radius_px` from the table alone: faster, good to 0.01 px."""
+        """Return `radius_px` from the table alone: faster, accurate to 0.01 px."""
         inside = np.minimum(angle_rad, self.largest_angle_rad)
         radius = np.interp(inside, self._angles_rad, self._radii_px)
         return radius + (angle_rad - inside) * self._edge_slope()
@@ -106,6 +106,6 @@ class RadialProfile:
         return float((np.diff(self._radii_px) / np.diff(self._angles_rad)).max())
 
     def _edge_slope(self) -> float:
-        """Pixels per radian at the outer end."""
+        """Return pixels per radian at the outer end."""
         rise = self._radii_px[-1] - self._radii_px[-2]
         return float(rise / (self._angles_rad[-1] - self._angles_rad[-2]))

@@ -1,4 +1,8 @@
-"""Geometry on the ground: the site's east-north-up frame, the globe, regions and paths."""
+"""Geometry on the ground: the site's east-north-up frame, WGS84, regions, surfaces and paths.
+
+Lengths are metres; local coordinates are east, north, up of the site's origin. Array functions take
+and return (N, 2) or (N, 3) float64; NaN or infinity gives the safe answer, never an exception.
+"""
 
 from recon.geo.footprints import Footprints
 from recon.geo.local_frame import (

@@ -15,11 +15,11 @@ ECCENTRICITY_SQUARED = 6.694379990141317e-3
 
 
 LATITUDES_KEPT = 256
-"""One place is asked about many others in a row, and so are homes and waypoints again and again."""
+"""Cached: distances are computed from the same few homes and waypoints again and again."""
 
 
 def offset_north_east_m(origin: OnGlobe, point: OnGlobe) -> tuple[float, float]:
-    """Return how far north and east of `origin` a point lies, in metres."""
+    """Return the offset north and east, in metres, of a point from `origin`."""
     north_m, east_m = _metres_per_radian(origin.latitude_deg)
     east_deg = (point.longitude_deg - origin.longitude_deg + 180.0) % 360.0 - 180.0
     return (
@@ -29,9 +29,9 @@ def offset_north_east_m(origin: OnGlobe, point: OnGlobe) -> tuple[float, float]:
 
 
 def moved_m(origin: LatLon, north_m: float, east_m: float) -> LatLon:
-    """Return the position this far north and east of `origin`: `offset_north_east_m` undone.
+    """Return the position at this offset from `origin`: the inverse of `offset_north_east_m`.
 
-    Not within metres of a pole, where there is no east.
+    Not valid within metres of a pole, where east is undefined.
     """
     per_north_m, per_east_m = _metres_per_radian(origin.latitude_deg)
     longitude_deg = origin.longitude_deg + degrees(east_m / per_east_m)
@@ -48,7 +48,7 @@ def horizontal_distance_m(a: OnGlobe, b: OnGlobe) -> float:
 
 @lru_cache(maxsize=LATITUDES_KEPT)
 def _metres_per_radian(latitude_deg: float) -> tuple[float, float]:
-    """How far a radian of latitude and of longitude reaches, north and east."""
+    """Return metres per radian of latitude and of longitude."""
     latitude_rad = radians(latitude_deg)
     w = sqrt(1.0 - ECCENTRICITY_SQUARED * sin(latitude_rad) ** 2)
     meridian_m = SEMI_MAJOR_AXIS_M * (1.0 - ECCENTRICITY_SQUARED) / w**3

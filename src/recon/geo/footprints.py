@@ -1,4 +1,4 @@
-"""What things cover on the ground, made ready for questions to many polygons."""
+"""Ground footprints of legs, corners and points, prepared for queries against many polygons."""
 
 import numpy as np
 import numpy.typing as npt
@@ -10,15 +10,15 @@ IntArray = npt.NDArray[np.int64]
 ShapeArray = npt.NDArray[np.object_]
 
 FARTHEST_M = 1e8
-"""No place on the earth is farther from any other; GEOS overflows on far larger numbers."""
+"""Farther than any two places on earth; GEOS overflows on far larger numbers."""
 
 
 class Footprints:
     """Each of N footprints is the hull of three points, given as (N, 3, 2) east-north metres.
 
-    The same point twice makes a leg, three times a place. `least_m` and `most_m` (N, 2) are the
-    boxes around them. One with a point that is not finite, or not on the earth, is not `is_finite`
-    and its other values mean nothing.
+    The same point twice makes a leg, three times a point. `least_m` and `most_m` (N, 2) are the
+    bounding boxes. `is_finite` (N,) is False for a footprint with a point that is not finite or not
+    on earth; its other values are meaningless.
     """
 
     def __init__(self, triangles_m: npt.ArrayLike) -> None:
@@ -43,7 +43,7 @@ class Footprints:
 
     @property
     def shapes(self) -> ShapeArray:
-        """The footprints (N,) as GEOS takes them; made at the first question that needs them."""
+        """The footprints (N,) as GEOS geometries, made at first use: most queries do without."""
         shapes = self._shapes
         if shapes is None:
             self._shapes = shapes = shapely.convex_hull(shapely.multipoints(self._corners))
@@ -51,7 +51,7 @@ class Footprints:
 
 
 def is_on_earth(points_m: FloatArray) -> BoolArray:
-    """Return which (N, 2) points are finite and no farther than anything is, (N,)."""
+    """Return which (N, 2) points are finite and within `FARTHEST_M`, (N,)."""
     # NaN compares as false.
     near: BoolArray = np.abs(points_m).max(axis=1, initial=0.0) <= FARTHEST_M
     return near

@@ -18,11 +18,11 @@ FloatArray = npt.NDArray[np.float64]
 
 
 FRAMES_KEPT = 64
-"""A site has one frame; where there is none, each vehicle has one of its own for a moment."""
+"""A site has one frame; without a site each vehicle temporarily has its own."""
 
 
 class OnGlobe(Protocol):
-    """Anything that knows its latitude and longitude."""
+    """Anything with latitude and longitude."""
 
     @property
     def latitude_deg(self) -> float:
@@ -78,7 +78,7 @@ def enu_from_points(frame: LocalFrame, points: Iterable[GeoPoint]) -> FloatArray
 
 
 def shift_east_north_m(frame: LocalFrame, start: OnGlobe, end: OnGlobe) -> FloatArray:
-    """Return how far east and north (2,) `end` lies of `start`, both at the origin's height."""
+    """Return the displacement east and north (2,) from `start` to `end`, at the origin's height."""
     enu = enu_from_geo(
         frame,
         [start.latitude_deg, end.latitude_deg],
@@ -90,7 +90,7 @@ def shift_east_north_m(frame: LocalFrame, start: OnGlobe, end: OnGlobe) -> Float
 
 
 def point_from_enu(frame: LocalFrame, enu_m: npt.ArrayLike) -> GeoPoint:
-    """Return the globe's point of one (3,) east-north-up position."""
+    """Return the WGS84 point of one (3,) east-north-up position."""
     latitude, longitude, height = geo_from_enu(frame, enu_m)
     return GeoPoint(float(latitude[0]), float(longitude[0]), float(height[0]))
 

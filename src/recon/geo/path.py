@@ -1,8 +1,8 @@
 """Paths: legs between waypoints, with corners cut by a quadratic curve, as polylines.
 
 A corner of radius r leaves its leg r before the waypoint and joins the next leg r after it, along
-the quadratic Bezier curve whose middle control point is the waypoint. So the path never leaves the
-triangle of these three points, and whoever keeps the triangle clear keeps the path clear.
+the quadratic Bezier curve whose middle control point is the waypoint. So the path stays inside the
+triangle of these three points: a clear triangle means a clear path.
 """
 
 from dataclasses import dataclass
@@ -17,16 +17,16 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 DEFAULT_CHORD_ERROR_M = 0.05
-"""Far under what GNSS can tell, and a 1 km corner still takes about a hundred points."""
+"""Far below GNSS accuracy, and a 1 km corner still takes only about a hundred points."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
     """A polyline: `points_m` (M, D) in the waypoints' own axes, M >= 1.
 
-    `leg` (M - 1,) is for each segment the index of the waypoint that its leg starts from; the
-    first half of a corner is of the leg before, the second of the leg after. No point of the path
-    meant is farther than `chord_error_m` from the polyline.
+    `leg` (M - 1,) is the index of the waypoint at which each segment's leg starts; the first half
+    of a corner belongs to the leg before, the second to the leg after. The exact path is nowhere
+    farther than `chord_error_m` from the polyline.
     """
 
     points_m: FloatArray
@@ -62,9 +62,9 @@ def rounded_path(
 ) -> Path:
     """Return the path past (N, D) waypoints with corners cut by (N,) radii; both ends stay whole.
 
-    Two corners that do not fit their leg share it in proportion to their radii: aircraft refuse
-    such a mission, but a picture of it must still hang together. What is not finite, or not on
-    the earth, is not rounded and stays in the path, so that a fence refuses it.
+    Two corners that do not fit their leg share it in proportion to their radii: aircraft reject
+    such a mission, but its drawing must still be connected. Points that are not finite or not on
+    earth are not rounded and stay in the path, so that a fence rule refuses it.
     Raises `ValueError` for a chord error that is not positive, or when there is not one radius for
     each waypoint.
     """
@@ -96,10 +96,10 @@ def corner_reaches_m(waypoints_m: FloatArray, corner_radii_m: FloatArray) -> Flo
 def corner_hulls(waypoints_m: FloatArray, corner_radii_m: FloatArray) -> FloatArray:
     """Return the triangles (N - 2, 3, D) that hold the corners at the inner of N waypoints.
 
-    A radius is taken for both things that it is taken for in the field: the distance from the
-    waypoint at which the corner starts, and the radius of an arc that touches both legs (it starts
-    radius x tan(half the turn) before). The farther one counts, up to the whole of each leg. Each
-    triangle is where the corner starts, its waypoint, and where it ends.
+    Apps interpret a corner radius in two ways: as the distance from the waypoint at which the
+    corner starts, or as the radius of an arc tangent to both legs (which starts radius x tan(half
+    the turn) before). The larger one is used, up to the whole of each leg. Each triangle is the
+    start of the corner, its waypoint, and its end.
     """
     before, corner, after = waypoints_m[:-2], waypoints_m[1:-1], waypoints_m[2:]
     back, back_m = _units(before - corner)
@@ -113,11 +113,11 @@ def corner_hulls(waypoints_m: FloatArray, corner_radii_m: FloatArray) -> FloatAr
 
 
 _REVERSAL = 1e-12
-"""Of 1 + the cosine of the turn: below, the path turns back on itself and its arc is endless."""
+"""Lower bound of 1 + the cosine of the turn: at a reversal the arc would be infinite."""
 
 
 def _units(offsets: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Directions (N, D) of length 1, or 0 where there is none, and lengths (N,)."""
+    """Return unit vectors (N, D), 0 for zero offsets, and lengths (N,)."""
     lengths = np.linalg.norm(offsets, axis=1)
     return offsets / np.where(lengths > 0.0, lengths, 1.0)[:, np.newaxis], lengths
 

@@ -1,8 +1,7 @@
-"""Regions on the ground: which points lie in them, how far from the edge, which legs pass.
+"""Regions on the ground: which points and legs lie in them, and how far from the edge.
 
-Every answer about what is not finite, or not on the earth, is the careful one: not inside, and not
-clear either.
-GEOS (by shapely) does the geometry, so that touching and grazing are decided in one place.
+Input that is not finite or not on earth gets the safe answer: neither inside nor clear. GEOS (by
+shapely) does the geometry, so that touching and grazing are decided in one place.
 """
 
 import numpy as np
@@ -16,11 +15,11 @@ FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
 LEAST_RESIZE_M = 1e-3
-"""GEOS makes nothing at all of a polygon that it is to move by far less; what is less is taken for
-none, which is the stricter answer."""
+"""GEOS returns an empty polygon when its edge is to move by far less; smaller margins are taken as
+0, which is the stricter answer."""
 
 SAMPLES_OUTSIDE = 200
-"""Of what is outside: to half a percent of its length one knows how far it goes."""
+"""Samples along the part outside: its farthest point is known to 0.5 % of its length."""
 
 _FAULTS = {
     "Self-intersection": "its edges cross or overlap",
@@ -30,15 +29,15 @@ _FAULTS = {
     "Holes are nested": "a hole lies in another hole",
     "Interior is disconnected": "its holes cut it into pieces",
 }
-"""GEOS's words for what makes a polygon none, in plain ones."""
+"""GEOS's reasons for an invalid polygon, in plain words."""
 
 
 QUARTER_CIRCLE_SEGMENTS = 64
-"""Of a rounded corner of a polygon made larger or smaller: it is off by 8e-5 of the distance."""
+"""Segments of a rounded corner of a resized polygon: error 8e-5 of the distance."""
 
 
 class Polygon:
-    """A region made ready for many questions; build one for each region and keep it.
+    """A region prepared for many queries; build one per region and keep it.
 
     Raises `ValueError` for a region with a `region_fault`: answers about one would be arbitrary.
     """
@@ -127,9 +126,9 @@ class Polygon:
         return inside
 
     def _is_in_the_middle(self, footprints: Footprints, inset_m: float) -> BoolArray:
-        """Return which footprints' boxes lie in the circle inside: seen without GEOS, (N,).
+        """Return which footprints' boxes lie in the inscribed circle, (N,): fast, without GEOS.
 
-        A millimetre less than the circle, so that no rounding decides.
+        With a millimetre of margin, so that rounding cannot decide.
         """
         room_m = self._around_m - max(inset_m, 0.0) - LEAST_RESIZE_M
         if room_m <= 0.0:
@@ -165,7 +164,7 @@ class Polygon:
         room_m: FloatArray = shapely.distance(self._edge, shapes)
         for index in np.flatnonzero(~shapely.covers(self._area, shapes)):
             outside = shapely.difference(shapes[index], self._area)
-            # Across a notch its ends are on the edge, and the farthest place is between.
+            # Across a notch both ends are on the edge, and the farthest point is between them.
             step_m = max(shapely.length(outside) / SAMPLES_OUTSIDE, LEAST_RESIZE_M)
             places = shapely.points(shapely.get_coordinates(shapely.segmentize(outside, step_m)))
             room_m[index] = -shapely.distance(self._area, places).max()
@@ -177,7 +176,7 @@ class Polygon:
         return np.where(footprints.is_finite, gap_m, np.nan)
 
     def _resized(self, outward_m: float) -> "Polygon":
-        """The region made larger, or smaller: every point up to that far outside, or inside."""
+        """Return the region grown (or shrunk, negative) by a distance."""
         area = shapely.buffer(self._area, outward_m, quad_segs=QUARTER_CIRCLE_SEGMENTS)
         resized = Polygon.__new__(Polygon)
         resized._take(area)
@@ -185,9 +184,9 @@ class Polygon:
 
 
 def region_fault(region: Region) -> str | None:
-    """Return what keeps a region from being a polygon, in words, or None when it is one.
+    """Return why a region is not a valid polygon, in words, or None when it is one.
 
-    Crossing edges are said with their place, in metres east and north of the origin.
+    Crossing edges are given with their position, in metres east and north of the origin.
     """
     rings = (region.outline_m, *region.holes_m)
     if any(len(ring) < 3 for ring in rings):
@@ -207,7 +206,7 @@ def region_fault(region: Region) -> str | None:
 
 
 def _circle_inside(area: shapely.Polygon) -> tuple[FloatArray, float]:
-    """Return the middle (2,) and the radius of a large circle that lies inside, holes left out."""
+    """Return centre (2,) and radius of a large circle inside the area, outside its holes."""
     if shapely.is_empty(area):
         return np.zeros(2), 0.0
     west, south, east, north = shapely.bounds(area)
@@ -228,15 +227,16 @@ def _legs(
     ends, end_is_finite = finite_points(ends_m)
     legs: npt.NDArray[np.object_] = shapely.linestrings(np.stack([starts, ends], axis=1))
     is_point = (starts == ends).all(axis=1)
-    # GEOS takes a line without length for nothing at all, which lies in no region.
+    # For GEOS a line of length 0 is empty, and lies in no region.
     legs[is_point] = shapely.points(starts[is_point])
     return legs, start_is_finite & end_is_finite
 
 
 def thinned_ring(ring_m: FloatArray, within_m: float) -> FloatArray:
-    """Return a ring (N, 2) with fewer corners (M, 2), M >= 3; none left out is `within_m` off.
+    """Return a ring (N, 2) with fewer corners (M, 2), M >= 3, at most `within_m` off.
 
-    The first corner is not repeated, neither in nor out; no tolerance leaves the ring as it is.
+    For display only, never for decisions. The first corner is not repeated at the end, in input or
+    output; a tolerance of 0 changes nothing.
     """
     if within_m <= 0.0:
         return ring_m

@@ -1,11 +1,11 @@
-"""The ground, bilinear between the middles of a grid's cells: heights, the highest, the lowest.
+"""Terrain, bilinear between the middles of a grid's cells: heights, and extremes over areas.
 
 Within a cell of the lattice of middles a bilinear surface has no top and no bottom of its own:
 along a straight leg it is a parabola, and over an area its extremes lie on the area's outline or in
 one of the lattice's nodes. So both are found exactly, without sampling.
 
 Where the surface is not known (a node is NaN, or the place is not between the middles) a height is
-NaN, the highest is +inf and the lowest -inf: whoever compares with them is on the careful side.
+NaN, the highest is +inf and the lowest -inf: comparisons with them give the safe answer.
 """
 
 from functools import cached_property
@@ -73,8 +73,10 @@ class Surface:
     def _is_beyond_all(
         self, side: "_Highest", triangles_m: npt.ArrayLike, heights_m: FloatArray
     ) -> bool:
-        """Whether every height is over the highest of all ground, and none is beyond what is known:
-        so it is for nearly all that fly, and quickly seen."""
+        """Return whether all heights exceed all ground, and all triangles lie on known ground.
+
+        A fast test that is true for nearly all flights.
+        """
         points = np.asarray(triangles_m, dtype=np.float64).reshape(-1, 2)
         if len(points) == 0 or not heights_m.min() >= side.highest_of_all:
             return False
@@ -90,7 +92,7 @@ class Surface:
         return _Highest(-self._heights_m)
 
     def _nodes(self, points_m: npt.ArrayLike) -> FloatArray:
-        """East-north metres as (row, col) of the lattice, (N, 2)."""
+        """Return (row, col) on the lattice, (N, 2), of east-north metres."""
         points = np.asarray(points_m, dtype=np.float64).reshape(-1, 2)
         grid = self._grid
         rows = (grid.north_m - points[:, 1]) / grid.cell_m - 0.5
@@ -111,7 +113,10 @@ class Surface:
 
 
 class _Highest:
-    """The highest of a lattice's bilinear surface; the lowest is that of the negative."""
+    """Maxima of a lattice's bilinear surface; minima are those of the negated heights.
+
+    A pyramid of maxima over 2 x 2 tiles bounds the search.
+    """
 
     def __init__(self, heights: FloatArray) -> None:
         self._heights = heights
@@ -119,7 +124,11 @@ class _Highest:
         self.highest_of_all = float(self._pyramid[-1][0, 0])
 
     def along(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
-        """Along straight legs between (N, 2) rows and columns, (N,)."""
+        """Return the maximum (N,) along straight legs between (N, 2) rows and columns.
+
+        A leg is cut where it crosses a line of the lattice; on each piece the surface is a
+        parabola.
+        """
         shape = self._heights.shape
         known = _are_on_lattice(starts, shape) & _are_on_lattice(ends, shape)
         highest = np.full(len(starts), np.inf)
@@ -141,7 +150,7 @@ class _Highest:
         return highest
 
     def within(self, triangles: FloatArray) -> FloatArray:
-        """Within (N, 3, 2) triangles of rows and columns, (N,)."""
+        """Return the maximum (N,) within (N, 3, 2) triangles of rows and columns."""
         count = len(triangles)
         sides = np.concatenate([triangles[:, index] for index in (0, 1, 2)])
         ends = np.concatenate([triangles[:, index] for index in (1, 2, 0)])
@@ -150,7 +159,10 @@ class _Highest:
         return highest
 
     def is_below(self, triangles: FloatArray, heights: FloatArray) -> BoolArray:
-        """Whether the highest within each triangle is at most as high; the easy ones quickly."""
+        """Return whether the maximum within each triangle is at most `heights`, (N,).
+
+        From the cheapest test to the exact one, each only for triangles left undecided.
+        """
         below: BoolArray = self._are_known(triangles) & (heights >= self.highest_of_all)
         if not below.all():
             below = self._bounds(triangles) <= heights
@@ -164,12 +176,12 @@ class _Highest:
         return np.asarray(known.reshape(-1, 3).all(axis=1))
 
     def _bounds(self, triangles: FloatArray) -> FloatArray:
-        """Heights (N,) that no ground within the triangles' boxes is above."""
+        """Return upper bounds (N,) of the ground within the triangles' boxes, from the pyramid."""
         low, high = triangles.min(axis=1), triangles.max(axis=1)
         known = self._are_known(triangles)
         first = np.floor(np.where(known[:, np.newaxis], low, 0.0)).astype(np.int64)
         last = np.ceil(np.where(known[:, np.newaxis], high, 0.0)).astype(np.int64)
-        # At this level two tiles each way cover the box.
+        # At this level two by two tiles cover the box.
         levels = np.ceil(np.log2((last - first).max(axis=1, initial=0) + 1)).astype(np.int64)
         bounds = np.full(len(triangles), np.inf)
         for level in np.unique(levels[known]):
@@ -185,7 +197,7 @@ class _Highest:
     def _raise_to_nodes_within(self, triangles: FloatArray, highest: FloatArray) -> None:
         """Raise `highest` to the highest node in each triangle, from coarse tiles to fine ones."""
         normals, offsets = _half_planes(triangles)
-        # A leg's nodes are on its sides, where they have counted.
+        # A triangle without area is a leg, and `along` has already covered it.
         which = np.flatnonzero((highest < np.inf) & _have_area(triangles))
         tiles = np.zeros((len(which), 2), dtype=np.int64)
         for level in range(len(self._pyramid) - 1, -1, -1):
@@ -210,7 +222,7 @@ def _are_on_lattice(nodes: FloatArray, shape: tuple[int, ...]) -> BoolArray:
 
 
 def _cells(nodes: FloatArray, shape: tuple[int, ...]) -> IntArray:
-    """The upper-left node of the lattice's cell that each place lies in, (N, 2)."""
+    """Return the upper-left node (N, 2) of the lattice cell of each point."""
     return np.clip(np.floor(nodes).astype(np.int64), 0, np.array(shape) - 2)
 
 
@@ -224,7 +236,7 @@ def _bilinear(heights: FloatArray, nodes: FloatArray, cells: IntArray) -> FloatA
 
 
 def _lattice_crossings(starts: FloatArray, ends: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Where legs begin, cross a line of the lattice and end: leg and share of its way, in order."""
+    """Return (leg, share of its length), sorted, of starts, lattice crossings and ends of legs."""
     count = len(starts)
     legs = [np.arange(count), np.arange(count)]
     shares = [np.zeros(count), np.ones(count)]
@@ -242,7 +254,7 @@ def _lattice_crossings(starts: FloatArray, ends: FloatArray) -> tuple[IntArray, 
 
 
 def _parabola_top(first: FloatArray, middle: FloatArray, last: FloatArray) -> FloatArray:
-    """The highest of parabolas over an interval, from both ends and the middle; NaN from NaN."""
+    """Return the maximum of parabolas given at both ends and the middle; NaN for NaN."""
     slope, bend = last - first, 2.0 * (first + last - 2.0 * middle)
     has_top = np.abs(slope) < -bend
     rise = np.divide(slope**2, -4.0 * bend, out=np.zeros_like(slope), where=has_top)
@@ -256,7 +268,7 @@ def _have_area(triangles: FloatArray) -> BoolArray:
 
 
 def _turns(triangles: FloatArray) -> FloatArray:
-    """Twice the triangles' areas (N,), negative where they turn the other way."""
+    """Return twice the signed areas (N,) of the triangles."""
     first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 1]
     turns: FloatArray = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
     return turns
@@ -273,7 +285,7 @@ def _half_planes(triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _sides_of_tiles(
     tiles: IntArray, level: int, normals: FloatArray, offsets: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The least and the most of each half-plane's function over each tile's nodes, (N, 3) each."""
+    """Return minimum and maximum of each half-plane's function over each tile, (N, 3) each."""
     low = (tiles << level).astype(np.float64)[:, np.newaxis]
     high = low + ((1 << level) - 1)
     at_low, at_high = normals * low, normals * high
@@ -283,7 +295,7 @@ def _sides_of_tiles(
 
 
 def _pyramid(heights: FloatArray) -> list[FloatArray]:
-    """The nodes, and the highest of each 2 x 2 of the level below, up to a single tile."""
+    """Return the levels: the nodes, then maxima over 2 x 2 of the level below, up to one tile."""
     levels = [heights]
     while max(levels[-1].shape) > 1:
         below = levels[-1]

@@ -1,6 +1,6 @@
-"""The site's local frame for one point at a time: what `local_frame` does, without arrays.
+"""The site's local frame for one point at a time: `local_frame` without arrays.
 
-The same formulas in plain numbers: for one point they take a twentieth of the time.
+The same formulas on scalars: for one point they take a twentieth of the time.
 """
 
 from dataclasses import dataclass
