@@ -220,7 +220,7 @@ def vehicle(line: str) -> str:
         (MINIMAL + IMAGER + 'camera = "GCPs.txt"', "/GCPs.txt, line"),
         (
             MINIMAL + IMAGER + 'control_points = "site.toml"',
-            "/site.toml, line 1: expected 6 values",
+            "/site.toml, line 1: expected 6 comma-separated values",
         ),
         (
             MINIMAL + IMAGER + "[imager.marked_frame]\nyaw_deg = 3",
