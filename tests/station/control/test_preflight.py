@@ -45,7 +45,7 @@ class TestOverride:
         refused = scene.order(mission(), takeoff=True)
         assert scene.phase(refused) is Phase.REFUSED_BY_STATION
         assert scene.refusal_rule(refused) == "preflight"
-        assert scene.record(refused).note.startswith("A: its preflight checklist is not")
+        assert scene.record(refused).note.startswith("A: preflight checklist not")
         assert scene.phase(overrides(scene).order(mission(), takeoff=True)) is Phase.SENT
 
     def test_who_when_and_why_is_kept(self, scene: CommandedStation) -> None:
