@@ -23,8 +23,8 @@ from recon.guidance.survey import (
     start,
     step,
 )
-from recon.guidance.survey.crossing import crossing
 from recon.guidance.survey.progress import no_progress, settled, with_seen, with_shade
+from recon.guidance.survey.view import crossing
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap
 from recon.model.survey import CellState

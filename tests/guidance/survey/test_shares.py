@@ -13,9 +13,8 @@ from tests.guidance.survey.flyers import east_north
 
 from recon.geo.distance import horizontal_distance_m
 from recon.guidance.survey import Surveyor, SurveyPlan, SurveyState, create, start, step
-from recon.guidance.survey.route import Leg, Route, route_of
+from recon.guidance.survey.route import Cost, Leg, Route, route_of, shared
 from recon.guidance.survey.rows import Piece
-from recon.guidance.survey.share import Cost, shared
 from recon.model.geo import LatLon
 from recon.model.survey import MissionFor
 from recon.model.vehicle import VehicleProfile

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.guidance.survey.fields import planned, star, survey_of
 
-from recon.guidance.survey.ways import MOST_CORNERS, Ways
+from recon.guidance.survey.missions import MOST_CORNERS, Ways
 
 Place = tuple[float, float]
 

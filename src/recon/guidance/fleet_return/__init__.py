@@ -13,8 +13,8 @@ from recon.guidance.fleet_return.flight import (
     Place,
     Returning,
     ReturnPlan,
+    mission_of,
 )
-from recon.guidance.fleet_return.mission import mission_of
 from recon.guidance.fleet_return.plan import plan_return
 from recon.guidance.fleet_return.settings import FleetReturnSettings
 from recon.guidance.fleet_return.turn import (

@@ -4,7 +4,6 @@
 `observe` and `observe_shade` tell it what was seen. All of it is pure.
 """
 
-from recon.guidance.survey.figures import SurveyFigures, figures
 from recon.guidance.survey.life import (
     abort,
     create,
@@ -12,6 +11,7 @@ from recon.guidance.survey.life import (
     observe_shade,
     pause,
     refused,
+    spent,
     start,
     step,
 )
@@ -19,8 +19,7 @@ from recon.guidance.survey.plan import Surroundings, SurveyPlan, plan_survey
 from recon.guidance.survey.planners import PLANNERS, Planner, lawnmower_again, lawnmower_once
 from recon.guidance.survey.progress import PositionSample, Progress
 from recon.guidance.survey.settings import SurveySettings
-from recon.guidance.survey.spent import spent
-from recon.guidance.survey.state import Flight, Surveyor, SurveyState
+from recon.guidance.survey.state import Flight, SurveyFigures, Surveyor, SurveyState, figures
 
 __all__ = [
     "PLANNERS",

@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
-from recon.guidance.survey.lattice import RowLattice
+from recon.guidance.survey.lattice import RowLattice, Swath
 from recon.guidance.survey.rows import Piece
-from recon.guidance.survey.swath import Swath
 from recon.model.geo import GroundGrid, LocalFrame
 
 BoolArray = npt.NDArray[np.bool_]

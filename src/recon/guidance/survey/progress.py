@@ -19,9 +19,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.guidance.survey.cells import BoolArray, IntArray, SurveyCells
-from recon.guidance.survey.crossing import Crossing, Window, crossing
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.sun import nearest_map, sunlit_cells
+from recon.guidance.survey.view import Crossing, Window, crossing, nearest_map, sunlit_cells
 from recon.model.shade import ShadeMap
 from recon.model.survey import CellState
 from recon.model.units import ns_to_seconds, seconds_to_ns

@@ -13,13 +13,18 @@ from types import MappingProxyType
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from recon.guidance.survey.endings import end_between_rounds, spent_budget
 from recon.guidance.survey.missions import Track, flight_time_s, mission_of, track_of
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.route import Place, Route, between_m, route_of
+from recon.guidance.survey.route import Cost, Place, Route, between_m, route_of, shared
 from recon.guidance.survey.rows import Piece
-from recon.guidance.survey.share import Cost, shared
-from recon.guidance.survey.state import NO_ROUTES, Flight, Surveyor, SurveyState
+from recon.guidance.survey.state import (
+    NO_ROUTES,
+    Flight,
+    Surveyor,
+    SurveyState,
+    end_between_rounds,
+    spent_budget,
+)
 from recon.model.survey import CellState, MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
 
