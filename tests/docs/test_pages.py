@@ -24,6 +24,7 @@ latitude_deg = 45.0
 longitude_deg = -93.0
 ground_altitude_m = 280.0
 """
+PATH = re.compile(r"`((?:[a-z_]+/)+(?:[a-z_]+\.py)?)`")
 MAKE_TARGET = re.compile(r"`make ([a-z0-9-]+)`|^make ([a-z0-9-]+)", re.MULTILINE)
 
 
@@ -35,6 +36,13 @@ def page_id(page: Path) -> str:
 def test_links_lead_to_files(page: Path) -> None:
     for target in LINK.findall(page.read_text(encoding="utf-8")):
         assert (page.parent / target).exists(), f"{page_id(page)} links to {target}"
+
+
+def test_the_architectures_paths_exist() -> None:
+    named = PATH.findall((ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8"))
+    assert len(named) > 60
+    folders = [ROOT, *(ROOT / "src/recon" / room for room in ("", "station", "sim"))]
+    assert [path for path in named if not any((f / path).exists() for f in folders)] == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_id)
