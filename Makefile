@@ -1,4 +1,4 @@
-# Recon. `make` alone tells what there is.
+# Recon. `make` alone lists the targets.
 SHELL := /bin/sh
 .DEFAULT_GOAL := help
 MAKEFLAGS += --no-print-directory
@@ -11,10 +11,10 @@ WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.ht
 
 .PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e check format bench fuzz study mutants docs web clean
 
-help: ## Show what can be made
+help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-demo: setup web ## Show a survey under broken cloud: station, simulated drones, console at http://127.0.0.1:8080
+demo: setup web ## Run a survey under broken cloud: station, simulated drones, console at http://127.0.0.1:8080
 	$(RUN) recon demo
 
 test: test-rust test-safety test-python test-web test-e2e ## Set everything up and pass all tests
@@ -30,7 +30,7 @@ check: setup web/node_modules/.stamp ## Formats, lint, types, import rules, stub
 	$(RUN) recon openapi | cmp - web/openapi.json || { echo "web/openapi.json is old: make docs"; exit 1; }
 	npm --prefix web run check
 
-setup: .venv/.stamp ## Bring uv and build the Python package with its Rust part
+setup: .venv/.stamp ## Install uv, build the Python package with its Rust part
 
 .venv/.stamp: pyproject.toml uv.lock Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml) | $(filter .tools/%,$(UV))
 	@tools/require.sh python3 cargo
@@ -58,7 +58,7 @@ test-rust: setup ## Tests of the wire crate
 
 PYTEST := $(RUN) python -m pytest -n 2 --dist loadfile
 
-test-safety: setup ## Tests of the gate and the watchdogs: every branch of theirs must be taken
+test-safety: setup ## Tests of the gate and the watchdogs, with full branch coverage
 	$(PYTEST) tests/safety tests/architecture --cov=recon.safety --cov-branch \
 		--cov-report=term-missing:skip-covered --cov-fail-under=100
 
@@ -68,17 +68,18 @@ test-python: setup ## Tests of everything else in Python
 test-web: web/node_modules/.stamp ## Tests of the console
 	npm --prefix web test --silent
 
-test-e2e: setup web ## The whole thing once, seen through a headless browser
+test-e2e: setup web ## Console tests in a headless browser with a running station
 	@tools/chromium.sh
 	npm --prefix web run e2e --silent
 
-bench: setup ## Measure; every figure beside a baseline of the same run
+bench: setup ## Measurements, each beside a baseline of the same run
 	cargo bench -p recon-wire
 	$(RUN) python -m pytest benches -p no:cacheprovider
 	$(RUN) python -m benches.safety.bench_watchdogs
 	$(RUN) python -m benches.station.bench_load
 	$(RUN) python -m benches.station.bench_stick_jitter
 	$(RUN) python -m benches.station.bench_all_stop
+	$(RUN) python -m benches.cli.bench_startup
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
 	@cargo fuzz --version >/dev/null 2>&1 || cargo install cargo-fuzz --locked --quiet
@@ -88,7 +89,7 @@ fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nig
 			-- -max_total_time=$(FUZZ_SECONDS) -max_len=4096 || exit 1; \
 	done
 
-study: setup ## Long runs: the sky held against measurements, fences and fleets sampled, 100,000 simulated seconds, mutants (about half an hour)
+study: setup ## Long runs: the sky against measurements, random fences and fleets, 100,000 simulated seconds, mutants (half an hour)
 	$(RUN) python -m studies.sky_statistics
 	$(RUN) python -m studies.fences --scenes 10000
 	$(RUN) python -m studies.fleets --scenes 10000
@@ -96,11 +97,11 @@ study: setup ## Long runs: the sky held against measurements, fences and fleets 
 	$(RUN) python -m studies.same_again --seconds 600
 	@$(MAKE) mutants
 
-mutants: setup ## Change the gate's rules everywhere: a test must notice each change
+mutants: setup ## Mutate the gate's rules: a test must fail for each mutant
 	rm -rf mutants
 	$(RUN) --group study python -m studies.mutants
 
-docs: setup web/node_modules/.stamp ## Bring generated files up to date: the API's description and the console's types
+docs: setup web/node_modules/.stamp ## Regenerate the API's description and the console's types
 	$(RUN) recon openapi > web/openapi.json
 	$(RUN) python -c "from recon.fleet.flight_table_page import markdown as page; print(page(), end='')" > docs/flight-table.md
 	npm --prefix web run generate --silent
@@ -110,5 +111,5 @@ format: setup web/node_modules/.stamp ## Format all sources
 	$(RUN) ruff format .
 	$(RUN) ruff check --fix .
 
-clean: ## Remove what was built
+clean: ## Remove build output
 	rm -rf .venv target web/dist web/node_modules .tools

@@ -72,7 +72,8 @@ COMMANDS = {
     ),
     "sim": CommandSource("sim:sim_app", "Run simulated companion apps that connect to a station."),
     "score": CommandSource(
-        "score:score_command", "Fly a scenario in a closed loop and score its methods."
+        "score:score_command",
+        "Fly a scenario by the whole station in virtual time and score its methods.",
     ),
     "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
