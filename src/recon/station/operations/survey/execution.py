@@ -20,7 +20,7 @@ from dataclasses import replace
 
 from recon.guidance.survey import refused
 from recon.model.authority import AuthorityHolder
-from recon.model.command import Hover, Phase, Refusal
+from recon.model.command import Hover, Phase
 from recon.model.event import OperatorOrder
 from recon.model.survey import MissionFor, SurveyPhase
 from recon.model.units import seconds_to_ns
@@ -173,19 +173,14 @@ def _order_mission(station: Station, survey_id: int, given: MissionFor, now_ns: 
     if member is None or state is None or vehicle is None:
         return station, ()
     station, number = take_id(station)
-    order, why = order_of(station, record, given, vehicle, now_ns)
-    order = replace(order, command_id=number)
-    sent: tuple[Output, ...] = ()
-    if isinstance(why, Refusal):
-        station = order_gateway.refuse(station, order, why, now_ns)
-    else:
-        station, sent = order_gateway.place(station, order, now_ns)
+    order, tried = order_of(station, record, given, vehicle, now_ns)
+    station, sent = order_gateway.place(station, replace(order, command_id=number), now_ns)
     placed = station.orders.records[number]
     if placed.phase is not Phase.REFUSED_BY_STATION:
         used = replace(member, number=given.number, command_id=number, may_take_off=False)
         return replace(station, surveys=station.surveys.put(record.put(used))), sent
-    text = placed.note if isinstance(why, Refusal) else placed.note + why
-    record = replace(record, state=refused(state, given.serial, given.number, text, now_ns))
+    why = placed.note + tried
+    record = replace(record, state=refused(state, given.serial, given.number, why, now_ns))
     station = replace(station, surveys=station.surveys.put(record))
     refusal = placed.refusal
     if returns_home(record) and refusal is not None and refusal.rule == BATTERY:

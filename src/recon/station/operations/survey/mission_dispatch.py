@@ -11,7 +11,7 @@ from dataclasses import replace
 from recon.geo.distance import horizontal_distance_m
 from recon.model.airspace import FlightLimits
 from recon.model.authority import AuthorityHolder
-from recon.model.command import FlyMission, Refusal
+from recon.model.command import FlyMission
 from recon.model.event import OperatorOrder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
@@ -22,7 +22,6 @@ from recon.safety.rules.height_zones import RULE as HEIGHT_ZONES
 from recon.safety.rules.keep_out import RULE as KEEP_OUT
 from recon.safety.rules.max_height import RULE as MAX_HEIGHT
 from recon.safety.rules.min_height import RULE as MIN_HEIGHT
-from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
@@ -52,24 +51,21 @@ def order_of(
     given: MissionFor,
     vehicle: VehicleState,
     now_ns: int,
-) -> tuple[OperatorOrder, Refusal | str]:
-    """Return the order without its number; and a refusal to record instead of placing it, or words
-    to add to the gate's refusal.
+) -> tuple[OperatorOrder, str]:
+    """Return the order without its number, and words to add to a refusal by the gate.
 
     The first height is taken that no height rule refuses. If all are refused, the first is ordered,
-    so that the gate's refusal is on record. A mission refused for separation is not placed but
-    recorded as refused and planned again: the other vehicle may soon have flown on.
+    so that the gate's refusal is on record.
     """
-    orders = _orders(station, record, given, vehicle)
+    first, *others = orders = _orders(station, record, given, vehicle)
+    if not others:
+        return first, ""
     for order in orders:
         command = command_of(station, order, now_ns)
         refusal = judge(command, situation(station, command, now_ns))
-        if refusal is not None and refusal.rule == SEPARATION:
-            return order, refusal
         if refusal is None or refusal.rule not in HEIGHT_RULES:
             return order, ""
-    tried = "" if len(orders) == 1 else "; no other height of its approach is free"
-    return orders[0], tried
+    return first, "; no other height of its approach is free"
 
 
 def _orders(
