@@ -205,7 +205,8 @@ class TestWhatGoesWrong:
         world.starts("SIM-1")
         world.runs(20.0)
         assert world.phase() is SurveyPhase.PAUSED
-        assert "max_height" in world.state().reason
+        assert [each.refusal.rule for each in world.missions() if each.refusal] == ["max_height"]
+        assert "every mission was refused; SIM-1: " in world.state().reason
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
         assert ("survey", None) in world.fleet.alarms()
 

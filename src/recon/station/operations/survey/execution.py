@@ -175,15 +175,14 @@ def _order_mission(station: Station, survey_id: int, given: MissionFor, now_ns: 
     station, number = take_id(station)
     order, tried = order_of(station, record, given, vehicle, now_ns)
     station, sent = order_gateway.place(station, replace(order, command_id=number), now_ns)
-    placed = station.orders.records[number]
-    if placed.phase is not Phase.REFUSED_BY_STATION:
+    refusal = station.orders.records[number].refusal
+    if refusal is None:
         used = replace(member, number=given.number, command_id=number, may_take_off=False)
         return replace(station, surveys=station.surveys.put(record.put(used))), sent
-    why = placed.note + tried
+    why = f"{refusal.reason}{tried}"
     record = replace(record, state=refused(state, given.serial, given.number, why, now_ns))
     station = replace(station, surveys=station.surveys.put(record))
-    refusal = placed.refusal
-    if returns_home(record) and refusal is not None and refusal.rule == BATTERY:
+    if returns_home(record) and refusal.rule == BATTERY:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     return station, sent
 
