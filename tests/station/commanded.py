@@ -64,18 +64,18 @@ class CommandedStation:
 
     def opens(self, link_id: int, *reports: Report) -> "CommandedStation":
         self.happens(LinkOpened(link_id, f"10.0.0.{link_id}:5000"))
-        return self.says(link_id, *reports)
+        return self.receives(link_id, *reports)
 
     def closes(self, link_id: int) -> "CommandedStation":
         self.talk.pop(link_id, None)
         return self.happens(LinkClosed(link_id, "gone"))
 
-    def says(self, link_id: int, *reports: Report) -> "CommandedStation":
+    def receives(self, link_id: int, *reports: Report) -> "CommandedStation":
         for report in reports:
             self.happens(PacketReceived(link_id, report))
         return self
 
-    def keeps_saying(self, link_id: int, *reports: Report) -> "CommandedStation":
+    def keeps_receiving(self, link_id: int, *reports: Report) -> "CommandedStation":
         self.talk[link_id] = reports
         return self
 
@@ -83,7 +83,7 @@ class CommandedStation:
         for _ in range(round(seconds * 10)):
             self.now_ns += S // 10
             for link_id, reports in self.talk.items():
-                self.says(link_id, *reports)
+                self.receives(link_id, *reports)
             self.happens(Tick())
         return self
 
@@ -135,4 +135,4 @@ class CommandedStation:
 def flying(serial: str = "A") -> CommandedStation:
     """One vehicle on link 1 that flies a mission and goes on doing so whatever it is told."""
     reports = (core(velocity=(5.0, 0.0, 0.0)), extended(serial, mode=FlightMode.GPS_WAYPOINT))
-    return CommandedStation().opens(1, *reports).keeps_saying(1, *reports).passes(0.5)
+    return CommandedStation().opens(1, *reports).keeps_receiving(1, *reports).passes(0.5)

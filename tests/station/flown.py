@@ -34,7 +34,7 @@ def at(
 def hovering() -> CommandedStation:
     """A vehicle that hovers at the first waypoint."""
     said = at(0.0, GPS)
-    return CommandedStation().opens(1, *said).keeps_saying(1, *said).passes(0.5)
+    return CommandedStation().opens(1, *said).keeps_receiving(1, *said).passes(0.5)
 
 
 def ordered(body: Body) -> tuple[CommandedStation, int]:
@@ -53,7 +53,7 @@ def to_land(flown: FlyMission) -> FlyMission:
 def flies(scene: CommandedStation, *norths_m: float) -> CommandedStation:
     """The vehicle flies its mission past these places, a second at each."""
     for north_m in norths_m:
-        scene.keeps_saying(1, *at(north_m, WAYPOINT, velocity=NORTHWARD)).passes(1.0)
+        scene.keeps_receiving(1, *at(north_m, WAYPOINT, velocity=NORTHWARD)).passes(1.0)
     return scene
 
 

@@ -26,7 +26,7 @@ class TestSilence:
         assert "link_lost" not in scene.alarms()
         scene.passes(0.1)
         assert severities(scene, "link_lost") == [severity]
-        scene.says(1, core()).passes(0.1)
+        scene.receives(1, core()).passes(0.1)
         assert "link_lost" not in scene.alarms()
 
     def test_it_stays_when_the_link_closes(self) -> None:
@@ -38,7 +38,7 @@ class TestSilence:
         assert scene.alarms() == set()
         scene.passes(0.3)
         assert scene.alarms() == {"no_telemetry"}
-        assert scene.says(1, core()).passes(0.1).alarms() == set()
+        assert scene.receives(1, core()).passes(0.1).alarms() == set()
 
 
 class TestBattery:
@@ -77,12 +77,12 @@ class TestIdentity:
         scene = CommandedStation().opens(1, core(), extended(None)).passes(1.9)
         assert "unidentified" not in scene.alarms()
         assert "unidentified" in scene.passes(0.3).alarms()
-        assert "unidentified" not in scene.says(1, extended()).passes(0.1).alarms()
+        assert "unidentified" not in scene.receives(1, extended()).passes(0.1).alarms()
 
     def test_a_conflict_is_an_alarm_until_it_ends(self) -> None:
         scene = CommandedStation().opens(1, core(), extended()).opens(2, extended()).passes(0.5)
         assert "serial_conflict" not in scene.alarms()
-        assert "serial_conflict" in scene.says(1, core()).passes(0.1).alarms()
+        assert "serial_conflict" in scene.receives(1, core()).passes(0.1).alarms()
         assert "serial_conflict" not in scene.closes(2).passes(0.1).alarms()
 
 
@@ -90,7 +90,7 @@ class TestMessages:
     def test_an_apps_warnings_and_errors_stay_until_seen(self) -> None:
         scene = CommandedStation().opens(1, core(), extended())
         for severity in MessageSeverity:
-            scene.says(1, MessageReport(severity, f"level {severity.name}"))
+            scene.receives(1, MessageReport(severity, f"level {severity.name}"))
         texts = {a.condition.text for a in scene.station.alarms.alarms.values()}
         assert texts == {
             "A: message from its app: level WARNING",

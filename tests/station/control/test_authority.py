@@ -18,7 +18,7 @@ HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
 
 @pytest.fixture
 def scene() -> CommandedStation:
-    return CommandedStation().opens(1, *HOVERING).keeps_saying(1, *HOVERING).passes(0.5)
+    return CommandedStation().opens(1, *HOVERING).keeps_receiving(1, *HOVERING).passes(0.5)
 
 
 def takes(
@@ -38,7 +38,7 @@ def guidance_orders(scene: CommandedStation, body: Body, number: int = 90) -> Ph
 
 def says(scene: CommandedStation, north_mps: float, *, flying: bool = True) -> CommandedStation:
     where = core(flying=flying, velocity=(north_mps, 0.0, 0.0))
-    return scene.keeps_saying(1, where, HOVERING[1]).passes(0.5)
+    return scene.keeps_receiving(1, where, HOVERING[1]).passes(0.5)
 
 
 class TestByHand:
@@ -217,7 +217,7 @@ class TestThePilot:
         scene.order(STICK)
         assert scene.station.neutral_pending == ("A",)
         self.pilot(scene)
-        scene.keeps_saying(1, core(), extended(mode=FlightMode.JOYSTICK)).passes(5.0)
+        scene.keeps_receiving(1, core(), extended(mode=FlightMode.JOYSTICK)).passes(5.0)
         sticks = [body for body in scene.bodies() if isinstance(body, VirtualStick)]
         assert sticks == [STICK]
 
@@ -253,7 +253,7 @@ class TestThePilot:
         assert scene.station is before
 
     def test_leaves_other_vehicles_to_the_station(self, scene: CommandedStation) -> None:
-        scene.opens(2, core(), extended("B")).keeps_saying(2, core(), extended("B"))
+        scene.opens(2, core(), extended("B")).keeps_receiving(2, core(), extended("B"))
         scene.happens(OperatorOrder(80, mission(), "test", "B"))
         self.pilot(scene)
         assert scene.phase(80) is not Phase.SUPERSEDED

@@ -61,7 +61,7 @@ def test_passed_waypoints_are_counted_from_telemetry_and_never_back() -> None:
 
 def test_before_it_has_started_nothing_is_passed() -> None:
     scene, _ = ordered(row(6))
-    scene.keeps_saying(1, *at(20.0, GPS)).passes(2.0)
+    scene.keeps_receiving(1, *at(20.0, GPS)).passes(2.0)
     assert intent(scene).passed == 0
 
 
@@ -69,14 +69,14 @@ def test_before_it_has_started_nothing_is_passed() -> None:
 def test_what_came_to_nothing_is_not_told_any_more(body: Body) -> None:
     scene, order = ordered(body)
     said = at(0.0, FlightMode.GO_HOME, velocity=(5.0, 0.0, 0.0))
-    scene.keeps_saying(1, *said).passes(12.0)
+    scene.keeps_receiving(1, *said).passes(12.0)
     assert scene.phase(order) in (Phase.TIMED_OUT, Phase.FAILED)
     assert intent(scene).commanded is Commanded.NOTHING
 
 
 def test_after_a_mission_it_holds_where_it_ended() -> None:
     scene, _ = under_way()
-    flies(scene, 40.0, 50.0).keeps_saying(1, *at(50.0, GPS)).passes(0.3)
+    flies(scene, 40.0, 50.0).keeps_receiving(1, *at(50.0, GPS)).passes(0.3)
     held = intent(scene)
     assert held.commanded is Commanded.HOLD
     assert held.target == scene.station.fleet.vehicles["A"].position.value
@@ -85,17 +85,17 @@ def test_after_a_mission_it_holds_where_it_ended() -> None:
 @pytest.mark.parametrize("body", [Hover(), LandNow(), ReturnHome()])
 def test_after_a_landing_it_was_told_nothing(body: Body) -> None:
     scene, _ = ordered(body)
-    scene.passes(1.0).keeps_saying(1, *at(0.0, GPS, flying=False)).passes(1.5)
+    scene.passes(1.0).keeps_receiving(1, *at(0.0, GPS, flying=False)).passes(1.5)
     assert intent(scene).commanded is Commanded.NOTHING
 
 
 def test_a_mission_from_the_ground_is_told_while_it_takes_off() -> None:
     said = at(0.0, GPS, flying=False, height_m=0.0)
-    scene = CommandedStation().opens(1, *said).keeps_saying(1, *said).passes(0.5)
+    scene = CommandedStation().opens(1, *said).keeps_receiving(1, *said).passes(0.5)
     order = scene.order(mission(), takeoff=True)
     scene.passes(1.0)
     assert intent(scene).commanded is Commanded.MISSION
-    scene.keeps_saying(1, *at(0.0, FlightMode.AUTO_TAKEOFF, flying=False)).passes(9.0)
+    scene.keeps_receiving(1, *at(0.0, FlightMode.AUTO_TAKEOFF, flying=False)).passes(9.0)
     assert scene.phase(order) is Phase.SENT
     flies(scene, 0.0)
     assert scene.phase(order) is Phase.STARTED

@@ -41,7 +41,7 @@ def in_parts(count: int = 7, most: int = 3) -> tuple[CommandedStation, int]:
 def flown_to(scene: CommandedStation, *norths_m: float) -> CommandedStation:
     """It flies past these places and hovers at the last: a part's end."""
     flies(scene, *norths_m)
-    return scene.keeps_saying(1, *at(norths_m[-1], GPS)).passes(0.3)
+    return scene.keeps_receiving(1, *at(norths_m[-1], GPS)).passes(0.3)
 
 
 def missions_sent(scene: CommandedStation) -> list[Mission]:
@@ -54,7 +54,7 @@ class TestParts:
         assert [len(part.waypoints) for part in missions_sent(scene)] == [3]
         flies(scene, 0.0, 10.0, 20.0)
         assert len(missions_sent(scene)) == 1
-        scene.keeps_saying(1, *at(20.0, GPS)).passes(0.1)
+        scene.keeps_receiving(1, *at(20.0, GPS)).passes(0.1)
         assert len(missions_sent(scene)) == 2
         flown_to(scene, 20.0, 30.0, 40.0)
         flown_to(scene, 40.0, 50.0, 60.0)
@@ -108,7 +108,7 @@ class TestParts:
         assert scene.alarms() == {"mission_ignored"}
         flies(scene, 25.0)
         assert scene.alarms() == set()
-        scene.keeps_saying(1, *at(40.0, GPS)).passes(10.0)
+        scene.keeps_receiving(1, *at(40.0, GPS)).passes(10.0)
         assert len(missions_sent(scene)) == 2
 
     def test_a_later_part_that_the_app_refuses_is_an_alarm(self) -> None:
@@ -122,7 +122,7 @@ class TestParts:
         scene, order = in_parts()
         flies(scene, 0.0, 10.0, 20.0)
         scene.is_stuck = True
-        scene.keeps_saying(1, *at(20.0, GPS)).passes(6.0)
+        scene.keeps_receiving(1, *at(20.0, GPS)).passes(6.0)
         assert scene.phase(order) is Phase.EXPIRED
         assert scene.alarms() == {BROKEN_OFF}
 
@@ -140,10 +140,10 @@ class TestBrokenOff:
         flies(scene, 0.0, 10.0)
         scene.closes(1).passes(0.5)
         said = at(15.0, WAYPOINT, velocity=NORTHWARD)
-        scene.opens(2, *said).keeps_saying(2, *said).passes(1.0)
+        scene.opens(2, *said).keeps_receiving(2, *said).passes(1.0)
         assert scene.phase(order) is Phase.STARTED
         assert "no part will follow" in scene.record(order).note
-        scene.keeps_saying(2, *at(20.0, GPS)).passes(0.3)
+        scene.keeps_receiving(2, *at(20.0, GPS)).passes(0.3)
         self.ended(scene, order, "its connection ended or was renewed")
 
     @pytest.mark.parametrize(("silent_s", "is_broken"), [(2.8, False), (3.3, True)])
@@ -169,15 +169,15 @@ class TestBrokenOff:
         scene, order = in_parts()
         flies(scene, 0.0, 10.0, 20.0)
         said = (at(20.0, GPS)[0], replace(at(20.0, GPS)[1], gnss_signal_level=0))
-        scene.keeps_saying(1, *said).passes(0.5)
+        scene.keeps_receiving(1, *said).passes(0.5)
         self.ended(scene, order, "GNSS signal level")
         assert scene.refusal_rule(order) == "gnss"
 
     def test_the_pilot_ends_it_at_once(self) -> None:
         scene, order = in_parts()
-        flies(scene, 0.0, 10.0).keeps_saying(1, *at(12.0, GPS)).passes(1.5)
+        flies(scene, 0.0, 10.0).keeps_receiving(1, *at(12.0, GPS)).passes(1.5)
         assert scene.phase(order) is Phase.SUPERSEDED
-        scene.keeps_saying(1, *at(20.0, GPS)).passes(30.0)
+        scene.keeps_receiving(1, *at(20.0, GPS)).passes(30.0)
         assert len(missions_sent(scene)) == 1
 
     def test_a_newer_order_ends_it_and_a_camera_order_does_not(self) -> None:
@@ -200,7 +200,7 @@ class TestBrokenOff:
             if ends == "order":
                 scene.order(LandNow())
             else:
-                scene.keeps_saying(1, *at(20.0, GPS, flying=False))
+                scene.keeps_receiving(1, *at(20.0, GPS, flying=False))
             assert BROKEN_OFF not in scene.passes(0.2).alarms()
 
 

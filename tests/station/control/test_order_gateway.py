@@ -19,12 +19,12 @@ HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
 
 
 def hovering() -> CommandedStation:
-    return CommandedStation().opens(1, *HOVERING).keeps_saying(1, *HOVERING).passes(0.5)
+    return CommandedStation().opens(1, *HOVERING).keeps_receiving(1, *HOVERING).passes(0.5)
 
 
 @pytest.mark.parametrize("body", [Hover(), ReturnHome(), mission(), STICK])
 def test_nothing_that_could_take_off_is_sent_to_a_vehicle_on_the_ground(body: Body) -> None:
-    scene = CommandedStation().opens(1, *GROUND).keeps_saying(1, *GROUND)
+    scene = CommandedStation().opens(1, *GROUND).keeps_receiving(1, *GROUND)
     order = scene.order(body)
     scene.passes(10.0)
     assert scene.sent == []
@@ -55,17 +55,17 @@ class TestMission:
         order = scene.order(mission())
         scene.answered(order, True)
         assert scene.phase(order) is Phase.ACKNOWLEDGED
-        scene.keeps_saying(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.1)
+        scene.keeps_receiving(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.1)
         assert scene.phase(order) is Phase.STARTED
 
     def test_an_old_mode_is_no_knowledge_of_the_mode_now(self) -> None:
         """Mode 3 four seconds ago: it may be 10 by now, from the mission before."""
         scene = hovering().happens(AuthorityTaken("A", AuthorityHolder.OPERATOR, "Ann"))
-        scene.keeps_saying(1, core(velocity=(-5.0, 0.0, 0.0))).passes(2.5)
+        scene.keeps_receiving(1, core(velocity=(-5.0, 0.0, 0.0))).passes(2.5)
         scene.is_stuck = True
         order = scene.order(mission())
         scene.passes(1.5).happens(CommandSent(1, order))
-        scene.says(1, extended(mode=FlightMode.GPS_WAYPOINT)).passes(1.0)
+        scene.receives(1, extended(mode=FlightMode.GPS_WAYPOINT)).passes(1.0)
         assert scene.phase(order) is Phase.SENT
 
     def test_one_that_is_silently_rejected_is_an_alarm(self) -> None:
@@ -74,7 +74,7 @@ class TestMission:
         scene.answered(order, True).passes(8.1)
         assert scene.phase(order) is Phase.TIMED_OUT
         assert scene.alarms() == {"mission_ignored"}
-        scene.keeps_saying(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.2)
+        scene.keeps_receiving(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.2)
         assert scene.alarms() == set()
 
     def test_a_refusal_by_the_app_ends_it(self) -> None:
@@ -138,7 +138,7 @@ class TestCameraAndStick:
     def test_a_start_is_confirmed_by_an_image(self) -> None:
         scene = hovering()
         order = scene.order(StartCamera(1.0))
-        scene.passes(0.1).says(1, ImageReport(target_fps_hz=1.0, jpeg=b"x")).passes(0.1)
+        scene.passes(0.1).receives(1, ImageReport(target_fps_hz=1.0, jpeg=b"x")).passes(0.1)
         assert scene.phase(order) is Phase.DONE
 
     @pytest.mark.parametrize(

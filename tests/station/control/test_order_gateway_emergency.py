@@ -50,7 +50,7 @@ class TestRepeats:
         scene = flying()
         order = scene.order(Hover())
         moving = core(velocity=(9.0, 0.0, 0.0))
-        scene.keeps_saying(1, moving, extended(mode=FlightMode.GPS_SPORT)).passes(DEAF)
+        scene.keeps_receiving(1, moving, extended(mode=FlightMode.GPS_SPORT)).passes(DEAF)
         assert len(scene.times_s(order)) == 1
         assert scene.phase(order) is Phase.SUPERSEDED
         assert "order_not_confirmed" not in scene.alarms()
@@ -58,7 +58,7 @@ class TestRepeats:
     def test_they_end_on_confirmation(self) -> None:
         scene = flying()
         order = scene.order(Hover())
-        scene.keeps_saying(1, *STANDING).passes(DEAF)
+        scene.keeps_receiving(1, *STANDING).passes(DEAF)
         assert len(scene.times_s(order)) == 1
         assert scene.phases(order) == [
             Phase.QUEUED,
@@ -75,7 +75,7 @@ class TestRepeats:
         assert scene.phase(order) is Phase.TIMED_OUT
 
     def test_an_order_to_take_off_is_never_repeated_on_the_ground(self) -> None:
-        scene = CommandedStation().opens(1, *GROUND).keeps_saying(1, *GROUND).passes(0.5)
+        scene = CommandedStation().opens(1, *GROUND).keeps_receiving(1, *GROUND).passes(0.5)
         order = scene.order(Hover(), takeoff=True)
         scene.passes(DEAF)
         assert len(scene.times_s(order)) == 1
@@ -85,7 +85,7 @@ class TestRepeats:
     def test_hover_and_return_are_not_repeated_when_telemetry_says_landed(self, body: Body) -> None:
         scene = flying()
         order = scene.order(body)
-        scene.keeps_saying(1, core(flying=False), extended(mode=None)).passes(DEAF)
+        scene.keeps_receiving(1, core(flying=False), extended(mode=None)).passes(DEAF)
         assert len(scene.times_s(order)) == 1
 
     @pytest.mark.parametrize("body", [Hover(), ReturnHome()])
@@ -110,7 +110,7 @@ class TestRepeats:
         order = scene.order(Hover())
         scene.closes(1).passes(0.3)
         reports = (core(velocity=(5.0, 0.0, 0.0)), extended(mode=FlightMode.GPS_WAYPOINT))
-        scene.opens(2, *reports).keeps_saying(2, *reports).passes(1.0)
+        scene.opens(2, *reports).keeps_receiving(2, *reports).passes(1.0)
         assert [(link, number) for _, link, number in scene.sent] == [(1, order), (2, order)]
 
 
@@ -130,11 +130,11 @@ class TestUnconfirmed:
         scene = flying()
         order = scene.order(Hover())
         braking = (core(velocity=(3.0, 0.0, 0.0)), extended(mode=FlightMode.GPS_ATTI))
-        scene.keeps_saying(1, *braking).passes(9.8)
+        scene.keeps_receiving(1, *braking).passes(9.8)
         assert "order_not_confirmed" not in scene.alarms()
         scene.passes(0.4)
         assert "order_not_confirmed" in scene.alarms()
-        scene.keeps_saying(1, *STANDING).passes(0.2)
+        scene.keeps_receiving(1, *STANDING).passes(0.2)
         assert "order_not_confirmed" not in scene.alarms()
         assert scene.phase(order) is Phase.TIMED_OUT
         assert scene.record(order).note == "by telemetry: it stands, after its time"
@@ -142,7 +142,7 @@ class TestUnconfirmed:
     def test_it_ends_when_confirmed_late(self) -> None:
         scene = flying()
         scene.order(LandNow())
-        scene.passes(10.0).keeps_saying(1, *LANDING).passes(0.2)
+        scene.passes(10.0).keeps_receiving(1, *LANDING).passes(0.2)
         assert "order_not_confirmed" not in scene.alarms()
         assert "order_not_confirmed" in scene.alarms(active=False)
 
@@ -203,50 +203,50 @@ class TestLanding:
     def test_land_is_confirmed_by_mode_9_or_21_then_on_ground(self) -> None:
         scene = flying()
         order = scene.order(LandNow())
-        scene.keeps_saying(1, *LANDING).passes(40.0)
+        scene.keeps_receiving(1, *LANDING).passes(40.0)
         assert scene.phases(order) == [Phase.QUEUED, Phase.SENT, Phase.CONFIRMED]
         assert not scene.phase(order).is_final
         assert len(scene.times_s(order)) == 1
-        scene.keeps_saying(1, *GROUND).passes(0.1)
+        scene.keeps_receiving(1, *GROUND).passes(0.1)
         assert scene.phase(order) is Phase.DONE
 
     def test_a_landing_that_stops_in_the_air_is_an_alarm(self) -> None:
         scene = flying()
         scene.order(LandNow())
-        scene.keeps_saying(1, *LANDING).passes(5.0).keeps_saying(1, *STANDING).passes(0.9)
+        scene.keeps_receiving(1, *LANDING).passes(5.0).keeps_receiving(1, *STANDING).passes(0.9)
         assert "landing_stopped" not in scene.alarms()
         scene.passes(0.3)
         assert "landing_stopped" in scene.alarms()
         scene.order(LandNow())
-        scene.keeps_saying(1, *GROUND).passes(0.2)
+        scene.keeps_receiving(1, *GROUND).passes(0.2)
         assert "landing_stopped" not in scene.alarms()
 
     def test_mode_21_and_still_flying_for_long_is_an_alarm(self) -> None:
         scene = flying()
-        scene.keeps_saying(1, core(), extended(mode=FlightMode.CONFIRM_LANDING)).passes(8.0)
+        scene.keeps_receiving(1, core(), extended(mode=FlightMode.CONFIRM_LANDING)).passes(8.0)
         assert "landing_waits" not in scene.alarms()
         scene.passes(0.2)
         assert "landing_waits" in scene.alarms()
-        scene.keeps_saying(1, *GROUND).passes(0.1)
+        scene.keeps_receiving(1, *GROUND).passes(0.1)
         assert "landing_waits" not in scene.alarms()
 
 
 class TestTakeoffByHover:
     def test_it_is_refused_without_the_word_and_sent_with_it(self) -> None:
-        scene = CommandedStation().opens(1, *GROUND).keeps_saying(1, *GROUND)
+        scene = CommandedStation().opens(1, *GROUND).keeps_receiving(1, *GROUND)
         assert scene.phase(scene.order(Hover())) is Phase.REFUSED_BY_STATION
         assert scene.sent == []
         order = scene.order(Hover(), takeoff=True)
         scene.passes(1.0)
         assert scene.phase(order) is Phase.SENT
-        scene.keeps_saying(1, *STANDING).passes(0.1)
+        scene.keeps_receiving(1, *STANDING).passes(0.1)
         assert scene.phase(order) is Phase.DONE
 
 
 class TestSeveralLinks:
     def conflict(self) -> CommandedStation:
         scene = flying()
-        scene.opens(2, *scene.talk[1]).keeps_saying(2, *scene.talk[1])
+        scene.opens(2, *scene.talk[1]).keeps_receiving(2, *scene.talk[1])
         return scene.passes(0.5)
 
     def test_a_stop_goes_to_every_link_that_claims_the_serial(self) -> None:
@@ -259,9 +259,9 @@ class TestSeveralLinks:
     def test_it_is_confirmed_only_when_both_have_stopped(self) -> None:
         scene = self.conflict()
         order = scene.order(Hover())
-        scene.keeps_saying(1, *STANDING).passes(0.5)
+        scene.keeps_receiving(1, *STANDING).passes(0.5)
         assert scene.phase(order) is Phase.SENT
-        scene.keeps_saying(2, *STANDING).passes(0.2)
+        scene.keeps_receiving(2, *STANDING).passes(0.2)
         assert scene.phase(order) is Phase.DONE
 
     def test_dropped_by_one_link_it_lives_on_at_the_other(self) -> None:
@@ -277,27 +277,27 @@ class TestSeveralLinks:
 class TestUnidentified:
     def unidentified(self) -> CommandedStation:
         reports = (core(velocity=(5.0, 0.0, 0.0)), extended(None, mode=FlightMode.GPS_WAYPOINT))
-        return CommandedStation().opens(1, *reports).keeps_saying(1, *reports).passes(0.2)
+        return CommandedStation().opens(1, *reports).keeps_receiving(1, *reports).passes(0.2)
 
     def test_a_link_without_identity_can_be_held(self) -> None:
         scene = self.unidentified()
         order = scene.order(Hover(), None, link=1)
         assert scene.times_s(order) == [0.2]
-        scene.keeps_saying(1, core(), extended(None)).passes(0.2)
+        scene.keeps_receiving(1, core(), extended(None)).passes(0.2)
         assert scene.phase(order) is Phase.DONE
 
     def test_the_order_follows_the_link_when_it_says_its_serial(self) -> None:
         scene = self.unidentified()
         order = scene.order(Hover(), None, link=1)
-        scene.keeps_saying(1, core(velocity=(5.0, 0.0, 0.0)), extended("A")).passes(1.0)
+        scene.keeps_receiving(1, core(velocity=(5.0, 0.0, 0.0)), extended("A")).passes(1.0)
         assert len(scene.times_s(order)) == 2
-        scene.keeps_saying(1, core(), extended("A")).passes(0.2)
+        scene.keeps_receiving(1, core(), extended("A")).passes(0.2)
         assert scene.phase(order) is Phase.DONE
 
     def test_an_order_by_serial_supersedes_the_one_by_link(self) -> None:
         scene = self.unidentified()
         order = scene.order(Hover(), None, link=1)
-        scene.says(1, extended("A"))
+        scene.receives(1, extended("A"))
         scene.order(LandNow())
         assert scene.phase(order) is Phase.SUPERSEDED
 

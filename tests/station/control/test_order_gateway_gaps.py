@@ -30,7 +30,7 @@ class TestAStopInAGap:
         assert scene.sent == []
         scene.passes(4.0)
         assert "stop_waits" in scene.alarms()
-        scene.says(1, core(velocity=(5.0, 0.0, 0.0)))
+        scene.receives(1, core(velocity=(5.0, 0.0, 0.0)))
         assert scene.phase(order) is Phase.SENT
         assert "stop_waits" not in scene.passes(0.1).alarms()
 
@@ -38,14 +38,14 @@ class TestAStopInAGap:
         scene = silent().closes(1)
         order = scene.order(Hover())
         scene.opens(2, core(velocity=(5.0, 0.0, 0.0)), extended())
-        scene.says(2, core(velocity=(5.0, 0.0, 0.0)))
+        scene.receives(2, core(velocity=(5.0, 0.0, 0.0)))
         assert scene.phase(order) is Phase.SENT
         assert {link for _, link, _ in scene.sent} == {2}
 
     def test_it_never_goes_to_a_vehicle_that_has_landed_meanwhile(self) -> None:
         scene = silent()
         order = scene.order(Hover())
-        scene.keeps_saying(1, *GROUND).passes(40.0)
+        scene.keeps_receiving(1, *GROUND).passes(40.0)
         assert scene.sent == []
         assert scene.phase(order) is Phase.EXPIRED
 
@@ -76,7 +76,7 @@ class TestTheZeroOfAStick:
     def test_it_is_sent_when_the_time_is_over(self) -> None:
         scene = flying()
         scene.order(HELD)
-        scene.keeps_saying(1, *JOYSTICK).passes(0.9)
+        scene.keeps_receiving(1, *JOYSTICK).passes(0.9)
         assert len(self.sticks(scene)) == 1
         scene.passes(0.3)
         first, zero = self.sticks(scene)
@@ -89,7 +89,7 @@ class TestTheZeroOfAStick:
         for newer in (Hover(), LandNow(), HELD):
             scene = flying()
             scene.order(HELD)
-            scene.keeps_saying(1, *JOYSTICK).passes(0.5)
+            scene.keeps_receiving(1, *JOYSTICK).passes(0.5)
             scene.order(newer)
             scene.passes(0.8)
             assert not any(s.velocity_x_mps == 0.0 for s in self.sticks(scene))
@@ -97,27 +97,27 @@ class TestTheZeroOfAStick:
     def test_the_pilot_is_not_fought(self) -> None:
         scene = flying()
         scene.order(HELD)
-        scene.keeps_saying(1, *JOYSTICK).passes(0.5).keeps_saying(1, *PILOT).passes(10.0)
+        scene.keeps_receiving(1, *JOYSTICK).passes(0.5).keeps_receiving(1, *PILOT).passes(10.0)
         assert len(self.sticks(scene)) == 1
 
     def test_a_standing_stick_needs_none(self) -> None:
         scene = flying()
         scene.order(replace(HELD, velocity_x_mps=0.0, height_above_takeoff_m=40.5))
-        scene.keeps_saying(1, *JOYSTICK).passes(10.0)
+        scene.keeps_receiving(1, *JOYSTICK).passes(10.0)
         assert len(self.sticks(scene)) == 1
 
     def test_a_climb_ends_where_it_has_come_to(self) -> None:
         scene = flying()
         scene.order(replace(HELD, velocity_x_mps=0.0, height_above_takeoff_m=60.0))
         climbing = (core(height_m=43.0, velocity=(0.0, 0.0, -3.0)), JOYSTICK[1])
-        scene.keeps_saying(1, *climbing).passes(3.0)
+        scene.keeps_receiving(1, *climbing).passes(3.0)
         assert [stick.height_above_takeoff_m for stick in self.sticks(scene)] == [60.0, 43.0]
 
     def test_telemetry_that_stops_in_a_climb_holds_no_zero_back(self) -> None:
         scene = flying()
         scene.order(replace(HELD, height_above_takeoff_m=60.0))
         climbing = (core(height_m=43.0, velocity=(5.0, 0.0, -3.0)), JOYSTICK[1])
-        scene.keeps_saying(1, *climbing).passes(0.2)
+        scene.keeps_receiving(1, *climbing).passes(0.2)
         scene.talk.clear()
         scene.passes(2.0)
         _, zero = self.sticks(scene)
@@ -127,6 +127,6 @@ class TestTheZeroOfAStick:
         scene = flying()
         scene.order(replace(HELD, height_above_takeoff_m=60.0))
         lost = (core(height_m=None, velocity=(5.0, 0.0, -3.0)), JOYSTICK[1])
-        scene.keeps_saying(1, *lost).passes(2.0)
+        scene.keeps_receiving(1, *lost).passes(2.0)
         _, zero = self.sticks(scene)
         assert (zero.velocity_x_mps, zero.height_above_takeoff_m) == (0.0, 60.0)

@@ -70,9 +70,9 @@ BODIES = st.sampled_from(
     ]
 )
 DOES = st.one_of(
-    st.tuples(st.just("says"), SAYS),
-    st.tuples(st.just("says"), SAYS),
-    st.tuples(st.just("says"), SAYS),
+    st.tuples(st.just("receives"), SAYS),
+    st.tuples(st.just("receives"), SAYS),
+    st.tuples(st.just("receives"), SAYS),
     st.tuples(st.just("order"), BODIES),
     st.tuples(st.just("order"), BODIES),
     st.tuples(st.just("sends"), st.booleans()),
@@ -138,7 +138,7 @@ class Life:
         assert before.fleet.vehicles["A"].link_id == was.plan.link_id == self.link
         assert before.control("A").authority == was.plan.authority
 
-    def says(self, reports: object) -> None:
+    def receives(self, reports: object) -> None:
         for report in reports:  # type: ignore[attr-defined]
             self.happens(PacketReceived(self.link, report))
 
@@ -166,7 +166,7 @@ class Life:
             self.happens(LinkClosed(self.link, "gone"))
         self.link += 1
         self.happens(LinkOpened(self.link, "x"))
-        self.says(at(0.0, FlightMode.GPS_ATTI))
+        self.receives(at(0.0, FlightMode.GPS_ATTI))
 
     def taken(self, holder: AuthorityHolder) -> None:
         self.happens(AuthorityTaken("A", holder, "test"))
@@ -207,7 +207,7 @@ def test_a_whole_mission_in_parts_is_among_what_can_happen() -> None:
     for north_m in (0.0, 10.0, 20.0):
         life.sends(True)
         life.now_ns += S
-        life.says(at(north_m, FlightMode.GPS_WAYPOINT, velocity=NORTHWARD))
+        life.receives(at(north_m, FlightMode.GPS_WAYPOINT, velocity=NORTHWARD))
     life.now_ns += S
-    life.says(at(20.0, FlightMode.GPS_ATTI))
+    life.receives(at(20.0, FlightMode.GPS_ATTI))
     assert life.parts_sent == {1: 2}

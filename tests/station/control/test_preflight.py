@@ -26,7 +26,7 @@ def scene() -> CommandedStation:
     """A vehicle on the ground of a site without a fence."""
     scene = CommandedStation()
     scene.station = _unfenced(scene)
-    return scene.opens(1, *ON_GROUND).keeps_saying(1, *ON_GROUND).passes(0.5)
+    return scene.opens(1, *ON_GROUND).keeps_receiving(1, *ON_GROUND).passes(0.5)
 
 
 def _unfenced(scene: CommandedStation) -> Station:
@@ -82,13 +82,13 @@ class TestItsEnd:
     ) -> None:
         overrides(scene).passes(1.0)
         assert is_overridden(scene)
-        scene.keeps_saying(1, *HOVERING).passes(5.0)
+        scene.keeps_receiving(1, *HOVERING).passes(5.0)
         assert is_overridden(scene)
-        scene.keeps_saying(1, *ON_GROUND).passes(0.1)
+        scene.keeps_receiving(1, *ON_GROUND).passes(0.1)
         assert not is_overridden(scene)
 
     def test_a_landing_that_nobody_heard_ends_it_too(self, scene: CommandedStation) -> None:
-        overrides(scene).keeps_saying(1, *HOVERING).passes(1.0)
+        overrides(scene).keeps_receiving(1, *HOVERING).passes(1.0)
         scene.closes(1).passes(30.0).opens(2, *ON_GROUND)
         assert not is_overridden(scene)
 
@@ -97,12 +97,12 @@ class TestItsEnd:
         assert is_overridden(scene)
 
     def test_an_unknown_moment_in_flight_does_not(self, scene: CommandedStation) -> None:
-        overrides(scene).keeps_saying(1, *HOVERING).passes(1.0).says(1, core(flying=None))
+        overrides(scene).keeps_receiving(1, *HOVERING).passes(1.0).receives(1, core(flying=None))
         assert is_overridden(scene)
 
     def test_anothers_landing_does_not(self, scene: CommandedStation) -> None:
-        overrides(scene).opens(2, core(), extended("B")).says(2, *ON_GROUND[:1])
-        scene.opens(3, core()).says(3, core(flying=False))
+        overrides(scene).opens(2, core(), extended("B")).receives(2, *ON_GROUND[:1])
+        scene.opens(3, core()).receives(3, core(flying=False))
         assert is_overridden(scene)
 
 
@@ -136,8 +136,8 @@ class TestFacts:
         self, scene: CommandedStation
     ) -> None:
         scene.opens(2, core(), extended("B"))
-        scene.says(2, MessageReport(MessageSeverity.ERROR, "not mine"))
-        scene.says(1, MessageReport(MessageSeverity.WARNING, "compass error"))
+        scene.receives(2, MessageReport(MessageSeverity.ERROR, "not mine"))
+        scene.receives(1, MessageReport(MessageSeverity.WARNING, "compass error"))
         vehicle = scene.station.fleet.vehicles["A"]
         said = preflight.facts(scene.station, vehicle).app_warnings
         assert said == ("A: message from its app: compass error",)

@@ -13,7 +13,9 @@ def told_with(go_home_height_m: float | None) -> CommandedStation:
     scene = CommandedStation()
     profile = replace(PROFILES["A"], go_home_height_m=go_home_height_m)
     scene.station = replace(scene.station, fleet=Fleet(profiles={"A": profile}))
-    return scene.opens(1, core(), extended("A")).keeps_saying(1, core(), extended("A")).passes(0.5)
+    return (
+        scene.opens(1, core(), extended("A")).keeps_receiving(1, core(), extended("A")).passes(0.5)
+    )
 
 
 def test_a_return_says_the_height_that_the_sites_file_tells() -> None:

@@ -38,7 +38,7 @@ def test_every_event_has_a_handler() -> None:
 
 
 def test_the_newest_frame_of_each_vehicle_is_kept_with_its_capture_time() -> None:
-    scene = CommandedStation().opens(1, core(), extended("A")).passes(1.0).says(1, IMAGE, IMAGE)
+    scene = CommandedStation().opens(1, core(), extended("A")).passes(1.0).receives(1, IMAGE, IMAGE)
     (frame,) = scene.station.frames.values()
     assert frame.id == 2
     assert frame.received_at_ns - frame.captured_at_ns == seconds_to_ns(0.5)
@@ -50,7 +50,7 @@ def test_only_so_many_frames_are_kept() -> None:
     scene.station = Station(settings=StationSettings(frames_kept=3))
     scene.opens(1)
     for number in range(10):
-        scene.says(1, extended(f"S{number}"), IMAGE)
+        scene.receives(1, extended(f"S{number}"), IMAGE)
     assert list(scene.station.frames) == ["S7", "S8", "S9"]
 
 
@@ -105,8 +105,8 @@ class TestLostVehicles:
     def test_a_talkative_app_leaves_room_for_others(self) -> None:
         scene = CommandedStation().opens(1, core(), extended("A")).opens(2, core(), extended("B"))
         for number in range(50):
-            scene.says(1, MessageReport(MessageSeverity.ERROR, f"trouble {number}"))
-        scene.says(2, MessageReport(MessageSeverity.ERROR, "one thing"))
+            scene.receives(1, MessageReport(MessageSeverity.ERROR, f"trouble {number}"))
+        scene.receives(2, MessageReport(MessageSeverity.ERROR, "one thing"))
         texts = [a.condition.text for a in scene.station.alarms.alarms.values()]
         assert sum("trouble" in text for text in texts) == 8
         assert any("one thing" in text for text in texts)

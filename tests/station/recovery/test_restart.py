@@ -477,7 +477,7 @@ class TestWithoutASerial:
     def flew(self, seconds: float = 4.0) -> CommandedStation:
         scene = CommandedStation()
         scene.opens(7, core(), extended(None))
-        return scene.keeps_saying(7, core(), extended(None)).passes(seconds)
+        return scene.keeps_receiving(7, core(), extended(None)).passes(seconds)
 
     def restarted(self, scene: CommandedStation, after_s: float) -> CommandedStation:
         """A new run that begins some seconds later with the snapshot of the last one."""
@@ -514,7 +514,7 @@ class TestWithoutASerial:
     @pytest.mark.parametrize("last", [core(flying=False), extended("A")])
     def test_one_that_landed_or_reported_its_serial_does_not_either(self, last: Any) -> None:
         scene = self.flew()
-        scene.says(7, last).closes(7)
+        scene.receives(7, last).closes(7)
         assert self.restarted(scene, 5.0).station.watchdog_state.lost == {}
 
     def test_a_second_crash_before_any_telemetry_loses_none(self) -> None:
@@ -535,7 +535,7 @@ class TestWithoutASerial:
 
     def test_for_some_seconds_no_vehicle_is_held_for_it(self) -> None:
         again = self.restarted(self.flew(), 60.0)
-        again.opens(1, core(), extended("A")).keeps_saying(1, core(), extended("A")).passes(9.8)
+        again.opens(1, core(), extended("A")).keeps_receiving(1, core(), extended("A")).passes(9.8)
         assert again.alarms() == {"unidentified_lost"}
         again.passes(1.0)
         assert again.alarms() == {"unidentified_lost", "separation"}

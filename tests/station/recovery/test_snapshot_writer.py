@@ -51,7 +51,7 @@ class Scene(CommandedStation):
 class TestUrgent:
     def test_an_order_is_when_it_begins_and_when_it_ends(self) -> None:
         scene = Scene()
-        scene.opens(1, core(), extended()).keeps_saying(1, core(), extended()).passes(0.5)
+        scene.opens(1, core(), extended()).keeps_receiving(1, core(), extended()).passes(0.5)
         scene.urgent.clear()
         scene.order(Hover())
         assert scene.urgent == ["OperatorOrder"]
@@ -61,7 +61,7 @@ class TestUrgent:
 
     def test_telemetry_and_time_are_not(self) -> None:
         scene = Scene()
-        scene.opens(1, core(), extended()).keeps_saying(1, core(), extended()).passes(5.0)
+        scene.opens(1, core(), extended()).keeps_receiving(1, core(), extended()).passes(5.0)
         assert scene.urgent == []
 
     def test_authority_a_lost_vehicle_and_its_dismissal_are(self) -> None:

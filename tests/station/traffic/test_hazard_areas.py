@@ -18,9 +18,9 @@ NORTH_100 = moved_m(PLACE, 100.0, 0.0)
 
 def stale(seconds: float = 60.0, **said: object) -> CommandedStation:
     """A took off 100 m south of where it flies, and has not been heard since."""
-    scene = CommandedStation().opens(1, core(flying=False), extended()).says(1, core())
+    scene = CommandedStation().opens(1, core(flying=False), extended()).receives(1, core())
     moving = core(position=NORTH_100, velocity=(3.0, 0.0, 0.0), **said)  # type: ignore[arg-type]
-    return scene.says(1, moving).passes(seconds)
+    return scene.receives(1, moving).passes(seconds)
 
 
 def in_air(scene: CommandedStation) -> list[str]:
@@ -69,7 +69,7 @@ class TestDismissal:
         assert not is_dismissible(scene.station, "A", scene.now_ns)
         scene.passes(600.0)
         assert in_air(scene) == []
-        scene.says(1, core())
+        scene.receives(1, core())
         assert in_air(scene) == ["A"]
 
     def test_its_alarm_ends_with_it_and_comes_back_only_after_it_was_heard_again(self) -> None:
@@ -77,7 +77,7 @@ class TestDismissal:
         assert scene.alarms() == {"link_lost"}
         scene.happens(HazardDismissed("A", "Ann")).passes(60.0)
         assert scene.alarms() == set()
-        scene.says(1, core()).passes(4.0)
+        scene.receives(1, core()).passes(4.0)
         assert "link_lost" in scene.alarms()
 
     def test_nothing_else_does(self) -> None:
@@ -163,7 +163,7 @@ class TestWithoutASerial:
         scene = (
             CommandedStation()
             .opens(99, core(), extended("A"))
-            .keeps_saying(99, core(), extended("A"))
+            .keeps_receiving(99, core(), extended("A"))
         )
         for link_id in range(1, 30):
             scene.opens(
@@ -186,7 +186,7 @@ class TestWithoutASerial:
     def test_while_its_link_is_open_it_is_in_the_air_by_its_own_word(self) -> None:
         scene = CommandedStation().opens(7, core(), extended(None)).passes(1.0)
         assert in_air(scene) == ["unidentified link 7"]
-        scene.says(7, core(flying=False))
+        scene.receives(7, core(flying=False))
         assert in_air(scene) == []
 
 
@@ -211,7 +211,7 @@ class TestNoRoom:
             if a.condition.rule == "no_room"
         )
         assert "says it is NEW, but 3 vehicles that may fly are not heard" in alarm.text
-        scene.says(9, extended("NEWER"), extended("NEWEST")).passes(0.2)
+        scene.receives(9, extended("NEWER"), extended("NEWEST")).passes(0.2)
         assert scene.alarms() >= {"no_room", "link_lost"}
         assert sum(a.condition.rule == "no_room" for a in scene.station.alarms.alarms.values()) == 1
 
@@ -223,7 +223,7 @@ class TestNoRoom:
 
     def test_a_persons_word_makes_room(self) -> None:
         scene = self.full().happens(HazardDismissed("Y", "Ann"))
-        scene.says(9, core(), extended("NEW")).passes(0.2)
+        scene.receives(9, core(), extended("NEW")).passes(0.2)
         assert in_air(scene) == ["X", "Z", "NEW"]
         assert "no_room" not in scene.alarms()
         assert scene.station.watchdog_state.dismissed == {}

@@ -23,7 +23,7 @@ def two_on_the_ground() -> CommandedStation:
     for link_id, serial, east_m in ((1, "A", 0.0), (2, "B", 40.0)):
         on_ground = core(flying=False, height_m=0.0, position=moved_m(PLACE, 0.0, east_m))
         reports = (on_ground, extended(serial, gnss_level=5))
-        scene.opens(link_id, *reports).keeps_saying(link_id, *reports)
+        scene.opens(link_id, *reports).keeps_receiving(link_id, *reports)
     return scene.passes(1.0)
 
 

@@ -32,9 +32,9 @@ class Two:
         self.north_m = {1: 0.0, 2: gap_m}
         self.mps = {1: a_mps, 2: b_mps}
         self.flying = {1: True, 2: True}
-        self.says()
+        self.receives()
 
-    def says(self) -> None:
+    def receives(self) -> None:
         for link_id, serial in ((1, "A"), (2, "B")):
             if link_id not in self.north_m:
                 continue
@@ -47,14 +47,14 @@ class Two:
                 extended(serial, mode=FlightMode.GPS_ATTI),
             )
             known = link_id in self.scene.station.fleet.links
-            (self.scene.says if known else self.scene.opens)(link_id, *reports)
+            (self.scene.receives if known else self.scene.opens)(link_id, *reports)
 
     def passes(self, seconds: float) -> "Two":
         for _ in range(round(seconds * 10)):
             for link_id in self.north_m:
                 self.north_m[link_id] += 0.1 * self.mps[link_id]
             self.scene.now_ns += S // 10
-            self.says()
+            self.receives()
             self.scene.happens(Tick())
         return self
 
@@ -188,7 +188,7 @@ class TestSeparation:
         scene = CommandedStation()
         for link_id in (1, 2):
             scene.opens(link_id, core(), extended("A"))
-            scene.keeps_saying(link_id, core(), extended("A"))
+            scene.keeps_receiving(link_id, core(), extended("A"))
         scene.passes(3.0)
         assert "separation" not in scene.alarms()
 
@@ -202,9 +202,9 @@ class TestOthers:
 
     def test_a_position_that_jumps_is_an_alarm_until_somebody_has_seen_it(self) -> None:
         scene = CommandedStation().opens(1, core(), extended())
-        scene.keeps_saying(1, core()).passes(1.0)
+        scene.keeps_receiving(1, core()).passes(1.0)
         assert scene.alarms() == set()
-        scene.keeps_saying(1, core(position=place(60.0))).passes(0.2)
+        scene.keeps_receiving(1, core(position=place(60.0))).passes(0.2)
         assert scene.alarms() == {"position_jump"}
         scene.passes(5.0)
         assert scene.alarms() == set()
@@ -212,9 +212,9 @@ class TestOthers:
 
     def test_a_position_unknown_for_a_moment_is_compared_with_the_last_known(self) -> None:
         scene = CommandedStation().opens(1, core(), extended())
-        scene.keeps_saying(1, core()).passes(0.5)
-        scene.keeps_saying(1, core(position=None)).passes(0.5)
-        scene.keeps_saying(1, core(position=place(400.0))).passes(0.2)
+        scene.keeps_receiving(1, core()).passes(0.5)
+        scene.keeps_receiving(1, core(position=None)).passes(0.5)
+        scene.keeps_receiving(1, core(position=place(400.0))).passes(0.2)
         assert "position_jump" in scene.alarms()
 
     def test_a_stream_of_sticks_that_runs_dry_is_an_alarm(self) -> None:
@@ -222,12 +222,12 @@ class TestOthers:
             scene = (
                 CommandedStation()
                 .opens(1, core(flying=False, height_m=0.0), extended())
-                .says(1, core())
+                .receives(1, core())
             )
-            scene.keeps_saying(1, core(), extended()).passes(1.0)
+            scene.keeps_receiving(1, core(), extended()).passes(1.0)
             scene.is_stuck = is_stuck
             scene.order(GoTo(place(50.0), 40.0, 5.0))
-            scene.keeps_saying(1, core(), extended(mode=FlightMode.JOYSTICK)).passes(0.9)
+            scene.keeps_receiving(1, core(), extended(mode=FlightMode.JOYSTICK)).passes(0.9)
             assert scene.alarms() == alarms
             scene.order(Hover())
             scene.passes(4.0)
@@ -235,9 +235,9 @@ class TestOthers:
             assert scene.station.watchdog_state.sticks == {}
 
     def test_altitudes_that_drift_apart_are_an_alarm(self) -> None:
-        scene = CommandedStation().opens(1, core(flying=False), extended()).says(1, core())
-        scene.keeps_saying(1, core(altitude_m=300.0)).passes(0.5)
-        scene.keeps_saying(1, core(altitude_m=330.0)).passes(2.0)
+        scene = CommandedStation().opens(1, core(flying=False), extended()).receives(1, core())
+        scene.keeps_receiving(1, core(altitude_m=300.0)).passes(0.5)
+        scene.keeps_receiving(1, core(altitude_m=330.0)).passes(2.0)
         alarms = scene.station.alarms.alarms.values()
         assert [a.condition.severity for a in alarms] == [Severity.WARNING]
         assert scene.alarms() == {"altitude_mismatch"}
