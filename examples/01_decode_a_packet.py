@@ -1,4 +1,4 @@
-"""Bytes become packets: a hover command and an acknowledgment, with noise between them.
+"""Decode packets from bytes: a hover command and an acknowledgment with noise between them.
 
 Run: uv run python examples/01_decode_a_packet.py
 """
@@ -9,7 +9,7 @@ NOISE = bytes.fromhex("da00ff")
 
 
 def main() -> None:
-    """Encode two packets, damage the stream, and take the packets out again."""
+    """Encode two packets, insert noise, and decode the packets again."""
     stream = (
         wire.encode(wire.EmergencyCommand(action=0))
         + NOISE
@@ -21,7 +21,7 @@ def main() -> None:
     for byte in stream:
         for packet in deframer.feed(bytes([byte]), now_ns=0):
             print(packet)
-    print("bytes that belong to no packet:", deframer.counters.bytes_skipped)
+    print("skipped bytes:", deframer.counters.bytes_skipped)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A station and a simulated drone in virtual time: an order and its life, without waiting.
+"""A station and a simulated drone in virtual time: the phases of an order, without waiting.
 
 Run: uv run python examples/02_hover_in_virtual_time.py
 """
@@ -15,7 +15,7 @@ HOME = GeoPoint(41.9012, -93.6034, 275.0)
 
 
 def main() -> None:
-    """Let one drone fly about, order it to hover, and print what became of the order."""
+    """Command a flying drone to hover and print the order's phases."""
     driver = VirtualDriver(first_state(default_site()))
     config = SimulationConfig(home=HOME, vehicle_count=1, airborne=Airborne.ALL, wanders=True)
     for app in build_fleet(config, start_ns=driver.now_ns):

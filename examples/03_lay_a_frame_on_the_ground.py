@@ -1,4 +1,4 @@
-"""A fisheye frame lies on the ground: the demo site's lens and pose, a chessboard seen from above.
+"""Project a fisheye frame onto the ground: the demo site's lens and pose, a chessboard image.
 
 Run: uv run python examples/03_lay_a_frame_on_the_ground.py [OUTPUT.tif]
 """
@@ -15,12 +15,14 @@ from recon.site import demo_site_folder, load_site
 
 
 def main() -> None:
-    """Lay one frame on the demo site's grid and say how much of the field it shows."""
+    """Project one frame onto the demo site's grid and print how much of it is covered."""
     site = load_site(demo_site_folder())
     assert site.imager is not None
     assert site.ground_grid is not None
     solution = site.imager.solution
-    print(f"pose: {solution.rms_px:.2f} px rms, {solution.height_above_ground_m:.1f} m up")
+    print(
+        f"pose: {solution.rms_px:.2f} px rms, {solution.height_above_ground_m:.1f} m above ground"
+    )
 
     rows, cols = site.imager.camera.rows, site.imager.camera.cols
     row, col = np.mgrid[0:rows, 0:cols]
@@ -29,7 +31,7 @@ def main() -> None:
 
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     image = projector.lay(frame, solution.pose)
-    print(f"ground image: {image.rgb.shape}, {image.valid.mean():.0%} of the grid seen")
+    print(f"ground image: {image.rgb.shape}, {image.valid.mean():.0%} of the grid covered")
     if len(sys.argv) > 1:
         write_ground_image(Path(sys.argv[1]), image)
         print(f"written to {sys.argv[1]}")

@@ -1,7 +1,7 @@
-"""A first flight from Python: take off, fly a short leg, come back to the ground.
+"""A first flight from Python: take off, fly a short leg, land.
 
-Run: uv run python examples/04_first_flight.py            (a station and a drone of its own)
-     uv run python examples/04_first_flight.py URL SERIAL  (a station that runs; IT TAKES OFF)
+Run: uv run python examples/04_first_flight.py            (starts a station and a simulated drone)
+     uv run python examples/04_first_flight.py URL SERIAL  (a running station; THE DRONE TAKES OFF)
 """
 
 import asyncio
@@ -19,7 +19,7 @@ LEG_DEG = 0.0001
 
 
 async def first_flight(url: str, serial: str) -> None:
-    """Fly one leg at 10 m and land, and say what became of each order."""
+    """Fly one leg at 10 m and land; print the phase of each order."""
     async with Station(url) as station:
         vehicle = await station.vehicle(serial)
         order = await vehicle.fly(leg_north(vehicle.now().position), takeoff=True)
@@ -34,9 +34,9 @@ async def first_flight(url: str, serial: str) -> None:
 
 
 def leg_north(start: Position) -> Mission:
-    """A mission of two waypoints, from here to the north."""
+    """Return a mission of two waypoints, from the start position north."""
     if start.latitude_deg is None or start.longitude_deg is None:
-        raise SystemExit("the vehicle has not told its position")
+        raise SystemExit("position of the vehicle unknown")
     return Mission(
         tuple(
             Waypoint(start.latitude_deg + north_deg, start.longitude_deg, 10.0, 3.0)
@@ -46,7 +46,7 @@ def leg_north(start: Position) -> Mission:
 
 
 async def with_a_simulated_drone() -> None:
-    """Start a station and a simulated drone on free ports, fly, and end both."""
+    """Start a station and a simulated drone on free ports, fly, and stop both."""
     site = load_site(demo_site_folder())
     assert site.frame is not None
     pads = {serial: profile.pad for serial, profile in site.profiles.items() if profile.pad}
@@ -65,13 +65,13 @@ async def with_a_simulated_drone() -> None:
             await first_flight(started.console_url, "SIM-1")
         finally:
             drone.cancel()
-            signal.raise_signal(signal.SIGINT)  # as Ctrl+C would: the station ends
+            signal.raise_signal(signal.SIGINT)  # Stops the station, as Ctrl+C does.
 
     await run(RunConfig(site, link_port=0, http_port=0), fly)
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:]
-    if len(given) not in (0, 2):
+    args = sys.argv[1:]
+    if len(args) not in (0, 2):
         sys.exit(__doc__)
-    asyncio.run(first_flight(*given) if given else with_a_simulated_drone())
+    asyncio.run(first_flight(*args) if args else with_a_simulated_drone())

@@ -1,7 +1,7 @@
-"""Go to a place and hold there, steered by the station: five lines of a program, and what happens.
+"""Fly to a position and hold there, steered by the station.
 
-Run: uv run python examples/05_goto_a_place.py             (a station and a drone of its own)
-     uv run python examples/05_goto_a_place.py URL SERIAL   (a station that runs; IT FLIES 15 m)
+Run: uv run python examples/05_goto_a_place.py            (starts a station and a simulated drone)
+     uv run python examples/05_goto_a_place.py URL SERIAL  (a running station; THE DRONE FLIES 15 m)
 """
 
 import asyncio
@@ -21,24 +21,26 @@ HOME = GeoPoint(41.9012, -93.6034, 275.0)
 
 
 async def fly_there(url: str, serial: str) -> None:
-    """Fly 15 m north and say what became of it; the vehicle is held there until this ends."""
+    """Fly 15 m north and print the result; the vehicle holds there until this program ends."""
     async with Station(url) as station:
         vehicle = await station.vehicle(serial)
-        there = north_of(vehicle.now().position, 15.0)
-        order = await vehicle.goto(*there, height_above_takeoff_m=40.0, speed_mps=4.0)
-        print("goto:", order.reason if isinstance(order, Refusal) else (await order.arrival()).note)
+        target = north_of(vehicle.now().position, 15.0)
+        order = await vehicle.goto(*target, height_above_takeoff_m=40.0, speed_mps=4.0)
+        if isinstance(order, Refusal):
+            raise SystemExit(f"refused: {order.reason}")
+        print("goto:", (await order.wait_for_arrival()).note)
 
 
 def north_of(start: Position, metres: float) -> tuple[float, float]:
-    """Return latitude and longitude of a place so far north of a vehicle."""
+    """Return latitude and longitude of a position `metres` north of `start`."""
     if start.latitude_deg is None or start.longitude_deg is None:
-        raise SystemExit("the vehicle has not told its position")
-    place = moved_m(LatLon(start.latitude_deg, start.longitude_deg), metres, 0.0)
-    return place.latitude_deg, place.longitude_deg
+        raise SystemExit("position of the vehicle unknown")
+    target = moved_m(LatLon(start.latitude_deg, start.longitude_deg), metres, 0.0)
+    return target.latitude_deg, target.longitude_deg
 
 
 async def with_a_simulated_drone() -> None:
-    """Start a station and a simulated drone in the air on free ports, fly, and end both."""
+    """Start a station and a flying simulated drone on free ports, fly, and stop both."""
     profile = VehicleProfile(
         "SIM-1",
         waypoint_altitude=AltitudeReference.TAKEOFF,
@@ -62,13 +64,13 @@ async def with_a_simulated_drone() -> None:
             await fly_there(started.console_url, "SIM-1")
         finally:
             drone.cancel()
-            signal.raise_signal(signal.SIGINT)  # as Ctrl+C would: the station ends
+            signal.raise_signal(signal.SIGINT)  # Stops the station, as Ctrl+C does.
 
     await run(RunConfig(site, link_port=0, http_port=0), fly)
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:]
-    if len(given) not in (0, 2):
+    args = sys.argv[1:]
+    if len(args) not in (0, 2):
         sys.exit(__doc__)
-    asyncio.run(fly_there(*given) if given else with_a_simulated_drone())
+    asyncio.run(fly_there(*args) if args else with_a_simulated_drone())

@@ -1,7 +1,7 @@
-"""A fleet called home in virtual time: a layer for each vehicle, two waves under a low ceiling.
+"""Return in layers in virtual time: one layer per vehicle, two waves below a low ceiling.
 
-Run: uv run python examples/06_call_the_fleet_home.py             (prints who lands when)
-     uv run python examples/06_call_the_fleet_home.py PICTURE.svg (and draws heights over time)
+Run: uv run python examples/06_call_the_fleet_home.py             (prints the landing times)
+     uv run python examples/06_call_the_fleet_home.py PICTURE.svg (also plots heights over time)
 """
 
 import sys
@@ -28,10 +28,10 @@ from recon.station.kernel.worker import JobRunner
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 FRAME = LocalFrame(HOME)
 CEILING_M = 40.0
-"""Room for three layers: 20, 28 and 36 m."""
+"""Leaves three layers: 20, 28 and 36 m."""
 
 FIELD_M = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
-"""Where six vehicles hover: east, north, up."""
+"""Initial positions of the six vehicles: east, north, up."""
 PADS_M = [(45, -20), (-15, -20), (-45, -20), (75, -20), (15, -20), (-75, -20)]
 SERIALS = [f"SIM-{number}" for number in range(1, 7)]
 
@@ -40,7 +40,7 @@ COLOURS = ("#0b6e99", "#c2410c", "#4d7c0f", "#7e22ce", "#b91c1c", "#0f766e")
 
 
 def site_with(pads: Mapping[str, GeoPoint]) -> Site:
-    """A fenced field with a low ceiling, and six vehicles ready to fly."""
+    """Return a fenced site with a low ceiling and six vehicles ready to fly."""
     profiles = {
         serial: VehicleProfile(
             serial,
@@ -61,39 +61,39 @@ def site_with(pads: Mapping[str, GeoPoint]) -> Site:
 
 
 def fly_home(driver: VirtualDriver, apps: Sequence[SimulatedApp]) -> Flown:
-    """Call all of them, wait until the return is over; return each one's heights over time."""
+    """Return all vehicles and wait until the return is over; return their heights over time."""
     heights: dict[str, list[tuple[float, float]]] = defaultdict(list)
     driver.handle(FleetReturnOrdered(1, tuple(SERIALS), "example"))
-    called_ns = driver.now_ns
+    started_ns = driver.now_ns
     while driver.station.fleet_return is None or not driver.station.fleet_return.is_over:
         driver.run_for(0.5)
         for app in apps:
-            now_s = (driver.now_ns - called_ns) / 1e9
+            now_s = (driver.now_ns - started_ns) / 1e9
             if app.aircraft.is_flying:
                 heights[app.settings.serial].append((now_s, app.aircraft.motion.height_m))
     return heights
 
 
 def main(picture: Path | None) -> None:
-    """Fly, print each vehicle's wave, layer and landing, and draw them if asked to."""
+    """Fly, print each vehicle's wave, layer and landing time, and plot them on request."""
     places = [point_from_enu(FRAME, (*pad, 0.0)) for pad in PADS_M]
     pads = dict(zip(SERIALS, places, strict=True))
     site = site_with(pads)
     driver = VirtualDriver(first_state(site), jobs=JobRunner(site))
     config = SimulationConfig(home=HOME, vehicle_count=6, airborne=Airborne.ALL, pads=pads)
     apps = build_fleet(config, start_ns=driver.now_ns)
-    for app, place, pad in zip(apps, FIELD_M, PADS_M, strict=True):
+    for app, position, pad in zip(apps, FIELD_M, PADS_M, strict=True):
         app.aircraft.motion = app.aircraft.motion._replace(
-            east_m=place[0] - pad[0],
-            north_m=place[1] - pad[1],
-            height_m=place[2],
+            east_m=position[0] - pad[0],
+            north_m=position[1] - pad[1],
+            height_m=position[2],
         )
         app.connected(driver.now_ns)
         driver.connect(app)
     driver.run_for(3.0)
     flown = fly_home(driver, apps)
-    called = driver.station.fleet_return
-    for member in () if called is None else called.members.values():
+    fleet_return = driver.station.fleet_return
+    for member in () if fleet_return is None else fleet_return.members.values():
         if member.flight is not None:
             print(
                 f"{member.name}: wave {member.flight.wave}, {member.flight.layer_up_m:.0f} m, "
@@ -104,7 +104,7 @@ def main(picture: Path | None) -> None:
 
 
 def drawing(flown: Flown) -> str:
-    """An SVG of heights over time."""
+    """Return an SVG of heights over time."""
     last_s = max(points[-1][0] for points in flown.values())
 
     def x(seconds: float) -> float:

@@ -1,4 +1,4 @@
-"""A real station on loopback sockets with simulated apps, all in this process."""
+"""A real station on loopback sockets with simulated apps, in this process."""
 
 import asyncio
 import socket
@@ -35,7 +35,7 @@ PADS = {
 
 @asynccontextmanager
 async def serving(app: ASGIApp, port: int = 0) -> AsyncIterator[str]:
-    """Serve an application on loopback; yields its address."""
+    """Serve an application on loopback; yield its address."""
     sock = socket.create_server(("127.0.0.1", port))
     server = uvicorn.Server(
         uvicorn.Config(
@@ -56,8 +56,8 @@ async def serving(app: ASGIApp, port: int = 0) -> AsyncIterator[str]:
 
 
 @asynccontextmanager
-async def beside(work: Coroutine[Any, Any, None]) -> AsyncIterator[None]:
-    """Do work beside the test; it is ended, and its end awaited."""
+async def background(work: Coroutine[Any, Any, None]) -> AsyncIterator[None]:
+    """Run work in the background; cancel it at the end and wait."""
     task = asyncio.create_task(work)
     try:
         yield
@@ -75,9 +75,9 @@ async def running_station(
     faults: tuple[str, ...] = (),
     prepared: Callable[[Site], Site] = lambda site: site,
 ) -> AsyncIterator[str]:
-    """Run a station and its simulated apps; yields the station's address.
+    """Run a station and its simulated apps; yield the station's address.
 
-    `prepared` may change the site, in which nothing speaks against a flight.
+    The site is ready to fly; `prepared` may change it.
     """
     site = ready_site(HOME, (ready_profile(s, PADS[s], n) for n, s in enumerate(SERIALS)))
     driver = AsyncioDriver(first_state(prepared(site)), station_clock())
@@ -88,7 +88,7 @@ async def running_station(
         driver.worker = worker = ThreadWorker(JobRunner(site), driver.handle_from_thread)
         worker.start()
         stack.callback(worker.stop)
-        await stack.enter_async_context(beside(driver.run()))
+        await stack.enter_async_context(background(driver.run()))
         config = SimulationConfig(
             home=HOME,
             station_port=links.port,
@@ -97,7 +97,7 @@ async def running_station(
             airborne=Airborne.ALL if airborne else Airborne.NONE,
             faults=tuple(parse_fault(text) for text in faults),
         )
-        await stack.enter_async_context(beside(run_fleet(config, say=lambda line: None)))
+        await stack.enter_async_context(background(run_fleet(config, say=lambda line: None)))
         service = Service.around(driver, site, None)
         app = create_app(service, Access.make("127.0.0.1", token), None, "test")
         yield await stack.enter_async_context(serving(app))

@@ -1,4 +1,4 @@
-"""Addresses as people type and paste them."""
+"""Station addresses as typed or pasted."""
 
 import pytest
 from hypothesis import given
@@ -21,7 +21,7 @@ def test_addresses(url: str, http: str, stream: str) -> None:
     assert (address.http, address.stream, address.token) == (http, stream, None)
 
 
-def test_the_printed_address_carries_its_token() -> None:
+def test_the_printed_address_contains_the_token() -> None:
     assert parse_address("http://h:1/#token=abc-1").token == "abc-1"
     assert parse_address("http://h:1/#token=abc-1", "other").token == "other"
 
@@ -43,13 +43,13 @@ def test_the_printed_address_carries_its_token() -> None:
         "http://h h",
     ],
 )
-def test_what_is_no_address_is_told(url: str) -> None:
+def test_invalid_addresses_are_rejected(url: str) -> None:
     with pytest.raises(AddressError, match="expected an address like"):
         Station(url)
 
 
 @pytest.mark.parametrize("token", ["", "two words", "a\r\nX-Header: b", "ä"])
-def test_tokens_that_cannot_travel_are_refused_unseen(token: str) -> None:
+def test_invalid_tokens_are_rejected_without_printing_them(token: str) -> None:
     with pytest.raises(AddressError, match="letters, digits") as problem:
         Station("http://127.0.0.1", token)
     assert not token or token not in str(problem.value)

@@ -1,4 +1,4 @@
-"""The client against a real station: orders are flown, refusals are values, states are new."""
+"""The client with a real station: orders are flown, refusals are values, states are new."""
 
 import asyncio
 from dataclasses import replace
@@ -14,8 +14,8 @@ from recon.client import (
     Refusal,
     RequestRefusedError,
     Station,
-    TookTooLongError,
     Vehicle,
+    WaitTimeoutError,
     Waypoint,
 )
 
@@ -23,7 +23,7 @@ TOKEN = "a-secret-of-the-field"
 
 
 def leg_north(vehicle: Vehicle, first_deg: float = 0.0002) -> Mission:
-    """From 22 m north of the vehicle, or from right above it, as a takeoff needs."""
+    """A leg from 22 m north of the vehicle, or from directly above it for a takeoff."""
     here = vehicle.now().position
     assert here.latitude_deg is not None
     assert here.longitude_deg is not None
@@ -50,14 +50,14 @@ def test_orders_are_flown_and_confirmed_by_telemetry() -> None:
         async with running_station() as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
             flown = accepted(await vehicle.fly(leg_north(vehicle)))
-            life = await flown.wait()
-            assert life.phase is Phase.STARTED
-            assert [change.phase for change in life.history[:3]] == [
+            status = await flown.wait()
+            assert status.phase is Phase.STARTED
+            assert [change.phase for change in status.history[:3]] == [
                 Phase.QUEUED,
                 Phase.SENT,
                 Phase.ACKNOWLEDGED,
             ]
-            assert (life.kind, life.serial, life.times_sent) == ("mission", "SIM-1", 1)
+            assert (status.kind, status.serial, status.times_sent) == ("mission", "SIM-1", 1)
             held = await accepted(await vehicle.hold()).wait()
             assert (held.kind, held.phase) == ("hover", Phase.DONE)
             stick = await vehicle.stick(
@@ -76,51 +76,51 @@ def test_camera_orders_reach_the_app() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            begun = await accepted(await vehicle.start_camera(1.0)).wait(Phase.SENT)
-            assert begun.kind == "camera_start"
+            started = await accepted(await vehicle.start_camera(1.0)).wait(Phase.SENT)
+            assert started.kind == "camera_start"
             ended = await accepted(await vehicle.stop_camera()).wait(Phase.SENT)
             assert ended.kind == "camera_stop"
 
     asyncio.run(main())
 
 
-def test_what_the_station_will_not_do_is_a_value() -> None:
+def test_refusals_are_values() -> None:
     async def main() -> None:
         async with running_station(airborne=False) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
             leg = leg_north(vehicle, first_deg=0.0)
             assert refused(await vehicle.fly(leg)).rule == "flying"
             nowhere = replace(leg.waypoints[0], speed_mps=float("nan"))
-            told = refused(await vehicle.fly(Mission((nowhere,)), takeoff=True))
-            assert told.rule == "finite_numbers"
-            assert "waypoints 1 speed_mps" in told.reason
-            told = refused(await vehicle.fly(Mission(leg.waypoints * 1001), takeoff=True))
-            assert told.rule == "order_form"
-            assert "2000" in told.reason
+            refusal = refused(await vehicle.fly(Mission((nowhere,)), takeoff=True))
+            assert refusal.rule == "finite_numbers"
+            assert "waypoints 1 speed_mps" in refusal.reason
+            refusal = refused(await vehicle.fly(Mission(leg.waypoints * 1001), takeoff=True))
+            assert refusal.rule == "order_form"
+            assert "2000" in refusal.reason
             assert vehicle.now().is_flying.value is False
             assert accepted(await vehicle.fly(leg, takeoff=True)).serial == "SIM-1"
 
     asyncio.run(main())
 
 
-def test_all_vehicles_are_answered_for_one_by_one() -> None:
+def test_fleet_orders_have_one_answer_per_vehicle() -> None:
     async def main() -> None:
         async with running_station() as url, Station(url) as station:
             for serial in SERIALS:
                 await station.vehicle(serial)
-            for give in (station.all_stop, station.fleet.hold, station.fleet.return_home):
-                answers = await give()
+            for send in (station.all_stop, station.fleet.hold, station.fleet.return_home):
+                answers = await send()
                 assert {answer.serial for answer in answers} == set(SERIALS)
                 assert len(answers) == len(SERIALS)
                 assert all(isinstance(answer.answer, Order) for answer in answers)
             answers = await station.fleet.land()
-            lives = [await accepted(answer.answer).wait() for answer in answers]
-            assert [life.phase for life in lives] == [Phase.CONFIRMED] * 2
+            statuses = [await accepted(answer.answer).wait() for answer in answers]
+            assert [status.phase for status in statuses] == [Phase.CONFIRMED] * 2
 
     asyncio.run(main())
 
 
-def test_a_fleet_of_none_is_ordered_nothing() -> None:
+def test_an_empty_fleet_gets_no_orders() -> None:
     async def main() -> None:
         async with running_station(vehicles=0) as url, Station(url) as station:
             assert await station.fleet.hold() == ()
@@ -129,7 +129,7 @@ def test_a_fleet_of_none_is_ordered_nothing() -> None:
     asyncio.run(main())
 
 
-def test_telemetry_is_new_and_passes_over_what_was_missed() -> None:
+def test_telemetry_is_new_and_skips_missed_states() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
@@ -146,7 +146,7 @@ def test_telemetry_is_new_and_passes_over_what_was_missed() -> None:
     asyncio.run(main())
 
 
-def test_a_vehicle_whose_app_falls_silent_is_told_as_late() -> None:
+def test_a_vehicle_with_a_silent_app_becomes_late() -> None:
     async def main() -> None:
         fault = ("telemetry-dropout:SIM-1:3:30",)
         async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
@@ -160,43 +160,43 @@ def test_a_vehicle_whose_app_falls_silent_is_told_as_late() -> None:
     asyncio.run(main())
 
 
-def test_a_vehicle_that_does_not_come_is_told_by_name() -> None:
+def test_a_vehicle_that_does_not_connect_is_named() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             await station.vehicle("SIM-1")
-            with pytest.raises(TookTooLongError, match=r"expected SIM-9 .* knows SIM-1"):
+            with pytest.raises(WaitTimeoutError, match=r"expected SIM-9 .* knows SIM-1"):
                 await station.vehicle("SIM-9", timeout_s=0.3)
             with pytest.raises(ConnectionLostError, match="SIM-9"):
-                Vehicle("SIM-9", station._desk).now()
+                Vehicle("SIM-9", station._order_api).now()
 
     asyncio.run(main())
 
 
-def test_an_order_that_is_only_acknowledged_is_not_waited_for_for_ever() -> None:
+def test_waiting_for_an_acknowledged_order_times_out() -> None:
     async def main() -> None:
         fault = ("ack-then-nothing:SIM-1",)
         async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
             order = accepted(await vehicle.fly(leg_north(vehicle)))
-            with pytest.raises(TookTooLongError, match="expected confirmed within"):
+            with pytest.raises(WaitTimeoutError, match="expected confirmed within"):
                 await order.wait(timeout_s=0.5)
 
     asyncio.run(main())
 
 
-def test_an_order_that_ended_otherwise_is_returned_as_it_ended() -> None:
+def test_a_rejected_order_is_returned_with_its_phase() -> None:
     async def main() -> None:
         fault = ("negative-ack:SIM-1",)
         async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            life = await accepted(await vehicle.fly(leg_north(vehicle))).wait()
-            assert life.phase is Phase.REFUSED_BY_APP
-            assert not life.has_reached(Phase.CONFIRMED)
+            status = await accepted(await vehicle.fly(leg_north(vehicle))).wait()
+            assert status.phase is Phase.REFUSED_BY_APP
+            assert not status.has_reached(Phase.CONFIRMED)
 
     asyncio.run(main())
 
 
-def test_a_token_opens_a_station_and_stays_out_of_sight() -> None:
+def test_a_token_opens_a_station_and_is_never_printed() -> None:
     async def main() -> None:
         async with running_station(vehicles=1, token=TOKEN) as url:
             for station in (Station(url, TOKEN), Station(f"{url}/#token={TOKEN}")):
@@ -204,8 +204,8 @@ def test_a_token_opens_a_station_and_stays_out_of_sight() -> None:
                 async with station:
                     assert isinstance(await (await station.vehicle("SIM-1")).hold(), Order)
             for wrong in (Station(url), Station(url, "another-secret")):
-                with pytest.raises(RequestRefusedError, match="its token") as told:
+                with pytest.raises(RequestRefusedError, match="its token") as problem:
                     await wrong.__aenter__()
-                assert TOKEN not in str(told.value)
+                assert TOKEN not in str(problem.value)
 
     asyncio.run(main())

@@ -1,4 +1,4 @@
-"""The guide's first example is run as it stands, against a real station."""
+"""Runs the guide's first example unchanged with a real station."""
 
 import ast
 import asyncio

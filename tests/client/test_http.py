@@ -1,10 +1,10 @@
-"""Requests to servers that misbehave: one request each, and one sentence that says what is sure."""
+"""Requests to faulty servers: one request each, and one error that states what is certain."""
 
 import asyncio
 import socket
 
 import pytest
-from tests.client.misbehaving import server
+from tests.client.raw_server import server
 
 from recon.client import (
     BadAnswerError,
@@ -23,25 +23,25 @@ SHORT_S = 0.2
 BODY = {"serials": ["SIM-1"], "order": {"kind": "land"}, "takeoff": False}
 
 
-def said(status: str, body: bytes = b"", *headers: str) -> bytes:
+def response(status: str, body: bytes = b"", *headers: str) -> bytes:
     lines = [f"HTTP/1.1 {status}", f"Content-Length: {len(body)}", *headers]
     return ("\r\n".join(lines) + "\r\n\r\n").encode() + body
 
 
 def problem_of(method: str, answer: bytes | None, within_s: float = PROMPT_S) -> ClientError:
-    """Ask once; return what is raised. However it ends, one request was made."""
+    """Send one request and return the error; exactly one request was made."""
 
     async def main() -> ClientError:
-        async with server(answer) as here:
-            http = Http(parse_address(here.url), within_s)
+        async with server(answer) as raw:
+            http = Http(parse_address(raw.url), within_s)
             if method == "POST":
-                asking = http.post("/api/orders", BODY, OrderMessage, "results")
+                request = http.post("/api/orders", BODY, OrderMessage, "results")
             else:
-                asking = http.get("/api/state", OrderMessage, "results")
+                request = http.get("/api/state", OrderMessage, "results")
             with pytest.raises(ClientError) as problem:
-                await asking
+                await request
             await http.close()
-            assert len(here.requests) == 1
+            assert len(raw.requests) == 1
             return problem.value
 
     return asyncio.run(main())
@@ -53,16 +53,16 @@ def problem_of(method: str, answer: bytes | None, within_s: float = PROMPT_S) ->
         b"",
         b"HTTP/1.1 200 OK\r\nContent-Length: 50\r\n\r\nhalf of it",
         b"SSH-2.0-something\r\n",
-        said("500 Internal Server Error", b"Traceback"),
-        said("503 Service Unavailable"),
-        said("200 OK", b"<html>"),
-        said("200 OK", b'{"results": 3}'),
-        said("200 OK", b'{"results": [{}]}'),
-        said("200 OK", b"\xff\xfe"),
-        said("200 OK", b"\x1f\x8b\x08", "Content-Encoding: gzip"),
+        response("500 Internal Server Error", b"Traceback"),
+        response("503 Service Unavailable"),
+        response("200 OK", b"<html>"),
+        response("200 OK", b'{"results": 3}'),
+        response("200 OK", b'{"results": [{}]}'),
+        response("200 OK", b"\xff\xfe"),
+        response("200 OK", b"\x1f\x8b\x08", "Content-Encoding: gzip"),
     ],
 )
-def test_an_order_without_a_usable_answer_may_have_been_sent(answer: bytes) -> None:
+def test_an_order_without_a_valid_answer_may_have_been_sent(answer: bytes) -> None:
     problem = problem_of("POST", answer)
     assert isinstance(problem, MaybeSentError)
     assert "may have been sent and is not repeated" in str(problem)
@@ -76,9 +76,9 @@ def test_an_order_that_is_not_answered_may_have_been_sent() -> None:
 
 
 @pytest.mark.parametrize("method", ["GET", "POST"])
-def test_an_endless_answer_is_not_kept(method: str) -> None:
+def test_an_oversized_answer_is_rejected(method: str) -> None:
     huge = b" " * (LONGEST_ANSWER_BYTES + 1)
-    problem = problem_of(method, said("200 OK", huge))
+    problem = problem_of(method, response("200 OK", huge))
     assert isinstance(problem, MaybeSentError if method == "POST" else BadAnswerError)
     assert f"up to {LONGEST_ANSWER_BYTES} bytes" in str(problem)
 
@@ -87,32 +87,32 @@ def test_an_endless_answer_is_not_kept(method: str) -> None:
 @pytest.mark.parametrize(
     ("answer", "sentence"),
     [
-        (said("401 Unauthorized", b'{"error": "a token is needed"}'), "a token is needed"),
-        (said("404 Not Found", b"nothing here"), "nothing here"),
-        (said("307 Temporary", b"", "Location: http://127.0.0.1:9/"), "HTTP 307"),
+        (response("401 Unauthorized", b'{"error": "a token is needed"}'), "a token is needed"),
+        (response("404 Not Found", b"nothing here"), "nothing here"),
+        (response("307 Temporary", b"", "Location: http://127.0.0.1:9/"), "HTTP 307"),
     ],
 )
-def test_a_refused_request_says_why(method: str, answer: bytes, sentence: str) -> None:
+def test_a_rejected_request_states_the_reason(method: str, answer: bytes, sentence: str) -> None:
     problem = problem_of(method, answer)
     assert isinstance(problem, RequestRefusedError)
     assert sentence in str(problem)
 
 
-def test_an_order_of_a_wrong_form_is_its_own_case() -> None:
-    problem = problem_of("POST", said("422 Unprocessable", b'{"error": "speed: too fast"}'))
+def test_an_invalid_order_raises_its_own_error() -> None:
+    problem = problem_of("POST", response("422 Unprocessable", b'{"error": "speed: too fast"}'))
     assert isinstance(problem, OrderInvalidError)
     assert str(problem) == "speed: too fast"
 
 
 @pytest.mark.parametrize("answer", [b"", b"SSH-2.0-x\r\n", None])
-def test_a_question_without_an_answer(answer: bytes | None) -> None:
+def test_a_get_request_without_an_answer(answer: bytes | None) -> None:
     assert isinstance(problem_of("GET", answer, SHORT_S), StationUnreachableError)
 
 
-def test_where_nothing_listens_nothing_was_sent() -> None:
+def test_without_a_listener_nothing_was_sent() -> None:
     async def main() -> None:
-        with socket.create_server(("127.0.0.1", 0)) as taken:
-            url = f"http://127.0.0.1:{taken.getsockname()[1]}"
+        with socket.create_server(("127.0.0.1", 0)) as unused:
+            url = f"http://127.0.0.1:{unused.getsockname()[1]}"
         http = Http(parse_address(url), PROMPT_S)
         with pytest.raises(StationUnreachableError, match="nothing was ordered"):
             await http.post("/api/orders", BODY, OrderMessage, "results")
@@ -121,13 +121,13 @@ def test_where_nothing_listens_nothing_was_sent() -> None:
     asyncio.run(main())
 
 
-def test_proxies_of_the_environment_do_not_get_orders(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_proxy_variables_are_ignored(monkeypatch: pytest.MonkeyPatch) -> None:
     async def main() -> None:
-        async with server(said("200 OK", b'{"results": []}')) as here:
-            http = Http(parse_address(here.url, "secret-1"), PROMPT_S)
+        async with server(response("200 OK", b'{"results": []}')) as raw:
+            http = Http(parse_address(raw.url, "secret-1"), PROMPT_S)
             assert await http.post("/api/orders", BODY, OrderMessage, "x") == OrderMessage(())
             await http.close()
-            assert b"Authorization: Bearer secret-1" in here.requests[0]
+            assert b"Authorization: Bearer secret-1" in raw.requests[0]
 
     for name in ("HTTP_PROXY", "ALL_PROXY", "http_proxy", "all_proxy"):
         monkeypatch.setenv(name, "http://127.0.0.1:9")

@@ -1,23 +1,24 @@
-"""Messages fit the API's own models, ages only grow, and foreign data is told in a sentence."""
+"""Messages match the API's models, ages only grow, and invalid data gives a readable error."""
 
 import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.client import told
+from tests.client import fake_state
 
 from recon.api import schema
 from recon.client import BadAnswerError, Staleness
-from recon.client.life import Life, PhaseChange
 from recon.client.messages import (
     OrderMessage,
+    OrderStatus,
+    PhaseReport,
     ProblemMessage,
     ResultMessage,
     StateMessage,
     StationMessage,
     decode,
 )
-from recon.client.order_form import order_form
+from recon.client.order_api import order_json
 from recon.client.telemetry import Telemetry
 from recon.model.command import (
     Body,
@@ -38,8 +39,8 @@ PAIRS = [
     (StateMessage, schema.StationState),
     (StationMessage, schema.StationView),
     (Telemetry, schema.VehicleView),
-    (Life, schema.CommandView),
-    (PhaseChange, schema.PhaseView),
+    (OrderStatus, schema.CommandView),
+    (PhaseReport, schema.PhaseView),
     (OrderMessage, schema.OrderResponse),
     (ResultMessage, schema.OrderResult),
     (ProblemMessage, schema.Problem),
@@ -56,16 +57,18 @@ BODIES: list[Body] = [
 
 
 @pytest.mark.parametrize(("ours", "theirs"), PAIRS)
-def test_every_key_read_is_one_the_api_writes(
+def test_every_key_read_is_written_by_the_api(
     ours: type[msgspec.Struct], theirs: type[schema.Message]
 ) -> None:
     assert set(ours.__struct_fields__) <= set(theirs.model_fields)
 
 
-def test_a_whole_state_is_read_as_it_was_told() -> None:
-    text = told.state_text(vehicles=(told.vehicle(),), commands=(told.command(7),))
+def test_a_complete_state_is_decoded() -> None:
+    text = fake_state.state_text(
+        vehicles=(fake_state.vehicle(),), commands=(fake_state.command(7),)
+    )
     message = decode(text, StateMessage, "a state")
-    assert message.run_started_ns == told.RUN_STARTED_NS
+    assert message.run_started_ns == fake_state.RUN_STARTED_NS
     (vehicle,) = message.vehicles
     assert (vehicle.serial, vehicle.is_live, vehicle.is_connected) == ("SIM-1", True, True)
     assert vehicle.position.latitude_deg == 41.9
@@ -74,8 +77,8 @@ def test_a_whole_state_is_read_as_it_was_told() -> None:
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_every_order_is_one_the_api_takes(body: Body) -> None:
-    form = order_form(body)
+def test_every_order_is_valid_for_the_api(body: Body) -> None:
+    form = order_json(body)
     assert not isinstance(form, Refusal)
     request = schema.OrderRequest.model_validate({"serials": ["SIM-1"], "order": form})
     assert request.order.model_dump() == form
@@ -83,7 +86,7 @@ def test_every_order_is_one_the_api_takes(body: Body) -> None:
 
 @given(st.floats(0.0, 1e6), st.one_of(st.none(), st.floats(0.0, 1e6)))
 def test_ages_grow_together_and_staleness_follows(seconds: float, age_s: float | None) -> None:
-    text = told.state_text(vehicles=(told.vehicle(age_s=age_s),))
+    text = fake_state.state_text(vehicles=(fake_state.vehicle(age_s=age_s),))
     (vehicle,) = decode(text, StateMessage, "a state").vehicles
     older = vehicle.older_by(seconds)
     expected = None if age_s is None else age_s + seconds
@@ -96,7 +99,7 @@ def test_ages_grow_together_and_staleness_follows(seconds: float, age_s: float |
 
 
 @pytest.mark.parametrize(
-    ("age_s", "word"),
+    ("age_s", "staleness"),
     [
         (0.0, Staleness.LIVE),
         (0.999, Staleness.LIVE),
@@ -106,18 +109,18 @@ def test_ages_grow_together_and_staleness_follows(seconds: float, age_s: float |
         (None, Staleness.SILENT),
     ],
 )
-def test_words_for_ages(age_s: float | None, word: Staleness) -> None:
-    assert staleness_at(age_s) is word
+def test_staleness_of_ages(age_s: float | None, staleness: Staleness) -> None:
+    assert staleness_at(age_s) is staleness
 
 
-def test_the_stations_worse_word_stands() -> None:
-    vehicle = told.vehicle(age_s=0.1).model_copy(update={"staleness": "lost"})
-    (read,) = decode(told.state_text(vehicles=(vehicle,)), StateMessage, "a state").vehicles
+def test_a_worse_staleness_from_the_station_is_kept() -> None:
+    vehicle = fake_state.vehicle(age_s=0.1).model_copy(update={"staleness": "lost"})
+    (read,) = decode(fake_state.state_text(vehicles=(vehicle,)), StateMessage, "a state").vehicles
     assert read.older_by(0.0).staleness is Staleness.LOST
 
 
 @given(st.binary(max_size=200))
-def test_foreign_bytes_are_told_in_a_sentence(data: bytes) -> None:
+def test_invalid_bytes_give_a_readable_error(data: bytes) -> None:
     with pytest.raises(BadAnswerError, match="expected a state as JSON, got"):
         decode(data, StateMessage, "a state")
 
@@ -128,13 +131,13 @@ def test_foreign_bytes_are_told_in_a_sentence(data: bytes) -> None:
         lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
     )
 )
-def test_foreign_json_is_told_in_a_sentence(value: object) -> None:
+def test_unexpected_json_gives_a_readable_error(value: object) -> None:
     with pytest.raises(BadAnswerError, match="same version"):
         decode(msgspec.json.encode(value), OrderMessage, "results of an order")
 
 
 @pytest.mark.parametrize("text", ["[" * 100_000, '{"time_ns":' + "9" * 5000])
-def test_json_made_to_hurt_is_told_in_a_sentence(text: str) -> None:
+def test_hostile_json_gives_a_readable_error(text: str) -> None:
     with pytest.raises(BadAnswerError) as problem:
         decode(text, StateMessage, "a state")
     assert len(str(problem.value)) < 400

@@ -1,4 +1,4 @@
-"""Goto, nudge and hold position from a program; and what becomes of them when the program ends."""
+"""Goto, nudge and hold position from a program, and what happens when the program ends."""
 
 import asyncio
 from math import hypot
@@ -36,7 +36,7 @@ async def until_mode(vehicle: Vehicle, mode: str) -> None:
             return
 
 
-def test_a_goto_flies_there_and_a_nudge_goes_on_from_there() -> None:
+def test_a_goto_flies_to_the_target_and_a_nudge_continues_from_there() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
@@ -45,9 +45,9 @@ def test_a_goto_flies_there_and_a_nudge_goes_on_from_there() -> None:
             order = await vehicle.goto(
                 there.latitude_deg, there.longitude_deg, height_above_takeoff_m=42.0, speed_mps=4.0
             )
-            life = await accepted(order).wait(Phase.DONE)
-            assert (life.kind, life.phase) == ("goto", Phase.DONE)
-            assert Phase.STARTED in [change.phase for change in life.history]
+            status = await accepted(order).wait(Phase.DONE)
+            assert (status.kind, status.phase) == ("goto", Phase.DONE)
+            assert Phase.STARTED in [change.phase for change in status.history]
             assert hypot(*offset_north_east_m(place(vehicle.now().position), there)) < 1.5
             nudge = accepted(await vehicle.nudge(east_m=-3.0, up_m=-2.0, turn_deg=30.0))
             assert (await nudge.wait(Phase.DONE)).kind == "nudge"
@@ -59,10 +59,10 @@ def test_a_goto_flies_there_and_a_nudge_goes_on_from_there() -> None:
     asyncio.run(main())
 
 
-def test_a_program_that_leaves_lets_the_vehicle_hold() -> None:
+def test_a_vehicle_holds_when_its_program_ends() -> None:
     async def main() -> None:
-        async with running_station(vehicles=1) as url, Station(url) as watching:
-            vehicle = await watching.vehicle("SIM-1")
+        async with running_station(vehicles=1) as url, Station(url) as observer:
+            vehicle = await observer.vehicle("SIM-1")
             start = place(vehicle.now().position)
             far = moved_m(start, 300.0, 0.0)
             async with Station(url) as leaving:
@@ -73,24 +73,24 @@ def test_a_program_that_leaves_lets_the_vehicle_hold() -> None:
                 await accepted(order).wait(Phase.STARTED)
                 await until_mode(vehicle, "joystick")
             await until_mode(vehicle, "gps_atti")
-            newest = watching._stream.newest
+            newest = observer._stream.newest
             assert newest is not None
-            lives = {command.kind: command.phase for command in newest.message.commands}
-            assert lives["goto"] is Phase.FAILED
-            assert "hover" in lives
+            phases = {command.kind: command.phase for command in newest.message.commands}
+            assert phases["goto"] is Phase.FAILED
+            assert "hover" in phases
             assert hypot(*offset_north_east_m(start, place(vehicle.now().position))) < 60.0
 
     asyncio.run(main())
 
 
-def test_a_program_that_hangs_lets_the_vehicle_hold(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its connection is open, but it says nothing more: as good as gone after two seconds."""
+def test_a_vehicle_holds_when_its_program_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The connection is open but sends no keepalives: treated as closed after 2 s."""
 
     async def main() -> None:
-        async with running_station(vehicles=1) as url, Station(url) as watching:
-            vehicle = await watching.vehicle("SIM-1")
+        async with running_station(vehicles=1) as url, Station(url) as observer:
+            vehicle = await observer.vehicle("SIM-1")
             far = moved_m(place(vehicle.now().position), 300.0, 0.0)
-            monkeypatch.setattr("recon.client.stream.BEAT_S", 3600.0)
+            monkeypatch.setattr("recon.client.stream.KEEPALIVE_S", 3600.0)
             async with Station(url) as hanging:
                 flown = await hanging.vehicle("SIM-1")
                 order = accepted(
@@ -104,7 +104,7 @@ def test_a_program_that_hangs_lets_the_vehicle_hold(monkeypatch: pytest.MonkeyPa
     asyncio.run(main())
 
 
-def test_what_cannot_be_steered_is_a_value() -> None:
+def test_refused_steering_is_a_value() -> None:
     async def main() -> None:
         async with running_station(airborne=False, vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")

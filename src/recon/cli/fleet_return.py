@@ -19,12 +19,12 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import print_json, print_table
-from recon.client import Returning, Station
+from recon.client import Station, VehicleReturn
 
 PLANNING_TIMEOUT_S = 10.0
 POLL_INTERVAL_S = 0.5
 
-Condition = Callable[[Sequence[Returning]], bool]
+Condition = Callable[[Sequence[VehicleReturn]], bool]
 
 
 def fleet_return_command(
@@ -54,17 +54,17 @@ def fleet_return_command(
     run_at_station(address, token_file, work)
 
 
-def _are_planned(flights: Sequence[Returning]) -> bool:
+def _are_planned(flights: Sequence[VehicleReturn]) -> bool:
     return all(flight.wave is not None or flight.is_done for flight in flights)
 
 
-def _are_done(flights: Sequence[Returning]) -> bool:
+def _are_done(flights: Sequence[VehicleReturn]) -> bool:
     return all(flight.is_done for flight in flights)
 
 
 async def _poll(
     station: Station, called: set[str | None], condition: Condition, timeout_s: float
-) -> list[Returning]:
+) -> list[VehicleReturn]:
     """Return the called vehicles' flights once they meet the condition, or at the timeout."""
     end_s = time.monotonic() + timeout_s
     while True:
@@ -74,7 +74,7 @@ async def _poll(
         await asyncio.sleep(POLL_INTERVAL_S)
 
 
-def _print_flights(flights: Sequence[Returning], as_json: bool) -> None:
+def _print_flights(flights: Sequence[VehicleReturn], as_json: bool) -> None:
     if as_json:
         print_json(msgspec.to_builtins(flights))
         return

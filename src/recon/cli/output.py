@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from recon.cli.connection import DONE, REFUSED
-from recon.client import Order, Refusal, Station, TookTooLongError, VehicleAnswer
+from recon.client import Order, Refusal, Station, VehicleAnswer, WaitTimeoutError
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,11 +118,17 @@ async def _awaited(
     order: Order, vehicle: tuple[str | None, int | None, str], wait_s: float
 ) -> Outcome:
     try:
-        life = await order.effect(wait_s)
-    except TookTooLongError as problem:
+        life = await order.wait_for_effect(wait_s)
+    except WaitTimeoutError as problem:
         return Outcome(*vehicle, True, False, command_id=order.command_id, note=str(problem))
     return Outcome(
-        *vehicle, True, life.is_seen, False, order.command_id, life.phase.value, note=life.note
+        *vehicle,
+        True,
+        life.has_taken_effect,
+        False,
+        order.command_id,
+        life.phase.value,
+        note=life.note,
     )
 
 

@@ -8,7 +8,7 @@ import asyncio
 from collections.abc import Callable
 from typing import Any
 
-from recon.client import ClientError, Refusal, Station, Survey, Telemetry
+from recon.client import ClientError, Refusal, Station, SurveyStatus, Telemetry
 from recon.geo import point_from_enu
 from recon.score import Scenario
 from recon.score.scripted_operator import (
@@ -77,7 +77,7 @@ class _HttpOperator:
                     return
             await asyncio.sleep(LOOK_EVERY_S)
 
-    async def _survey(self) -> Survey | None:
+    async def _survey(self) -> SurveyStatus | None:
         if self._survey_id is None:
             return None
         for survey in await self._station.surveys.list():
@@ -85,7 +85,7 @@ class _HttpOperator:
                 return survey
         raise ClientError(f"survey {self._survey_id} is missing from the station's list")
 
-    async def _view(self, survey: Survey | None) -> FieldView:
+    async def _view(self, survey: SurveyStatus | None) -> FieldView:
         serials = self._scenario.fleet.serials
         is_grounded = survey is None or survey.phase == "done"
         ready = await self._passed_checklists() if is_grounded else frozenset(serials)
@@ -112,11 +112,11 @@ class _HttpOperator:
         match action:
             case PlanSurvey():
                 answer = await surveys.create(**survey_request(self._scenario))
-                if isinstance(answer, Survey):
+                if isinstance(answer, SurveyStatus):
                     self._survey_id = answer.id
             case StartDrones(serials):
                 answer = await surveys.start(self._planned_id, serials, takeoff=True)
-                if isinstance(answer, Survey):
+                if isinstance(answer, SurveyStatus):
                     self._report(f"survey {answer.id}: flown by {', '.join(serials)}")
             case AbortSurvey():
                 answer = await surveys.abort(self._planned_id)

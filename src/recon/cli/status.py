@@ -14,7 +14,7 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import print_json, print_line, print_table
-from recon.client import Alarm, Life, Station, Telemetry
+from recon.client import AlarmStatus, OrderStatus, Station, Telemetry
 
 
 def status_command(
@@ -112,14 +112,14 @@ def _speed_mps(vehicle: Telemetry) -> float | None:
     return sum(part**2 for part in known) ** 0.5 if len(known) == len(parts) else None
 
 
-def _alarm_row(alarm: Alarm) -> tuple[str, ...]:
+def _alarm_row(alarm: AlarmStatus) -> tuple[str, ...]:
     ended = "" if alarm.is_active else " (ended)"
     acknowledged = "yes" if alarm.is_acknowledged else "no"
     since = f"{alarm.raised_age_s:.0f} s"
     return (str(alarm.id), alarm.severity, since, alarm.text + ended, acknowledged)
 
 
-def _life_row(life: Life) -> tuple[str, ...]:
+def _life_row(life: OrderStatus) -> tuple[str, ...]:
     age = f"{life.history[0].age_s:.0f} s" if life.history else ""
     kind, phase = (word.replace("_", " ") for word in (life.kind, life.phase.value))
     return (str(life.id), life.vehicle_name, kind, phase, age, life.note)

@@ -128,13 +128,13 @@ def _steer(
 
 async def _arrival(order: Order, vehicle: str, timeout_s: float) -> Outcome:
     """Wait until the vehicle has arrived, or the order has ended otherwise."""
-    life = await order.arrival(timeout_s)
+    life = await order.wait_for_arrival(timeout_s)
     return Outcome(
         order.serial,
         None,
         vehicle,
         is_accepted=True,
-        is_done=life.is_there,
+        is_done=life.has_arrived,
         command_id=order.command_id,
         phase=life.phase.value,
         note=life.note,

@@ -21,7 +21,7 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import Outcome, await_outcomes, print_outcomes
-from recon.client import ClientError, Fleet, Life, Station, StopAnswer, VehicleAnswer
+from recon.client import ClientError, FleetCommands, OrderStatus, Station, StopAnswer, VehicleAnswer
 
 CONFIRMATION_TIMEOUT_S = 15.0
 POLL_INTERVAL_S = 0.2
@@ -29,7 +29,7 @@ ON_GROUND_RULE = "flying"
 """The rule that refuses a hover on the ground, where some apps would answer it with a takeoff."""
 
 AllOption = Annotated[bool, typer.Option("--all", help="Every identified vehicle.")]
-Give = Callable[[Fleet, Sequence[str] | None], Awaitable[tuple[VehicleAnswer, ...]]]
+Give = Callable[[FleetCommands, Sequence[str] | None], Awaitable[tuple[VehicleAnswer, ...]]]
 
 
 def hold_command(
@@ -41,7 +41,7 @@ def hold_command(
     token_file: TokenOption = None,
 ) -> None:
     """Stop vehicles and hold position."""
-    _order(Fleet.hold, vehicles, all_vehicles, wait, as_json, address, token_file)
+    _order(FleetCommands.hold, vehicles, all_vehicles, wait, as_json, address, token_file)
 
 
 def land_command(
@@ -56,7 +56,7 @@ def land_command(
 
     Exit code 0 once telemetry shows them landing.
     """
-    _order(Fleet.land, vehicles, all_vehicles, wait, as_json, address, token_file)
+    _order(FleetCommands.land, vehicles, all_vehicles, wait, as_json, address, token_file)
 
 
 def return_command(
@@ -71,7 +71,7 @@ def return_command(
 
     The go-home height is set in the aircraft. Exit code 0 once telemetry shows them returning.
     """
-    _order(Fleet.return_home, vehicles, all_vehicles, wait, as_json, address, token_file)
+    _order(FleetCommands.return_home, vehicles, all_vehicles, wait, as_json, address, token_file)
 
 
 def all_stop_command(
@@ -112,7 +112,7 @@ async def _all_stop(station: Station, wait_s: float) -> list[Outcome]:
     """Send the stop before anything else; then poll for the outcomes."""
     try:
         answers = await station.all_stop_at_once()
-        lives: dict[int, Life] = {}
+        lives: dict[int, OrderStatus] = {}
         end_s = time.monotonic() + wait_s
         while time.monotonic() < end_s and not _are_over(answers, lives):
             try:
@@ -126,12 +126,12 @@ async def _all_stop(station: Station, wait_s: float) -> list[Outcome]:
         await station.close()
 
 
-def _are_over(answers: Sequence[StopAnswer], lives: dict[int, Life]) -> bool:
+def _are_over(answers: Sequence[StopAnswer], lives: dict[int, OrderStatus]) -> bool:
     accepted = [answer.command_id for answer in answers if answer.accepted]
     return all(number in lives and lives[number].phase.is_final for number in accepted)
 
 
-def _stopped(answer: StopAnswer, life: Life | None, wait_s: float) -> Outcome:
+def _stopped(answer: StopAnswer, life: OrderStatus | None, wait_s: float) -> Outcome:
     is_on_ground = answer.rule == ON_GROUND_RULE
     vehicle = (answer.serial, answer.link_id, answer.vehicle_name)
     if not answer.accepted:
@@ -141,5 +141,11 @@ def _stopped(answer: StopAnswer, life: Life | None, wait_s: float) -> Outcome:
         is_done, note = wait_s == 0.0, "" if wait_s == 0.0 else "outcome unknown"
         return Outcome(*vehicle, True, is_done, False, answer.command_id, note=note)
     return Outcome(
-        *vehicle, True, life.is_seen, False, answer.command_id, life.phase.value, note=life.note
+        *vehicle,
+        True,
+        life.has_taken_effect,
+        False,
+        answer.command_id,
+        life.phase.value,
+        note=life.note,
     )

@@ -21,7 +21,7 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import print_json, print_line, print_table
-from recon.client import ClientError, Refusal, Station, Survey, Surveys
+from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
 from recon.model.geo import GeoPoint
 from recon.model.survey import WhenDone, none_such
 
@@ -31,7 +31,7 @@ PHASES = {"created": "planned"}
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
 survey_app = new_app(
-    help="Survey a region: create, start, pause, abort, status.", no_args_is_help=True
+    help="SurveyStatus a region: create, start, pause, abort, status.", no_args_is_help=True
 )
 
 NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
@@ -143,7 +143,7 @@ def pause_command(
 
     Its vehicles hold position, under operator control.
     """
-    run_at_station(address, token_file, _stop(Surveys.pause, number, as_json))
+    run_at_station(address, token_file, _stop(SurveyCommands.pause, number, as_json))
 
 
 @survey_app.command("abort")
@@ -157,7 +157,7 @@ def abort_command(
 
     Its vehicles hold position, under operator control.
     """
-    run_at_station(address, token_file, _stop(Surveys.abort, number, as_json))
+    run_at_station(address, token_file, _stop(SurveyCommands.abort, number, as_json))
 
 
 @survey_app.command("status")
@@ -174,7 +174,9 @@ def status_command(
 
 
 def _stop(
-    stop: Callable[[Surveys, int], Awaitable[Survey | Refusal]], number: int, as_json: bool
+    stop: Callable[[SurveyCommands, int], Awaitable[SurveyStatus | Refusal]],
+    number: int,
+    as_json: bool,
 ) -> Work:
     async def work(station: Station) -> int:
         return _print_answer(await stop(station.surveys, number), as_json)
@@ -215,7 +217,7 @@ async def _area(
     return {"polygon": rings, "name": name or own_name}
 
 
-def _print_answer(answer: Survey | Refusal, as_json: bool) -> int:
+def _print_answer(answer: SurveyStatus | Refusal, as_json: bool) -> int:
     if isinstance(answer, Refusal):
         print_line(f"refused ({answer.rule}): {answer.reason}")
         return REFUSED
@@ -227,7 +229,7 @@ def _print_answer(answer: Survey | Refusal, as_json: bool) -> int:
     return DONE
 
 
-def _sentence(survey: Survey) -> str:
+def _sentence(survey: SurveyStatus) -> str:
     """Return the survey's number, phase and name; later commands use the number."""
     number, phase = survey.id, PHASES.get(survey.phase, survey.phase)
     sentence = f"survey {number}: {phase}, {survey.name}"
@@ -236,7 +238,7 @@ def _sentence(survey: Survey) -> str:
     return f"{sentence}. Start it with `recon survey start {number} VEHICLE...`"
 
 
-def _print_surveys(surveys: list[Survey]) -> None:
+def _print_surveys(surveys: list[SurveyStatus]) -> None:
     rows = [
         (
             f"survey {s.id}",
@@ -262,7 +264,7 @@ def _print_surveys(surveys: list[Survey]) -> None:
         print_table("vehicles", ("vehicle", "activity"), members)
 
 
-def _areas(survey: Survey) -> tuple[str, str, str, str]:
+def _areas(survey: SurveyStatus) -> tuple[str, str, str, str]:
     figures = survey.figures
     if figures is None:
         return "", "", "", ""

@@ -13,18 +13,32 @@ from recon.client.errors import (
     MaybeSentError,
     RequestRefusedError,
     StationUnreachableError,
-    TookTooLongError,
+    WaitTimeoutError,
 )
-from recon.client.fleet import Fleet
-from recon.client.life import Life, PhaseChange
+from recon.client.messages import (
+    AlarmStatus,
+    AuditLogPage,
+    AuditRecord,
+    OrderStatus,
+    PhaseReport,
+    Preflight,
+    PreflightOverride,
+    PreflightPoint,
+    StopAnswer,
+    VehicleReturn,
+)
 from recon.client.order import Order, VehicleAnswer
-from recon.client.readiness import Preflight, PreflightOverride, PreflightPoint
-from recon.client.returning import Returning
-from recon.client.station import Station
-from recon.client.surveys import Survey, SurveyFigures, Surveying, Surveys
-from recon.client.telemetry import Aged, ControlAuthority, Heading, Position, Telemetry, Velocity
+from recon.client.station import FleetCommands, Station
+from recon.client.surveys import SurveyCommands, SurveyProgress, SurveyStatus, SurveyVehicle
+from recon.client.telemetry import (
+    Aged,
+    AuthorityStatus,
+    EulerAngles,
+    Position,
+    Telemetry,
+    Velocity,
+)
 from recon.client.vehicle import Vehicle
-from recon.client.watched import Alarm, AuditEntry, AuditPage, StopAnswer
 from recon.model.command import Phase, Refusal, StickFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import Staleness
@@ -32,41 +46,41 @@ from recon.model.vehicle import Staleness
 __all__ = [
     "AddressError",
     "Aged",
-    "Alarm",
-    "AuditEntry",
-    "AuditPage",
+    "AlarmStatus",
+    "AuditLogPage",
+    "AuditRecord",
+    "AuthorityStatus",
     "BadAnswerError",
     "ClientError",
     "ConnectionLostError",
-    "ControlAuthority",
-    "Fleet",
-    "Heading",
-    "Life",
+    "EulerAngles",
+    "FleetCommands",
     "MaybeSentError",
     "Mission",
     "Order",
+    "OrderStatus",
     "Phase",
-    "PhaseChange",
+    "PhaseReport",
     "Position",
     "Preflight",
     "PreflightOverride",
     "PreflightPoint",
     "Refusal",
     "RequestRefusedError",
-    "Returning",
     "Staleness",
     "Station",
     "StationUnreachableError",
     "StickFrame",
     "StopAnswer",
-    "Survey",
-    "SurveyFigures",
-    "Surveying",
-    "Surveys",
+    "SurveyCommands",
+    "SurveyProgress",
+    "SurveyStatus",
+    "SurveyVehicle",
     "Telemetry",
-    "TookTooLongError",
     "Vehicle",
     "VehicleAnswer",
+    "VehicleReturn",
     "Velocity",
+    "WaitTimeoutError",
     "Waypoint",
 ]

@@ -1,4 +1,4 @@
-"""Where a station listens, from what a person types or pastes."""
+"""A station's address, parsed from what the user types or pastes."""
 
 import string
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ _STREAM_SCHEMES = {"http": "ws", "https": "wss"}
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """A station's base addresses, without a slash at the end, and its secret."""
+    """A station's base URLs, without a trailing slash, and its token."""
 
     http: str
     stream: str
@@ -21,22 +21,22 @@ class Address:
 
     @property
     def headers(self) -> dict[str, str]:
-        """The headers that let a request in; the same for HTTP and WebSocket."""
+        """Authorization headers for HTTP and WebSocket."""
         return {} if self.token is None else {"Authorization": f"Bearer {self.token}"}
 
 
 def parse_address(url: str, token: str | None = None) -> Address:
     """Return the address of a station; raises `AddressError`.
 
-    The address that a station with a token prints at its start, with `#token=...` at its end, is
-    taken as it is; a token given beside it counts more.
+    Accepts the address a station prints at start, with `#token=...` at its end; the `token`
+    argument takes precedence.
     """
     parts = _split(url)
     if token is None and parts.fragment.startswith(TOKEN_MARK):
         token = parts.fragment.removeprefix(TOKEN_MARK)
     if token is not None and (not token or not TOKEN_LETTERS.issuperset(token)):
-        # The token itself stays out of the text: texts are printed and logged.
-        raise AddressError("token: expected letters, digits and -._~ only, got others or nothing")
+        # Without the token itself: error texts are printed and logged.
+        raise AddressError("token: expected letters, digits and -._~ only")
     place = parts.netloc
     stream = f"{_STREAM_SCHEMES[parts.scheme]}://{place}/api/stream"
     return Address(f"{parts.scheme}://{place}", stream, token)

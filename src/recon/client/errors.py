@@ -1,25 +1,25 @@
-"""What can go wrong between a program and the station. A refused order is no error but a value.
+"""Errors between a program and the station. A refused order is a value, not an error.
 
-ClientError                  its text says what was expected, what came, and what to do
-|- AddressError              an address or a token that cannot be one
-|- StationUnreachableError   no connection was made: nothing was sent
-|- RequestRefusedError       the station answered, and did not do what was asked
-|  |- OrderInvalidError      it did not take the order's form (seen as a `Refusal`)
-|- BadAnswerError            what came is not what a station says
-|- MaybeSentError            an order left, and no usable answer came: it may be flown
-|- ConnectionLostError       the stream of states broke off: what is known grows old
-|- TookTooLongError          what was waited for did not come in time
+ClientError                  the text states what was expected, what was received, and what to do
+|- AddressError              an invalid address or token
+|- StationUnreachableError   no connection: nothing was sent
+|- RequestRefusedError       the station answered and did nothing
+|  |- OrderInvalidError      the order's format was rejected (returned as a `Refusal`)
+|- BadAnswerError            the response is not a station's
+|- MaybeSentError            an order was sent without a valid answer: it may be flown
+|- ConnectionLostError       the stream of states is lost: known values are old
+|- WaitTimeoutError          an awaited state did not occur in time
 """
 
 from recon.model.errors import ReconError
 
 
 class ClientError(ReconError):
-    """The root of the client's errors."""
+    """Base class of the client's errors."""
 
 
 class AddressError(ClientError):
-    """An address or a token that cannot be one; nothing was sent."""
+    """An invalid address or token; nothing was sent."""
 
 
 class StationUnreachableError(ClientError):
@@ -27,27 +27,27 @@ class StationUnreachableError(ClientError):
 
 
 class RequestRefusedError(ClientError):
-    """The station answered that it does not do this (token, host name, version); nothing flew."""
+    """The station rejected the request (token, host name, version); nothing was executed."""
 
 
 class OrderInvalidError(RequestRefusedError):
-    """The station did not take the order's form; it becomes a refusal, as a value."""
+    """The station rejected the order's format; the client returns this as a `Refusal`."""
 
 
 class BadAnswerError(ClientError):
-    """What came is not JSON, not of the expected shape, or too long."""
+    """The response is not JSON, has an unexpected structure, or is too long."""
 
 
 class MaybeSentError(ClientError):
-    """An order may have been carried out: it left, and no usable answer came.
+    """An order was sent without a valid answer and may be executed.
 
-    The client never gives it again by itself. See what the vehicle does, then decide.
+    The client never repeats it. Check the vehicle before sending it again.
     """
 
 
 class ConnectionLostError(ClientError):
-    """The stream of states broke off, or another run of the station answers now."""
+    """The stream of states is lost, or the station has restarted."""
 
 
-class TookTooLongError(ClientError):
-    """A vehicle did not connect, or an order did not get so far, within the given time."""
+class WaitTimeoutError(ClientError):
+    """A vehicle did not connect, or an order did not reach a phase, in the given time."""

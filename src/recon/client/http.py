@@ -1,7 +1,7 @@
-"""HTTP to the station: one request, one answer, never again by itself.
+"""HTTP requests to the station, never repeated.
 
-No connection is kept for later: an idle one may have been closed by the station just when an order
-is written to it, and then nobody could tell whether the order was heard.
+No connection is kept alive: the station might close an idle one just as an order is written to it,
+and the client could not tell whether the order arrived.
 """
 
 import asyncio
@@ -36,57 +36,57 @@ class Http:
             base_url=address.http,
             headers={**address.headers, "Accept-Encoding": "identity"},
             timeout=answer_within_s,
-            # Proxies of the environment are for the web; the station is on this field's network.
+            # Ignore proxy variables: the station is on the local network.
             trust_env=False,
             follow_redirects=False,
             limits=httpx.Limits(max_connections=None, max_keepalive_connections=0),
         )
 
     async def close(self) -> None:
-        """Close what is open."""
+        """Close all connections."""
         await self._client.aclose()
 
-    async def get(self, path: str, kind: type[M], what: str) -> M:
-        """Return what the station tells; raises `ClientError`."""
+    async def get(self, path: str, kind: type[M], expected: str) -> M:
+        """Return the decoded response to a GET request; raises `ClientError`."""
         try:
-            status, data = await self._ask("GET", path, None)
+            status, data = await self._send("GET", path, None)
         except (httpx.HTTPError, httpx.InvalidURL, TimeoutError) as problem:
             raise self._unreachable(problem) from problem
-        self._refuse(status, data, path)
-        return decode(data, kind, what)
+        self._check_status(status, data, path)
+        return decode(data, kind, expected)
 
-    async def post(self, path: str, body: Any, kind: type[M], what: str) -> M:
-        """Send an order once and return the answer.
+    async def post(self, path: str, body: Any, kind: type[M], expected: str) -> M:
+        """Send a POST request once and return the decoded response.
 
-        Raises `StationUnreachableError` (nothing was sent), `RequestRefusedError` (not carried
-        out), or `MaybeSentError` (anything else).
+        Raises `StationUnreachableError` (nothing was sent), `RequestRefusedError` (not executed),
+        or `MaybeSentError` (anything else).
         """
         content = None if body is None else json.dumps(body, allow_nan=False).encode()
         try:
-            status, data = await self._ask("POST", path, content)
+            status, data = await self._send("POST", path, content)
         except (httpx.ConnectError, httpx.ConnectTimeout) as problem:
             raise self._unreachable(problem) from problem
         except (httpx.HTTPError, TimeoutError, BadAnswerError) as problem:
             raise self._maybe_sent(_reason(problem, self._answer_within_s)) from problem
         if status >= 500:
             raise self._maybe_sent(f"HTTP {status}: {shown(data)}")
-        self._refuse(status, data, path)
+        self._check_status(status, data, path)
         try:
-            return decode(data, kind, what)
+            return decode(data, kind, expected)
         except BadAnswerError as problem:
             raise self._maybe_sent(str(problem)) from problem
 
-    async def tell(self, path: str) -> None:
-        """Send a request that has no answer but that it was taken; raises as `post` does."""
+    async def post_without_result(self, path: str) -> None:
+        """Send a POST request whose response has no body; raises as `post` does."""
         try:
-            status, data = await self._ask("POST", path, None)
+            status, data = await self._send("POST", path, None)
         except (httpx.ConnectError, httpx.ConnectTimeout) as problem:
             raise self._unreachable(problem) from problem
         except (httpx.HTTPError, TimeoutError, BadAnswerError) as problem:
             raise self._maybe_sent(_reason(problem, self._answer_within_s)) from problem
-        self._refuse(status, data, path)
+        self._check_status(status, data, path)
 
-    async def _ask(self, method: str, path: str, content: bytes | None) -> tuple[int, bytes]:
+    async def _send(self, method: str, path: str, content: bytes | None) -> tuple[int, bytes]:
         headers = {} if content is None else {"Content-Type": "application/json"}
         async with (
             asyncio.timeout(self._answer_within_s),
@@ -102,7 +102,7 @@ class Http:
                     )
             return response.status_code, bytes(data)
 
-    def _refuse(self, status: int, data: bytes, path: str) -> None:
+    def _check_status(self, status: int, data: bytes, path: str) -> None:
         if 200 <= status < 300:
             return
         try:
@@ -113,7 +113,7 @@ class Http:
             raise OrderInvalidError(reason)
         raise RequestRefusedError(
             f"{self._address.http}{path}: expected an answer, got HTTP {status}: {reason}; nothing "
-            "was carried out"
+            "was executed"
         )
 
     def _unreachable(self, problem: Exception) -> StationUnreachableError:
@@ -125,9 +125,8 @@ class Http:
 
     def _maybe_sent(self, reason: str) -> MaybeSentError:
         return MaybeSentError(
-            f"expected the station's answer to an order, got none that can be used ({reason}); the "
-            "order may have been sent and is not repeated: see what the vehicle does before "
-            "giving it again"
+            f"expected the station's answer to an order, got no valid one ({reason}); the order "
+            "may have been sent and is not repeated: check the vehicle before sending it again"
         )
 
 

@@ -1,21 +1,194 @@
-"""The station's messages, as far as the client reads them. Keys it does not know are left alone."""
+"""API messages as the client reads them. Unknown keys are ignored."""
 
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from typing import Any, Literal, TypeVar
 
 import msgspec
 
 from recon.client.errors import BadAnswerError
-from recon.client.life import Life
-from recon.client.returning import FleetReturnMessage
 from recon.client.telemetry import Telemetry
-from recon.client.watched import Alarm
-from recon.model.command import Refusal
+from recon.model.command import Phase, Refusal
 from recon.model.units import seconds_to_ns
 
 M = TypeVar("M")
 
 SHOWN_CHARACTERS = 60
+
+ReturnStage = Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
+
+
+class PhaseReport(msgspec.Struct, frozen=True):
+    """One phase change of an order; `age_s` as of the message, seconds."""
+
+    phase: Phase
+    age_s: float
+    note: str
+
+
+_PROGRESS = {
+    Phase.QUEUED: 0,
+    Phase.SENT: 1,
+    Phase.ACKNOWLEDGED: 2,
+    Phase.CONFIRMED: 3,
+    Phase.STARTED: 3,
+    Phase.DONE: 4,
+}
+"""Order of the phases. A mission is started where other orders are confirmed."""
+
+
+class OrderStatus(msgspec.Struct, frozen=True):
+    """The status of an order; `history` ends with the current phase."""
+
+    id: int
+    kind: str
+    serial: str | None
+    vehicle_name: str
+    phase: Phase
+    note: str
+    times_sent: int
+    history: tuple[PhaseReport, ...]
+    part: str | None = None
+    """The mission part being flown, such as `part 2 of 3`; None for a mission of one part."""
+    rule: str | None = None
+    """The safety rule that refused the order; `note` is then the reason."""
+    parameters: Mapping[str, float | int | str] = {}
+    """The refusal's measured values and limits, by name with unit."""
+
+    @property
+    def has_taken_effect(self) -> bool:
+        """Whether telemetry shows that the order is being or was executed."""
+        return self.phase in (Phase.CONFIRMED, Phase.STARTED, Phase.DONE)
+
+    @property
+    def has_arrived(self) -> bool:
+        """Whether the vehicle of a steered order has reached its target."""
+        return self.has_reached(Phase.DONE)
+
+    def has_reached(self, phase: Phase) -> bool:
+        """Return whether the order is or was in this phase or a later one."""
+        passed = (self.phase, *(report.phase for report in self.history))
+        wanted = _PROGRESS.get(phase)
+        if wanted is None:
+            return phase in passed
+        return any(_PROGRESS.get(other, -1) >= wanted for other in passed)
+
+
+class VehicleReturn(msgspec.Struct, frozen=True):
+    """One vehicle of a return in layers.
+
+    `reason` states why it waits, was released or is not included. `wave` and the heights (metres)
+    are None while no flight is planned; `layer_height_m` is above the site's ground altitude.
+    """
+
+    serial: str
+    vehicle_name: str
+    stage: ReturnStage
+    reason: str | None
+    wave: int | None
+    layer_height_m: float | None
+    layer_height_above_takeoff_m: float | None
+    pad: str | None
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the return has finished with this vehicle: landed, released or not included."""
+        return self.stage in ("landed", "released", "left_out")
+
+
+class FleetReturnMessage(msgspec.Struct, frozen=True):
+    """The newest return in layers."""
+
+    vehicles: tuple[VehicleReturn, ...]
+
+
+class AlarmStatus(msgspec.Struct, frozen=True):
+    """An alarm; an inactive one has ended but is not acknowledged yet."""
+
+    id: int
+    severity: str
+    rule: str
+    serial: str | None
+    vehicle_name: str
+    text: str
+    raised_age_s: float
+    is_active: bool
+    is_acknowledged: bool
+
+
+class AuditRecord(msgspec.Struct, frozen=True):
+    """One entry of the audit log: the event, its author and its vehicle."""
+
+    n: int
+    utc: str
+    kind: str
+    by: str
+    serial: str | None
+    vehicle: str
+    text: str
+    details: dict[str, Any]
+
+
+class AuditLogPage(msgspec.Struct, frozen=True):
+    """Entries after a given number, oldest first; entries before `first_n` are only in the file."""
+
+    entries: tuple[AuditRecord, ...]
+    first_n: int
+    last_n: int
+    file: str | None
+    problem: str | None
+
+
+class StopAnswer(msgspec.Struct, frozen=True):
+    """The result of an all stop for one vehicle, or for one link without a serial number."""
+
+    serial: str | None
+    link_id: int | None
+    vehicle_name: str
+    accepted: bool
+    command_id: int
+    rule: str | None
+    reason: str | None
+
+
+class StopMessage(msgspec.Struct, frozen=True):
+    """One answer per vehicle and link."""
+
+    results: tuple[StopAnswer, ...]
+
+
+class PreflightPoint(msgspec.Struct, frozen=True):
+    """One item of the checklist; `state` is ok, attention, unknown or fails."""
+
+    key: str
+    name: str
+    state: str
+    text: str
+    to_do: str
+    holds_back: bool
+
+
+class PreflightOverride(msgspec.Struct, frozen=True):
+    """An override of the checklist: by whom and why."""
+
+    by: str
+    reason: str
+    age_s: float
+
+
+class Preflight(msgspec.Struct, frozen=True):
+    """A vehicle's checklist, evaluated on request."""
+
+    serial: str
+    name: str
+    is_passed: bool
+    override: PreflightOverride | None
+    points: tuple[PreflightPoint, ...]
+
+    @property
+    def unmet(self) -> tuple[PreflightPoint, ...]:
+        """The items that block missions."""
+        return tuple(point for point in self.points if point.holds_back)
 
 
 class StationMessage(msgspec.Struct, frozen=True):
@@ -25,66 +198,87 @@ class StationMessage(msgspec.Struct, frozen=True):
 
 
 class StateMessage(msgspec.Struct, frozen=True):
-    """Everything a console shows, as of `time_ns` (station time)."""
+    """The complete state at `time_ns` (station time, nanoseconds)."""
 
     time_ns: int
     station: StationMessage
     vehicles: tuple[Telemetry, ...]
-    commands: tuple[Life, ...]
-    alarms: tuple[Alarm, ...]
+    commands: tuple[OrderStatus, ...]
+    alarms: tuple[AlarmStatus, ...]
     fleet_return: FleetReturnMessage | None = None
 
     @property
     def run_started_ns(self) -> int:
-        """Station time at which this run of the station began."""
+        """Station time at which this run of the station started."""
         return self.time_ns - seconds_to_ns(self.station.uptime_s)
 
 
-class ResultMessage(msgspec.Struct, frozen=True):
-    """What became of an order for one vehicle."""
+@dataclass(frozen=True, slots=True)
+class ReceivedState:
+    """A state and the time it was created, on this computer's monotonic clock."""
+
+    number: int
+    created_at_ns: int
+    message: StateMessage
+
+    def vehicle(self, serial: str) -> Telemetry | None:
+        """Return the vehicle with this serial number; None if the state has none."""
+        return next((v for v in self.message.vehicles if v.serial == serial), None)
+
+
+class AnswerMessage(msgspec.Struct, frozen=True):
+    """Whether a request was accepted; if not, the rule that refused it and why."""
+
+    accepted: bool
+    rule: str | None
+    reason: str | None
+    parameters: Mapping[str, float | int | str] = {}
+    """The refusal's measured values and limits, by name with unit."""
+
+    @property
+    def refusal(self) -> Refusal | None:
+        """The refusal; None if the request was accepted."""
+        if self.accepted:
+            return None
+        rule, reason = self.rule or "unnamed", self.reason or "no reason given"
+        return Refusal(rule, reason, parameters=self.parameters)
+
+
+class ResultMessage(AnswerMessage, frozen=True, kw_only=True):
+    """The result of an order for one vehicle."""
 
     serial: str | None
     link_id: int | None
     vehicle_name: str
-    accepted: bool
     command_id: int
-    rule: str | None
-    reason: str | None
-    parameters: Mapping[str, float | int | str] = {}
     repairs: tuple[str, ...] = ()
     parts: int = 0
 
-    @property
-    def refusal(self) -> Refusal:
-        """The refusal, of a result that was not accepted."""
-        rule, reason = self.rule or "unnamed", self.reason or "no reason was given"
-        return Refusal(rule, reason, parameters=self.parameters)
-
 
 class OrderMessage(msgspec.Struct, frozen=True):
-    """One result for each vehicle."""
+    """One result per vehicle."""
 
     results: tuple[ResultMessage, ...]
 
 
 class ProblemMessage(msgspec.Struct, frozen=True):
-    """Why a request was not carried out."""
+    """Why a request failed."""
 
     error: str
 
 
-def decode(data: bytes | str, kind: type[M], what: str) -> M:
-    """Return a message of a kind; raises `BadAnswerError` that names `what` was expected."""
+def decode(data: bytes | str, kind: type[M], expected: str) -> M:
+    """Return a decoded message; raises `BadAnswerError` that names what was `expected`."""
     try:
         return msgspec.json.decode(data, type=kind)
     except (msgspec.DecodeError, UnicodeError, RecursionError, OverflowError) as problem:
         raise BadAnswerError(
-            f"expected {what} as JSON, got {shown(data)}: {problem}; is this a Recon station of "
-            "the same version?"
+            f"expected {expected} as JSON, got {shown(data)}: {problem}; is this a Recon station "
+            "of the same version?"
         ) from problem
 
 
 def shown(data: Any) -> str:
-    """Return the beginning of foreign data, safe to print."""
+    """Return the beginning of received data, safe to print."""
     start = data[:SHOWN_CHARACTERS]
     return repr(start) + ("..." if len(data) > SHOWN_CHARACTERS else "")

@@ -1,30 +1,37 @@
-"""A running station, as a program uses it."""
+"""A connection to a running station, and commands to its whole fleet."""
 
+from collections.abc import Sequence
 from types import TracebackType
 
 from recon.client.address import parse_address
-from recon.client.errors import StationUnreachableError, TookTooLongError
-from recon.client.fleet import Fleet
-from recon.client.life import Life
-from recon.client.messages import StateMessage
+from recon.client.errors import StationUnreachableError, WaitTimeoutError
+from recon.client.messages import (
+    AlarmStatus,
+    AuditLogPage,
+    OrderStatus,
+    StateMessage,
+    StopAnswer,
+    StopMessage,
+    VehicleReturn,
+)
 from recon.client.order import VehicleAnswer
-from recon.client.order_api import OrderDesk
-from recon.client.surveys import Surveys
+from recon.client.order_api import OrderApi
+from recon.client.surveys import SurveyCommands
 from recon.client.telemetry import Telemetry
 from recon.client.vehicle import Vehicle
-from recon.client.watched import Alarm, AuditPage, StopAnswer, StopMessage
+from recon.model.command import Body, Hover, LandNow, ReturnHome
 
 OPEN_WITHIN_S = 5.0
 
 
 class Station:
-    """A connection to a station; use it by `async with`.
+    """A connection to a station; use it with `async with`.
 
-    Leaving it orders nothing: vehicles fly on.
+    Leaving the block sends no order: vehicles fly on.
     """
 
     def __init__(self, url: str, token: str | None = None, *, answer_within_s: float = 5.0) -> None:
-        """Take a station's address; raises `AddressError`. Nothing is opened yet."""
+        """Parse a station's address; raises `AddressError`. Opens nothing yet."""
         # Imported here: `recon hold --help` need not wait for the HTTP libraries.
         from recon.client.http import Http
         from recon.client.stream import Stream
@@ -32,9 +39,9 @@ class Station:
         self.address = parse_address(url, token)
         self._stream = Stream(self.address)
         self._http = Http(self.address, answer_within_s)
-        self._desk = OrderDesk(self._http, self._stream)
-        self.fleet = Fleet(self._desk)
-        self.surveys = Surveys(self._http)
+        self._order_api = OrderApi(self._http, self._stream)
+        self.fleet = FleetCommands(self._order_api)
+        self.surveys = SurveyCommands(self._http)
 
     async def __aenter__(self) -> "Station":
         """Open the stream and wait for the first state; raises `ClientError`."""
@@ -42,10 +49,10 @@ class Station:
         try:
             first = await self._stream.after(0, OPEN_WITHIN_S)
         except BaseException:
-            await self._close()
+            await self.close()
             raise
         if first is None:
-            await self._close()
+            await self.close()
             raise StationUnreachableError(
                 f"expected a station at {self.address.http}, got no state within "
                 f"{OPEN_WITHIN_S:g} s ({self._stream.trouble}); start it with `recon run`, or "
@@ -59,47 +66,51 @@ class Station:
         problem: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        await self._close()
+        await self.close()
 
     async def vehicle(self, serial: str, timeout_s: float = 30.0) -> Vehicle:
-        """Return a vehicle once it is connected and its telemetry live; `TookTooLongError`."""
+        """Return a vehicle once it is connected with live telemetry.
+
+        Raises `WaitTimeoutError`.
+        """
         deadline_ns = self._stream.now_ns() + round(timeout_s * 1e9)
-        seen = 0
+        number = 0
         while (left_ns := deadline_ns - self._stream.now_ns()) > 0:
-            heard = await self._stream.after(seen, left_ns / 1e9)
-            if heard is None:
+            state = await self._stream.after(number, left_ns / 1e9)
+            if state is None:
                 break
-            seen = heard.number
-            told = heard.vehicle(serial)
-            if told is not None and told.older_by(self._stream.age_s(heard)).is_connected:
-                return Vehicle(serial, self._desk)
+            number = state.number
+            telemetry = state.vehicle(serial)
+            age_s = self._stream.age_s(state)
+            if telemetry is not None and telemetry.older_by(age_s).is_connected:
+                return Vehicle(serial, self._order_api)
         known = ", ".join(v.serial for v in self.vehicles() if v.serial is not None) or "none"
-        raise TookTooLongError(
+        raise WaitTimeoutError(
             f"expected {serial} to be connected within {timeout_s:g} s; the station knows {known}: "
-            "check the serial, and that its app is connected"
+            "check the serial number, and that its app is connected"
         )
 
     def known(self, serial: str) -> Vehicle:
-        """Return a vehicle by its serial, heard or not; the station answers for what it knows."""
-        return Vehicle(serial, self._desk)
+        """Return a vehicle by its serial number without waiting for a connection."""
+        return Vehicle(serial, self._order_api)
 
     def vehicles(self) -> tuple[Telemetry, ...]:
-        """Return all vehicles, also those without a serial, with ages as of now."""
-        heard = self._stream.newest
-        if heard is None:
+        """Return all vehicles, including unidentified ones, with ages as of now."""
+        state = self._stream.newest
+        if state is None:
             return ()
-        age_s = self._stream.age_s(heard)
-        return tuple(vehicle.older_by(age_s) for vehicle in heard.message.vehicles)
+        age_s = self._stream.age_s(state)
+        return tuple(vehicle.older_by(age_s) for vehicle in state.message.vehicles)
 
     async def all_stop(self) -> tuple[VehicleAnswer, ...]:
-        """Hold everything that flies, with a serial or without. Never cuts motors."""
-        return await self._desk.all_stop()
+        """Hold all flying vehicles, identified or not. Never stops motors."""
+        return await self._order_api.all_stop()
 
     async def all_stop_at_once(self) -> tuple[StopAnswer, ...]:
-        """Hold everything that flies, by one request and nothing before it.
+        """Hold all flying vehicles with a single request.
 
-        Needs no stream, so no `async with`, and works while the station has no place for another
-        reader; what becomes of each stop is told by `commands`. `close` afterwards.
+        Needs no stream and so no `async with`, and works while the station accepts no further
+        readers. Results appear in `commands`; call `close` afterwards.
         """
         message = await self._http.post(
             "/api/all-stop", None, StopMessage, "results of an all stop"
@@ -107,33 +118,75 @@ class Station:
         return message.results
 
     async def close(self) -> None:
-        """Close the connection; `async with` does it by itself."""
-        await self._close()
+        """Close the connection; `async with` calls this."""
+        await self._stream.stop()
+        await self._http.close()
 
-    async def commands(self) -> tuple[Life, ...]:
-        """Return the latest orders and their lives, the newest first."""
+    async def commands(self) -> tuple[OrderStatus, ...]:
+        """Return the status of the latest orders, newest first."""
         return (await self._state()).commands
 
-    async def alarms(self) -> tuple[Alarm, ...]:
-        """Return every alarm that is active or that nobody has seen yet."""
+    async def alarms(self) -> tuple[AlarmStatus, ...]:
+        """Return all alarms that are active or not acknowledged yet."""
         return (await self._state()).alarms
 
     async def acknowledge(self, alarm_id: int) -> None:
-        """Say that a person has seen an alarm; raises `RequestRefusedError` for none of these."""
-        await self._http.tell(f"/api/alarms/{alarm_id}/acknowledge")
+        """Acknowledge an alarm; raises `RequestRefusedError` for an unknown id."""
+        await self._http.post_without_result(f"/api/alarms/{alarm_id}/acknowledge")
 
     async def switch_separation_hold(self, is_on: bool) -> None:
-        """Switch on or off that vehicles in conflict are held; off, they only raise alarms."""
-        await self._http.tell(f"/api/separation-hold/{'on' if is_on else 'off'}")
+        """Switch the separation hold; while off, conflicts only raise alarms."""
+        await self._http.post_without_result(f"/api/separation-hold/{'on' if is_on else 'off'}")
 
-    async def audit(self, after: int = 0, at_most: int = 100) -> AuditPage:
-        """Return entries of this run's audit after a number, the oldest first."""
+    async def audit(self, after: int = 0, at_most: int = 100) -> AuditLogPage:
+        """Return entries of this run's audit log after a number, oldest first."""
         path = f"/api/audit?after={after}&at_most={at_most}"
-        return await self._http.get(path, AuditPage, "a page of the audit")
+        return await self._http.get(path, AuditLogPage, "a page of the audit log")
 
     async def _state(self) -> StateMessage:
         return await self._http.get("/api/state", StateMessage, "a state")
 
-    async def _close(self) -> None:
-        await self._stream.stop()
-        await self._http.close()
+
+class FleetCommands:
+    """Orders to all identified vehicles at the time of the order.
+
+    `Station.all_stop` also reaches unidentified ones.
+    """
+
+    def __init__(self, order_api: OrderApi) -> None:
+        self._order_api = order_api
+
+    async def hold(self, serials: Sequence[str] | None = None) -> tuple[VehicleAnswer, ...]:
+        """Stop and hold all vehicles, or those named."""
+        return await self._send(Hover(), serials)
+
+    async def land(self, serials: Sequence[str] | None = None) -> tuple[VehicleAnswer, ...]:
+        """Land all vehicles at their current positions, or those named."""
+        return await self._send(LandNow(), serials)
+
+    async def return_home(self, serials: Sequence[str] | None = None) -> tuple[VehicleAnswer, ...]:
+        """Return all vehicles at once, or those named, each at the aircraft's go-home height."""
+        return await self._send(ReturnHome(), serials)
+
+    async def return_in_layers(
+        self, serials: Sequence[str] | None = None
+    ) -> tuple[VehicleAnswer, ...]:
+        """Return vehicles at separate heights, one at a time per pad.
+
+        None means all vehicles that fly or may fly. Each answer is the initial hold; `returning`
+        has the progress after that.
+        """
+        return await self._order_api.fleet_return(serials)
+
+    async def returning(self) -> tuple[VehicleReturn, ...]:
+        """Return the progress of each vehicle in the newest return in layers."""
+        state = await self._order_api.http.get("/api/state", StateMessage, "a state")
+        return () if state.fleet_return is None else state.fleet_return.vehicles
+
+    async def _send(self, body: Body, serials: Sequence[str] | None) -> tuple[VehicleAnswer, ...]:
+        if serials is not None:
+            return await self._order_api.send(tuple(dict.fromkeys(serials)), body)
+        # Requested now: the stream's list may be old, and a vehicle missing from it would fly on.
+        state = await self._order_api.http.get("/api/state", StateMessage, "a state")
+        known = [v.serial for v in state.vehicles if v.serial is not None]
+        return await self._order_api.send(known, body) if known else ()

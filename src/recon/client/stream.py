@@ -1,7 +1,15 @@
-"""The stream of states, read in the background: only the newest one is kept.
+"""The stream of states, read in the background; only the newest state is kept.
 
-Reading is not ordering: a stream that breaks off is opened again by itself, and the gap is seen by
-the ages. What no second attempt can mend (a token, a foreign server) ends the reading for good.
+    connecting --handshake--> reading --closed, or silent for 5 s--> waiting --pause--> connecting
+    connecting or reading --wrong token, not a station--> failed, for good
+
+The pause starts at 0.2 s, doubles with each attempt up to 2 s, and starts over after a received
+state. The gap shows in the ages of the values. A lost stream is reopened without the caller, orders
+are never repeated. Each connection has a new random owner name: steered orders depend on the
+connection they were sent under, and one that opens later does not hold earlier orders.
+
+Received states may be old: a busy program leaves messages in the socket's buffers. `StreamClock`
+estimates when each was created.
 """
 
 import asyncio
@@ -16,48 +24,64 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketExce
 
 from recon.client.address import Address
 from recon.client.errors import BadAnswerError, ClientError, RequestRefusedError
-from recon.client.messages import StateMessage, decode
-from recon.client.stream_clock import StreamClock
-from recon.client.telemetry import Telemetry
-from recon.model.units import ns_to_seconds
+from recon.client.messages import ReceivedState, StateMessage, decode
+from recon.model.units import NS_PER_S, ns_to_seconds
 
 LONGEST_STATE_BYTES = 16 * 1024 * 1024
 """256 vehicles with their tracks take 2 MiB."""
 
 SILENT_CONNECTION_S = 5.0
-"""Ten states come each second; a connection without one for so long is dead, however open."""
+"""The station sends ten states a second; a connection without one for this long is lost."""
 
-BEAT_S = 0.5
-"""The station gives a owner up after two seconds of silence."""
+KEEPALIVE_S = 0.5
+"""The station stops steered orders after 2 s without a keepalive."""
 
 FIRST_PAUSE_S = 0.2
 LONGEST_PAUSE_S = 2.0
 _TOO_BIG = 1009
 
 
-@dataclass(frozen=True, slots=True)
-class Heard:
-    """A state and when it was made, by this computer's monotonic clock."""
+WINDOW_NS = 60 * NS_PER_S
+"""Clocks drift by about 50 ppm: 6 ms in two windows, which is acceptable for an age."""
 
-    number: int
-    made_at_ns: int
-    message: StateMessage
 
-    def vehicle(self, serial: str) -> Telemetry | None:
-        """Return one vehicle as the message tells of it."""
-        return next((v for v in self.message.vehicles if v.serial == serial), None)
+@dataclass(slots=True)
+class StreamClock:
+    """Converts station time to this computer's monotonic time.
+
+    The fastest message of the last one or two windows gives the offset between the clocks; longer
+    delays than its own are delays on the network or in buffers.
+    """
+
+    _run_started_ns: int | None = None
+    _window_began_ns: int = 0
+    _least_ns: int = 0
+    _least_before_ns: int = 0
+
+    def created_at_ns(self, time_ns: int, run_started_ns: int, arrived_at_ns: int) -> int:
+        """Return when a message with station time `time_ns` was created, at latest its arrival."""
+        offset_ns = arrived_at_ns - time_ns
+        if run_started_ns != self._run_started_ns:
+            self._run_started_ns = run_started_ns
+            self._window_began_ns = arrived_at_ns
+            self._least_ns = self._least_before_ns = offset_ns
+        elif arrived_at_ns - self._window_began_ns > WINDOW_NS:
+            self._window_began_ns = arrived_at_ns
+            self._least_before_ns, self._least_ns = self._least_ns, offset_ns
+        self._least_ns = min(self._least_ns, offset_ns)
+        return time_ns + min(self._least_ns, self._least_before_ns)
 
 
 class Stream:
-    """Reads states until stopped; any number of tasks may wait for the next one."""
+    """Reads states until stopped; any number of tasks can wait for the next one."""
 
     def __init__(self, address: Address, now_ns: Callable[[], int] = time.monotonic_ns) -> None:
         self.now_ns = now_ns
-        self.newest: Heard | None = None
+        self.newest: ReceivedState | None = None
         self.owner: str | None = None
-        """The name by which the present connection holds steered orders; each has its own."""
-        self.trouble = "it has not answered yet"
-        """Why nothing comes at present, for people."""
+        """Owner name of the current connection, which steered orders depend on."""
+        self.trouble = "no answer yet"
+        """Why no state is arriving, for error texts."""
         self._address = address
         self._clock = StreamClock()
         self._failure: ClientError | None = None
@@ -65,24 +89,24 @@ class Stream:
         self._reading: asyncio.Task[None] | None = None
 
     def start(self) -> None:
-        """Begin to read."""
+        """Start reading in the background."""
         self._reading = asyncio.create_task(self._read_on())
 
     async def stop(self) -> None:
-        """End the reading and wait for its end."""
+        """Stop reading and wait until it has stopped."""
         if self._reading is not None:
             self._reading.cancel()
             await asyncio.wait((self._reading,))
             if not self._reading.cancelled():
                 self._reading.result()
 
-    async def after(self, number: int, patience_s: float) -> Heard | None:
-        """Return the newest state once it is newer than this one; None when none came in time.
+    async def after(self, number: int, timeout_s: float) -> ReceivedState | None:
+        """Return the newest state once its number is larger than `number`; None on timeout.
 
-        Raises the `ClientError` that ended the reading for good.
+        Raises the `ClientError` that ended reading.
         """
         with suppress(TimeoutError):
-            async with asyncio.timeout(patience_s):
+            async with asyncio.timeout(timeout_s):
                 while self.newest is None or self.newest.number <= number:
                     if self._failure is not None:
                         raise self._failure
@@ -90,9 +114,9 @@ class Stream:
                 return self.newest
         return None
 
-    def age_s(self, heard: Heard) -> float:
-        """Return how long ago a state was made."""
-        return ns_to_seconds(max(0, self.now_ns() - heard.made_at_ns))
+    def age_s(self, state: ReceivedState) -> float:
+        """Return the time since a state was created, seconds."""
+        return ns_to_seconds(max(0, self.now_ns() - state.created_at_ns))
 
     async def _read_on(self) -> None:
         pause_s = FIRST_PAUSE_S
@@ -105,7 +129,7 @@ class Stream:
                 self._wake()
                 return
             except TimeoutError:
-                self.trouble = f"it is silent for {SILENT_CONNECTION_S:g} s"
+                self.trouble = f"no state for {SILENT_CONNECTION_S:g} s"
             except (OSError, WebSocketException) as problem:
                 self.trouble = str(problem)
             pause_s = FIRST_PAUSE_S if before is not self.newest else 2.0 * pause_s
@@ -114,7 +138,7 @@ class Stream:
     async def _read_connection(self) -> None:
         owner = token_urlsafe(24)
         try:
-            async with _open(self._address, owner) as connection, _beating(connection):
+            async with _open(self._address, owner) as connection, _keepalives(connection):
                 self.owner = owner
                 await self._read(connection)
         except InvalidStatus as problem:
@@ -140,51 +164,53 @@ class Stream:
         while True:
             async with asyncio.timeout(SILENT_CONNECTION_S):
                 data = await connection.recv()
-            self._take(decode(data, StateMessage, "a state"))
+            self._receive(decode(data, StateMessage, "a state"))
 
-    def _take(self, message: StateMessage) -> None:
-        made_at_ns = self._clock.made_at_ns(message.time_ns, message.run_started_ns, self.now_ns())
+    def _receive(self, message: StateMessage) -> None:
+        created_at_ns = self._clock.created_at_ns(
+            message.time_ns, message.run_started_ns, self.now_ns()
+        )
         number = 1 if self.newest is None else self.newest.number + 1
-        self.newest = Heard(number, made_at_ns, message)
+        self.newest = ReceivedState(number, created_at_ns, message)
         self._wake()
 
     def _wake(self) -> None:
-        """Wake all who wait; who comes later waits for the next change."""
+        """Wake all waiting tasks; later ones wait for the next change."""
         self._changed.set()
         self._changed = asyncio.Event()
 
 
-class _Straight(connect):
-    """Follows no redirect: the token is for the station alone."""
+class _ConnectWithoutRedirect(connect):
+    """Follows no redirect: the token is for the station only."""
 
     def process_redirect(self, exc: Exception) -> Exception | str:
-        """Return the answer itself as the error."""
+        """Return the redirect as the error."""
         return exc
 
 
 @asynccontextmanager
-async def _beating(connection: ClientConnection) -> AsyncIterator[None]:
-    """Say twice a second that this program lives.
+async def _keepalives(connection: ClientConnection) -> AsyncIterator[None]:
+    """Send a keepalive twice a second.
 
-    The beats come from the program's own event loop: one that hangs stops them, and what it holds
-    is stopped by the station.
+    Keepalives run on the program's event loop: when it hangs they stop, and the station stops the
+    program's steered orders.
     """
 
-    async def beat() -> None:
+    async def send() -> None:
         with suppress(ConnectionClosed):
             while True:
                 await connection.send("")
-                await asyncio.sleep(BEAT_S)
+                await asyncio.sleep(KEEPALIVE_S)
 
-    beats = asyncio.create_task(beat())
+    task = asyncio.create_task(send())
     try:
         yield
     finally:
-        beats.cancel()
+        task.cancel()
 
 
 def _open(address: Address, owner: str) -> connect:
-    return _Straight(
+    return _ConnectWithoutRedirect(
         f"{address.stream}?owner={owner}",
         additional_headers=address.headers,
         compression=None,

@@ -1,21 +1,22 @@
-"""Surveys, as a program asks for them and follows them."""
+"""Commands to surveys, and their status."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
+from recon.client.messages import AnswerMessage
 from recon.model.command import Refusal
 
 if TYPE_CHECKING:
     from recon.client.http import Http
 
-SurveyPhaseWord = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
-WhenDoneWord = Literal["return_home", "hover"]
+SurveyPhaseName = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
+WhenDoneName = Literal["return_home", "hover"]
 
 
-class SurveyFigures(msgspec.Struct, frozen=True):
-    """Areas by counted cells; times from the start, None: not yet."""
+class SurveyProgress(msgspec.Struct, frozen=True):
+    """Areas by counted cells; times from the start, None while not reached."""
 
     region_m2: float
     reached_m2: float
@@ -27,8 +28,8 @@ class SurveyFigures(msgspec.Struct, frozen=True):
     time_to_95_in_sun_s: float | None
 
 
-class Surveying(msgspec.Struct, frozen=True):
-    """One vehicle of a survey; `waits_for` says why it flies nothing (more) for it now."""
+class SurveyVehicle(msgspec.Struct, frozen=True):
+    """One vehicle of a survey; `waits_for` is the reason why it is not flying rows now."""
 
     serial: str
     vehicle_name: str
@@ -36,37 +37,34 @@ class Surveying(msgspec.Struct, frozen=True):
     waits_for: str | None
     refused: str | None
     has_come_home: bool
-    """Called home by the survey, it has landed: a fresh battery, and it can be started again."""
+    """Returned home for the survey and landed: after a battery change it can be added again."""
 
 
-class Survey(msgspec.Struct, frozen=True):
-    """One survey as it stands."""
+class SurveyStatus(msgspec.Struct, frozen=True):
+    """The status of one survey."""
 
     id: int
     name: str
-    phase: SurveyPhaseWord
+    phase: SurveyPhaseName
     reason: str
     planner: str
-    when_done: WhenDoneWord
+    when_done: WhenDoneName
     round: int
     missions: int
     flown_m: float
     rows: int
-    vehicles: tuple[Surveying, ...]
-    figures: SurveyFigures | None
+    vehicles: tuple[SurveyVehicle, ...]
+    figures: SurveyProgress | None
 
 
-class SurveyMessage(msgspec.Struct, frozen=True):
-    """What became of a word on a survey."""
+class SurveyMessage(AnswerMessage, frozen=True, kw_only=True):
+    """The answer to a survey command."""
 
-    accepted: bool
-    rule: str | None
-    reason: str | None
-    survey: Survey | None
+    survey: SurveyStatus | None
 
 
 class SiteOrigin(msgspec.Struct, frozen=True):
-    """Where a site's frame has its origin; None where the site has no place."""
+    """Origin of the site's local frame; None for a site without a position."""
 
     latitude_deg: float | None
     longitude_deg: float | None
@@ -77,8 +75,8 @@ class _SiteMessage(msgspec.Struct, frozen=True):
     site: SiteOrigin | None
 
 
-class Surveys:
-    """The surveys of a station."""
+class SurveyCommands:
+    """Survey commands to a station."""
 
     def __init__(self, http: "Http") -> None:
         self._http = http
@@ -91,48 +89,51 @@ class Surveys:
         height_above_takeoff_m: float,
         speed_mps: float,
         **more: Any,
-    ) -> Survey | Refusal:
-        """Ask for a survey of a region of the site, or of a GeoJSON polygon's rings.
+    ) -> SurveyStatus | Refusal:
+        """Plan a survey of a site region, or of a GeoJSON polygon's rings. Nothing moves.
 
-        `more` is what `SurveyRequest` of the API has besides. Nothing flies by this.
+        `more` are further fields of the API's `SurveyRequest`.
         """
-        asked = {
+        request = {
             "region": region,
             "polygon": polygon,
             "height_above_takeoff_m": height_above_takeoff_m,
             "speed_mps": speed_mps,
             **more,
         }
-        return await self._say("/api/surveys", asked)
+        return await self._post("/api/surveys", request)
 
     async def start(
         self, survey_id: int, serials: Sequence[str], *, takeoff: bool = False
-    ) -> Survey | Refusal:
-        """Fly a survey with these vehicles; by this word they are led by the station's guidance.
+    ) -> SurveyStatus | Refusal:
+        """Start a survey with these vehicles, and give guidance control of them.
 
-        `takeoff` is the explicit word that each may leave the ground, once.
+        `takeoff` allows each one to take off for this start.
         """
-        asked = {"serials": list(serials), "takeoff": takeoff}
-        return await self._say(f"/api/surveys/{survey_id}/start", asked)
+        request = {"serials": list(serials), "takeoff": takeoff}
+        return await self._post(f"/api/surveys/{survey_id}/start", request)
 
-    async def pause(self, survey_id: int) -> Survey | Refusal:
+    async def pause(self, survey_id: int) -> SurveyStatus | Refusal:
         """Pause a survey; its vehicles hold."""
-        return await self._say(f"/api/surveys/{survey_id}/pause", None)
+        return await self._post(f"/api/surveys/{survey_id}/pause", None)
 
-    async def abort(self, survey_id: int) -> Survey | Refusal:
-        """Abort a survey for good; its vehicles hold."""
-        return await self._say(f"/api/surveys/{survey_id}/abort", None)
+    async def abort(self, survey_id: int) -> SurveyStatus | Refusal:
+        """Abort a survey permanently; its vehicles hold."""
+        return await self._post(f"/api/surveys/{survey_id}/abort", None)
 
-    async def list(self) -> tuple[Survey, ...]:
-        """Return the surveys of the station's run, the newest first."""
-        return await self._http.get("/api/surveys", tuple[Survey, ...], "the surveys")
+    async def list(self) -> tuple[SurveyStatus, ...]:
+        """Return the surveys of this run of the station, newest first."""
+        return await self._http.get("/api/surveys", tuple[SurveyStatus, ...], "the surveys")
 
     async def site_origin(self) -> SiteOrigin | None:
-        """Return where the site is that a polygon must be near to."""
+        """Return the site's origin, which a polygon must be close to."""
         return (await self._http.get("/api/state", _SiteMessage, "a state")).site
 
-    async def _say(self, path: str, asked: Mapping[str, Any] | None) -> Survey | Refusal:
-        answer = await self._http.post(path, asked, SurveyMessage, "what became of a survey")
-        if answer.accepted and answer.survey is not None:
-            return answer.survey
-        return Refusal(answer.rule or "unnamed", answer.reason or "no reason was given")
+    async def _post(self, path: str, request: Mapping[str, Any] | None) -> SurveyStatus | Refusal:
+        answer = await self._http.post(
+            path, request, SurveyMessage, "the answer to a survey command"
+        )
+        refusal = answer.refusal
+        if refusal is not None or answer.survey is None:
+            return refusal or Refusal("unnamed", "no survey in the answer")
+        return answer.survey

@@ -1,4 +1,4 @@
-"""What is known of a vehicle, each value with its age at the moment it is handed out."""
+"""A vehicle's telemetry, each value with its age at the time it is returned."""
 
 from typing import Any, Generic, TypeVar
 
@@ -8,7 +8,7 @@ from recon.model.vehicle import Staleness, staleness_at
 
 T = TypeVar("T")
 
-_GROWING_WORSE = tuple(Staleness)
+_BEST_TO_WORST = tuple(Staleness)
 
 
 class Aged(msgspec.Struct, Generic[T], frozen=True):
@@ -19,7 +19,7 @@ class Aged(msgspec.Struct, Generic[T], frozen=True):
 
 
 class Position(msgspec.Struct, frozen=True):
-    """Where a vehicle is (WGS84), in degrees."""
+    """Position (WGS84), degrees."""
 
     latitude_deg: float | None
     longitude_deg: float | None
@@ -27,7 +27,7 @@ class Position(msgspec.Struct, frozen=True):
 
 
 class Velocity(msgspec.Struct, frozen=True):
-    """How a vehicle moves: metres per second, north-east-down."""
+    """Velocity, metres per second, north-east-down."""
 
     north_mps: float | None
     east_mps: float | None
@@ -35,8 +35,8 @@ class Velocity(msgspec.Struct, frozen=True):
     age_s: float | None
 
 
-class Heading(msgspec.Struct, frozen=True):
-    """Yaw clockwise from north, pitch nose up, roll right side down, in degrees."""
+class EulerAngles(msgspec.Struct, frozen=True):
+    """Attitude: yaw clockwise from north, pitch nose up, roll right side down, degrees."""
 
     yaw_deg: float | None
     pitch_deg: float | None
@@ -44,10 +44,10 @@ class Heading(msgspec.Struct, frozen=True):
     age_s: float | None
 
 
-class ControlAuthority(msgspec.Struct, frozen=True):
-    """Who may set a vehicle in motion: pilot, operator or guidance, and how that came about.
+class AuthorityStatus(msgspec.Struct, frozen=True):
+    """Who may move a vehicle: pilot, operator or guidance, since when and why.
 
-    `age_s` is None when nobody has taken it since the station began.
+    `age_s` is None if authority has not changed since station start.
     """
 
     holder: str
@@ -57,24 +57,24 @@ class ControlAuthority(msgspec.Struct, frozen=True):
 
 
 class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
-    """One vehicle's newest state. Heights are above its own takeoff point (barometric).
+    """One vehicle's newest telemetry. Heights are above its takeoff point (barometric), metres.
 
-    All ages count to the moment this value was handed out, the way from the station included.
-    `staleness` says how old the core telemetry is; act only on what is live.
+    All ages are in seconds and count to the time this value was returned, network delay included.
+    `staleness` classifies the age of the core telemetry; act only on live values.
     """
 
     serial: str | None
     link_id: int | None
     name: str
     is_simulated: bool
-    authority: ControlAuthority
+    authority: AuthorityStatus
     staleness: Staleness
     telemetry_age_s: float | None
     is_flying: Aged[bool]
     position: Position
     height_above_takeoff_m: Aged[float]
     velocity_ned: Velocity
-    attitude: Heading
+    attitude: EulerAngles
     battery_fraction: Aged[float]
     battery_warning: Aged[str]
     gnss_satellite_count: Aged[float]
@@ -85,25 +85,26 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def is_live(self) -> bool:
-        """Whether the core telemetry is younger than a second."""
+        """Whether the core telemetry is younger than 1 s."""
         return self.staleness is Staleness.LIVE
 
     @property
     def is_connected(self) -> bool:
-        """Whether both kinds of telemetry came and the core one is live."""
+        """Whether core telemetry is live and aircraft status was received."""
         return self.is_live and self.flight_mode.value is not None
 
     def older_by(self, seconds: float) -> "Telemetry":
-        """Return the same state with every age grown, and the staleness that follows from it."""
+        """Return this telemetry with `seconds` added to every age, and the staleness then."""
         changes: dict[str, Any] = {
             name: msgspec.structs.replace(part, age_s=_older(part.age_s, seconds))
             for name in self.__struct_fields__
             if isinstance(
-                part := getattr(self, name), Aged | Position | Velocity | Heading | ControlAuthority
+                part := getattr(self, name),
+                Aged | Position | Velocity | EulerAngles | AuthorityStatus,
             )
         }
         age_s = _older(self.telemetry_age_s, seconds)
-        worse = max(self.staleness, staleness_at(age_s), key=_GROWING_WORSE.index)
+        worse = max(self.staleness, staleness_at(age_s), key=_BEST_TO_WORST.index)
         return msgspec.structs.replace(self, **changes, telemetry_age_s=age_s, staleness=worse)
 
 

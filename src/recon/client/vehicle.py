@@ -1,13 +1,13 @@
-"""One vehicle in the verbs of a pilot. Every verb is one order: an `Order`, or a `Refusal`."""
+"""One vehicle and its commands; each returns an `Order` or a `Refusal`."""
 
 from collections.abc import AsyncIterator
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from recon.client.errors import ConnectionLostError
+from recon.client.messages import AnswerMessage, Preflight, ReceivedState
 from recon.client.order import Order
-from recon.client.order_api import OrderDesk
-from recon.client.readiness import Preflight, ask_preflight, say_holder, say_override
+from recon.client.order_api import OrderApi
 from recon.client.telemetry import Telemetry
 from recon.model.authority import AuthorityHolder
 from recon.model.command import (
@@ -29,47 +29,46 @@ from recon.model.mission import Mission
 from recon.model.units import ns_to_seconds
 
 if TYPE_CHECKING:
-    from recon.client.stream import Heard
+    pass
 
-QUIET_S = 1.0
-"""Ten states come each second; after this without one the old one is told again, as old."""
+REPEAT_S = 1.0
+"""After this long without a new state (ten a second) the last is yielded again, older."""
 
 
 class Vehicle:
-    """A vehicle the station knows by its serial.
+    """A vehicle, identified by its serial number.
 
-    Verbs raise `ClientError`s of the way to the station; what the station will not do is a
-    `Refusal`, a value. Nothing is ever sent twice.
+    Commands return a `Refusal` if the station refuses, and raise a `ClientError` if the connection
+    to the station fails. No command is sent twice. Heights are above the vehicle's takeoff point.
     """
 
-    def __init__(self, serial: str, desk: OrderDesk) -> None:
+    def __init__(self, serial: str, order_api: OrderApi) -> None:
         self.serial = serial
-        self._desk = desk
+        self._order_api = order_api
         self._path = f"/api/vehicles/{quote(serial, safe='')}"
 
     async def hold(self) -> Order | Refusal:
         """Stop and hold the position."""
-        return await self._desk.give_one(self.serial, Hover())
+        return await self._order_api.send_one(self.serial, Hover())
 
     async def land(self) -> Order | Refusal:
-        """Land where the vehicle is."""
-        return await self._desk.give_one(self.serial, LandNow())
+        """Land at the current position."""
+        return await self._order_api.send_one(self.serial, LandNow())
 
     async def return_home(self) -> Order | Refusal:
-        """Fly home at the aircraft's own go-home height and land."""
-        return await self._desk.give_one(self.serial, ReturnHome())
+        """Fly home at the aircraft's go-home height and land."""
+        return await self._order_api.send_one(self.serial, ReturnHome())
 
     async def fly(self, mission: Mission, takeoff: bool = False) -> Order | Refusal:
-        """Fly waypoints, replacing any mission being flown.
+        """Fly waypoints, replacing any current mission.
 
-        `takeoff` is the explicit word that the vehicle may leave the ground. The mission's
-        `purpose` stays here: the station does not take it.
+        `takeoff` allows the vehicle to take off. The mission's `purpose` is not sent.
         """
-        return await self._desk.give_one(self.serial, FlyMission(mission), takeoff)
+        return await self._order_api.send_one(self.serial, FlyMission(mission), takeoff)
 
     async def would_fly(self, mission: Mission, takeoff: bool = False) -> Refusal | None:
-        """Return why `fly` would be refused now, None when it would not. Nothing is sent."""
-        return await self._desk.refusal_of(self.serial, FlyMission(mission), takeoff)
+        """Return the refusal `fly` would get now, None if it would pass. Sends no order."""
+        return await self._order_api.check(self.serial, FlyMission(mission), takeoff)
 
     async def goto(
         self,
@@ -80,15 +79,15 @@ class Vehicle:
         speed_mps: float = 5.0,
         yaw_deg: float | None = None,
     ) -> Order | Refusal:
-        """Fly straight to a place and hold there, steered by the station; yaw None keeps it.
+        """Fly straight to a position and hold there, by virtual stick; None keeps the yaw.
 
-        Held by this program: when its connection to the station ends, or it hangs for two
-        seconds, the vehicle stops and holds where it is. So it is with `nudge` and
-        `hold_position`. Raises `ConnectionLostError` while the stream is broken.
+        The order depends on this program's stream: when the connection ends, or the program hangs
+        for 2 s, the vehicle stops and holds. The same applies to `nudge` and `hold_position`.
+        Raises `ConnectionLostError` while the stream is closed.
         """
         target = LatLon(latitude_deg, longitude_deg)
         body = GoTo(target, height_above_takeoff_m, speed_mps, yaw_deg)
-        return await self._desk.give_one(self.serial, body)
+        return await self._order_api.send_one(self.serial, body)
 
     async def nudge(
         self,
@@ -99,16 +98,16 @@ class Vehicle:
         turn_deg: float = 0.0,
         speed_mps: float = 2.0,
     ) -> Order | Refusal:
-        """Move by this much from here (and turn, clockwise), and hold there; see `goto`."""
+        """Move by a distance in metres, turn clockwise in degrees, and hold there; see `goto`."""
         body = Nudge(north_m, east_m, up_m, speed_mps, turn_deg)
-        return await self._desk.give_one(self.serial, body)
+        return await self._order_api.send_one(self.serial, body)
 
     async def hold_position(self) -> Order | Refusal:
-        """Hold this place, steered by the station until told otherwise; see `goto`.
+        """Hold the current position by virtual stick until commanded otherwise; see `goto`.
 
-        To simply stop, `hold` is the surer way: it needs no stream of sticks.
+        To stop a vehicle use `hold`, which needs no stream.
         """
-        return await self._desk.give_one(self.serial, HoldPosition())
+        return await self._order_api.send_one(self.serial, HoldPosition())
 
     async def stick(
         self,
@@ -124,80 +123,88 @@ class Vehicle:
         body = VirtualStick(
             frame, yaw_deg, velocity_x_mps, velocity_y_mps, height_above_takeoff_m, timeout_s
         )
-        return await self._desk.give_one(self.serial, body)
+        return await self._order_api.send_one(self.serial, body)
 
     async def start_camera(self, fps_hz: float) -> Order | Refusal:
-        """Have images sent at about this rate."""
-        return await self._desk.give_one(self.serial, StartCamera(fps_hz))
+        """Start sending images, at about `fps_hz` per second."""
+        return await self._order_api.send_one(self.serial, StartCamera(fps_hz))
 
     async def stop_camera(self) -> Order | Refusal:
-        """Have no more images sent."""
-        return await self._desk.give_one(self.serial, StopCamera())
+        """Stop sending images."""
+        return await self._order_api.send_one(self.serial, StopCamera())
 
     async def take(self) -> Refusal | None:
-        """Take the vehicle over, from guidance or from a pilot who has agreed; None when done.
+        """Take operator control, from guidance or a pilot who agrees; None on success.
 
-        Nobody else sets it in motion from now on. What it was told before goes on.
+        Guidance can no longer move the vehicle. Its current order continues.
         """
-        return await say_holder(self._desk.http, self._path, AuthorityHolder.OPERATOR)
+        return await self._set_authority(AuthorityHolder.OPERATOR)
 
     async def give_to_pilot(self) -> Refusal | None:
-        """Leave the vehicle to its pilot: the station moves it no more; None when done."""
-        return await say_holder(self._desk.http, self._path, AuthorityHolder.PILOT)
+        """Hand over to the pilot: the station no longer moves the vehicle; None on success."""
+        return await self._set_authority(AuthorityHolder.PILOT)
 
     async def give_to_guidance(self) -> Refusal | None:
-        """Leave the vehicle to the station's own planning; None when done."""
-        return await say_holder(self._desk.http, self._path, AuthorityHolder.GUIDANCE)
+        """Hand over to the station's guidance; None on success."""
+        return await self._set_authority(AuthorityHolder.GUIDANCE)
 
     async def preflight(self) -> Preflight:
-        """Return the checklist as of now: what holds missions back, and what to do about it."""
-        return await ask_preflight(self._desk.http, self._path)
+        """Return the preflight checklist as of now, with instructions for unmet items."""
+        path = f"{self._path}/preflight"
+        return await self._order_api.http.get(path, Preflight, "a preflight checklist")
 
     async def override_preflight(self, reason: str) -> Refusal | None:
-        """Let it fly missions although its checklist is not passed; None when done.
+        """Allow missions although the checklist has not passed; None on success.
 
-        The reason is kept in the audit; the override ends with the landing.
+        The reason is recorded in the audit log; the override ends at landing.
         """
-        return await say_override(self._desk.http, self._path, reason)
+        return await self._post("preflight/override", {"reason": reason})
 
     async def dismiss_hazard(self) -> None:
-        """Say that somebody knows where the vehicle is, though it is not heard.
+        """Clear the lost vehicle's hazard area, which other vehicles avoid.
 
-        Until then others keep clear of where it may be. Raises `RequestRefusedError` when it is
-        no hazard area.
+        Raises `RequestRefusedError` if the vehicle has none.
         """
-        await self._desk.http.tell(f"{self._path}/hazard/dismiss")
+        await self._order_api.http.post_without_result(f"{self._path}/hazard/dismiss")
 
     def now(self) -> Telemetry:
-        """Return what is known now, with ages as of now; raises `ConnectionLostError`."""
-        heard = self._desk.stream.newest
-        told = None if heard is None else heard.vehicle(self.serial)
-        if heard is None or told is None:
-            raise ConnectionLostError(f"expected a state of {self.serial}, the station tells none")
-        return told.older_by(self._desk.stream.age_s(heard))
+        """Return the newest telemetry with ages as of now; raises `ConnectionLostError`."""
+        state = self._order_api.stream.newest
+        telemetry = None if state is None else state.vehicle(self.serial)
+        if state is None or telemetry is None:
+            raise ConnectionLostError(f"expected telemetry of {self.serial}, the station has none")
+        return telemetry.older_by(self._order_api.stream.age_s(state))
 
     async def telemetry(self, lost_after_s: float = 10.0) -> AsyncIterator[Telemetry]:
-        """Yield the newest state each time there is a newer one; states between are left out.
+        """Yield the newest telemetry whenever there is a newer one; skips those between.
 
-        When no new one comes for a second, the last one is yielded again with its ages grown, so
-        marked late, lost or silent: an old state is never told as new. After `lost_after_s`
-        without a new one raises `ConnectionLostError`.
+        Without a new state for 1 s, yields the last one again with its ages increased, and so
+        marked late, lost or silent. Raises `ConnectionLostError` after `lost_after_s` without one.
         """
-        stream = self._desk.stream
-        since_ns, seen = stream.now_ns(), 0
-        last: tuple[Heard, Telemetry] | None = None
+        stream = self._order_api.stream
+        received_ns, number = stream.now_ns(), 0
+        last: tuple[ReceivedState, Telemetry] | None = None
         while True:
-            heard = await stream.after(seen, QUIET_S)
-            if heard is not None:
-                seen = heard.number
-                told = heard.vehicle(self.serial)
-                if told is not None:
-                    last, since_ns = (heard, told), heard.made_at_ns
-            if ns_to_seconds(stream.now_ns() - since_ns) > lost_after_s:
+            state = await stream.after(number, REPEAT_S)
+            if state is not None:
+                number = state.number
+                telemetry = state.vehicle(self.serial)
+                if telemetry is not None:
+                    last, received_ns = (state, telemetry), state.created_at_ns
+            if ns_to_seconds(stream.now_ns() - received_ns) > lost_after_s:
                 raise ConnectionLostError(
-                    f"expected states of {self.serial}, got none for {lost_after_s:g} s "
-                    f"({stream.trouble}); it flies on by its last order: reach it by its own "
-                    "controller, or open the station anew"
+                    f"expected telemetry of {self.serial}, got none for {lost_after_s:g} s "
+                    f"({stream.trouble}); the vehicle continues its last order: use the remote "
+                    "controller, or reopen the station"
                 )
             if last is not None:
                 yield last[1].older_by(stream.age_s(last[0]))
+
+    async def _set_authority(self, holder: AuthorityHolder) -> Refusal | None:
+        return await self._post("authority", {"holder": holder.value})
+
+    async def _post(self, path: str, request: dict[str, str]) -> Refusal | None:
+        answer = await self._order_api.http.post(
+            f"{self._path}/{path}", request, AnswerMessage, "an answer"
+        )
+        return answer.refusal

@@ -154,11 +154,12 @@ describe("commands", () => {
     const root = show(CommandList, station([], { commands: [refused, command(8)] }));
     const rows = [...root.querySelectorAll("[data-testid^=command-]")];
     expect(rows.map((row) => row.getAttribute("data-testid"))).toEqual(["command-9", "command-8"]);
-    expect(rows[0]?.textContent).toContain("flying: on the ground");
-    const life = [...(rows[1]?.querySelectorAll(".command-history li") ?? [])].map(
+    expect(rows[0]?.textContent).toContain("on the ground");
+    expect(find(root, "[title]").title).toBe("Safety rule: flying");
+    const phases = [...(rows[1]?.querySelectorAll(".command-history li") ?? [])].map(
       (item) => item.textContent,
     );
-    expect(life).toEqual([
+    expect(phases).toEqual([
       "queued +0.0 s",
       "sent +0.0 s",
       "acknowledged +0.2 s",
@@ -192,8 +193,8 @@ describe("commands", () => {
     const note = "by telemetry: on the ground";
     const landed = command(3, { kind: "land", age_s: 40, history: [...history], note });
     const root = show(CommandList, station([], { commands: [landed] }));
-    const life = [...root.querySelectorAll(".command-history li")].map((item) => item.textContent);
-    expect(life).toEqual([
+    const phases = [...root.querySelectorAll(".command-history li")].map((item) => item.textContent);
+    expect(phases).toEqual([
       "sent +0.0 s",
       "confirmed +0.4 s (by telemetry: descending)",
       "confirmed +33 s (by telemetry: on the ground)",
@@ -249,8 +250,8 @@ describe("a command", () => {
     expect(other?.querySelector("details")).toBeNull();
   });
 
-  it("names the rule that refused it in plain words", () => {
-    const note = "the way leads through the Barn";
+  it("shows the refusal's reason, with the rule as tooltip", () => {
+    const note = "path crosses keep-out zone Barn";
     const one = command(1, {
       phase: "refused_by_station",
       rule: "keep_out",
@@ -258,7 +259,9 @@ describe("a command", () => {
       history: [{ phase: "refused_by_station", age_s: 3, note }],
     });
     const root = show(CommandList, station([], { commands: [one] }));
-    expect(root.textContent).toContain("rule keep out: the way leads through the Barn");
+    expect(root.textContent).toContain("refused by station +");
+    expect(root.textContent).toContain("(path crosses keep-out zone Barn)");
+    expect(find(root, ".command-history").title).toBe("Safety rule: keep out");
   });
 });
 

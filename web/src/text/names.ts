@@ -46,10 +46,9 @@ export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
   failed: "Failed",
 };
 
-/** A phase's note; a refusal by the station starts with its rule's name. */
-export function noteText(command: Pick<CommandView, "rule">, phase: Phase, note: string): string {
-  if (phase !== "refused_by_station" || command.rule === null) return note;
-  return `rule ${plainWords(command.rule)}: ${note}`;
+/** Tooltip of a refusal: the safety rule behind its sentence; undefined without one. */
+export function ruleTitle(rule: string | null): string | undefined {
+  return rule === null ? undefined : `Safety rule: ${plainWords(rule)}`;
 }
 
 export type Tone = "good" | "bad" | "over" | "underway";

@@ -5,9 +5,9 @@ import {
   capitalised,
   commandName,
   issuerName,
-  noteText,
   PHASE_NAMES,
   phaseTone,
+  ruleTitle,
 } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { Empty, Panel } from "../Panel";
@@ -61,7 +61,9 @@ function CommandRow(props: { command: CommandView }) {
         <Repairs repairs={props.command.repairs} />
       </Show>
       <Show when={!isNoteInHistory(props.command)}>
-        <p class="wire-text">{noteText(props.command, props.command.phase, props.command.note)}</p>
+        <p class="wire-text" title={ruleTitle(props.command.rule)}>
+          {props.command.note}
+        </p>
       </Show>
     </li>
   );
@@ -90,16 +92,17 @@ function isNoteInHistory(command: CommandView): boolean {
 /** A command's phases, each with its time since the order and its note. */
 function PhaseHistory(props: { command: CommandView }) {
   return (
-    <ol class="command-history wire-text" aria-label="Command history">
+    <ol
+      class="command-history wire-text"
+      aria-label="Command history"
+      title={ruleTitle(props.command.rule)}
+    >
       <For each={props.command.history}>
         {(phase) => (
           <li>
             {PHASE_NAMES[phase.phase].toLowerCase()}{" "}
             <span class="muted">+{formatAge(props.command.age_s - phase.age_s)}</span>
-            <Show when={phase.note !== ""}>
-              {" "}
-              ({noteText(props.command, phase.phase, phase.note)})
-            </Show>
+            <Show when={phase.note !== ""}> ({phase.note})</Show>
           </li>
         )}
       </For>

@@ -2,7 +2,7 @@ import { For, Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import type { OrderAnswer } from "../../orders/orderApi";
 import type { OrderResult } from "../../protocol";
-import { listNames } from "../../text/names";
+import { listNames, ruleTitle } from "../../text/names";
 import { SeverityMark } from "../SeverityMark";
 
 /** The station's answer to the last order, per vehicle, until dismissed. */
@@ -137,7 +137,7 @@ function RemarkLine(props: { result: OrderResult }) {
 
 function RefusedLine(props: { result: OrderResult }) {
   return (
-    <li class="answer-line">
+    <li class="answer-line" title={ruleTitle(props.result.rule)}>
       <span class="tone-error">
         <SeverityMark severity="error" />
       </span>

@@ -1,6 +1,6 @@
-"""States as a station tells them, by the API's own models.
+"""States of a fake station, built from the API's models.
 
-Keys the client does not read may be missing: the API may gain some.
+Keys the client does not read may be missing.
 """
 
 from typing import Any
@@ -11,7 +11,7 @@ RUN_STARTED_NS = 1_000_000_000_000
 
 
 def vehicle(serial: str | None = "SIM-1", age_s: float | None = 0.05) -> schema.VehicleView:
-    """A vehicle that flies, every value of one age."""
+    """A flying vehicle, all values with one age."""
     number = schema.AgedNumber(value=12.0, age_s=age_s)
     return schema.VehicleView.model_construct(
         number=1,
@@ -22,7 +22,7 @@ def vehicle(serial: str | None = "SIM-1", age_s: float | None = 0.05) -> schema.
         is_simulated=True,
         is_imager=False,
         authority=schema.AuthorityView(
-            holder="operator", holder_name="", age_s=None, reason="nobody yet"
+            holder="operator", holder_name="", age_s=None, reason="default"
         ),
         preflight_override=None,
         steering=None,
@@ -77,7 +77,7 @@ def state(
     vehicles: tuple[schema.VehicleView, ...] = (),
     commands: tuple[schema.CommandView, ...] = (),
 ) -> schema.StationState:
-    """A whole state of a run of the station."""
+    """A complete state of one run of the station."""
     return schema.StationState.model_construct(
         time_ns=run_started_ns + uptime_ns,
         station=schema.StationView.model_construct(uptime_s=uptime_ns / 1e9),
@@ -92,5 +92,5 @@ def state(
 
 
 def state_text(*parts: Any, **more: Any) -> str:
-    """A state as it goes over the wire."""
+    """A state as JSON text."""
     return state(*parts, **more).model_dump_json()

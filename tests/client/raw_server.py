@@ -1,4 +1,4 @@
-"""A server that says the same bytes to everyone."""
+"""A TCP server that answers every connection with the same bytes."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -8,15 +8,14 @@ from dataclasses import dataclass, field
 
 @dataclass
 class Server:
-    """Answers every connection with the same bytes and closes; None: never answers."""
+    """Sends `answer` and closes; None: never answers."""
 
     answer: bytes | None
     url: str = ""
     requests: list[bytes] = field(default_factory=list)
-
     handling: list[asyncio.Task[None]] = field(default_factory=list)
 
-    def take(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    def accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self.handling.append(asyncio.create_task(self.serve(reader, writer)))
 
     async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -32,9 +31,9 @@ class Server:
 
 @asynccontextmanager
 async def server(answer: bytes | None) -> AsyncIterator[Server]:
-    here = Server(answer)
-    listening = await asyncio.start_server(here.take, "127.0.0.1", 0)
-    here.url = f"http://127.0.0.1:{listening.sockets[0].getsockname()[1]}"
+    raw = Server(answer)
+    listening = await asyncio.start_server(raw.accept, "127.0.0.1", 0)
+    raw.url = f"http://127.0.0.1:{listening.sockets[0].getsockname()[1]}"
     async with listening:
-        yield here
-        await asyncio.gather(*here.handling)
+        yield raw
+        await asyncio.gather(*raw.handling)

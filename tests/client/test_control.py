@@ -1,12 +1,13 @@
-"""Authority and preflight from a program, against a real station."""
+"""Authority, preflight, hazard areas and separation hold from Python, with a real station."""
 
 import asyncio
 from dataclasses import replace
 
+import pytest
 from tests.client.running_station import running_station
 from tests.client.test_flights import accepted, leg_north, refused
 
-from recon.client import Refusal, Station
+from recon.client import Refusal, RequestRefusedError, Station
 from recon.site import Site
 
 
@@ -14,7 +15,7 @@ def unfenced(site: Site) -> Site:
     return replace(site, layers=replace(site.layers, boundary=None))
 
 
-def test_a_vehicle_is_taken_and_given_by_word() -> None:
+def test_authority_is_taken_and_handed_over() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
@@ -34,18 +35,23 @@ def test_a_vehicle_is_taken_and_given_by_word() -> None:
     asyncio.run(main())
 
 
-def test_the_checklist_is_read_and_a_ready_vehicle_passes_it() -> None:
+def test_a_ready_vehicle_passes_the_checklist() -> None:
     async def main() -> None:
         async with running_station(vehicles=1) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            told = await vehicle.preflight()
-            assert (told.serial, told.is_passed, told.unmet) == ("SIM-1", True, ())
-            assert {point.key for point in told.points} >= {"battery", "gnss", "fence", "clock"}
+            checklist = await vehicle.preflight()
+            assert (checklist.serial, checklist.is_passed, checklist.unmet) == ("SIM-1", True, ())
+            assert {point.key for point in checklist.points} >= {
+                "battery",
+                "gnss",
+                "fence",
+                "clock",
+            }
 
     asyncio.run(main())
 
 
-def test_a_list_that_is_not_passed_is_overridden_with_a_reason() -> None:
+def test_a_failed_checklist_is_overridden_with_a_reason() -> None:
     async def main() -> None:
         async with (
             running_station(vehicles=1, airborne=False, prepared=unfenced) as url,
@@ -56,11 +62,36 @@ def test_a_list_that_is_not_passed_is_overridden_with_a_reason() -> None:
             mission = leg_north(vehicle)
             assert refused(await vehicle.fly(mission, takeoff=True)).rule == "preflight"
             assert (await vehicle.override_preflight(" ")) is not None
-            assert (await vehicle.override_preflight("the fence comes tomorrow")) is None
+            assert (await vehicle.override_preflight("no fence at this field")) is None
             override = (await vehicle.preflight()).override
             assert override is not None
-            assert override.reason == "the fence comes tomorrow"
-            would = await vehicle.would_fly(mission, takeoff=True)
-            assert would is None or would.rule != "preflight"
+            assert override.reason == "no fence at this field"
+            refusal = await vehicle.would_fly(mission, takeoff=True)
+            assert refusal is None or refusal.rule != "preflight"
+
+    asyncio.run(main())
+
+
+def test_a_connected_vehicle_has_no_hazard_area() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as station:
+            vehicle = await station.vehicle("SIM-1")
+            with pytest.raises(RequestRefusedError, match="No hazard area"):
+                await vehicle.dismiss_hazard()
+
+    asyncio.run(main())
+
+
+def test_switching_the_separation_hold_off_raises_an_alarm() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=1) as url, Station(url) as station:
+            await station.switch_separation_hold(False)
+            rules: set[str] = set()
+            async for _state in (await station.vehicle("SIM-1")).telemetry():
+                rules = {alarm.rule for alarm in await station.alarms()}
+                if "separation_hold_off" in rules:
+                    break
+            assert "separation_hold_off" in rules
+            await station.switch_separation_hold(True)
 
     asyncio.run(main())
