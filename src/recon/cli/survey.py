@@ -31,7 +31,7 @@ PHASES = {"created": "planned"}
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
 survey_app = new_app(
-    help="SurveyStatus a region: create, start, pause, abort, status.", no_args_is_help=True
+    help="Survey a region: create, start, pause, abort, status.", no_args_is_help=True
 )
 
 NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
