@@ -136,7 +136,7 @@ def returning_world(
     """Return a fleet that hovers at (east, north, up) places, each with its pad.
 
     Pads may be the same place for several vehicles. `go_home_height_m` is set in all aircraft.
-    `profile` changes what the site's file says of every vehicle.
+    `profile` changes the profile of every vehicle.
     """
     serials = [f"SIM-{number}" for number in range(1, len(places_m) + 1)]
     points = {

@@ -41,7 +41,7 @@ def asked(region: Region | None = None, **changes: object) -> Survey:
 
 @dataclass(slots=True)
 class SurveyedWorld:
-    """What people say to surveys, and what comes of it."""
+    """A survey in a simulated world: operator commands, and the survey's state."""
 
     fleet: ReturningWorld
 

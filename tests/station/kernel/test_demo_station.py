@@ -1,4 +1,4 @@
-"""The demonstration as its station sees it: nothing to alarm of, and its fields can be flown."""
+"""The demonstration's station raises no alarm, and its survey regions can be flown."""
 
 from dataclasses import replace
 
@@ -18,11 +18,11 @@ from recon.station.kernel.virtual import VirtualDriver
 
 def demonstration(site: Site, seed: int, vehicle_count: int, wanders: bool) -> World:
     """Return the station of a site with the demonstration's fleet in the air, and no pictures."""
-    told = config(site, seed, vehicle_count)
-    assert told.imager is not None
-    imager = replace(told.imager, feed=replace(told.imager.feed, starts_on=False))
+    base = config(site, seed, vehicle_count)
+    assert base.imager is not None
+    imager = replace(base.imager, feed=replace(base.imager.feed, starts_on=False))
     world = World(VirtualDriver(first_state(site), keeps_log=False))
-    for app in build_fleet(replace(told, imager=imager, wanders=wanders), 0):
+    for app in build_fleet(replace(base, imager=imager, wanders=wanders), 0):
         world.connect(app)
     return world
 
@@ -44,7 +44,7 @@ def test_it_flies_without_an_alarm(seed: int, vehicle_count: int) -> None:
     assert world.driver.station.orders.records == {}
 
 
-def test_a_mission_around_each_survey_region_is_let_through_and_flown() -> None:
+def test_a_mission_around_each_survey_region_is_approved_and_flown() -> None:
     site = load_site(demo_site_folder())
     world = demonstration(site, 1, 4, wanders=False)
     world.run_for(3.0)

@@ -22,7 +22,7 @@ def test_eight_vehicles_with_commands_faults_and_pictures_in_two_processes() -> 
     assert [line.split(":")[0] for line in first] == ["flights", "faults", "pictures"]
 
 
-def test_the_scenes_have_in_them_what_they_are_to_show() -> None:
+def test_the_scene_has_commands_answers_closed_links_and_jobs() -> None:
     seen: list[Event] = []
     scene = eight_vehicles(3, sees=True, faults=FAULTS)
     scene.driver.observe = lambda _before, _after, event: seen.append(event)
@@ -38,8 +38,8 @@ def test_another_seed_is_another_run() -> None:
 
 
 @pytest.mark.parametrize("pieces_s", [[0.01] * 400, [0.13, 1.87, 1.0, 1.0]])
-def test_however_the_time_is_cut_it_is_the_same_run(pieces_s: list[float]) -> None:
-    """The driver leaves out steps at which nothing is due; where it stops it looks at everybody."""
+def test_run_for_in_any_pieces_gives_the_same_run(pieces_s: list[float]) -> None:
+    """The driver skips steps at which nothing is due; where it stops it advances every peer."""
     assert digest_of(3, pieces_s) == digest_of(3, [4.0])
 
 

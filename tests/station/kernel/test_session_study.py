@@ -6,7 +6,7 @@ from tests.oracles.session_study import SessionStudy
 
 
 @pytest.mark.parametrize("seed", [101, 102])
-def test_no_command_is_carried_out_twice_and_none_is_lost_in_silence(seed: int) -> None:
+def test_no_command_is_carried_out_twice_or_lost_silently(seed: int) -> None:
     tally = SessionStudy(seed, vehicles=2).run(100.0)
     assert tally.broken == []
     assert tally.executed > 0
@@ -14,7 +14,7 @@ def test_no_command_is_carried_out_twice_and_none_is_lost_in_silence(seed: int) 
     assert sum(tally.faults.values()) > 0
 
 
-def test_a_command_that_comes_twice_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_command_received_twice_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
     carry_out = CountingApp.receive
 
     def receive_twice(app: CountingApp, data: bytes, now_ns: int) -> None:
@@ -23,4 +23,4 @@ def test_a_command_that_comes_twice_is_found_out(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(CountingApp, "receive", receive_twice)
     tally = SessionStudy(103, vehicles=1).run(100.0)
-    assert any("carried out 2 times" in said for said in tally.broken)
+    assert any("carried out 2 times" in text for text in tally.broken)

@@ -1,4 +1,4 @@
-"""Any sequence of events: no exception, and nothing wakes what is on the ground."""
+"""Any sequence of events: no exception, and no vehicle on the ground is set in motion."""
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -81,7 +81,7 @@ def test_any_sequence_of_events(events: list[tuple[int, object]]) -> None:
 
 
 def _judge(station: Station, output: SendCommand, now_ns: int) -> None:
-    """Told from the state alone: open links only, and hover or return to none on the ground."""
+    """Check by the state alone: open links only, no hover or return to a vehicle on the ground."""
     approved = output.approved
     assert approved.link_ids
     assert now_ns < approved.command.expires_at_ns

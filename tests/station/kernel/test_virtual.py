@@ -1,4 +1,4 @@
-"""Station, sessions, bytes and simulated apps in virtual time: the whole way, without a socket."""
+"""Station, sessions, bytes and simulated apps in virtual time, without a socket."""
 
 import random
 import time
@@ -17,7 +17,7 @@ from recon.station.kernel.virtual import FakeLink
 
 
 def lived(seed: int) -> World:
-    """A minute in which much happens, over links that delay and damage."""
+    """A minute with orders and restarts, over links that delay and damage bytes."""
 
     def damage(chunk: bytes, rng: random.Random) -> bytes:
         if rng.random() < 0.05:
@@ -213,8 +213,8 @@ class TestMissions:
             reference is AltitudeReference.TAKEOFF
         )
 
-    def test_a_wrong_setting_is_what_the_rule_guards_against(self) -> None:
-        """The control: a takeoff app told WGS84 heights climbs hundreds of metres."""
+    def test_a_wrong_altitude_reference_flies_far_too_high(self) -> None:
+        """The control: an app for heights above takeoff climbs hundreds of metres by altitudes."""
         w = world(reference=AltitudeReference.TAKEOFF, profile_reference=AltitudeReference.WGS84)
         w.run_for(2.0)
         w.order("SIM-1", FlyMission(square_mission(height_m=55.0)))
@@ -235,7 +235,7 @@ class TestAnswers:
             Phase.CONFIRMED,
         ]
 
-    def test_no_answer_but_the_act_is_confirmed(self) -> None:
+    def test_without_an_answer_telemetry_confirms(self) -> None:
         w = world(faults=("no-ack",))
         w.run_for(2.0)
         order = w.order("SIM-1", LandNow())
@@ -250,7 +250,7 @@ class TestAnswers:
         w.run_for(3.0)
         assert w.record(order).phase is Phase.REFUSED_BY_APP
 
-    def test_an_answer_and_then_nothing_is_never_confirmed(self) -> None:
+    def test_an_answer_without_an_effect_is_never_confirmed(self) -> None:
         w = world(faults=("ack-then-nothing",))
         w.run_for(2.0)
         order = w.order("SIM-1", FlyMission(square_mission()))

@@ -109,11 +109,11 @@ class TestSixInTwoWaves:
             assert Phase.REFUSED_BY_STATION not in [c.phase for c in record.history]
             assert (member.mission_id or 0) < 0
 
-    def test_nobody_is_left_to_see_to(self, flown: ReturningWorld) -> None:
+    def test_no_alarm_is_left(self, flown: ReturningWorld) -> None:
         assert flown.alarms() == set()
 
 
-def test_the_control_all_going_home_at_one_height_come_too_near() -> None:
+def test_the_control_all_returning_at_one_height_come_too_near() -> None:
     """Why there are layers: the same fleet and pads, the return of the ICD, equal heights.
 
     With its holds on, the separation watchdog would stop them on the way: kept apart, but not home.
@@ -145,8 +145,8 @@ def test_drawn_fleets_land_by_the_real_gate_on_shared_pads(seed: int) -> None:
     assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
 
-class TestWhatComesBetween:
-    def test_a_pilot_who_takes_one_has_it_and_the_others_go_on(self) -> None:
+class TestInterruptions:
+    def test_a_pilot_takes_one_and_the_others_continue(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR)
         world.runs(20.0)
@@ -164,7 +164,7 @@ class TestWhatComesBetween:
         assert {("fleet_return", serial) for serial in left} <= world.alarms()
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
-    def test_a_vehicle_told_something_newer_is_let_go(self) -> None:
+    def test_a_vehicle_with_a_newer_order_is_released(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR)
         world.runs(15.0)
@@ -199,7 +199,7 @@ class TestWhatComesBetween:
         assert set(stages.values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
-    def test_one_that_is_silent_for_a_moment_in_flight_lands_all_the_same(self) -> None:
+    def test_a_short_loss_of_telemetry_in_flight_changes_nothing(self) -> None:
         world = four_in_the_air(faults=("telemetry-dropout:SIM-2:20:4",))
         world.call(*FOUR)
         world.runs(19.0)
@@ -220,7 +220,7 @@ class TestWhatComesBetween:
         holds = [r for r in newest if "was ignored" in r.command.issued_by]
         assert [(r.command.serial, r.command.body) for r in holds] == [("SIM-4", Hover())]
 
-    def test_one_whose_link_breaks_while_it_flies_lands_and_is_told_nothing(self) -> None:
+    def test_one_whose_link_breaks_in_flight_lands_without_further_orders(self) -> None:
         world = four_in_the_air(faults=("restart:SIM-1:20:5",))
         world.call(*FOUR)
         world.runs(15.0)
@@ -247,7 +247,7 @@ class TestWhatComesBetween:
         assert world.runs_until_over(300.0)
         assert landed_on_its_pad(world, "SIM-1")
 
-    def test_one_that_guidance_leads_is_taken_from_it_by_its_hold(self) -> None:
+    def test_the_hold_takes_a_vehicle_from_guidance(self) -> None:
         world = returning_world([(0, 100, 30)], [(0, 0)])
         world.world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.GUIDANCE, "guidance"))
         world.call("SIM-1")
@@ -260,7 +260,7 @@ class TestWhatComesBetween:
         assert world.runs_until_over(900.0)
         assert "refused by app" in world.member("SIM-4").reason
 
-    def test_the_alarm_of_one_left_out_ends_when_somebody_sees_to_it(self) -> None:
+    def test_the_alarm_of_one_left_out_ends_with_a_new_order(self) -> None:
         world = four_in_the_air(faults=("negative-ack:SIM-4:8:60",))
         world.call(*FOUR)
         assert world.runs_until_over(900.0)
@@ -269,7 +269,7 @@ class TestWhatComesBetween:
         world.runs(2.0)
         assert ("fleet_return", "SIM-4") not in world.alarms()
 
-    def test_somebody_who_comes_to_hover_in_the_way_is_flown_around(self) -> None:
+    def test_a_vehicle_that_comes_to_hover_in_the_way_is_flown_around(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR)
         world.runs(10.0)
@@ -282,7 +282,7 @@ class TestWhatComesBetween:
         assert set(world.stages().values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
-    def test_somebody_who_hovers_over_its_pad_leaves_it_out(self) -> None:
+    def test_a_vehicle_hovering_over_its_pad_leaves_it_out(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR)
         world.runs(10.0)
@@ -317,7 +317,7 @@ class TestOnePad:
 
 
 class TestCalling:
-    def test_those_on_the_ground_led_by_others_unknown_or_called_already_are_refused(self) -> None:
+    def test_on_the_ground_under_pilot_control_unknown_or_called_already_is_refused(self) -> None:
         world = returning_world(
             [(0, 100, 30), (60, 100, 40), (0, 0, 0)], [(0, 0), (60, 0), (90, 0)]
         )
@@ -355,7 +355,7 @@ class TestCalling:
         assert world.runs_until_over(300.0)
         assert landed_on_its_pad(world, "SIM-1")
 
-    def test_the_view_tells_waves_layers_and_reasons(self) -> None:
+    def test_the_view_has_waves_layers_and_reasons(self) -> None:
         world = six_in_the_air()
         world.call(*SIX)
         world.runs(20.0)

@@ -1,4 +1,4 @@
-"""What may go wrong with a vehicle of a fleet return: it is let go, with a reason in words."""
+"""Failures of a fleet return: the vehicle is left out or released, with a reason."""
 
 from dataclasses import replace
 
@@ -45,7 +45,7 @@ class TestBeforeItsTurn:
         world.runs(14.0)
         assert "did not stop within 12 s" in reason(world, "SIM-1")
 
-    def test_one_that_falls_silent_while_it_waits(self) -> None:
+    def test_one_whose_telemetry_is_lost_while_it_waits(self) -> None:
         world = returning_world(TWO, ONE_PAD, faults=("telemetry-dropout:*:15:6",))
         world.call("SIM-1", "SIM-2")
         world.runs(10.0)
@@ -82,7 +82,7 @@ class TestBeforeItsTurn:
         assert world.runs_until_over(300.0)
         assert set(world.stages().values()) == {Stage.LANDED}
 
-    def test_one_whose_takeoff_nobody_has_seen(self) -> None:
+    def test_one_with_an_unknown_takeoff_point(self) -> None:
         world = returning_world(ONE, [(0, 0)], knows_pads=False)
         world.call("SIM-1")
         world.runs(5.0)
@@ -99,7 +99,7 @@ class TestItsFlight:
         world.runs(1.0)
         assert "replaced by hover, ordered by station: separation" in reason(world, "SIM-1")
 
-    def test_one_that_hovers_on_its_way_is_not_ordered_anything_more(self) -> None:
+    def test_one_that_stops_on_its_way_gets_no_more_orders(self) -> None:
         world = returning_world(ONE, [(0, 0)])
         world.call("SIM-1")
         world.runs(12.0)
@@ -152,7 +152,7 @@ class TestThePlan:
         assert world.runs_until_over(200.0)
         assert world.member("SIM-1").stage is Stage.LANDED
 
-    def test_a_plan_comes_too_late_for_one_that_was_stopped_meanwhile(self) -> None:
+    def test_a_plan_too_late_for_a_vehicle_stopped_meanwhile(self) -> None:
         world = returning_world(TWO, [(0, 0), (60, 0)], plan_takes_s=4.0)
         world.call("SIM-1", "SIM-2")
         world.runs(3.0)
@@ -160,13 +160,13 @@ class TestThePlan:
         assert world.runs_until_over(200.0)
         assert world.stages() == {"SIM-1": Stage.RELEASED, "SIM-2": Stage.LANDED}
 
-    def test_a_result_nobody_asked_for_is_left_alone(self) -> None:
+    def test_the_end_of_an_unknown_job_changes_nothing(self) -> None:
         scene = CommandedStation()
         scene.happens(JobFailed(5, PLAN_RETURN, "late"))
         assert scene.station.fleet_return is None
 
 
-def test_one_that_has_told_no_place_is_refused_without_a_site() -> None:
+def test_a_vehicle_without_a_position_is_refused_without_a_site() -> None:
     scene = CommandedStation()
     scene.station = replace(scene.station, airspace=OPEN_AIRSPACE)
     scene.opens(1, extended("A"), core(position=None))

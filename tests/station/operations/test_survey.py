@@ -31,11 +31,11 @@ class TestFlownByTwo:
         assert seen.reached_m2 == pytest.approx(seen.region_m2)
         assert seen.not_yet_m2 < 0.02 * seen.region_m2
 
-    def test_without_an_imager_nobody_knows_the_light(self, flown: SurveyedWorld) -> None:
+    def test_without_an_imaging_drone_the_light_is_unknown(self, flown: SurveyedWorld) -> None:
         assert flown.figures().in_sun_m2 == 0.0
         assert flown.figures().sun_unknown_m2 == flown.figures().in_shade_m2
 
-    def test_every_mission_went_through_the_gate_as_guidances(self, flown: SurveyedWorld) -> None:
+    def test_every_mission_passed_the_gate_as_guidance(self, flown: SurveyedWorld) -> None:
         given = flown.missions()
         assert {each.command.serial for each in given} == {"SIM-1", "SIM-2"}
         assert {each.command.asked_as for each in given} == {AuthorityHolder.GUIDANCE}
@@ -43,20 +43,24 @@ class TestFlownByTwo:
         assert all(each.command.id < 0 for each in given)
         assert all(each.phase is Phase.DONE for each in given)
 
-    def test_it_leads_nobody_when_it_is_done(self, flown: SurveyedWorld) -> None:
+    def test_its_vehicles_go_back_to_the_operator_when_it_is_done(
+        self, flown: SurveyedWorld
+    ) -> None:
         assert {flown.holder("SIM-1"), flown.holder("SIM-2")} == {AuthorityHolder.OPERATOR}
 
-    def test_who_hovers_is_told_until_somebody_orders_something(self, flown: SurveyedWorld) -> None:
+    def test_a_hovering_vehicle_is_an_alarm_until_its_next_order(
+        self, flown: SurveyedWorld
+    ) -> None:
         assert ("survey_over", "SIM-1") in flown.fleet.alarms()
 
-    def test_the_ways_are_kept_for_showing(self, flown: SurveyedWorld) -> None:
+    def test_the_flown_paths_are_kept(self, flown: SurveyedWorld) -> None:
         ways = flown.record().flown
         assert {serial for serial, _ in ways} == {"SIM-1", "SIM-2"}
         assert min(len(way) for way in ways.values()) > 10
 
 
 class TestBeforeTheStart:
-    def test_nothing_flies_and_nobody_is_led_by_guidance(self) -> None:
+    def test_nothing_flies_and_guidance_controls_no_vehicle(self) -> None:
         world = surveyed_world()
         world.asks()
         world.runs(20.0)
@@ -64,7 +68,7 @@ class TestBeforeTheStart:
         assert world.missions() == []
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
 
-    def test_one_that_cannot_be_flown_says_why(self) -> None:
+    def test_one_that_cannot_be_flown_has_a_reason(self) -> None:
         world = surveyed_world()
         world.asks(asked(speed_mps=14.0))
         refusal = world.record().refusal
@@ -73,7 +77,7 @@ class TestBeforeTheStart:
         world.starts("SIM-1")
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
 
-    def test_two_asked_at_once_are_both_planned_or_told(self) -> None:
+    def test_two_requested_at_once_are_planned_or_refused(self) -> None:
         world = surveyed_world()
         world.asks(asked(id=1))
         world.asks(asked(id=2, name="other"))
@@ -83,7 +87,7 @@ class TestBeforeTheStart:
         ]
 
 
-class TestTheStartIsAWord:
+class TestStart:
     def test_all_vehicles_or_none(self) -> None:
         world = surveyed_world(2)
         world.asks()
@@ -95,13 +99,13 @@ class TestTheStartIsAWord:
         assert world.missions() == []
 
     @pytest.mark.parametrize("serials", [(), ("SIM-9",)])
-    def test_nobody_and_strangers_fly_nothing(self, serials: tuple[str, ...]) -> None:
+    def test_no_vehicle_or_an_unknown_one_is_refused(self, serials: tuple[str, ...]) -> None:
         world = surveyed_world()
         world.asks()
         world.starts(*serials)
         assert world.phase() is SurveyPhase.CREATED
 
-    def test_who_stands_takes_off_only_when_that_was_said(self) -> None:
+    def test_a_vehicle_on_the_ground_takes_off_only_if_allowed(self) -> None:
         world = surveyed_world(height_m=0.0)
         world.asks()
         world.starts("SIM-1")
@@ -114,7 +118,7 @@ class TestTheStartIsAWord:
         assert [each.command.takeoff for each in world.missions()] == [True]
         assert world.fleet.flies("SIM-1")
 
-    def test_the_word_is_good_for_one_takeoff(self) -> None:
+    def test_the_permission_is_for_one_takeoff(self) -> None:
         world = surveyed_world(height_m=0.0)
         world.asks()
         world.starts("SIM-1", takeoff=True)
@@ -141,7 +145,9 @@ class TestStopped:
         assert len(world.missions()) == 2
         return world
 
-    def test_a_pause_holds_its_vehicles_and_gives_nothing_more(self, flying: SurveyedWorld) -> None:
+    def test_a_pause_holds_its_vehicles_and_orders_no_more_missions(
+        self, flying: SurveyedWorld
+    ) -> None:
         given = len(flying.missions())
         flying.pauses()
         flying.runs(30.0)
@@ -171,7 +177,7 @@ class TestStopped:
         assert flying.figures().not_yet_m2 <= imaged
         assert flying.holder("SIM-1") is AuthorityHolder.OPERATOR
 
-    def test_one_that_somebody_lands_is_left_to_them_and_the_other_flies_all(
+    def test_one_landed_by_the_operator_stays_landed_and_the_other_flies_all(
         self, flying: SurveyedWorld
     ) -> None:
         flying.fleet.world.order("SIM-1", LandNow())
@@ -190,8 +196,8 @@ class TestStopped:
         assert {each.command.serial for each in held} == {"SIM-2"}
 
 
-class TestWhatGoesWrong:
-    def test_a_mission_that_is_ignored_is_not_given_again_by_itself(self) -> None:
+class TestFailures:
+    def test_an_ignored_mission_is_not_repeated(self) -> None:
         world = surveyed_world(faults=("ack-then-nothing:SIM-1:1:900",))
         world.asks()
         world.starts("SIM-1")
@@ -199,7 +205,7 @@ class TestWhatGoesWrong:
         assert [each.phase for each in world.missions()] == [Phase.TIMED_OUT]
         assert ("survey", "SIM-1") in world.fleet.alarms()
 
-    def test_what_the_gate_refuses_pauses_the_survey_and_says_why(self) -> None:
+    def test_a_refused_mission_pauses_the_survey_with_the_reason(self) -> None:
         world = surveyed_world(max_height_m=30.0, height_m=20.0, go_home_height_m=25.0)
         world.asks()
         world.starts("SIM-1")
@@ -222,7 +228,7 @@ class TestWhatGoesWrong:
         assert world.phase() is SurveyPhase.PAUSED
 
     def test_the_same_run_again_is_the_same(self) -> None:
-        def told() -> list[object]:
+        def flown() -> list[object]:
             world = two_ends()
             world.asks(asked(field(360.0)))
             world.starts("SIM-1", "SIM-2")
@@ -232,18 +238,18 @@ class TestWhatGoesWrong:
                 [(e.command.id, e.command.serial, e.history) for e in world.missions()],
             ]
 
-        assert told() == told()
+        assert flown() == flown()
 
 
-def test_the_survey_of_the_number_is_meant() -> None:
+def test_a_command_is_for_the_survey_of_its_number() -> None:
     world = surveyed_world()
     world.asks()
     world.starts("SIM-1", number=SURVEY_ID + 1)
     assert world.phase() is SurveyPhase.CREATED
 
 
-class TestTheWayToTheRows:
-    """Pads lie south of the field; over the strip between them heights are bound."""
+class TestApproach:
+    """Pads lie south of the field; a zone limits heights in between."""
 
     @staticmethod
     def flown(*zones: Zone, count: int = 1) -> SurveyedWorld:

@@ -1,4 +1,4 @@
-"""The ways to a survey's rows and off them: in layers, so that nobody waits in another's way."""
+"""The approach to a survey's rows and the exit from them: in layers."""
 
 from itertools import pairwise
 
@@ -27,7 +27,7 @@ def heights_m(mission: Mission) -> list[float]:
 
 
 @pytest.mark.parametrize("count", [2, 3, 8])
-def test_each_of_several_goes_there_and_waits_in_a_layer_of_its_own(count: int) -> None:
+def test_each_of_several_approaches_and_waits_in_a_layer_of_its_own(count: int) -> None:
     flown = [with_approach(ROWS, standing(20.0 * n), n, count, LIMITS) for n in range(count)]
     for mission in flown:
         assert heights_m(mission)[:2] == [heights_m(mission)[-1]] * 2
@@ -57,7 +57,7 @@ def test_one_that_begins_at_its_first_row_still_ends_in_its_layer() -> None:
     assert heights_m(flown)[-1] != 60.0
 
 
-def test_where_there_is_no_room_nobody_changes_its_height() -> None:
+def test_without_room_for_layers_all_stay_at_the_rows_height() -> None:
     low = FlightLimits(max_height_above_ground_m=26.0)
     mission = square_mission(height_m=21.0)
     for flown in with_approaches(mission, standing(0.0), 0, 2, low):

@@ -1,4 +1,4 @@
-"""What the audit tells of surveys: who said what, and what they became by themselves."""
+"""Audit entries of surveys: commands with their user, and changes of phase."""
 
 from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, surveyed_world
 
@@ -10,20 +10,20 @@ from recon.station.state.station import Station
 
 
 def audited(world: SurveyedWorld) -> list[AuditEntry]:
-    """Collect what the audit is told from now on, of surveys and of who leads."""
+    """Collect the audit's entries from now on, of surveys and of control authority."""
     entries: list[AuditEntry] = []
     memory = Auditing()
 
     def observe(before: Station, after: Station, event: Event) -> None:
         nonlocal memory
-        memory, told = audit(memory, before, event, after, world.driver.now_ns)
-        entries.extend(e for e in told if e.kind.startswith(("survey.", "authority.")))
+        memory, new = audit(memory, before, event, after, world.driver.now_ns)
+        entries.extend(e for e in new if e.kind.startswith(("survey.", "authority.")))
 
     world.driver.observe = observe
     return entries
 
 
-def test_every_word_is_told_with_who_said_it() -> None:
+def test_every_command_is_audited_with_its_user() -> None:
     world = surveyed_world()
     entries = audited(world)
     world.asks()
@@ -31,8 +31,8 @@ def test_every_word_is_told_with_who_said_it() -> None:
     world.runs(5.0)
     world.pauses()
     world.aborts()
-    told = [(entry.kind, entry.by) for entry in entries]
-    assert told == [
+    audited_by = [(entry.kind, entry.by) for entry in entries]
+    assert audited_by == [
         ("survey.asked", "ann"),
         ("survey.is_created", "station"),
         ("survey.started", "ann"),
@@ -45,7 +45,7 @@ def test_every_word_is_told_with_who_said_it() -> None:
     assert started.details == {"id": SURVEY_ID, "serials": ["SIM-1"], "takeoff": True}
 
 
-def test_a_hold_on_the_way_home_is_told_as_what_it_is() -> None:
+def test_a_stop_after_the_end_is_audited_as_a_hold() -> None:
     world = surveyed_world()
     entries = audited(world)
     world.asks()
@@ -61,7 +61,7 @@ def test_a_hold_on_the_way_home_is_told_as_what_it_is() -> None:
     assert world.phase() is SurveyPhase.DONE
 
 
-def test_a_refused_word_is_told_with_its_reason() -> None:
+def test_a_refused_command_is_audited_with_its_reason() -> None:
     world = surveyed_world()
     entries = audited(world)
     world.asks()
@@ -72,14 +72,14 @@ def test_a_refused_word_is_told_with_its_reason() -> None:
     assert "SIM-9 is not known" in refused.details["reason"]
 
 
-def test_one_that_cannot_be_flown_is_told() -> None:
+def test_a_survey_that_cannot_be_flown_is_audited() -> None:
     world = surveyed_world()
     entries = audited(world)
     world.asks(asked(speed_mps=14.0))
     assert [entry.kind for entry in entries] == ["survey.asked", "survey.is_refused"]
 
 
-def test_what_it_becomes_by_itself_is_told() -> None:
+def test_a_change_of_phase_without_a_command_is_audited() -> None:
     world = surveyed_world(max_height_m=30.0, height_m=20.0, go_home_height_m=25.0)
     entries = audited(world)
     world.asks()

@@ -1,4 +1,4 @@
-"""The whole line at once: frames on the ground, shade read from them, cells imaged in sun."""
+"""The whole pipeline: ground images, shade maps, and cells imaged in sun or in shade."""
 
 from dataclasses import replace
 
@@ -41,7 +41,7 @@ def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
         world.driver.station, settings=replace(settings, detection=detection)
     )
     for number in range(1, 41):
-        # The eye has seen the field in sun before: else nobody could tell its shade from dark soil.
+        # The field must be imaged in sun first: else shade looks like dark soil.
         world.driver.handle(seen(world, number, number > 30))
         world.runs(1.0)
     world.asks(asked(planner=planner, budget=SurveyBudget(rounds=3)))
@@ -67,7 +67,7 @@ def states(state: SurveyState, is_west: bool) -> np.ndarray:
     return state.progress.state[cells.is_reached & chosen[np.newaxis, :]]
 
 
-def test_what_was_flown_in_shade_is_told_from_what_was_flown_in_sun() -> None:
+def test_cells_flown_in_shade_and_in_sun_are_distinguished() -> None:
     world = flown_under_an_imager("lawnmower_once", sunny_from_s=10_000.0)
     assert world.phase() is SurveyPhase.DONE
     assert (states(world.state(), is_west=True) == CellState.IN_SHADE).mean() > 0.9
@@ -75,7 +75,7 @@ def test_what_was_flown_in_shade_is_told_from_what_was_flown_in_sun() -> None:
     assert world.figures().sun_unknown_m2 == 0.0
 
 
-def test_what_lay_in_shade_is_flown_again_until_it_is_imaged_in_sun() -> None:
+def test_cells_in_shade_are_flown_again_until_imaged_in_sun() -> None:
     world = flown_under_an_imager("lawnmower_again", sunny_from_s=150.0)
     assert world.phase() is SurveyPhase.DONE
     assert "in sun" in world.state().reason

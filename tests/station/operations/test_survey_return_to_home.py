@@ -1,4 +1,4 @@
-"""A survey's vehicles come home when there is nothing more to fly for them, in virtual time."""
+"""A survey's vehicles fly home when there is nothing left for them to fly, in virtual time."""
 
 from random import Random
 
@@ -15,7 +15,7 @@ LONG_FIELD = field(360.0)
 
 
 def battery_of(world: SurveyedWorld, serial: str, fraction: float) -> None:
-    """As after a flight, or after somebody has changed it."""
+    """Set a battery's charge, as after a flight or a change of battery."""
     battery = world.fleet.world.app(serial).aircraft.battery
     battery.fraction = fraction
     world.runs(2.0)
@@ -56,16 +56,14 @@ class TestDone:
     def test_they_kept_apart(self, done: SurveyedWorld) -> None:
         assert done.fleet.nearest.level_m >= 15.0, done.fleet.nearest.who
 
-    def test_every_order_of_it_is_guidances_and_says_by_whose_word(
-        self, done: SurveyedWorld
-    ) -> None:
+    def test_every_order_is_guidances_in_the_users_name(self, done: SurveyedWorld) -> None:
         orders = done.driver.station.orders.records.values()
-        homeward = [each.command for each in orders if "fleet return" in each.command.issued_by]
-        assert {c.serial for c in homeward} == {"SIM-1", "SIM-2", "SIM-3"}
-        assert all(isinstance(c.body, FlyMission) for c in homeward)
+        returns = [each.command for each in orders if "fleet return" in each.command.issued_by]
+        assert {c.serial for c in returns} == {"SIM-1", "SIM-2", "SIM-3"}
+        assert all(isinstance(c.body, FlyMission) for c in returns)
         holds = [each.command for each in orders if isinstance(each.command.body, Hover)]
-        assert {c.asked_as for c in (*homeward, *holds)} == {AuthorityHolder.GUIDANCE}
-        assert {c.issued_by.split(":")[0] for c in (*homeward, *holds)} == {"ann"}
+        assert {c.asked_as for c in (*returns, *holds)} == {AuthorityHolder.GUIDANCE}
+        assert {c.issued_by.split(":")[0] for c in (*returns, *holds)} == {"ann"}
 
     def test_no_alarm_is_left(self, done: SurveyedWorld) -> None:
         assert not {rule for rule, _ in done.fleet.alarms()} & {
@@ -86,7 +84,7 @@ def going_home(when_done: WhenDone = WhenDone.RETURN_HOME) -> SurveyedWorld:
 
 
 class TestOnTheWayHome:
-    def test_who_asked_them_to_hover_lets_them_hover(self) -> None:
+    def test_surveys_set_to_hover_leave_them_hovering(self) -> None:
         world = going_home(WhenDone.HOVER)
         world.runs(60.0)
         assert world.fleet.stages() == {}
@@ -113,13 +111,13 @@ class TestOnTheWayHome:
         assert world.fleet.member("SIM-1").stage is Stage.RELEASED
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
 
-    def test_a_pilots_vehicle_is_left_to_the_pilot(self) -> None:
+    def test_a_vehicle_under_pilot_control_is_left_to_the_pilot(self) -> None:
         world = going_home()
         world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.PILOT, "the pilot"))
-        told = len(world.missions("SIM-1"))
+        before = len(world.missions("SIM-1"))
         assert runs_until_home(world, ("SIM-2",), 300.0)
         assert world.fleet.member("SIM-1").stage is Stage.RELEASED
-        assert len(world.missions("SIM-1")) == told
+        assert len(world.missions("SIM-1")) == before
         assert world.holder("SIM-1") is AuthorityHolder.PILOT
 
     def test_another_survey_cannot_have_them_before_they_are_home(self) -> None:
@@ -173,7 +171,7 @@ class TestWithoutBattery:
         assert runs_until_home(world, ("SIM-2",), 300.0)
         assert world.fleet.nearest.level_m >= 15.0, world.fleet.nearest.who
 
-    def test_on_the_ground_nobody_is_called_anywhere(self) -> None:
+    def test_on_the_ground_no_vehicle_is_called_home(self) -> None:
         world = surveyed_world(height_m=0.0, endurance_s=1_500.0)
         world.asks()
         battery_of(world, "SIM-1", 0.24)
@@ -182,7 +180,7 @@ class TestWithoutBattery:
         assert not world.fleet.flies("SIM-1")
         assert world.missions() == [] or not world.fleet.stages()
 
-    def test_who_hovers_with_that_setting_waits(self) -> None:
+    def test_a_hovering_vehicle_with_that_setting_waits(self) -> None:
         world = surveyed_world(endurance_s=1_500.0)
         world.asks(asked(LONG_FIELD, when_done=WhenDone.HOVER))
         battery_of(world, "SIM-1", 0.40)
@@ -216,7 +214,7 @@ def test_a_budget_that_ends_brings_them_home_too() -> None:
     assert runs_until_home(world, ("SIM-1",), 300.0)
 
 
-def test_one_whose_mission_went_wrong_is_left_for_somebody_to_look_at() -> None:
+def test_one_whose_mission_failed_is_left_to_the_operator() -> None:
     world = surveyed_world(2, faults=("ack-then-nothing:SIM-1:1:900",))
     world.asks()
     world.starts("SIM-1", "SIM-2")
@@ -229,7 +227,7 @@ def test_one_whose_mission_went_wrong_is_left_for_somebody_to_look_at() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_whatever_the_field_and_the_batteries_they_keep_apart_and_land(seed: int) -> None:
-    """Random fields, pads and batteries: who comes home early does so past those who fly rows."""
+    """Random fields, pads and batteries: vehicles that return early pass those that fly rows."""
     random = Random(seed)
     pads = [(40.0 * n + random.uniform(-8.0, 8.0), random.uniform(-70.0, -40.0)) for n in range(3)]
     world = surveyed_world(3, pads=pads)

@@ -1,4 +1,4 @@
-"""What is not heard stays in the air, until telemetry or a person takes it out."""
+"""A lost vehicle stays in the air until telemetry or an operator takes it out."""
 
 from dataclasses import replace
 
@@ -16,10 +16,10 @@ from recon.station.traffic.known_traffic import hazard, in_the_air, is_dismissib
 NORTH_100 = moved_m(PLACE, 100.0, 0.0)
 
 
-def stale(seconds: float = 60.0, **said: object) -> CommandedStation:
-    """A took off 100 m south of where it flies, and has not been heard since."""
+def stale(seconds: float = 60.0, **reported: object) -> CommandedStation:
+    """A took off 100 m south of its last position; its telemetry is lost."""
     scene = CommandedStation().opens(1, core(flying=False), extended()).receives(1, core())
-    moving = core(position=NORTH_100, velocity=(3.0, 0.0, 0.0), **said)  # type: ignore[arg-type]
+    moving = core(position=NORTH_100, velocity=(3.0, 0.0, 0.0), **reported)  # type: ignore[arg-type]
     return scene.receives(1, moving).passes(seconds)
 
 
@@ -41,7 +41,7 @@ class TestHazard:
         assert grown is not None
         assert grown.radius_m == 150.0
 
-    def test_one_that_is_heard_or_on_the_ground_has_none(self) -> None:
+    def test_with_telemetry_or_on_the_ground_there_is_no_hazard_area(self) -> None:
         for scene in (
             stale(2.9),
             stale(60.0, flying=False),
@@ -52,7 +52,7 @@ class TestHazard:
             assert hazard_view(scene.station, vehicle, scene.now_ns) is None
             assert not is_dismissible(scene.station, "A", scene.now_ns)
 
-    def test_nobody_knows_the_home_of_one_seen_first_in_the_air(self) -> None:
+    def test_the_home_of_one_first_connected_in_the_air_is_unknown(self) -> None:
         scene = CommandedStation().opens(1, core(), extended("Z")).passes(60.0)
         view = hazard_view(scene.station, scene.station.fleet.vehicles["Z"], scene.now_ns)
         assert view is not None
@@ -60,7 +60,7 @@ class TestHazard:
 
 
 class TestDismissal:
-    def test_a_persons_word_takes_it_out_until_it_is_heard_again(self) -> None:
+    def test_a_dismissal_lasts_until_new_telemetry(self) -> None:
         scene = stale()
         assert in_air(scene) == ["A"]
         scene.happens(HazardDismissed("A", "Ann"))
@@ -72,7 +72,7 @@ class TestDismissal:
         scene.receives(1, core())
         assert in_air(scene) == ["A"]
 
-    def test_its_alarm_ends_with_it_and_comes_back_only_after_it_was_heard_again(self) -> None:
+    def test_its_alarm_ends_with_it_and_returns_only_after_new_telemetry(self) -> None:
         scene = stale()
         assert scene.alarms() == {"link_lost"}
         scene.happens(HazardDismissed("A", "Ann")).passes(60.0)
@@ -80,17 +80,17 @@ class TestDismissal:
         scene.receives(1, core()).passes(4.0)
         assert "link_lost" in scene.alarms()
 
-    def test_nothing_else_does(self) -> None:
+    def test_nothing_else_dismisses_it(self) -> None:
         scene = stale().closes(1).passes(600.0)
         assert in_air(scene) == ["A"]
 
-    def test_what_is_no_ghost_cannot_be_dismissed(self) -> None:
+    def test_a_vehicle_without_a_hazard_area_cannot_be_dismissed(self) -> None:
         scene = stale(1.0)
-        scene.happens(HazardDismissed("A", "Ann")).happens(HazardDismissed("nobody", "Ann"))
+        scene.happens(HazardDismissed("A", "Ann")).happens(HazardDismissed("unknown", "Ann"))
         assert in_air(scene) == ["A"]
         assert scene.station.watchdog_state.dismissed == {}
 
-    def test_one_that_never_told_where_it_is_can_be_dismissed_too(self) -> None:
+    def test_one_without_any_position_can_be_dismissed(self) -> None:
         scene = CommandedStation().opens(1, core(position=None), extended()).passes(1.0)
         assert is_dismissible(scene.station, "A", scene.now_ns)
         scene.happens(HazardDismissed("A", "Ann"))
@@ -122,7 +122,7 @@ class TestWithoutASerial:
             ({"height_m": None}, True),
         ],
     )
-    def test_a_second_connection_of_a_phone_that_is_heard_leaves_nothing_behind(
+    def test_a_second_connection_of_an_identified_phone_leaves_no_lost_vehicle(
         self, changes: dict[str, object], is_kept: bool
     ) -> None:
         scene = CommandedStation().opens(1, extended("A"), core(height_m=40.0))
@@ -130,12 +130,12 @@ class TestWithoutASerial:
         scene.closes(2)
         assert bool(scene.station.watchdog_state.lost) is is_kept
 
-    def test_nor_is_one_forgotten_that_tells_of_what_is_not_heard_now(self) -> None:
+    def test_without_current_telemetry_of_the_identified_one_it_is_kept(self) -> None:
         scene = CommandedStation().opens(1, extended("A"), core(height_m=40.0)).passes(1.5)
         scene.opens(2, core(height_m=40.0)).closes(2)
         assert set(scene.station.watchdog_state.lost) == {"link-2"}
 
-    def test_a_person_takes_it_out(self) -> None:
+    def test_an_operator_dismisses_it(self) -> None:
         scene = self.lost()
         assert is_dismissible(scene.station, "link-7", scene.now_ns)
         scene.happens(HazardDismissed("link-7", "Ann"))
@@ -143,7 +143,7 @@ class TestWithoutASerial:
         again = self.lost().happens(HazardDismissed("unidentified link 7", "Ann"))
         assert in_air(again) == []
 
-    def test_its_alarm_stays_until_then_whoever_has_seen_it(self) -> None:
+    def test_its_alarm_stays_until_then_even_if_acknowledged(self) -> None:
         scene = self.lost()
         (alarm,) = (a for a in scene.station.alarms.alarms.values() if a.is_active)
         assert alarm.condition.rule == "unidentified_lost"
@@ -153,13 +153,13 @@ class TestWithoutASerial:
         scene.happens(HazardDismissed("link-7", "Ann")).passes(0.1)
         assert scene.alarms() == set()
 
-    def test_one_on_the_ground_is_gone(self) -> None:
+    def test_one_on_the_ground_is_not_kept(self) -> None:
         scene = (
             CommandedStation().opens(7, core(flying=False), extended(None)).passes(1.0).closes(7)
         )
         assert in_air(scene) == []
 
-    def test_of_too_many_none_is_forgotten_and_nothing_moves_until_a_person_knows(self) -> None:
+    def test_too_many_lost_vehicles_block_all_motion_until_dismissed(self) -> None:
         scene = (
             CommandedStation()
             .opens(99, core(), extended("A"))
@@ -183,7 +183,7 @@ class TestWithoutASerial:
         scene.happens(HazardDismissed("many-lost", "Ann")).passes(0.1)
         assert scene.phase(scene.order(GoTo(moved_m(PLACE, 30.0, 0.0), 40.0, 5.0))) is Phase.SENT
 
-    def test_while_its_link_is_open_it_is_in_the_air_by_its_own_word(self) -> None:
+    def test_while_its_link_is_open_its_own_telemetry_counts(self) -> None:
         scene = CommandedStation().opens(7, core(), extended(None)).passes(1.0)
         assert in_air(scene) == ["unidentified link 7"]
         scene.receives(7, core(flying=False))
@@ -202,7 +202,7 @@ class TestNoRoom:
         scene.passes(5.0)
         return scene.opens(9, core(), extended("NEW")).passes(0.2)
 
-    def test_a_newcomer_is_a_hazard_without_a_name_and_an_alarm(self) -> None:
+    def test_another_vehicle_is_an_unidentified_hazard_and_an_alarm(self) -> None:
         scene = self.full()
         assert in_air(scene) == ["X", "Y", "Z", "unidentified link 9"]
         (alarm,) = (
@@ -210,7 +210,7 @@ class TestNoRoom:
             for a in scene.station.alarms.alarms.values()
             if a.condition.rule == "no_room"
         )
-        assert "says it is NEW, but 3 vehicles that may fly are not heard" in alarm.text
+        assert "serial NEW not accepted: 3 lost vehicles" in alarm.text
         scene.receives(9, extended("NEWER"), extended("NEWEST")).passes(0.2)
         assert scene.alarms() >= {"no_room", "link_lost"}
         assert sum(a.condition.rule == "no_room" for a in scene.station.alarms.alarms.values()) == 1
@@ -221,7 +221,7 @@ class TestNoRoom:
         scene.closes(9)
         assert in_air(scene) == ["X", "Y", "Z", "unidentified link 9"]
 
-    def test_a_persons_word_makes_room(self) -> None:
+    def test_a_dismissal_makes_room(self) -> None:
         scene = self.full().happens(HazardDismissed("Y", "Ann"))
         scene.receives(9, core(), extended("NEW")).passes(0.2)
         assert in_air(scene) == ["X", "Z", "NEW"]

@@ -1,4 +1,4 @@
-"""What the watchdogs find becomes alarms and holds, ten times a second."""
+"""The watchdogs' findings become alarms and holds, ten times a second."""
 
 import pytest
 from tests.fleet.reports import PLACE, S, core, extended
@@ -14,6 +14,7 @@ from recon.model.geo import LatLon
 from recon.model.intent import Commanded, Intent
 from recon.model.severity import Severity
 from recon.model.vehicle import FlightMode
+from recon.safety.watchdogs import CommandedHold, hold_outcome
 from recon.station.state.alarm_book import Alarm
 
 
@@ -21,8 +22,12 @@ def place(north_m: float) -> LatLon:
     return moved_m(PLACE, north_m, 0.0)
 
 
+HELD = hold_outcome(CommandedHold(0, 0.0), "")
+"""What a finding states of a vehicle whose hold was sent."""
+
+
 class Two:
-    """A (link 1) and B (link 2) on one line, north of each other, moving as they say they do."""
+    """A (link 1) and B (link 2) on one line, north of each other, moving as reported."""
 
     def __init__(self, gap_m: float, a_mps: float = 5.0, b_mps: float = -5.0) -> None:
         self.scene = CommandedStation()
@@ -64,7 +69,7 @@ class Two:
         return self
 
     def holds(self) -> list[tuple[str | None, str]]:
-        """Whom the station has told to hold by itself, and for what."""
+        """The vehicles that the station has held by itself, and the reason."""
         return [
             (approved.command.serial, approved.command.issued_by)
             for approved in self.scene.handed
@@ -96,11 +101,11 @@ class TestSeparation:
         assert record.command.id < 0
         assert record.command.issued_by == "station: separation"
         assert record.phase is Phase.SENT
-        assert two.alarm("separation").condition.text.endswith("; B has been told to hold")
+        assert two.alarm("separation").condition.text.endswith(f"; B {HELD}")
         two.passes(6.0)
-        assert two.alarm("separation").condition.text.count("B has been told to hold") == 1
+        assert two.alarm("separation").condition.text.count(f"B {HELD}") == 1
 
-    def test_one_that_obeys_ends_the_conflict_and_the_other_flies_on(self) -> None:
+    def test_a_hold_ends_the_conflict_and_the_other_flies_on(self) -> None:
         two = Two(120.0, a_mps=2.0, b_mps=-8.0)
         two.passes(3.6)
         two.mps[2] = 0.0
@@ -108,7 +113,7 @@ class TestSeparation:
         assert {serial for serial, _ in two.holds()} == {"B"}
         assert two.scene.alarms() == {"separation"} or two.scene.alarms() == set()
 
-    def test_switched_off_it_says_so_and_holds_nobody(self) -> None:
+    def test_switched_off_it_raises_alarms_and_holds_no_vehicle(self) -> None:
         two = Two(100.0)
         two.scene.happens(SeparationHoldSwitched(is_on=False, by="Ann"))
         two.passes(5.0)
@@ -121,7 +126,7 @@ class TestSeparation:
         assert "separation_hold_off" not in two.scene.alarms()
         assert two.holds() != []
 
-    def test_what_the_pilot_leads_is_not_held(self) -> None:
+    def test_a_vehicle_under_pilot_control_is_not_held(self) -> None:
         two = Two(100.0)
         for serial in ("A", "B"):
             two.scene.happens(AuthorityTaken(serial, AuthorityHolder.PILOT, "test"))
@@ -129,7 +134,7 @@ class TestSeparation:
         assert two.holds() == []
         assert "separation" in two.scene.alarms()
 
-    def test_nobody_is_held_on_the_ground_or_for_it(self) -> None:
+    def test_no_vehicle_is_held_on_the_ground_or_because_of_one_there(self) -> None:
         two = Two(60.0, b_mps=0.0)
         two.flying[2] = False
         two.passes(8.0)
@@ -149,7 +154,7 @@ class TestSeparation:
         two = Two(60.0, a_mps=0.0).passes(10.0)
         assert [serial for serial, _ in two.holds()].count("B") >= 2
 
-    def test_a_hold_is_forgotten_with_the_flight_or_a_newer_order(self) -> None:
+    def test_a_hold_ends_with_the_flight_or_a_newer_order(self) -> None:
         two = Two(70.0).passes(0.5)
         held = two.scene.station.watchdog_state.held
         assert set(held) == {"B"}
@@ -162,29 +167,32 @@ class TestSeparation:
         two.passes(0.2)
         assert two.scene.station.watchdog_state.held == {}
 
-    def test_one_whose_hold_cannot_be_given_is_not_taken_for_held(self) -> None:
+    def test_a_vehicle_whose_hold_was_not_sent_does_not_count_as_held(self) -> None:
         two = Two(110.0).passes(1.5)
         assert two.holds() == []
         two.closes(2).passes(1.5)
         assert set(two.scene.station.watchdog_state.held) == {"A"}
         assert two.holds() == [("A", "station: separation")]
         text = two.alarm("separation").condition.text
-        assert "B could not be told to hold (waits until it is heard again" in text
-        assert text.endswith("; A has been told to hold")
+        (waits, *_) = (
+            r.note for r in two.scene.station.orders.records.values() if r.command.serial == "B"
+        )
+        assert f"B {hold_outcome(None, waits)}" in text
+        assert text.endswith(f"; A {HELD}")
         asked = [r for r in two.scene.station.orders.records.values() if r.command.serial == "B"]
         assert 1 <= len(asked) <= 2
 
-    def test_it_looks_ten_times_a_second_however_often_time_is_told(self) -> None:
+    def test_it_runs_ten_times_a_second_at_any_tick_rate(self) -> None:
         two = Two(300.0).passes(1.0)
-        looked_ns = two.scene.station.watchdog_state.run_at_ns
+        run_ns = two.scene.station.watchdog_state.run_at_ns
         two.scene.now_ns += S // 20
         two.scene.happens(Tick())
-        assert two.scene.station.watchdog_state.run_at_ns == looked_ns
+        assert two.scene.station.watchdog_state.run_at_ns == run_ns
         two.scene.now_ns += S // 20
         two.scene.happens(Tick())
         assert two.scene.station.watchdog_state.run_at_ns == two.scene.now_ns
 
-    def test_two_links_of_one_serial_are_one_vehicle_here(self) -> None:
+    def test_two_links_of_one_serial_are_one_vehicle(self) -> None:
         scene = CommandedStation()
         for link_id in (1, 2):
             scene.opens(link_id, core(), extended("A"))
@@ -200,7 +208,7 @@ class TestOthers:
         scene.passes(2.0)
         assert "link_lost" in scene.alarms()
 
-    def test_a_position_that_jumps_is_an_alarm_until_somebody_has_seen_it(self) -> None:
+    def test_a_position_jump_is_an_alarm_until_acknowledged(self) -> None:
         scene = CommandedStation().opens(1, core(), extended())
         scene.keeps_receiving(1, core()).passes(1.0)
         assert scene.alarms() == set()
@@ -217,7 +225,7 @@ class TestOthers:
         scene.keeps_receiving(1, core(position=place(400.0))).passes(0.2)
         assert "position_jump" in scene.alarms()
 
-    def test_a_stream_of_sticks_that_runs_dry_is_an_alarm(self) -> None:
+    def test_a_starved_setpoint_stream_is_an_alarm(self) -> None:
         for is_stuck, alarms in ((False, set()), (True, {"stick_starved"})):
             scene = (
                 CommandedStation()

@@ -77,8 +77,8 @@ def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
         except Exception as fault:
             station = note(station, StationFaulted(where, described(fault)), now_ns)
             station, more = _attempt(where, partial(_end_stream, serial), station, now_ns)
-            lease = station.control(serial).lease
-            if lease is not None and lease.closing is None:
+            setpoint_lease = station.control(serial).lease
+            if setpoint_lease is not None and setpoint_lease.closing is None:
                 station, more = _attempt(where, partial(_hold, serial), station, now_ns)
         outputs += more
     return station, outputs

@@ -1,4 +1,4 @@
-"""Two sent off in one breath are kept apart before telemetry shows either of them flying."""
+"""Two missions ordered at once are separated before telemetry shows either vehicle flying."""
 
 from tests.fleet.reports import PLACE, core, extended
 from tests.station.commanded import CommandedStation
@@ -34,7 +34,7 @@ def refused(scene: CommandedStation, order: int) -> bool:
     return is_refused
 
 
-def test_a_mission_that_still_waits_to_be_sent_counts() -> None:
+def test_a_queued_mission_counts() -> None:
     scene = two_on_the_ground()
     scene.is_stuck = True
     assert not refused(scene, scene.order(over_the_field(20.0, 0.0), "A", takeoff=True))
@@ -42,7 +42,7 @@ def test_a_mission_that_still_waits_to_be_sent_counts() -> None:
     assert not refused(scene, scene.order(over_the_field(-60.0, 40.0), "B", takeoff=True))
 
 
-def test_one_that_was_sent_off_counts_while_it_may_be_taking_off() -> None:
+def test_a_sent_mission_counts_while_its_vehicle_may_be_taking_off() -> None:
     scene = two_on_the_ground()
     assert not refused(scene, scene.order(over_the_field(20.0, 0.0), "A", takeoff=True))
     scene.passes(3.0)
@@ -51,7 +51,7 @@ def test_one_that_was_sent_off_counts_while_it_may_be_taking_off() -> None:
     assert not refused(scene, scene.order(over_the_field(20.0, 40.0), "B", takeoff=True))
 
 
-def test_what_a_vehicle_was_sent_before_is_no_traffic_to_itself() -> None:
+def test_a_vehicles_earlier_mission_is_no_traffic_to_itself() -> None:
     scene = two_on_the_ground()
     for _ in range(2):
         assert not refused(scene, scene.order(over_the_field(20.0, 0.0), "A", takeoff=True))
