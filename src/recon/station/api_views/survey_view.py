@@ -14,7 +14,7 @@ from recon.station.api_views.corners import corners_lon_lat
 from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.station import Station
-from recon.station.state.survey_record import SURVEYS_KEPT, EastNorth, SurveyRecord, SurveyVehicle
+from recon.station.state.survey_record import SURVEYS_KEPT, EastNorth, SurveyMember, SurveyRecord
 
 DECIMALS = 7
 """Of a degree: a centimetre."""
@@ -76,7 +76,7 @@ def survey_ways(record: SurveyRecord) -> schema.SurveyWays | None:
 
 
 def _member(
-    station: Station, record: SurveyRecord, member: SurveyVehicle, now_ns: int
+    station: Station, record: SurveyRecord, member: SurveyMember, now_ns: int
 ) -> schema.SurveyingView:
     state = record.state
     assert state is not None  # members come with the start

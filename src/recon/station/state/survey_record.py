@@ -21,7 +21,7 @@ EastNorth = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class SurveyVehicle:
+class SurveyMember:
     """One vehicle of a survey, since it was started for it.
 
     `number` and `command_id` are its newest mission's, as the survey and the station count.
@@ -51,7 +51,7 @@ class SurveyRecord:
     state: SurveyState | None = None
     refusal: Refusal | None = None
     started_by: str = ""
-    members: Mapping[str, SurveyVehicle] = field(default_factory=lambda: MappingProxyType({}))
+    members: Mapping[str, SurveyMember] = field(default_factory=lambda: MappingProxyType({}))
     step_due_ns: int = 0
     trouble: str | None = None
     """Why the newest step failed."""
@@ -80,7 +80,7 @@ class SurveyRecord:
         """Whether its vehicles get missions."""
         return self.state is not None and self.state.phase is SurveyPhase.RUNNING
 
-    def put(self, member: SurveyVehicle) -> "SurveyRecord":
+    def put(self, member: SurveyMember) -> "SurveyRecord":
         """Return it with one vehicle replaced."""
         members = MappingProxyType({**self.members, member.serial: member})
         return replace(self, members=members)

@@ -22,7 +22,7 @@ from recon.station.state.stepped import Stepped
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlanWork:
+class ReturnPlanRequest:
     """All that a plan needs. `ground_up_m`: the lowest and the highest ground on the paths."""
 
     vehicles: tuple[Returning, ...]
@@ -34,7 +34,7 @@ class PlanWork:
     first_wave: int
 
 
-def make_plan(work: PlanWork) -> ReturnPlan:
+def make_plan(work: ReturnPlanRequest) -> ReturnPlan:
     """Return the plan: the worker's part."""
     spots = [v.place_m[:2] for v in work.vehicles]
     spots += [v.pad.east_north_m for v in work.vehicles]
@@ -107,7 +107,7 @@ def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
     return replace(station, fleet_return=replace(running, planning_since_ns=None)), ()
 
 
-PLAN_RETURN: JobKind[PlanWork, ReturnPlan] = JobKind(
+PLAN_RETURN: JobKind[ReturnPlanRequest, ReturnPlan] = JobKind(
     "plan_fleet_return", lambda _site: make_plan, _planned, _not_planned, _dropped
 )
 """Plans layers, waves and landing missions for all vehicles that wait."""
@@ -115,10 +115,10 @@ PLAN_RETURN: JobKind[PlanWork, ReturnPlan] = JobKind(
 
 def _work(
     station: Station, running: FleetReturn, vehicles: list[Returning], settings: ReturnSettings
-) -> PlanWork:
+) -> ReturnPlanRequest:
     theirs = {member.serial for member in running.at(Stage.WAITING, *UNDER_WAY)}
     flying = positions.in_the_air(station, running.frame)
-    return PlanWork(
+    return ReturnPlanRequest(
         tuple(vehicles),
         tuple(other for key, other in flying.items() if key not in theirs),
         station.airspace.airspace,

@@ -14,7 +14,7 @@ from recon.safety.energy import consumption
 from recon.safety.settings import EnergySettings
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
-from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
+from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
 
 def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> Iterator[Surveyor]:
@@ -37,7 +37,7 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
         )
 
 
-def hindrance(station: Station, member: SurveyVehicle, now_ns: int) -> str | None:
+def hindrance(station: Station, member: SurveyMember, now_ns: int) -> str | None:
     """Return why a vehicle cannot fly for its survey now; None if it can or does."""
     if member.stop_reason is not None:
         return member.stop_reason
@@ -59,21 +59,21 @@ def hindrance(station: Station, member: SurveyVehicle, now_ns: int) -> str | Non
     return None
 
 
-def is_on_ground(station: Station, member: SurveyVehicle) -> bool:
+def is_on_ground(station: Station, member: SurveyMember) -> bool:
     """Return whether telemetry shows a vehicle on the ground."""
     vehicle = station.fleet.vehicles.get(member.serial)
     return vehicle is not None and vehicle.is_flying.value is False
 
 
-def is_flown(station: Station, member: SurveyVehicle) -> bool:
+def is_flown(station: Station, member: SurveyMember) -> bool:
     """Return whether the vehicle's newest mission of its survey has not ended."""
     order = _order(station, member)
     return order is not None and not order.phase.is_final
 
 
 def after_mission(
-    station: Station, member: SurveyVehicle
-) -> tuple[SurveyVehicle, OrderRecord | None]:
+    station: Station, member: SurveyMember
+) -> tuple[SurveyMember, OrderRecord | None]:
     """Return the vehicle, stopped if its mission ended unfinished, and that mission's order.
 
     Such a mission is not flown again by itself: an operator must check and start it again.
@@ -105,7 +105,7 @@ def time_left_s(
     return max(0.0, left) / uses.fraction(energy.level_load)
 
 
-def _order(station: Station, member: SurveyVehicle) -> OrderRecord | None:
+def _order(station: Station, member: SurveyMember) -> OrderRecord | None:
     if member.command_id is None:
         return None
     return station.orders.records.get(member.command_id)

@@ -21,7 +21,7 @@ from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
-from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
+from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
 
 def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusal | None:
@@ -56,7 +56,7 @@ def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Station
         station = authority.take(station, taken, now_ns)
     named = {
         serial: replace(
-            record.members.get(serial, SurveyVehicle(serial)),
+            record.members.get(serial, SurveyMember(serial)),
             may_take_off=event.takeoff,
             stop_reason=None,
             return_reason=None,
@@ -113,7 +113,7 @@ def stop_survey(station: Station, event: SurveyStopped, now_ns: int) -> Stepped:
     return station, outputs
 
 
-def _hold(station: Station, member: SurveyVehicle, by: str, now_ns: int) -> Stepped:
+def _hold(station: Station, member: SurveyMember, by: str, now_ns: int) -> Stepped:
     """Hold a vehicle; land one on the ground, if its mission may yet make it take off."""
     vehicle = station.fleet.vehicles.get(member.serial)
     may_set_out = is_flown(station, member)
@@ -130,7 +130,7 @@ def _hold(station: Station, member: SurveyVehicle, by: str, now_ns: int) -> Step
     return station, (*sent, *landing)
 
 
-def _without_ended_mission(station: Station, member: SurveyVehicle) -> SurveyVehicle:
+def _without_ended_mission(station: Station, member: SurveyMember) -> SurveyMember:
     """Forget a finished mission; keep the one in flight."""
     return member if is_flown(station, member) else replace(member, command_id=None)
 

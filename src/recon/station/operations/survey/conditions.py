@@ -11,7 +11,7 @@ from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.station import Station
-from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
+from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
 RULE = "survey"
 RULE_LEFT = "survey_over"
@@ -35,7 +35,7 @@ def conditions(station: Station) -> Iterator[Condition]:
 
 
 def _of_vehicle(
-    station: Station, record: SurveyRecord, member: SurveyVehicle
+    station: Station, record: SurveyRecord, member: SurveyMember
 ) -> Iterator[Condition]:
     name = record.survey.name
     if record.is_running and member.stop_reason is not None:
@@ -54,7 +54,7 @@ def _of_vehicle(
         yield _about(station, member, RULE_LEFT, text)
 
 
-def _waits_long(station: Station, member: SurveyVehicle) -> Iterator[Condition]:
+def _waits_long(station: Station, member: SurveyMember) -> Iterator[Condition]:
     """A vehicle that waits long for its way home: its battery is limited."""
     running = station.fleet_return
     returning = None if running is None else running.members.get(member.serial)
@@ -64,7 +64,7 @@ def _waits_long(station: Station, member: SurveyVehicle) -> Iterator[Condition]:
         yield replace(condition, after_s=SURVEY_TIMES.home_waits_s)
 
 
-def _hovers_since(station: Station, member: SurveyVehicle) -> bool:
+def _hovers_since(station: Station, member: SurveyMember) -> bool:
     """Whether a vehicle is in the air, and a mission of the survey is its newest order."""
     vehicle = station.fleet.vehicles.get(member.serial)
     newest = newest_motion(station, member.serial)
@@ -72,7 +72,7 @@ def _hovers_since(station: Station, member: SurveyVehicle) -> bool:
     return is_up and newest is not None and newest.command.id == member.command_id
 
 
-def _about(station: Station, member: SurveyVehicle, rule: str, text: str) -> Condition:
+def _about(station: Station, member: SurveyMember, rule: str, text: str) -> Condition:
     vehicle = station.fleet.vehicles.get(member.serial)
     name = member.serial if vehicle is None else vehicle.display_name
     link_id = None if vehicle is None else vehicle.link_id

@@ -37,7 +37,7 @@ PUSHED_OUT = "another survey was requested at the same moment; request this one 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlanSurvey:
+class SurveyPlanRequest:
     """The requested survey, and where the site allows it to fly."""
 
     survey: Survey
@@ -66,7 +66,7 @@ class SurveyStepped:
     """Serials of vehicles that wait with a battery too low for any row."""
 
 
-def make_rows(work: PlanSurvey) -> SurveyPlan | Refusal:
+def make_rows(work: SurveyPlanRequest) -> SurveyPlan | Refusal:
     """Return a survey's rows: the worker's part."""
     return plan_survey(work.survey, work.frame, work.surroundings)
 
@@ -90,7 +90,7 @@ def ask_survey(station: Station, event: SurveyAsked, now_ns: int) -> Stepped:
         return _put(station, replace(record, refusal=refusal)), ()
     frame = station.airspace.airspace.frame
     assert frame is not None  # or it was refused
-    work = PlanSurvey(event.survey, frame, surroundings(station))
+    work = SurveyPlanRequest(event.survey, frame, surroundings(station))
     return _put(station, record), (Job(event.survey.id, PLAN_SURVEY, work),)
 
 
@@ -132,7 +132,7 @@ def _with_plan(station: Station, survey_id: int, made: SurveyState | Refusal) ->
     return _put(station, replace(record, state=made)), ()
 
 
-PLAN_SURVEY: JobKind[PlanSurvey, SurveyPlan | Refusal] = JobKind(
+PLAN_SURVEY: JobKind[SurveyPlanRequest, SurveyPlan | Refusal] = JobKind(
     "plan_survey", lambda _site: make_rows, _planned, _not_planned, _dropped
 )
 """Plans a survey's rows; the job has the survey's number."""

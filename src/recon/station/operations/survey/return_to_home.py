@@ -17,7 +17,7 @@ from recon.station.state.command_ids import take_id
 from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped
-from recon.station.state.survey_record import SurveyRecord, SurveyVehicle
+from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
 NO_BATTERY = "its battery is too low for any row that is left"
 IS_DONE = "the survey is done"
@@ -34,7 +34,7 @@ def returns_home(record: SurveyRecord) -> bool:
     return record.survey.when_done is WhenDone.RETURN_HOME
 
 
-def is_under_way(station: Station, member: SurveyVehicle) -> bool:
+def is_under_way(station: Station, member: SurveyMember) -> bool:
     """Return whether a vehicle flies home for its survey, or waits for its turn."""
     running = station.fleet_return
     returning = None if running is None else running.members.get(member.serial)
