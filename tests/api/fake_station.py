@@ -7,9 +7,10 @@ import numpy as np
 from fastapi import FastAPI
 
 from recon.api.app import create_app
-from recon.api.port import SurveyCells
+from recon.api.port import SurveyCellStates
 from recon.api.schema import (
     AuditPage,
+    CommandResponse,
     OrderResponse,
     PreflightView,
     StationState,
@@ -17,7 +18,6 @@ from recon.api.schema import (
     SurveyResponse,
     SurveyView,
     SurveyWays,
-    WordResponse,
 )
 from recon.api.security import Access
 from recon.model.authority import AuthorityHolder
@@ -107,13 +107,13 @@ class FakeStation:
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
         self.service.switch_separation_hold(is_on, by)
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> WordResponse:
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> CommandResponse:
         return self.service.take_authority(serial, holder, by)
 
     def preflight(self, serial: str) -> PreflightView | None:
         return self.service.preflight(serial)
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> WordResponse:
+    def override_preflight(self, serial: str, reason: str, by: str) -> CommandResponse:
         return self.service.override_preflight(serial, reason, by)
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
@@ -148,7 +148,7 @@ class FakeStation:
     def survey_ways(self, survey_id: int) -> SurveyWays | None:
         return self.service.survey_ways(survey_id)
 
-    def survey_cells(self, survey_id: int) -> SurveyCells | None:
+    def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
         return self.service.survey_cells(survey_id)
 
     def geotiff(self, image: GroundImage) -> bytes:

@@ -105,7 +105,7 @@ class TestOrders:
             asked = {"serials": ["A"], "order": {"kind": kind}, "takeoff": True}
             response = client.post(path, json=asked)
             assert response.status_code == 422
-            assert f"takeoff was said with {kind}" in response.text
+            assert f"takeoff is not possible with {kind}" in response.text
         assert station.asked == []
 
     def test_the_order_reaches_the_station_as_asked(
@@ -238,7 +238,7 @@ class TestDoor:
     def test_a_foreign_name_is_refused(self, client: Client, host: str) -> None:
         response = client.get("/api/state", headers={"host": host})
         assert response.status_code == 400
-        assert "not called" in response.json()["error"]
+        assert "is not this station's" in response.json()["error"]
 
     @pytest.mark.parametrize("host", ["127.0.0.1", "localhost:1", "[::1]:8080"])
     def test_our_names_are_let_in(self, client: Client, host: str) -> None:

@@ -8,7 +8,7 @@ from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 from tests.api.test_stream import PATIENCE_S, served
 
-from recon.api import owners
+from recon.api import streams
 
 NAME = "a-name-of-a-owner-01"
 
@@ -50,22 +50,22 @@ def test_a_stream_holds_while_it_is_open() -> None:
 def test_a_silent_stream_is_closed_and_owns_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(owners, "SILENT_S", 0.2)
+    monkeypatch.setattr(streams, "SILENT_S", 0.2)
 
     async def main() -> None:
         station = FakeStation()
         async with asyncio.timeout(PATIENCE_S), served(station) as port:
             async with websockets.connect(url_of(port)) as reader:
-                with pytest.raises(websockets.ConnectionClosed, match="no keepalive in time"):
+                with pytest.raises(websockets.ConnectionClosed, match=r"no message for 0\.2 s"):
                     await read_on(reader)
             assert held(station) == frozenset()
 
     asyncio.run(main())
 
 
-def test_one_that_beats_holds_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ten states a second: thirteen beats are three times as long as silence may be."""
-    monkeypatch.setattr(owners, "SILENT_S", 0.4)
+def test_an_owner_that_sends_keepalives_stays_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten states a second: thirteen keepalives take three times the limit."""
+    monkeypatch.setattr(streams, "SILENT_S", 0.4)
 
     async def main() -> None:
         station = FakeStation()
@@ -129,13 +129,13 @@ class TestOrders:
         ],
         ids=lambda order: str(order["kind"]),
     )
-    def test_a_steered_order_needs_a_owner(self, order: dict[str, object]) -> None:
+    def test_a_steered_order_needs_an_owner(self, order: dict[str, object]) -> None:
         station = FakeStation()
         client = Client(application(station))
         asked = {"serials": ["A"], "order": order}
         answer = client.post("/api/orders", json=asked)
         assert answer.status_code == 422
-        assert "needs a owner" in answer.json()["error"]
+        assert "needs an owner" in answer.json()["error"]
         without_stream = client.post("/api/orders", json={**asked, "owner": NAME})
         assert without_stream.status_code == 200
         (result,) = without_stream.json()["results"]

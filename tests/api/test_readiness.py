@@ -99,7 +99,7 @@ class TestPreflight:
     def test_an_unknown_vehicle_has_no_checklist(self, client: Client) -> None:
         response = client.get("/api/vehicles/X/preflight")
         assert response.status_code == 404
-        assert response.json() == {"error": "no vehicle has the serial 'X'"}
+        assert response.json() == {"error": "No vehicle with serial 'X'"}
 
     def test_an_override_is_shown_everywhere(self, client: Client) -> None:
         assert vehicle(client)["preflight_override"] is None

@@ -9,7 +9,7 @@ import uvicorn
 import websockets
 from tests.api.fake_station import FakeStation, application
 
-from recon.api import stream as stream_module
+from recon.api import streams as stream_module
 from recon.api.schema import StationState
 from recon.api.security import PROTOCOL
 
@@ -100,7 +100,7 @@ def test_readers_beyond_the_limit_are_refused_and_places_come_free() -> None:
         async with asyncio.timeout(PATIENCE_S), served(FakeStation()) as port:
             url = f"ws://127.0.0.1:{port}/api/stream"
             async with contextlib.AsyncExitStack() as stack:
-                for _ in range(stream_module.MOST_READERS):
+                for _ in range(stream_module.MAX_STATE_READERS):
                     reader = await stack.enter_async_context(websockets.connect(url))
                     await reader.recv()
                 with contextlib.suppress(websockets.InvalidStatus):

@@ -134,7 +134,7 @@ class TestLooks:
     def test_what_is_not_there_is_one_sentence(self, client: Client, path: str) -> None:
         response = client.get(f"/api/surveys/77{path}")
         assert response.status_code == 404
-        assert "no survey 77" in response.json()["error"]
+        assert "Survey 77 not found" in response.json()["error"]
 
     def test_those_there_are_are_named(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
@@ -145,7 +145,7 @@ class TestLooks:
         asked = {**ASKED, "speed_mps": 14.0}
         number = client.post("/api/surveys", json=asked).json()["survey"]["id"]
         error = client.get(f"/api/surveys/{number}/ways").json()["error"]
-        assert error.startswith(f"the survey {number} has no rows: ")
+        assert error.startswith(f"Survey {number} has no rows: ")
 
     def test_rows_lie_in_the_field(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]

@@ -66,7 +66,7 @@ class TestOnTheGround:
     def test_acknowledging_an_unknown_alarm_is_an_error(self, station: StationProcess) -> None:
         result = station.recon("alarms", "--ack", "999")
         assert result.code == 2
-        assert "there is no alarm 999" in result.err
+        assert "Alarm 999 not found" in result.err
 
 
 class TestReadiness:

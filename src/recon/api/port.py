@@ -1,4 +1,4 @@
-"""What the API needs of the station. The station implements it; tests may too."""
+"""The station as the API sees it: `station/api_views/service.py` implements it, and tests do."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from recon.api.schema import (
     AuditPage,
+    CommandResponse,
     OrderResponse,
     PreflightView,
     StationState,
@@ -15,7 +16,6 @@ from recon.api.schema import (
     SurveyResponse,
     SurveyView,
     SurveyWays,
-    WordResponse,
 )
 from recon.model.authority import AuthorityHolder
 from recon.model.command import Body
@@ -24,8 +24,8 @@ from recon.model.shade import ShadeMap, SunForecast
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SurveyCells:
-    """A survey's cells, (R, C): `state` holds `CellState`s, `inside` is the region."""
+class SurveyCellStates:
+    """The states of a survey's cells, (R, C): `state` holds `CellState`s, `inside` the region."""
 
     number: int
     state: npt.NDArray[np.uint8]
@@ -33,7 +33,7 @@ class SurveyCells:
 
 
 class StationPort(Protocol):
-    """The station as the API sees it. Every call returns at once."""
+    """Every call returns at once."""
 
     def state(self) -> StationState:
         """Return everything a console shows, as of now."""
@@ -49,7 +49,7 @@ class StationPort(Protocol):
     ) -> OrderResponse:
         """Give one order to each named vehicle; refusals are results, not errors.
 
-        `owner` names the stream whose end ends a steered order.
+        `owner` names the open stream that a steered order depends on.
         """
 
     def check(
@@ -64,37 +64,37 @@ class StationPort(Protocol):
         """Return what `order` would answer now, without giving it."""
 
     def owner_connected(self, owner: str) -> None:
-        """Tell that a stream is open that may hold steered orders."""
+        """Report that an owner stream has opened."""
 
     def owner_disconnected(self, owner: str) -> None:
-        """Tell that it has ended, or says nothing any more."""
+        """Report that it has closed or is silent: its steered orders end."""
 
     def all_stop(self, issued_by: str) -> OrderResponse:
-        """Hold every link whose telemetry says flying, identified or not."""
+        """Hold every link whose telemetry shows flight, identified or not."""
 
     def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
-        """Call vehicles home in layers; None calls every one that flies or may.
+        """Return vehicles home in layers; None: every vehicle that is or may be in flight.
 
-        The results tell of the hold that each begins with; flights and waves are in the state.
+        Each result is the hold that the return starts with; the state shows waves and heights.
         """
 
     def dismiss_hazard(self, name: str, by: str) -> bool:
-        """Take a vehicle that is not heard out of the air; False when it is no hazard area."""
+        """Dismiss the hazard area of a lost vehicle; False when it has none."""
 
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
-        """Switch on or off that the watchdogs hold vehicles."""
+        """Switch the separation holds of the watchdogs on or off."""
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> WordResponse:
-        """Let somebody else lead a vehicle; refusals are answers, not errors."""
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> CommandResponse:
+        """Transfer control authority; refusals are results, not errors."""
 
     def preflight(self, serial: str) -> PreflightView | None:
-        """Return a vehicle's checklist as of now; None when it is not known."""
+        """Return a vehicle's checklist as of now; None for an unknown vehicle."""
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> WordResponse:
-        """Let a vehicle fly missions although its checklist is not passed."""
+    def override_preflight(self, serial: str, reason: str, by: str) -> CommandResponse:
+        """Allow missions although the checklist is not passed."""
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
-        """Mark an alarm as seen; False when there is none of that number."""
+        """Acknowledge an alarm; False when it does not exist."""
 
     def audit(self, after: int, at_most: int) -> AuditPage:
         """Return the audit's entries after a number, the oldest first."""
@@ -103,7 +103,7 @@ class StationPort(Protocol):
         """Return a vehicle's newest camera frame."""
 
     def ground_image(self) -> GroundImage | None:
-        """Return the newest frame laid on the ground."""
+        """Return the newest ground image."""
 
     def shade(self) -> tuple[int, ShadeMap] | None:
         """Return the newest shade map and its number."""
@@ -112,7 +112,7 @@ class StationPort(Protocol):
         """Return the newest forecast and its number."""
 
     def ask_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
-        """Ask for a survey; its rows are worked out then, and `survey` tells when they are."""
+        """Request a survey; it is planned in the background, see `survey`."""
 
     def survey(self, survey_id: int) -> SurveyView | None:
         """Return a survey as it stands."""
@@ -120,16 +120,16 @@ class StationPort(Protocol):
     def start_survey(
         self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
     ) -> SurveyResponse:
-        """Start a survey with these vehicles, or let them join; they are given to guidance."""
+        """Start a survey with these vehicles, or add them; guidance gets control authority."""
 
     def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> SurveyResponse:
-        """Pause a survey, or abort it for good; its vehicles hold."""
+        """Pause or abort a survey; its vehicles hold."""
 
     def survey_ways(self, survey_id: int) -> SurveyWays | None:
-        """Return a survey's planned and flown ways."""
+        """Return a survey's planned rows and flown paths; None without rows."""
 
-    def survey_cells(self, survey_id: int) -> SurveyCells | None:
-        """Return a survey's cells as they stand."""
+    def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
+        """Return the states of a survey's cells; None without rows."""
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""

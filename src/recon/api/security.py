@@ -1,4 +1,4 @@
-"""Who may talk to the API: the right host name, no foreign web page, and a token if one is set.
+"""Access to the API: the right host name, no foreign web page, and a token if one is set.
 
 A web page open in the operator's browser can send requests to loopback. So requests whose Origin is
 another site's, or whose Host is not one of ours (DNS rebinding), are refused before anything else.
@@ -15,22 +15,22 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 PROTOCOL = "recon.v1"
 TOKEN_PROTOCOL_PREFIX = "recon.token."
-MOST_BODY_BYTES = 1024 * 1024
-"""The longest mission takes 20 KiB; nothing asks for more, and what is read is held in memory."""
+MAX_BODY_BYTES = 1024 * 1024
+"""The longest mission takes 20 KiB; a body is held in memory."""
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Who is let in. Only the token's SHA-256 is kept."""
+    """Which requests are accepted. Only the token's SHA-256 is kept."""
 
     host_names: frozenset[str] = LOOPBACK_NAMES
     token_sha256: bytes | None = None
 
     @classmethod
     def make(cls, bound_host: str, token: str | None) -> "Access":
-        """Return the access rules for an address; any name goes where a token guards."""
+        """Return the access rules for an address; with a token any host name is accepted."""
         names = LOOPBACK_NAMES | {bound_host}
         return cls(names, None if token is None else sha256(token.encode()).digest())
 
@@ -42,7 +42,7 @@ class Access:
         return hmac.compare_digest(given, self.token_sha256)
 
 
-class Doorman:
+class AccessCheck:
     """ASGI middleware that applies `Access` to HTTP and WebSocket alike."""
 
     def __init__(self, app: ASGIApp, access: Access) -> None:
@@ -50,11 +50,11 @@ class Doorman:
         self.access = access
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let a request through, or refuse it with one sentence."""
+        """Pass a request on, or refuse it with one sentence."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
-        status, sentence = self._judge(scope)
+        status, sentence = self._refusal(scope)
         if sentence is None:
             await self.app(scope, receive, send)
         elif scope["type"] == "websocket":
@@ -63,17 +63,20 @@ class Doorman:
         else:
             await JSONResponse({"error": sentence}, status_code=status)(scope, receive, send)
 
-    def _judge(self, scope: Scope) -> tuple[int, str | None]:
+    def _refusal(self, scope: Scope) -> tuple[int, str | None]:
         headers = Headers(scope=scope)
         host = headers.get("host", "")
         if not self._is_our_host(host):
-            return 400, f"this station is not called {host!r}"
+            return 400, f"host name {host!r} is not this station's"
         origin = headers.get("origin")
         if origin is not None and _place_of(origin) != host:
-            return 403, f"requests from pages of {origin} are refused"
+            return 403, f"requests from web pages of {origin} are refused"
         if scope["path"].startswith("/api/") and not self.access.is_token(_token(headers)):
-            return 401, "a token is needed: open the address that the station printed at its start"
-        return _judge_body(headers)
+            return (
+                401,
+                "token missing or wrong: open the address that the station printed at its start",
+            )
+        return _body_refusal(headers)
 
     def _is_our_host(self, host: str) -> bool:
         if self.access.token_sha256 is not None:
@@ -81,18 +84,18 @@ class Doorman:
         return _name_of(host) in self.access.host_names
 
 
-def _judge_body(headers: Headers) -> tuple[int, str | None]:
-    """Refuse a body that is too long, or does not say how long it is."""
+def _body_refusal(headers: Headers) -> tuple[int, str | None]:
+    """Refuse a body that is too long or of unknown length."""
     if "transfer-encoding" in headers:
-        return 411, "a body must say its Content-Length"
+        return 411, "a body needs a Content-Length"
     length = headers.get("content-length", "0")
-    if not length.isdecimal() or int(length) > MOST_BODY_BYTES:
-        return 413, f"a body may have up to {MOST_BODY_BYTES} bytes, this one claims {length[:20]}"
+    if not length.isdecimal() or int(length) > MAX_BODY_BYTES:
+        return 413, f"body must be up to {MAX_BODY_BYTES} bytes; got {length[:20]}"
     return 200, None
 
 
 def _place_of(origin: str) -> str | None:
-    """Host and port of an Origin header; None when it is no origin."""
+    """Return host and port of an Origin header; None when it is malformed."""
     try:
         return urlsplit(origin).netloc or None
     except ValueError:
@@ -100,7 +103,7 @@ def _place_of(origin: str) -> str | None:
 
 
 def _name_of(host: str) -> str | None:
-    """The name or address in a Host header, without its port; None when it is none."""
+    """Return the name or address in a Host header, without its port; None when it is malformed."""
     try:
         return urlsplit(f"//{host}").hostname
     except ValueError:
@@ -108,7 +111,7 @@ def _name_of(host: str) -> str | None:
 
 
 def _token(headers: Headers) -> str | None:
-    """The token of an Authorization header, or of a WebSocket's subprotocols."""
+    """Return the token of an Authorization header, or of a WebSocket's subprotocols."""
     scheme, _, token = headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
         return token.strip()

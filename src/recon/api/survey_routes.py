@@ -1,32 +1,32 @@
-"""Routes to surveys: asked for, started, paused, aborted, looked at."""
+"""Routes for surveys: request, start, pause, abort, read."""
 
 import asyncio
 from typing import Literal
 
 from fastapi import FastAPI, Request, Response
 
-from recon.api import schema, sun_pictures
-from recon.api.answering import PNG, PROBLEMS, found, who
+from recon.api import pictures, schema
+from recon.api.picture_routes import Form
 from recon.api.port import StationPort
-from recon.api.sun_routes import Form
+from recon.api.responses import PNG, PROBLEMS, client_name, found, png
 from recon.model.survey import none_such
 
 PLANNED_WITHIN_S = 10.0
-"""Rows are worked out in tens of milliseconds, behind a frame's work or two."""
-LOOKED_EVERY_S = 0.02
+"""Planning takes tens of milliseconds, after one or two frames in the worker's queue."""
+POLL_EVERY_S = 0.02
 
 
 def add_survey_routes(app: FastAPI, port: StationPort) -> None:
-    """Add them."""
-    _add_words(app, port)
-    _add_looks(app, port)
+    """Add all routes of this module."""
+    _add_commands(app, port)
+    _add_views(app, port)
 
 
-def _add_words(app: FastAPI, port: StationPort) -> None:
+def _add_commands(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/surveys")
     async def ask(asked: schema.SurveyRequest, request: Request) -> schema.SurveyResponse:
-        """Plan a survey of a region. Answered when its rows are worked out; nothing flies by it."""
-        answer = port.ask_survey(asked, who(request))
+        """Plan a survey of a region. Responds when its rows are planned; nothing flies."""
+        answer = port.ask_survey(asked, client_name(request))
         if answer.survey is None:
             return answer
         return _planned(await _until_planned(port, answer.survey))
@@ -35,22 +35,22 @@ def _add_words(app: FastAPI, port: StationPort) -> None:
     async def start(
         survey_id: int, asked: schema.SurveyStartRequest, request: Request
     ) -> schema.SurveyResponse:
-        """Fly a survey with these vehicles: by this word they are led by the station's guidance.
+        """Start a survey with these vehicles: control authority passes to the station's guidance.
 
-        Said of a running survey, the vehicles join it, or fly for it again.
+        On a running survey the vehicles join, or resume.
         """
-        by = who(request)
+        by = client_name(request)
         return port.start_survey(survey_id, asked.serials, takeoff=asked.takeoff, by=by)
 
-    @app.post("/api/surveys/{survey_id}/{word}")
+    @app.post("/api/surveys/{survey_id}/{command}")
     async def stop(
-        survey_id: int, word: Literal["pause", "abort"], request: Request
+        survey_id: int, command: Literal["pause", "abort"], request: Request
     ) -> schema.SurveyResponse:
         """Pause a survey, or abort it for good. Its vehicles hold where they are."""
-        return port.stop_survey(survey_id, is_aborted=word == "abort", by=who(request))
+        return port.stop_survey(survey_id, is_aborted=command == "abort", by=client_name(request))
 
 
-def _add_looks(app: FastAPI, port: StationPort) -> None:
+def _add_views(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/surveys")
     async def surveys() -> list[schema.SurveyView]:
         """The surveys of this run, the newest first."""
@@ -64,7 +64,7 @@ def _add_looks(app: FastAPI, port: StationPort) -> None:
 
     @app.get("/api/surveys/{survey_id}/ways", responses=PROBLEMS)
     async def ways(survey_id: int) -> schema.SurveyWays:
-        """A survey's planned rows, the missions flown now, and the ways flown so far."""
+        """A survey's planned rows, the missions in flight, and the paths flown so far."""
         rows = port.survey_ways(survey_id)
         return found(rows, "" if rows is not None else _no_rows(port, survey_id))
 
@@ -72,24 +72,23 @@ def _add_looks(app: FastAPI, port: StationPort) -> None:
         "/api/surveys/{survey_id}/cells.png", response_class=Response, responses=PROBLEMS | PNG
     )
     async def cells(survey_id: int, form: Form = "picture") -> Response:
-        """A survey's cells: not yet, in shade, in sun; its corners are in the survey."""
+        """A survey's cells: not imaged, in shade, in sun; the corners are in the survey."""
         cells = port.survey_cells(survey_id)
-        seen = found(cells, "" if cells is not None else _no_rows(port, survey_id))
+        known = found(cells, "" if cells is not None else _no_rows(port, survey_id))
         is_picture = form == "picture"
-        draw = sun_pictures.cells_png if is_picture else sun_pictures.cells_values_png
-        data = await asyncio.to_thread(draw, seen.state, seen.inside)
-        headers = {"X-Frame-Id": str(seen.number)}
-        return Response(data, media_type="image/png", headers=headers)
+        draw = pictures.cells_png if is_picture else pictures.cells_values_png
+        data = await asyncio.to_thread(draw, known.state, known.inside)
+        return png(data, known.number)
 
 
 async def _until_planned(port: StationPort, asked: schema.SurveyView) -> schema.SurveyView:
-    """Return a survey once its rows are worked out or refused, or as it is when that takes long."""
+    """Return a survey once it is planned or refused, or as it is after `PLANNED_WITHIN_S`."""
     newest = asked
-    for _ in range(round(PLANNED_WITHIN_S / LOOKED_EVERY_S)):
+    for _ in range(round(PLANNED_WITHIN_S / POLL_EVERY_S)):
         newest = port.survey(asked.id) or newest
         if newest.phase != "planning":
             break
-        await asyncio.sleep(LOOKED_EVERY_S)
+        await asyncio.sleep(POLL_EVERY_S)
     return newest
 
 
@@ -105,7 +104,7 @@ def _no_rows(port: StationPort, survey_id: int) -> str:
     survey = port.survey(survey_id)
     if survey is None:
         return _none_such(port, survey_id)
-    return f"the survey {survey_id} has no rows: {survey.reason}"
+    return f"Survey {survey_id} has no rows: {survey.reason}"
 
 
 def _none_such(port: StationPort, survey_id: int) -> str:

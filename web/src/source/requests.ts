@@ -6,7 +6,7 @@ import type {
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
-  WordResponse,
+  CommandResponse,
 } from "../protocol";
 import type { paths } from "../protocol/schema";
 import type { NamedOrder, NewSurvey, Outcome, Picture } from "./stationSource";
@@ -56,7 +56,7 @@ export class Requests {
     );
   }
 
-  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>> {
+  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<CommandResponse>> {
     const options = { params: { path: { serial } }, body: { holder }, signal: timeout() };
     return answered(() => this.client.POST("/api/vehicles/{serial}/authority", options), identity);
   }
@@ -66,7 +66,7 @@ export class Requests {
     return answered(() => this.client.GET("/api/vehicles/{serial}/preflight", options), identity);
   }
 
-  overridePreflight(serial: string, reason: string): Promise<Outcome<WordResponse>> {
+  overridePreflight(serial: string, reason: string): Promise<Outcome<CommandResponse>> {
     const options = { params: { path: { serial } }, body: { reason }, signal: timeout() };
     return answered(
       () => this.client.POST("/api/vehicles/{serial}/preflight/override", options),

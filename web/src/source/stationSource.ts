@@ -8,7 +8,7 @@ import type {
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
-  WordResponse,
+  CommandResponse,
 } from "../protocol";
 import type { Instant } from "./clock";
 
@@ -54,9 +54,9 @@ export interface StationSource {
   check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Returns vehicles home with landing missions at separate heights; null means all in reach. */
   fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
-  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<WordResponse>>;
+  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<CommandResponse>>;
   preflight(serial: string): Promise<Outcome<PreflightView>>;
-  overridePreflight(serial: string, reason: string): Promise<Outcome<WordResponse>>;
+  overridePreflight(serial: string, reason: string): Promise<Outcome<CommandResponse>>;
   /** Clears a lost vehicle's hazard area. */
   dismissHazard(name: string): Promise<Outcome<null>>;
   setSeparationHold(isOn: boolean): Promise<Outcome<null>>;

@@ -6,7 +6,7 @@ import type {
   OrderResult,
   PreflightView,
   StationState,
-  WordResponse,
+  CommandResponse,
 } from "../protocol";
 import type {
   Connection,
@@ -33,7 +33,7 @@ export interface RenderedPage {
   /** Sets the answer to every further order. */
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
-  answerRequestsWith(response: WordResponse): void;
+  answerRequestsWith(response: CommandResponse): void;
   showPreflight(preflight: PreflightView): void;
   failPreflight(problem: string): void;
   /** Sets how vehicle pictures are fetched. */
@@ -66,7 +66,7 @@ interface Recorded {
   checks: NamedOrder[];
   acknowledged: number[];
   requests: PageRequest[];
-  response: WordResponse;
+  response: CommandResponse;
   preflight: Outcome<PreflightView>;
   allStops: number;
   answer: readonly OrderResult[];

@@ -4,7 +4,7 @@ import type {
   Phase,
   Severity,
   VehicleView,
-  WordResponse,
+  CommandResponse,
 } from "../protocol";
 import type { Outcome } from "../source/stationSource";
 
@@ -114,7 +114,7 @@ export function refusalText(reason: string | null): string {
 }
 
 /** Why a request failed or was refused; null when the station accepted it. */
-export function responseProblem(outcome: Outcome<WordResponse | null>): string | null {
+export function responseProblem(outcome: Outcome<CommandResponse | null>): string | null {
   if (outcome.kind === "failed") return outcome.problem;
   const response = outcome.value;
   return response === null || response.accepted ? null : refusalText(response.reason);

@@ -1,19 +1,31 @@
-"""What the API says and hears. The console's types are generated from these models.
+"""The messages of the API. The console's types are generated from these models.
 
 Ages are seconds at the moment the message was made (`StationState.time_ns`); a reader adds the time
 since. `value: null` means unknown. Heights are above the vehicle's own takeoff point unless named
 otherwise.
 """
 
-from recon.api.schema.answers import (
+from recon.api.schema.message import (
+    CommandResponse,
+    Message,
     OrderResponse,
     OrderResult,
     Problem,
-    WordResponse,
+    StrictMessage,
 )
-from recon.api.schema.asked import (
+from recon.api.schema.orders import (
+    AlarmView,
+    AuditEntryView,
+    AuditPage,
+    CheckView,
+    CommandView,
+    PhaseName,
+    PhaseView,
+    PreflightView,
+    Severity,
+)
+from recon.api.schema.requests import (
     AnyOrder,
-    Asked,
     AuthorityRequest,
     CameraStartOrder,
     CameraStopOrder,
@@ -30,28 +42,15 @@ from recon.api.schema.asked import (
     StickOrder,
     WaypointOrder,
 )
-from recon.api.schema.message import (
-    Message,
-)
-from recon.api.schema.orders import (
-    AlarmView,
-    CommandView,
-    PhaseView,
-    PhaseWord,
-    Severity,
-)
-from recon.api.schema.records import (
-    AuditEntryView,
-    AuditPage,
-    CheckView,
-    PreflightView,
-)
 from recon.api.schema.site import (
     AreaView,
+    ForecastView,
     GroundImageView,
     LayerView,
     LimitsView,
     PadView,
+    ShadeLineView,
+    ShadeMapView,
     SiteView,
 )
 from recon.api.schema.station import (
@@ -61,18 +60,13 @@ from recon.api.schema.station import (
     StationState,
     StationView,
 )
-from recon.api.schema.sun import (
-    ForecastView,
-    ShadeLineView,
-    ShadeMapView,
-)
 from recon.api.schema.surveys import (
     SurveyBudgetRequest,
     SurveyCameraRequest,
     SurveyCellsView,
     SurveyFiguresView,
     SurveyingView,
-    SurveyPhaseWord,
+    SurveyPhaseName,
     SurveyRequest,
     SurveyResponse,
     SurveyStartRequest,
@@ -86,12 +80,12 @@ from recon.api.schema.vehicles import (
     AgedText,
     AttitudeView,
     AuthorityView,
-    AuthorityWord,
     FrameView,
     HazardView,
+    HolderName,
     OverrideView,
     PositionView,
-    StalenessWord,
+    StalenessName,
     SteeringView,
     VehicleView,
     VelocityView,
@@ -104,16 +98,15 @@ __all__ = [
     "AlarmView",
     "AnyOrder",
     "AreaView",
-    "Asked",
     "AttitudeView",
     "AuditEntryView",
     "AuditPage",
     "AuthorityRequest",
     "AuthorityView",
-    "AuthorityWord",
     "CameraStartOrder",
     "CameraStopOrder",
     "CheckView",
+    "CommandResponse",
     "CommandView",
     "FleetReturnRequest",
     "FleetReturnView",
@@ -123,6 +116,7 @@ __all__ = [
     "GroundImageView",
     "HazardView",
     "HoldPositionOrder",
+    "HolderName",
     "HoverOrder",
     "LandOrder",
     "LayerView",
@@ -136,8 +130,8 @@ __all__ = [
     "OrderResult",
     "OverrideView",
     "PadView",
+    "PhaseName",
     "PhaseView",
-    "PhaseWord",
     "PositionView",
     "PreflightOverrideRequest",
     "PreflightView",
@@ -148,16 +142,17 @@ __all__ = [
     "ShadeLineView",
     "ShadeMapView",
     "SiteView",
-    "StalenessWord",
+    "StalenessName",
     "StationState",
     "StationView",
     "SteeringView",
     "StickOrder",
+    "StrictMessage",
     "SurveyBudgetRequest",
     "SurveyCameraRequest",
     "SurveyCellsView",
     "SurveyFiguresView",
-    "SurveyPhaseWord",
+    "SurveyPhaseName",
     "SurveyRequest",
     "SurveyResponse",
     "SurveyStartRequest",
@@ -168,5 +163,4 @@ __all__ = [
     "VehicleView",
     "VelocityView",
     "WaypointOrder",
-    "WordResponse",
 ]

@@ -1,12 +1,13 @@
-"""What the station tells of orders and alarms."""
+"""Orders, alarms, preflight checks and audit entries."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
 from recon.api.schema.message import Message
+from recon.api.schema.vehicles import OverrideView
 
-PhaseWord = Literal[
+PhaseName = Literal[
     "queued",
     "sent",
     "acknowledged",
@@ -23,15 +24,15 @@ PhaseWord = Literal[
 
 
 class PhaseView(Message):
-    """One change in a command's life."""
+    """One change of phase."""
 
-    phase: PhaseWord
+    phase: PhaseName
     age_s: float
     note: str
 
 
 class CommandView(Message):
-    """One command and its life so far; `history` ends with the present phase."""
+    """One command; `history` ends with the present phase."""
 
     id: int
     kind: str
@@ -40,7 +41,7 @@ class CommandView(Message):
     vehicle_name: str
     issued_by: str
     age_s: float
-    phase: PhaseWord
+    phase: PhaseName
     is_final: bool
     note: str = Field(description="the newest phase's note; of a refused command the reason")
     rule: str | None = Field(description="the safety rule that refused it, else null")
@@ -49,9 +50,11 @@ class CommandView(Message):
     )
     times_sent: int
     takeoff: bool
-    sent_altitudes: str | None = Field(description="which altitudes a mission was sent with")
-    part: str | None = Field(description="the part of a mission flown now, as in 'part 2 of 3'")
-    repairs: list[str] = Field(description="what was changed in a mission so that DJI accepts it")
+    sent_altitudes: str | None = Field(
+        description="the altitude reference that a mission was sent with"
+    )
+    part: str | None = Field(description="the part of a mission in flight, such as 'part 2 of 3'")
+    repairs: list[str] = Field(description="changes made to a mission so that DJI accepts it")
     history: list[PhaseView]
 
 
@@ -59,7 +62,7 @@ Severity = Literal["critical", "error", "warning", "info"]
 
 
 class AlarmView(Message):
-    """An alarm stays until its cause ends; `is_active` false: ended, not yet acknowledged."""
+    """An alarm. `is_active` false: its cause has ended, but it is not acknowledged yet."""
 
     id: int
     severity: Severity
@@ -71,3 +74,50 @@ class AlarmView(Message):
     raised_age_s: float
     is_active: bool
     is_acknowledged: bool
+
+
+class CheckView(Message):
+    """One point of a preflight checklist; `to_do` is empty when it is ok."""
+
+    key: str
+    name: str
+    state: Literal["ok", "attention", "unknown", "fails"]
+    text: str
+    to_do: str
+    holds_back: bool = Field(description="whether missions are refused in this state")
+
+
+class PreflightView(Message):
+    """A vehicle's checklist as of now; missions are allowed when it is passed or overridden."""
+
+    serial: str
+    name: str
+    is_passed: bool
+    override: OverrideView | None
+    points: list[CheckView]
+
+
+class AuditEntryView(Message):
+    """One entry of the audit: what happened, who asked, about which vehicle."""
+
+    n: int
+    utc: str
+    kind: str
+    by: str
+    serial: str | None
+    vehicle: str
+    text: str
+    details: dict[str, Any]
+
+
+class AuditPage(Message):
+    """Entries of this run after a number, the oldest first.
+
+    `first_n` is the oldest entry in memory; older ones are only in the file.
+    """
+
+    entries: list[AuditEntryView]
+    first_n: int
+    last_n: int
+    file: str | None
+    problem: str | None = Field(description="why the audit cannot be written, while it cannot")

@@ -1,4 +1,4 @@
-"""What the station tells of the site."""
+"""The site, ground images, shade and the forecast of sun."""
 
 from typing import Literal
 
@@ -8,14 +8,14 @@ from recon.api.schema.message import Message
 
 
 class GroundImageView(Message):
-    """The newest frame laid on the ground; corners are (longitude, latitude) NW, NE, SE, SW."""
+    """The newest ground image; corners are (longitude, latitude) NW, NE, SE, SW."""
 
     frame_id: int
     serial: str
     captured_age_s: float
     captured_sigma_s: float
     registration: Literal["unregistered"]
-    reference: str = Field(description="which telemetry stands for the marked frame")
+    reference: str = Field(description="the telemetry used for the marked frame")
     corners: list[tuple[float, float]]
     cell_m: float
     rows: int
@@ -23,7 +23,7 @@ class GroundImageView(Message):
 
 
 class LimitsView(Message):
-    """What the site allows every vehicle."""
+    """The site's limits for every vehicle."""
 
     max_height_above_ground_m: float
     min_height_above_ground_m: float
@@ -36,7 +36,7 @@ class LimitsView(Message):
 
 
 class LayerView(Message):
-    """A layer of the site, and the file in its folder that tells it."""
+    """A layer of the site, and its file in the site's folder."""
 
     name: str
     file: str
@@ -54,7 +54,7 @@ class AreaView(Message):
 
 
 class PadView(Message):
-    """A place to land; `serial` is null for one that any vehicle may use."""
+    """A landing pad; `serial` is null for one that any vehicle may use."""
 
     name: str
     serial: str | None
@@ -64,7 +64,7 @@ class PadView(Message):
 
 
 class SiteView(Message):
-    """The site: its place, what holds in its air, and the quality of the eye's marked pose."""
+    """The site: position, limits, areas, pads, quality of the imaging drone's marked pose."""
 
     name: str
     latitude_deg: float | None
@@ -77,8 +77,58 @@ class SiteView(Message):
     terrain: Literal["model", "flat assumed"]
     layers: list[LayerView]
     areas: list[AreaView]
-    areas_left_out: int = Field(description="how many areas are too many to be drawn")
+    areas_left_out: int = Field(description="number of areas beyond the limit, not sent")
     areas_drawn_within_m: float = Field(
-        description="how far the outlines may be off; 0 when every corner is there"
+        description="largest error of the simplified outlines; 0 when not simplified"
     )
     pads: list[PadView]
+
+
+class ShadeMapView(Message):
+    """The newest shade map; corners are (longitude, latitude) NW, NE, SE, SW."""
+
+    number: int = Field(description="counts the shade maps of this run")
+    captured_age_s: float
+    known_share: float = Field(description="of all cells: those with a known value")
+    sunlit_share: float | None = Field(description="of the known cells")
+    mean_confidence: float | None = Field(description="of the known cells")
+    corners: list[tuple[float, float]]
+    cell_m: float
+    rows: int
+    cols: int
+
+
+class ForecastView(Message):
+    """The newest forecast; leads count from the capture of its shade map."""
+
+    number: int = Field(description="number of its shade map")
+    issued_age_s: float
+    method: str = Field(
+        description="the method that made it: the fallback if the chosen one failed"
+    )
+    lead_s: list[float]
+    predicted_share: list[float] = Field(
+        description="of all cells, by lead: those predicted from observations"
+    )
+    prior_sunlit: float = Field(description="probability used where no prediction is available")
+    shadows_east_mps: float | None
+    shadows_north_mps: float | None
+    corners: list[tuple[float, float]]
+    cell_m: float
+    rows: int
+    cols: int
+
+
+class ShadeLineView(Message):
+    """State of shade detection and sun forecast from the imaging drone's frames."""
+
+    detection: str = Field(description="the method that detects shade")
+    forecaster: str = Field(description="the method that forecasts sun")
+    frames_rejected: int
+    frames_dropped: int = Field(description="ground images dropped because the worker was busy")
+    rejected: str | None = Field(
+        description="why the newest frame was rejected; null if it was not"
+    )
+    error: str | None
+    map: ShadeMapView | None
+    forecast: ForecastView | None

@@ -1,4 +1,4 @@
-"""What the station tells of itself, its links and the whole."""
+"""The station, its links, and the state that the stream sends."""
 
 from typing import Literal
 
@@ -6,14 +6,13 @@ from pydantic import Field
 
 from recon.api.schema.message import Message
 from recon.api.schema.orders import AlarmView, CommandView
-from recon.api.schema.site import GroundImageView, SiteView
-from recon.api.schema.sun import ShadeLineView
+from recon.api.schema.site import GroundImageView, ShadeLineView, SiteView
 from recon.api.schema.surveys import SurveyView
 from recon.api.schema.vehicles import VehicleView
 
 
 class LinkView(Message):
-    """One TCP connection of a companion app, with what its bytes have been like."""
+    """One TCP connection of a companion app, with its error counters."""
 
     id: int
     remote_address: str
@@ -31,7 +30,9 @@ class LinkView(Message):
     meaningless: int
     bytes_skipped: int
     commands_queued: int
-    answers_not_believed: int = Field(description="acknowledgments that may answer another command")
+    answers_not_believed: int = Field(
+        description="acknowledgments ignored because they may answer another command"
+    )
 
 
 class StationView(Message):
@@ -45,12 +46,12 @@ class StationView(Message):
     capture_dropped_bytes: int
     connections_refused: int
     separation_hold_on: bool = Field(
-        description="whether the watchdogs hold vehicles; else they only raise alarms"
+        description="whether the watchdogs hold vehicles; if not, they only raise alarms"
     )
 
 
 class ReturningView(Message):
-    """One vehicle of a fleet return; without a flight (yet) wave, heights and pad are null."""
+    """One vehicle of a fleet return; wave, heights and pad are null before it is planned."""
 
     serial: str
     vehicle_name: str

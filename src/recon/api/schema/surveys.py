@@ -1,19 +1,18 @@
-"""What is asked and told of surveys."""
+"""Survey requests and their state."""
 
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from recon.api.schema.asked import Asked
-from recon.api.schema.message import Message
+from recon.api.schema.message import Message, StrictMessage
 
-SurveyPhaseWord = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
-
-
-WhenDoneWord = Literal["return_home", "hover"]
+SurveyPhaseName = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 
 
-class SurveyCameraRequest(Asked):
+WhenDoneName = Literal["return_home", "hover"]
+
+
+class SurveyCameraRequest(StrictMessage):
     """The survey drones' camera: fields of view, and the interval its timer is set to."""
 
     across_deg: float = 66.0
@@ -21,22 +20,22 @@ class SurveyCameraRequest(Asked):
     interval_s: float = 2.0
 
 
-class SurveyBudgetRequest(Asked):
-    """When the survey ends although it is not done; null: never for that reason."""
+class SurveyBudgetRequest(StrictMessage):
+    """Limits that end the survey before it is complete; null: no limit."""
 
     rounds: int = 6
     time_s: float | None = None
     flown_m: float | None = None
 
 
-class SurveyRequest(Asked):
+class SurveyRequest(StrictMessage):
     """A survey to plan. Either `region`, a survey region of the site by name, or `polygon`.
 
-    Nothing flies by this: see `/api/surveys/{id}/start`.
+    Nothing flies yet: see `/api/surveys/{id}/start`.
     """
 
     name: Annotated[str, Field(min_length=1, max_length=100)] | None = Field(
-        default=None, description="null: the region's"
+        default=None, description="null: the region's name"
     )
     region: Annotated[str, Field(max_length=200)] | None = None
     polygon: list[list[list[float]]] | None = Field(
@@ -52,18 +51,18 @@ class SurveyRequest(Asked):
     planner: Annotated[str, Field(max_length=100)] = "lawnmower_once"
     counts_neighbours: bool = False
     cell_m: float = 4.0
-    when_done: WhenDoneWord = Field(
+    when_done: WhenDoneName = Field(
         default="return_home",
-        description="what its vehicles do when it is done, or no battery lasts for a row",
+        description="what vehicles do when it is complete, or no battery is sufficient for a row",
     )
     camera: SurveyCameraRequest = SurveyCameraRequest()
     budget: SurveyBudgetRequest = SurveyBudgetRequest()
 
 
-class SurveyStartRequest(Asked):
-    """With whom to fly. By this word the vehicles are given to the station's guidance.
+class SurveyStartRequest(StrictMessage):
+    """The vehicles to fly with. Their control authority passes to the station's guidance.
 
-    `takeoff` is the explicit word that each may leave the ground, once.
+    `takeoff` explicitly allows each to leave the ground once, for this start.
     """
 
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=64)
@@ -71,20 +70,20 @@ class SurveyStartRequest(Asked):
 
 
 class SurveyFiguresView(Message):
-    """Areas by counted cells; times from the start, null: not yet."""
+    """Areas by counted cells; times from the start, null: not reached."""
 
     region_m2: float
-    reached_m2: float = Field(description="what the rows see for sure")
+    reached_m2: float = Field(description="imaged by the rows with certainty")
     not_yet_m2: float
-    in_shade_m2: float = Field(description="imaged, and not for sure in sun")
+    in_shade_m2: float = Field(description="imaged, not certainly in sun")
     in_sun_m2: float
-    sun_unknown_m2: float = Field(description="imaged, and nobody knows in which light")
+    sun_unknown_m2: float = Field(description="imaged, light unknown")
     time_to_95_imaged_s: float | None
     time_to_95_in_sun_s: float | None
 
 
 class SurveyCellsView(Message):
-    """Where the picture of the cells lies; its number rises as they do."""
+    """Position of the picture of the cells; `number` rises with every change."""
 
     number: int
     corners: list[tuple[float, float]]
@@ -98,25 +97,27 @@ class SurveyingView(Message):
 
     serial: str
     vehicle_name: str
-    is_flying_rows: bool = Field(description="a mission of the survey is under way")
-    waits_for: str | None = Field(description="why it flies nothing (more) for the survey now")
-    refused: str | None = Field(description="why its newest mission was refused, if it was")
-    has_come_home: bool = Field(description="called home by the survey, it has landed")
+    is_flying_rows: bool = Field(description="a mission of the survey is in flight")
+    waits_for: str | None = Field(description="why it does not fly for the survey now")
+    refused: str | None = Field(
+        description="why its newest mission was refused; null if it was not"
+    )
+    has_come_home: bool = Field(description="landed after the survey returned it home")
     mission_command_id: int | None
 
 
 class SurveyView(Message):
-    """One survey: a light summary; its ways and cells are asked for by themselves."""
+    """Summary of one survey; paths and cells have routes of their own."""
 
     id: int
     name: str
-    phase: SurveyPhaseWord
+    phase: SurveyPhaseName
     reason: str
     asked_by: str
     age_s: float
     started_by: str | None
     planner: str
-    when_done: WhenDoneWord
+    when_done: WhenDoneName
     height_above_takeoff_m: float
     speed_mps: float
     round: int
@@ -125,12 +126,12 @@ class SurveyView(Message):
     vehicles: list[SurveyingView]
     figures: SurveyFiguresView | None
     cells: SurveyCellsView | None
-    rows: int = Field(description="how many rows, or pieces of rows, are planned")
-    ways: int = Field(description="rises as flown ways grow")
+    rows: int = Field(description="number of planned rows or parts of rows")
+    ways: int = Field(description="rises as flown paths grow")
 
 
 class SurveyWay(Message):
-    """The way of one mission: (longitude, latitude) of its corners."""
+    """The path of one mission: (longitude, latitude) of its corners."""
 
     serial: str
     number: int
@@ -138,7 +139,7 @@ class SurveyWay(Message):
 
 
 class SurveyWays(Message):
-    """A survey's rows, each from end to end; the missions flown now; and the ways flown so far."""
+    """A survey's rows, each from end to end; the missions in flight; the paths flown so far."""
 
     survey_id: int
     rows: list[list[tuple[float, float]]]
@@ -147,7 +148,7 @@ class SurveyWays(Message):
 
 
 class SurveyResponse(Message):
-    """What became of a word on a survey: taken, or refused for a reason; and the survey."""
+    """The outcome of a survey command: accepted, or refused with a reason; and the survey."""
 
     accepted: bool
     rule: str | None

@@ -1,4 +1,4 @@
-"""What the station tells of vehicles."""
+"""Vehicles: telemetry, authority, hazard area, steering."""
 
 from typing import Literal
 
@@ -15,21 +15,21 @@ class AgedNumber(Message):
 
 
 class AgedFlag(Message):
-    """A yes or no with its age."""
+    """A boolean with its age."""
 
     value: bool | None
     age_s: float | None
 
 
 class AgedText(Message):
-    """A word with its age."""
+    """A text with its age."""
 
     value: str | None
     age_s: float | None
 
 
 class PositionView(Message):
-    """Where a vehicle is (WGS84)."""
+    """A vehicle's position (WGS84)."""
 
     latitude_deg: float | None
     longitude_deg: float | None
@@ -37,7 +37,7 @@ class PositionView(Message):
 
 
 class VelocityView(Message):
-    """How a vehicle moves: metres per second, north-east-down."""
+    """A vehicle's velocity, north-east-down."""
 
     north_mps: float | None
     east_mps: float | None
@@ -55,7 +55,7 @@ class AttitudeView(Message):
 
 
 class FrameView(Message):
-    """The newest camera frame of a vehicle, to be fetched by its id."""
+    """The newest camera frame of a vehicle; fetch it again when the id changes."""
 
     id: int
     received_age_s: float
@@ -64,12 +64,12 @@ class FrameView(Message):
 
 
 class HazardView(Message):
-    """Where a vehicle may be that is not heard any more: a circle that grows, and its way home.
+    """The hazard area of a lost vehicle: a growing circle, and a corridor on its way home.
 
-    It stays until telemetry comes, or until somebody who knows where the vehicle is dismisses it.
+    It stays until telemetry returns, or an operator has located the vehicle and dismisses it.
     """
 
-    dismissed_as: str = Field(description="what to name when dismissing it: the serial, or a link")
+    dismissed_as: str = Field(description="name for dismissing it: the serial, or a link")
     age_s: float
     latitude_deg: float
     longitude_deg: float
@@ -77,26 +77,25 @@ class HazardView(Message):
     growth_mps: float
     largest_radius_m: float
     corridor: list[tuple[float, float]] = Field(
-        description="longitude, latitude: from the last place to home; empty when it goes nowhere"
+        description="longitude, latitude: from the last position to home; empty without a return"
     )
     corridor_half_width_m: float
 
 
-AuthorityWord = Literal["pilot", "operator", "guidance"]
+HolderName = Literal["pilot", "operator", "guidance"]
 
 
 class AuthorityView(Message):
-    """Who may set a vehicle in motion, and how that came about; anybody may stop it."""
+    """The holder may set the vehicle in motion; any client may stop it."""
 
-    holder: AuthorityWord
+    holder: HolderName
     holder_name: str
-    age_s: float | None = Field(description="null: since the station began")
+    age_s: float | None = Field(description="null: since the station started")
     reason: str
 
 
 class OverrideView(Message):
-    """Somebody's word that a vehicle may fly missions without its checklist; it ends with the
-    landing."""
+    """Permission to fly missions without a passed checklist; it ends with the landing."""
 
     by: str
     reason: str
@@ -104,22 +103,22 @@ class OverrideView(Message):
 
 
 class SteeringView(Message):
-    """Where the station steers a vehicle with sticks, for the order of this number."""
+    """The target of a steered order, flown with virtual sticks."""
 
     command_id: int
     latitude_deg: float
     longitude_deg: float
     height_above_takeoff_m: float
     speed_mps: float
-    has_arrived: bool = Field(description="it holds the place")
-    is_ending: bool = Field(description="zero has been sent, and a hold follows")
+    has_arrived: bool = Field(description="it holds the position")
+    is_ending: bool = Field(description="the neutral setpoint has been sent, and a hold follows")
 
 
-StalenessWord = Literal["live", "late", "lost", "silent"]
+StalenessName = Literal["live", "late", "lost", "silent"]
 
 
 class VehicleView(Message):
-    """One vehicle. `number` is stable for the life of the station: colour and shortcut."""
+    """One vehicle. `number`, for colour and shortcut, is constant while the station runs."""
 
     number: int
     serial: str | None
@@ -131,7 +130,7 @@ class VehicleView(Message):
     authority: AuthorityView
     preflight_override: OverrideView | None
     steering: SteeringView | None
-    staleness: StalenessWord
+    staleness: StalenessName
     telemetry_age_s: float | None
     is_flying: AgedFlag
     position: PositionView

@@ -7,7 +7,7 @@ from itertools import count
 
 from recon import version
 from recon.api import schema
-from recon.api.port import SurveyCells
+from recon.api.port import SurveyCellStates
 from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, Hover, Phase, Refusal
 from recon.model.event import (
@@ -116,7 +116,7 @@ class Service:
         self.driver.handle(OwnerDisconnected(owner))
 
     def all_stop(self, issued_by: str) -> schema.OrderResponse:
-        """Hold every link whose telemetry says flying, identified or not.
+        """Hold every link whose telemetry shows flight, identified or not.
 
         What is on the ground or has no connection is in the results with the gate's refusal: nobody
         that may be in the air is left out in silence.
@@ -150,7 +150,9 @@ class Service:
         """Switch on or off that the watchdogs hold vehicles."""
         self.driver.handle(SeparationHoldSwitched(is_on, by))
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> schema.WordResponse:
+    def take_authority(
+        self, serial: str, holder: AuthorityHolder, by: str
+    ) -> schema.CommandResponse:
         """Let somebody else lead a vehicle."""
         event = AuthorityTaken(serial, holder, by)
         return self._say(event, authority.refusal(self.driver.station, event))
@@ -159,7 +161,7 @@ class Service:
         """Return a vehicle's checklist as of now."""
         return preflight_view(self.driver.station, serial, self.driver.now_ns())
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> schema.WordResponse:
+    def override_preflight(self, serial: str, reason: str, by: str) -> schema.CommandResponse:
         """Let a vehicle fly missions although its checklist is not passed."""
         event = PreflightOverridden(serial, by, reason)
         return self._say(event, preflight.refusal(self.driver.station, event))
@@ -215,7 +217,7 @@ class Service:
         """Return a survey's planned and flown ways."""
         return self._surveys.ways(survey_id)
 
-    def survey_cells(self, survey_id: int) -> SurveyCells | None:
+    def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
         """Return a survey's cells as they stand."""
         return self._surveys.cells(survey_id)
 
@@ -231,12 +233,12 @@ class Service:
 
     def _say(
         self, event: AuthorityTaken | PreflightOverridden, refusal: Refusal | None
-    ) -> schema.WordResponse:
+    ) -> schema.CommandResponse:
         """Pass a word on, unless it is refused."""
         if refusal is not None:
-            return schema.WordResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
+            return schema.CommandResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
         self.driver.handle(event)
-        return schema.WordResponse(accepted=True, rule=None, reason=None)
+        return schema.CommandResponse(accepted=True, rule=None, reason=None)
 
     def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
         return schema.OrderResponse(results=[self._give_one(order) for order in orders])

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from recon.api import schema
-from recon.api.port import SurveyCells
+from recon.api.port import SurveyCellStates
 from recon.guidance.survey.plan import RULE
 from recon.model.command import Refusal
 from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
@@ -63,13 +63,15 @@ class SurveyService:
         record = self.driver.station.surveys.records.get(survey_id)
         return None if record is None else survey_ways(record)
 
-    def cells(self, survey_id: int) -> SurveyCells | None:
+    def cells(self, survey_id: int) -> SurveyCellStates | None:
         """Return a survey's cells, None without rows."""
         record = self.driver.station.surveys.records.get(survey_id)
         if record is None or record.state is None:
             return None
         state = record.state
-        return SurveyCells(cells_number(state), state.progress.state, state.plan.cells.is_inside)
+        return SurveyCellStates(
+            cells_number(state), state.progress.state, state.plan.cells.is_inside
+        )
 
     def _taken(self, survey_id: int) -> schema.SurveyResponse:
         return schema.SurveyResponse(

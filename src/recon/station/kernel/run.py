@@ -302,7 +302,7 @@ def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
             log_level="warning",
             access_log=False,
             server_header=False,
-            # Its send waits while the reader's socket takes no more: see api/stream.py.
+            # Its send waits while the reader's socket takes no more: see api/streams.py.
             ws="websockets-sansio",
             ws_max_size=64 * 1024,
             timeout_graceful_shutdown=SHUTDOWN_S,

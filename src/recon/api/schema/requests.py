@@ -1,52 +1,46 @@
-"""What the station is asked."""
+"""Requests for orders, authority and preflight overrides."""
 
 from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from recon.api.schema.message import Message
-from recon.api.schema.vehicles import AuthorityWord
-
-
-class Asked(Message):
-    """Base of what is asked: nothing is guessed from another type ("yes" is not true)."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+from recon.api.schema.message import StrictMessage
+from recon.api.schema.vehicles import HolderName
 
 
-class HoverOrder(Asked):
+class HoverOrder(StrictMessage):
     """Stop and hold."""
 
     kind: Literal["hover"]
 
 
-class LandOrder(Asked):
+class LandOrder(StrictMessage):
     """Land where the vehicle is."""
 
     kind: Literal["land"]
 
 
-class ReturnHomeOrder(Asked):
+class ReturnHomeOrder(StrictMessage):
     """Return at the aircraft's own go-home height and land."""
 
     kind: Literal["return_home"]
 
 
-class CameraStartOrder(Asked):
+class CameraStartOrder(StrictMessage):
     """Send images."""
 
     kind: Literal["camera_start"]
     fps_hz: float
 
 
-class CameraStopOrder(Asked):
+class CameraStopOrder(StrictMessage):
     """Stop sending images."""
 
     kind: Literal["camera_stop"]
 
 
-class WaypointOrder(Asked):
-    """One waypoint; null loiter and gimbal mean no action."""
+class WaypointOrder(StrictMessage):
+    """One waypoint; null `loiter_s` or `gimbal_pitch_deg` means no action."""
 
     latitude_deg: float
     longitude_deg: float
@@ -57,18 +51,19 @@ class WaypointOrder(Asked):
     gimbal_pitch_deg: float | None = None
 
 
-class MissionOrder(Asked):
+class MissionOrder(StrictMessage):
     """Fly waypoints, replacing any mission being flown."""
 
     kind: Literal["mission"]
     waypoints: list[WaypointOrder] = Field(
-        max_length=2000, description="more than the vehicle's app takes are flown in parts"
+        max_length=2000,
+        description="a mission longer than the vehicle's app accepts is flown in parts",
     )
     land_at_end: bool = False
     curved: bool = False
 
 
-class StickOrder(Asked):
+class StickOrder(StrictMessage):
     """One virtual stick packet (ground: x north, y east; body: x forward, y right)."""
 
     kind: Literal["stick"]
@@ -80,8 +75,8 @@ class StickOrder(Asked):
     timeout_s: float = 1.0
 
 
-class GoToOrder(Asked):
-    """Fly straight to a place and hold there; `yaw_deg` null keeps the heading."""
+class GoToOrder(StrictMessage):
+    """Fly straight to a position and hold there; `yaw_deg` null keeps the heading."""
 
     kind: Literal["goto"]
     latitude_deg: float
@@ -91,8 +86,8 @@ class GoToOrder(Asked):
     yaw_deg: float | None = None
 
 
-class NudgeOrder(Asked):
-    """Move by this much from here and hold there; `turn_deg` clockwise."""
+class NudgeOrder(StrictMessage):
+    """Move by an offset and hold there; `turn_deg` is clockwise."""
 
     kind: Literal["nudge"]
     north_m: float = 0.0
@@ -102,8 +97,8 @@ class NudgeOrder(Asked):
     speed_mps: float = 2.0
 
 
-class HoldPositionOrder(Asked):
-    """Hold this place against wind and drift, steered by the station."""
+class HoldPositionOrder(StrictMessage):
+    """Hold the present position against wind and drift, steered by the station."""
 
     kind: Literal["hold_position"]
 
@@ -123,11 +118,12 @@ AnyOrder = Annotated[
 ]
 
 
-class OrderRequest(Asked):
-    """An order to named vehicles. `takeoff` is the explicit word that they may leave the ground.
+class OrderRequest(StrictMessage):
+    """An order to named vehicles. `takeoff` explicitly allows them to leave the ground.
 
-    `goto`, `nudge` and `hold_position` need a `owner`: the name of an open stream of states
-    (`/api/stream?owner=NAME`). When that stream ends, the vehicle is stopped and holds.
+    `goto`, `nudge` and `hold_position` need an `owner`: the name of an open state stream
+    (`/api/stream?owner=NAME`). When that stream closes or is silent for 2 s, the vehicle stops and
+    holds.
     """
 
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=256)
@@ -139,8 +135,8 @@ class OrderRequest(Asked):
     def _takes_off_with_what_can(self) -> Self:
         if self.takeoff and not isinstance(self.order, HoverOrder | MissionOrder | StickOrder):
             raise ValueError(
-                f"takeoff was said with {self.order.kind}, which never takes off; it goes with "
-                "hover, mission and stick only: give the order again without it"
+                f"takeoff is not possible with {self.order.kind}, only with hover, mission and "
+                "stick: send the order without it"
             )
         return self
 
@@ -148,27 +144,27 @@ class OrderRequest(Asked):
     def _names_its_owner(self) -> Self:
         if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.owner:
             raise ValueError(
-                f"{self.order.kind} needs a owner, the name of an open stream "
+                f"{self.order.kind} needs an owner, the name of an open stream "
                 "(/api/stream?owner=NAME) whose end stops the vehicle"
             )
         return self
 
 
-class FleetReturnRequest(Asked):
-    """Vehicles to call home in layers; null calls every one that flies or may."""
+class FleetReturnRequest(StrictMessage):
+    """Vehicles to return home in layers; null: every vehicle that is or may be in flight."""
 
     serials: list[Annotated[str, Field(max_length=2048)]] | None = Field(
         default=None, min_length=1, max_length=256
     )
 
 
-class AuthorityRequest(Asked):
-    """Who is to lead a vehicle from now on."""
+class AuthorityRequest(StrictMessage):
+    """The new holder of control authority."""
 
-    holder: AuthorityWord
+    holder: HolderName
 
 
-class PreflightOverrideRequest(Asked):
-    """Why a vehicle may fly missions although its checklist is not passed."""
+class PreflightOverrideRequest(StrictMessage):
+    """The reason for allowing missions although the checklist is not passed."""
 
     reason: str = Field(max_length=2048)

@@ -1,0 +1,173 @@
+"""Routes for orders and operator commands: orders, fleet return, hazards, authority, preflight."""
+
+from typing import Literal
+
+from fastapi import FastAPI, HTTPException, Request
+
+from recon.api import schema
+from recon.api.port import StationPort
+from recon.api.responses import PROBLEMS, client_name, found
+from recon.model.authority import AuthorityHolder
+from recon.model.command import (
+    Body,
+    FlyMission,
+    GoTo,
+    HoldPosition,
+    Hover,
+    LandNow,
+    Nudge,
+    ReturnHome,
+    StartCamera,
+    StickFrame,
+    StopCamera,
+    VirtualStick,
+)
+from recon.model.geo import LatLon
+from recon.model.mission import Mission, Waypoint
+
+
+def add_order_routes(app: FastAPI, port: StationPort) -> None:
+    """Add all routes of this module."""
+    _add_orders(app, port)
+    _add_hazards(app, port)
+    _add_readiness(app, port)
+
+
+def _add_orders(app: FastAPI, port: StationPort) -> None:
+    @app.post("/api/orders")
+    async def order(asked: schema.OrderRequest, request: Request) -> schema.OrderResponse:
+        """Give one order to each named vehicle; refusals are among the results."""
+        return port.order(
+            asked.serials,
+            to_body(asked.order),
+            takeoff=asked.takeoff,
+            issued_by=client_name(request),
+            owner=asked.owner,
+        )
+
+    @app.post("/api/orders/check")
+    async def check(asked: schema.OrderRequest, request: Request) -> schema.OrderResponse:
+        """Return what the gate would answer to an order now. Nothing is sent; each id is 0."""
+        return port.check(
+            asked.serials,
+            to_body(asked.order),
+            takeoff=asked.takeoff,
+            issued_by=client_name(request),
+            owner=asked.owner,
+        )
+
+    @app.post("/api/all-stop")
+    async def all_stop(request: Request) -> schema.OrderResponse:
+        """Hold every vehicle in flight, identified or not. Never stops motors."""
+        return port.all_stop(client_name(request))
+
+    @app.post("/api/fleet-return")
+    async def fleet_return(
+        asked: schema.FleetReturnRequest, request: Request
+    ) -> schema.OrderResponse:
+        """Return vehicles home by landing missions, each at a height of its own.
+
+        Each result is the hold that it starts with; `fleet_return` in the state shows the progress.
+        """
+        return port.fleet_return(asked.serials, client_name(request))
+
+
+def _add_hazards(app: FastAPI, port: StationPort) -> None:
+    @app.post("/api/vehicles/{serial}/hazard/dismiss", responses=PROBLEMS, status_code=204)
+    async def dismiss_hazard(serial: str, request: Request) -> None:
+        """Dismiss the hazard area of a lost vehicle that has been located.
+
+        A vehicle without a serial is named by its hazard area's `dismissed_as`.
+        """
+        if not port.dismiss_hazard(serial, client_name(request)):
+            raise HTTPException(
+                404, f"No hazard area for {serial!r}: it is connected, landed or unknown"
+            )
+
+    @app.post("/api/separation-hold/{switch}", status_code=204)
+    async def separation_hold(switch: Literal["on", "off"], request: Request) -> None:
+        """Switch the separation holds of the watchdogs on or off; off, an alarm stays active."""
+        port.switch_separation_hold(switch == "on", client_name(request))
+
+    @app.post("/api/alarms/{alarm_id}/acknowledge", responses=PROBLEMS, status_code=204)
+    async def acknowledge(alarm_id: int, request: Request) -> None:
+        """Acknowledge an alarm; it stays until its cause ends."""
+        if not port.acknowledge(alarm_id, client_name(request)):
+            raise HTTPException(404, f"Alarm {alarm_id} not found")
+
+
+def _add_readiness(app: FastAPI, port: StationPort) -> None:
+    @app.post("/api/vehicles/{serial}/authority")
+    async def authority(
+        serial: str, asked: schema.AuthorityRequest, request: Request
+    ) -> schema.CommandResponse:
+        """Transfer control authority: from now on only `holder` may set the vehicle in motion."""
+        return port.take_authority(serial, AuthorityHolder(asked.holder), client_name(request))
+
+    @app.get("/api/vehicles/{serial}/preflight", responses=PROBLEMS)
+    async def preflight(serial: str) -> schema.PreflightView:
+        """A vehicle's preflight checklist as of now."""
+        return found(port.preflight(serial), f"No vehicle with serial {serial!r}")
+
+    @app.post("/api/vehicles/{serial}/preflight/override")
+    async def override_preflight(
+        serial: str, asked: schema.PreflightOverrideRequest, request: Request
+    ) -> schema.CommandResponse:
+        """Allow missions although the checklist is not passed, until the vehicle has landed.
+
+        Reason and client are written to the audit.
+        """
+        return port.override_preflight(serial, asked.reason, client_name(request))
+
+
+def to_body(order: schema.AnyOrder) -> Body:
+    """Return the body of an order; the gate decides whether it may be executed."""
+    match order:
+        case schema.HoverOrder():
+            return Hover()
+        case schema.LandOrder():
+            return LandNow()
+        case schema.ReturnHomeOrder():
+            return ReturnHome()
+        case schema.CameraStartOrder():
+            return StartCamera(fps_hz=order.fps_hz)
+        case schema.CameraStopOrder():
+            return StopCamera()
+        case schema.MissionOrder():
+            return FlyMission(_mission(order))
+        case schema.StickOrder():
+            return _stick(order)
+        case schema.GoToOrder():
+            return _goto(order)
+        case schema.NudgeOrder():
+            return Nudge(**order.model_dump(exclude={"kind"}))
+        case schema.HoldPositionOrder():
+            return HoldPosition()
+
+
+def _mission(order: schema.MissionOrder) -> Mission:
+    return Mission(
+        waypoints=tuple(Waypoint(**waypoint.model_dump()) for waypoint in order.waypoints),
+        land_at_end=order.land_at_end,
+        curved=order.curved,
+    )
+
+
+def _goto(order: schema.GoToOrder) -> GoTo:
+    return GoTo(
+        target=LatLon(order.latitude_deg, order.longitude_deg),
+        height_above_takeoff_m=order.height_above_takeoff_m,
+        speed_mps=order.speed_mps,
+        yaw_deg=order.yaw_deg,
+    )
+
+
+def _stick(order: schema.StickOrder) -> VirtualStick:
+    return VirtualStick(
+        frame=StickFrame(order.frame),
+        yaw_deg=order.yaw_deg,
+        velocity_x_mps=order.velocity_x_mps,
+        velocity_y_mps=order.velocity_y_mps,
+        height_above_takeoff_m=order.height_above_takeoff_m,
+        timeout_s=order.timeout_s,
+    )

@@ -1,0 +1,29 @@
+"""Shared parts of the routes' responses."""
+
+from typing import TypeVar
+
+from fastapi import HTTPException, Request, Response
+
+from recon.api import schema
+
+_T = TypeVar("_T")
+
+PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": schema.Problem}}
+PNG: dict[int | str, dict[str, object]] = {200: {"content": {"image/png": {}}}}
+
+
+def found(value: _T | None, sentence: str) -> _T:
+    """Return the value; raises 404 with a sentence for None."""
+    if value is None:
+        raise HTTPException(404, sentence)
+    return value
+
+
+def client_name(request: Request) -> str:
+    """Return the name of the client, for `issued_by` and the audit."""
+    return f"api {request.client.host}" if request.client is not None else "api"
+
+
+def png(data: bytes, number: int) -> Response:
+    """Return a PNG response with the number that the state shows for the picture."""
+    return Response(data, media_type="image/png", headers={"X-Frame-Id": str(number)})

@@ -1,0 +1,185 @@
+"""The WebSocket streams: states to consoles and clients, and audit entries.
+
+States are conflated: a slow reader gets the newest state when it is ready, at most 10 Hz. The
+server's send blocks while more than 64 KiB wait for the socket, so a slow reader costs that and one
+message. Audit entries are not conflated: a slow reader holds one page and gets the rest as it
+reads; one that falls behind what the station keeps in memory sees a gap in the numbers (`first_n`).
+
+An owner is an open state stream that steered orders depend on (`/api/stream?owner=NAME`). It sends
+a keepalive, any text, at least twice a second. When its connection closes, or no message arrives
+for `SILENT_S` (a computer that sleeps, a program that hangs), its steered orders end: the vehicles
+stop and hold. A name belongs to one stream at a time, and a client draws a new one for each
+connection, so an ended order never resumes.
+"""
+
+import asyncio
+import string
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from recon.api.port import StationPort
+from recon.api.security import PROTOCOL
+
+INTERVAL_S = 0.1
+MAX_STATE_READERS = 32
+MAX_AUDIT_READERS = 16
+MAX_ENTRIES = 100
+"""Audit entries in one message; with the longest missions some 2 MiB."""
+
+SILENT_S = 2.0
+"""Four keepalives lost. A vehicle at 5 m/s has moved on by 10 m."""
+OWNER_SILENT = 4008
+"""Close code (private use, RFC 6455) for an owner that sent no keepalive in time."""
+SHORTEST_NAME = 16
+LONGEST_NAME = 64
+_LETTERS = frozenset(string.ascii_letters + string.digits + "-_")
+
+
+class Owners:
+    """The names of the open owner streams."""
+
+    def __init__(self, port: StationPort) -> None:
+        self._port = port
+        self._names: set[str] = set()
+
+    def fault(self, name: str | None) -> str | None:
+        """Return why a stream cannot use this name, in one sentence; None when it can."""
+        if name is None:
+            return None
+        if not SHORTEST_NAME <= len(name) <= LONGEST_NAME or not _LETTERS.issuperset(name):
+            return (
+                f"owner: name must be {SHORTEST_NAME} to {LONGEST_NAME} letters, digits, - or _; "
+                f"got {len(name)} characters"
+            )
+        return f"owner: {name[:8]}... is in use by another stream" if name in self._names else None
+
+    @asynccontextmanager
+    async def open(self, name: str | None) -> AsyncIterator[None]:
+        """Register an owner for as long as the block runs; do nothing without a name."""
+        if name is None:
+            yield
+            return
+        self._names.add(name)
+        self._port.owner_connected(name)
+        try:
+            yield
+        finally:
+            self._names.discard(name)
+            self._port.owner_disconnected(name)
+
+
+class StateStream:
+    """Serves all readers; those of one interval share one encoded state."""
+
+    def __init__(self, port: StationPort, clock_s: Callable[[], float] = time.monotonic) -> None:
+        self._port = port
+        self._clock_s = clock_s
+        self._text = ""
+        self._made_at_s = float("-inf")
+        self._readers = 0
+        self._owners = Owners(port)
+
+    async def serve(self, socket: WebSocket) -> None:
+        """Send states to one reader until it disconnects."""
+        if self._readers >= MAX_STATE_READERS:
+            await socket.close(1013, f"{MAX_STATE_READERS} readers are connected: limit reached")
+            return
+        owner = socket.query_params.get("owner")
+        fault = self._owners.fault(owner)
+        if fault is not None:
+            await socket.close(1008, fault)
+            return
+        self._readers += 1
+        try:
+            offered = socket.scope.get("subprotocols", [])
+            await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
+            await self._send_until_gone(socket, owner)
+            if owner is not None:
+                await socket.close(OWNER_SILENT, f"owner: no message for {SILENT_S:g} s")
+        except (WebSocketDisconnect, RuntimeError):
+            return
+        finally:
+            self._readers -= 1
+
+    async def _send_until_gone(self, socket: WebSocket, owner: str | None) -> None:
+        # Receiving is a task of its own: sending blocks while the reader takes nothing.
+        gone = asyncio.ensure_future(self._listen(socket, owner))
+        try:
+            while not gone.done():
+                await socket.send_text(self._newest())
+                await asyncio.wait((gone,), timeout=INTERVAL_S)
+        finally:
+            gone.cancel()
+
+    async def _listen(self, socket: WebSocket, owner: str | None) -> None:
+        if owner is None:
+            await _until_gone(socket)
+            return
+        async with self._owners.open(owner):
+            await _until_silent(socket)
+
+    def _newest(self) -> str:
+        if self._clock_s() - self._made_at_s >= INTERVAL_S / 2:
+            self._text = self._port.state().model_dump_json()
+            self._made_at_s = self._clock_s()
+        return self._text
+
+
+class AuditStream:
+    """Sends every audit entry to every reader, in order, from a number on."""
+
+    def __init__(self, port: StationPort) -> None:
+        self._port = port
+        self._readers = 0
+
+    async def serve(self, socket: WebSocket, after: int) -> None:
+        """Send entries to one reader until it disconnects."""
+        if self._readers >= MAX_AUDIT_READERS:
+            await socket.close(1013, f"{MAX_AUDIT_READERS} readers are connected: limit reached")
+            return
+        self._readers += 1
+        try:
+            offered = socket.scope.get("subprotocols", [])
+            await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
+            await self._send_until_gone(socket, after)
+        except (WebSocketDisconnect, RuntimeError):
+            return
+        finally:
+            self._readers -= 1
+
+    async def _send_until_gone(self, socket: WebSocket, after: int) -> None:
+        gone = asyncio.ensure_future(_until_gone(socket))
+        try:
+            while not gone.done():
+                page = self._port.audit(after, MAX_ENTRIES)
+                if page.entries:
+                    await socket.send_text(page.model_dump_json())
+                    after = page.entries[-1].n
+                if after >= page.last_n:
+                    await asyncio.wait((gone,), timeout=INTERVAL_S)
+        finally:
+            gone.cancel()
+
+
+async def _until_silent(socket: WebSocket) -> None:
+    """Receive until an owner disconnects or sends nothing for `SILENT_S`."""
+    try:
+        while True:
+            async with asyncio.timeout(SILENT_S):
+                message = await socket.receive()
+            if message["type"] == "websocket.disconnect":
+                return
+    except (TimeoutError, WebSocketDisconnect, RuntimeError):
+        return
+
+
+async def _until_gone(socket: WebSocket) -> None:
+    """Receive and ignore messages until a reader disconnects."""
+    try:
+        while (await socket.receive())["type"] != "websocket.disconnect":
+            pass
+    except (WebSocketDisconnect, RuntimeError):
+        return
