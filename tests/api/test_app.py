@@ -82,7 +82,7 @@ class TestOrders:
         assert result["accepted"] is False
         assert result["serial"] == "A"
         assert result["rule"] == "reachable"
-        assert "not known" in result["reason"]
+        assert "is unknown" in result["reason"]
 
     def test_each_vehicle_is_ordered_once(self, client: Client) -> None:
         asked = {"serials": ["A", "B", "A"], "order": {"kind": "land"}}

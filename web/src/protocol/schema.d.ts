@@ -15,7 +15,7 @@ export interface paths {
         put?: never;
         /**
          * Acknowledge
-         * @description Mark an alarm as seen by a person; it stays until its cause ends.
+         * @description Acknowledge an alarm; it stays until its cause ends.
          */
         post: operations["acknowledge_api_alarms__alarm_id__acknowledge_post"];
         delete?: never;
@@ -35,7 +35,7 @@ export interface paths {
         put?: never;
         /**
          * All Stop
-         * @description Hold everything that flies, identified or not. Never cuts motors.
+         * @description Hold every vehicle in flight, identified or not. Never stops motors.
          */
         post: operations["all_stop_api_all_stop_post"];
         delete?: never;
@@ -53,7 +53,7 @@ export interface paths {
         };
         /**
          * Audit
-         * @description Entries of this run's audit after a number, the oldest first.
+         * @description Audit entries of this run after a number, the oldest first.
          */
         get: operations["audit_api_audit_get"];
         put?: never;
@@ -73,7 +73,7 @@ export interface paths {
         };
         /**
          * Commands
-         * @description The latest commands and their lives, the newest first.
+         * @description The latest commands with their history, the newest first.
          */
         get: operations["commands_api_commands_get"];
         put?: never;
@@ -93,7 +93,7 @@ export interface paths {
         };
         /**
          * Command
-         * @description One command and its life.
+         * @description One command with its history.
          */
         get: operations["command_api_commands__command_id__get"];
         put?: never;
@@ -115,9 +115,9 @@ export interface paths {
         put?: never;
         /**
          * Fleet Return
-         * @description Call vehicles home as landing missions, each at a height of its own.
+         * @description Return vehicles home by landing missions, each at a height of its own.
          *
-         *     Each result is the hold it begins with; `fleet_return` of the state tells the rest.
+         *     Each result is the hold that it starts with; `fleet_return` in the state shows the progress.
          */
         post: operations["fleet_return_api_fleet_return_post"];
         delete?: never;
@@ -135,7 +135,7 @@ export interface paths {
         };
         /**
          * Forecast
-         * @description How likely sun is, at the nearest of the forecast's leads. Values: grey is probability;
+         * @description Probability of sun at the nearest of the forecast's leads. Values: grey is probability;
          *     transparent is beyond the horizon.
          */
         get: operations["forecast_api_forecast_png_get"];
@@ -218,7 +218,7 @@ export interface paths {
         put?: never;
         /**
          * Check
-         * @description Tell what the gate would say to an order now. Nothing is sent; each number is 0.
+         * @description Return what the gate would answer to an order now. Nothing is sent; each id is 0.
          */
         post: operations["check_api_orders_check_post"];
         delete?: never;
@@ -238,7 +238,7 @@ export interface paths {
         put?: never;
         /**
          * Separation Hold
-         * @description Switch on or off that the watchdogs hold vehicles; off, an alarm says so all the time.
+         * @description Switch the separation holds of the watchdogs on or off; off, an alarm stays active.
          */
         post: operations["separation_hold_api_separation_hold__switch__post"];
         delete?: never;
@@ -302,7 +302,7 @@ export interface paths {
         put?: never;
         /**
          * Ask
-         * @description Plan a survey of a region. Answered when its rows are worked out; nothing flies by it.
+         * @description Plan a survey of a region. Responds when its rows are planned; nothing flies.
          */
         post: operations["ask_api_surveys_post"];
         delete?: never;
@@ -331,7 +331,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/surveys/{survey_id}/{word}": {
+    "/api/surveys/{survey_id}/{command}": {
         parameters: {
             query?: never;
             header?: never;
@@ -344,7 +344,7 @@ export interface paths {
          * Stop
          * @description Pause a survey, or abort it for good. Its vehicles hold where they are.
          */
-        post: operations["stop_api_surveys__survey_id___word__post"];
+        post: operations["stop_api_surveys__survey_id___command__post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -360,7 +360,7 @@ export interface paths {
         };
         /**
          * Cells
-         * @description A survey's cells: not yet, in shade, in sun; its corners are in the survey.
+         * @description A survey's cells: not imaged, in shade, in sun; the corners are in the survey.
          */
         get: operations["cells_api_surveys__survey_id__cells_png_get"];
         put?: never;
@@ -382,9 +382,9 @@ export interface paths {
         put?: never;
         /**
          * Start
-         * @description Fly a survey with these vehicles: by this word they are led by the station's guidance.
+         * @description Start a survey with these vehicles: control authority passes to the station's guidance.
          *
-         *     Said of a running survey, the vehicles join it, or fly for it again.
+         *     On a running survey the vehicles join, or resume.
          */
         post: operations["start_api_surveys__survey_id__start_post"];
         delete?: never;
@@ -402,7 +402,7 @@ export interface paths {
         };
         /**
          * Ways
-         * @description A survey's planned rows, the missions flown now, and the ways flown so far.
+         * @description A survey's planned rows, the missions in flight, and the paths flown so far.
          */
         get: operations["ways_api_surveys__survey_id__ways_get"];
         put?: never;
@@ -464,7 +464,7 @@ export interface paths {
         put?: never;
         /**
          * Authority
-         * @description Take a vehicle over, or give it away: from now on only `holder` sets it in motion.
+         * @description Transfer control authority: from now on only `holder` may set the vehicle in motion.
          */
         post: operations["authority_api_vehicles__serial__authority_post"];
         delete?: never;
@@ -482,7 +482,7 @@ export interface paths {
         };
         /**
          * Frame
-         * @description A vehicle's newest camera frame, as it came.
+         * @description A vehicle's newest camera frame, unchanged.
          */
         get: operations["frame_api_vehicles__serial__frame_jpg_get"];
         put?: never;
@@ -504,9 +504,9 @@ export interface paths {
         put?: never;
         /**
          * Dismiss Hazard
-         * @description Say that somebody knows where a vehicle is that is not heard: it is a hazard no more.
+         * @description Dismiss the hazard area of a lost vehicle that has been located.
          *
-         *     A vehicle without a serial is named as its hazard area's `dismissed_as` says.
+         *     A vehicle without a serial is named by its hazard area's `dismissed_as`.
          */
         post: operations["dismiss_hazard_api_vehicles__serial__hazard_dismiss_post"];
         delete?: never;
@@ -524,7 +524,7 @@ export interface paths {
         };
         /**
          * Preflight
-         * @description A vehicle's checklist, worked out now from what the station knows.
+         * @description A vehicle's preflight checklist as of now.
          */
         get: operations["preflight_api_vehicles__serial__preflight_get"];
         put?: never;
@@ -546,9 +546,9 @@ export interface paths {
         put?: never;
         /**
          * Override Preflight
-         * @description Let a vehicle fly missions although its checklist is not passed; ends with its landing.
+         * @description Allow missions although the checklist is not passed, until the vehicle has landed.
          *
-         *     The reason is kept in the audit, with who gave it.
+         *     Reason and client are written to the audit.
          */
         post: operations["override_preflight_api_vehicles__serial__preflight_override_post"];
         delete?: never;
@@ -563,7 +563,7 @@ export interface components {
     schemas: {
         /**
          * AgedFlag
-         * @description A yes or no with its age.
+         * @description A boolean with its age.
          */
         AgedFlag: {
             /** Age S */
@@ -583,7 +583,7 @@ export interface components {
         };
         /**
          * AgedText
-         * @description A word with its age.
+         * @description A text with its age.
          */
         AgedText: {
             /** Age S */
@@ -593,7 +593,7 @@ export interface components {
         };
         /**
          * AlarmView
-         * @description An alarm stays until its cause ends; `is_active` false: ended, not yet acknowledged.
+         * @description An alarm. `is_active` false: its cause has ended, but it is not acknowledged yet.
          */
         AlarmView: {
             /** Id */
@@ -686,7 +686,7 @@ export interface components {
          * AuditPage
          * @description Entries of this run after a number, the oldest first.
          *
-         *     `first_n` is the oldest entry in memory: what came before it is only in the file.
+         *     `first_n` is the oldest entry in memory; older ones are only in the file.
          */
         AuditPage: {
             /** Entries */
@@ -705,7 +705,7 @@ export interface components {
         };
         /**
          * AuthorityRequest
-         * @description Who is to lead a vehicle from now on.
+         * @description The new holder of control authority.
          */
         AuthorityRequest: {
             /**
@@ -716,12 +716,12 @@ export interface components {
         };
         /**
          * AuthorityView
-         * @description Who may set a vehicle in motion, and how that came about; anybody may stop it.
+         * @description The holder may set the vehicle in motion; any client may stop it.
          */
         AuthorityView: {
             /**
              * Age S
-             * @description null: since the station began
+             * @description null: since the station started
              */
             age_s: number | null;
             /**
@@ -765,7 +765,7 @@ export interface components {
         CheckView: {
             /**
              * Holds Back
-             * @description whether missions are refused while it stands so
+             * @description whether missions are refused in this state
              */
             holds_back: boolean;
             /** Key */
@@ -783,8 +783,20 @@ export interface components {
             to_do: string;
         };
         /**
+         * CommandResponse
+         * @description The outcome of an operator command that is no order: accepted, or refused with a reason.
+         */
+        CommandResponse: {
+            /** Accepted */
+            accepted: boolean;
+            /** Reason */
+            reason: string | null;
+            /** Rule */
+            rule: string | null;
+        };
+        /**
          * CommandView
-         * @description One command and its life so far; `history` ends with the present phase.
+         * @description One command; `history` ends with the present phase.
          */
         CommandView: {
             /** Age S */
@@ -815,7 +827,7 @@ export interface components {
             };
             /**
              * Part
-             * @description the part of a mission flown now, as in 'part 2 of 3'
+             * @description the part of a mission in flight, such as 'part 2 of 3'
              */
             part: string | null;
             /**
@@ -825,7 +837,7 @@ export interface components {
             phase: "queued" | "sent" | "acknowledged" | "confirmed" | "started" | "done" | "refused_by_station" | "refused_by_app" | "timed_out" | "superseded" | "expired" | "failed";
             /**
              * Repairs
-             * @description what was changed in a mission so that DJI accepts it
+             * @description changes made to a mission so that DJI accepts it
              */
             repairs: string[];
             /**
@@ -835,7 +847,7 @@ export interface components {
             rule: string | null;
             /**
              * Sent Altitudes
-             * @description which altitudes a mission was sent with
+             * @description the altitude reference that a mission was sent with
              */
             sent_altitudes: string | null;
             /** Serial */
@@ -849,7 +861,7 @@ export interface components {
         };
         /**
          * FleetReturnRequest
-         * @description Vehicles to call home in layers; null calls every one that flies or may.
+         * @description Vehicles to return home in layers; null: every vehicle that is or may be in flight.
          */
         FleetReturnRequest: {
             /** Serials */
@@ -871,7 +883,7 @@ export interface components {
         };
         /**
          * ForecastView
-         * @description The newest forecast; leads count from the moment its shade map was taken.
+         * @description The newest forecast; leads count from the capture of its shade map.
          */
         ForecastView: {
             /** Cell M */
@@ -889,22 +901,22 @@ export interface components {
             lead_s: number[];
             /**
              * Method
-             * @description what made it: the fallback, where the chosen one fell back
+             * @description the method that made it: the fallback if the chosen one failed
              */
             method: string;
             /**
              * Number
-             * @description that of the shade map it is made from
+             * @description number of its shade map
              */
             number: number;
             /**
              * Predicted Share
-             * @description of all cells, by lead: those foreseen from something seen
+             * @description of all cells, by lead: those predicted from observations
              */
             predicted_share: number[];
             /**
              * Prior Sunlit
-             * @description what is said where nothing better is known
+             * @description probability used where no prediction is available
              */
             prior_sunlit: number;
             /** Rows */
@@ -916,7 +928,7 @@ export interface components {
         };
         /**
          * FrameView
-         * @description The newest camera frame of a vehicle, to be fetched by its id.
+         * @description The newest camera frame of a vehicle; fetch it again when the id changes.
          */
         FrameView: {
             /** Captured Age S */
@@ -930,7 +942,7 @@ export interface components {
         };
         /**
          * GoToOrder
-         * @description Fly straight to a place and hold there; `yaw_deg` null keeps the heading.
+         * @description Fly straight to a position and hold there; `yaw_deg` null keeps the heading.
          */
         GoToOrder: {
             /** Height Above Takeoff M */
@@ -954,7 +966,7 @@ export interface components {
         };
         /**
          * GroundImageView
-         * @description The newest frame laid on the ground; corners are (longitude, latitude) NW, NE, SE, SW.
+         * @description The newest ground image; corners are (longitude, latitude) NW, NE, SE, SW.
          */
         GroundImageView: {
             /** Captured Age S */
@@ -974,7 +986,7 @@ export interface components {
             frame_id: number;
             /**
              * Reference
-             * @description which telemetry stands for the marked frame
+             * @description the telemetry used for the marked frame
              */
             reference: string;
             /**
@@ -989,16 +1001,16 @@ export interface components {
         };
         /**
          * HazardView
-         * @description Where a vehicle may be that is not heard any more: a circle that grows, and its way home.
+         * @description The hazard area of a lost vehicle: a growing circle, and a corridor on its way home.
          *
-         *     It stays until telemetry comes, or until somebody who knows where the vehicle is dismisses it.
+         *     It stays until telemetry returns, or an operator has located the vehicle and dismisses it.
          */
         HazardView: {
             /** Age S */
             age_s: number;
             /**
              * Corridor
-             * @description longitude, latitude: from the last place to home; empty when it goes nowhere
+             * @description longitude, latitude: from the last position to home; empty without a return
              */
             corridor: [
                 number,
@@ -1008,7 +1020,7 @@ export interface components {
             corridor_half_width_m: number;
             /**
              * Dismissed As
-             * @description what to name when dismissing it: the serial, or a link
+             * @description name for dismissing it: the serial, or a link
              */
             dismissed_as: string;
             /** Growth Mps */
@@ -1024,7 +1036,7 @@ export interface components {
         };
         /**
          * HoldPositionOrder
-         * @description Hold this place against wind and drift, steered by the station.
+         * @description Hold the present position against wind and drift, steered by the station.
          */
         HoldPositionOrder: {
             /**
@@ -1062,7 +1074,7 @@ export interface components {
         };
         /**
          * LayerView
-         * @description A layer of the site, and the file in its folder that tells it.
+         * @description A layer of the site, and its file in the site's folder.
          */
         LayerView: {
             /** File */
@@ -1072,7 +1084,7 @@ export interface components {
         };
         /**
          * LimitsView
-         * @description What the site allows every vehicle.
+         * @description The site's limits for every vehicle.
          */
         LimitsView: {
             /** Battery Reserve Fraction */
@@ -1094,12 +1106,12 @@ export interface components {
         };
         /**
          * LinkView
-         * @description One TCP connection of a companion app, with what its bytes have been like.
+         * @description One TCP connection of a companion app, with its error counters.
          */
         LinkView: {
             /**
              * Answers Not Believed
-             * @description acknowledgments that may answer another command
+             * @description acknowledgments ignored because they may answer another command
              */
             answers_not_believed: number;
             /** Bad Hash */
@@ -1160,13 +1172,13 @@ export interface components {
             land_at_end: boolean;
             /**
              * Waypoints
-             * @description more than the vehicle's app takes are flown in parts
+             * @description a mission longer than the vehicle's app accepts is flown in parts
              */
             waypoints: components["schemas"]["WaypointOrder"][];
         };
         /**
          * NudgeOrder
-         * @description Move by this much from here and hold there; `turn_deg` clockwise.
+         * @description Move by an offset and hold there; `turn_deg` is clockwise.
          */
         NudgeOrder: {
             /**
@@ -1202,10 +1214,11 @@ export interface components {
         };
         /**
          * OrderRequest
-         * @description An order to named vehicles. `takeoff` is the explicit word that they may leave the ground.
+         * @description An order to named vehicles. `takeoff` explicitly allows them to leave the ground.
          *
-         *     `goto`, `nudge` and `hold_position` need a `owner`: the name of an open stream of states
-         *     (`/api/stream?owner=NAME`). When that stream ends, the vehicle is stopped and holds.
+         *     `goto`, `nudge` and `hold_position` need an `owner`: the name of an open state stream
+         *     (`/api/stream?owner=NAME`). When that stream closes or is silent for 2 s, the vehicle stops and
+         *     holds.
          */
         OrderRequest: {
             /** Order */
@@ -1222,7 +1235,7 @@ export interface components {
         };
         /**
          * OrderResponse
-         * @description One result for each vehicle named.
+         * @description One result for each named vehicle.
          */
         OrderResponse: {
             /** Results */
@@ -1230,7 +1243,7 @@ export interface components {
         };
         /**
          * OrderResult
-         * @description What became of an order for one vehicle: accepted with a command id, or refused.
+         * @description The outcome of an order for one vehicle: accepted with a command id, or refused.
          */
         OrderResult: {
             /** Accepted */
@@ -1250,14 +1263,14 @@ export interface components {
             };
             /**
              * Parts
-             * @description in how many parts a mission is flown; 0 for other orders
+             * @description number of parts of a mission; 0 for other orders
              */
             parts: number;
             /** Reason */
             reason: string | null;
             /**
              * Repairs
-             * @description what was changed in a mission so that DJI accepts it
+             * @description changes made to a mission so that DJI accepts it
              */
             repairs: string[];
             /** Rule */
@@ -1269,8 +1282,7 @@ export interface components {
         };
         /**
          * OverrideView
-         * @description Somebody's word that a vehicle may fly missions without its checklist; it ends with the
-         *     landing.
+         * @description Permission to fly missions without a passed checklist; it ends with the landing.
          */
         OverrideView: {
             /** Age S */
@@ -1282,7 +1294,7 @@ export interface components {
         };
         /**
          * PadView
-         * @description A place to land; `serial` is null for one that any vehicle may use.
+         * @description A landing pad; `serial` is null for one that any vehicle may use.
          */
         PadView: {
             /**
@@ -1301,7 +1313,7 @@ export interface components {
         };
         /**
          * PhaseView
-         * @description One change in a command's life.
+         * @description One change of phase.
          */
         PhaseView: {
             /** Age S */
@@ -1316,7 +1328,7 @@ export interface components {
         };
         /**
          * PositionView
-         * @description Where a vehicle is (WGS84).
+         * @description A vehicle's position (WGS84).
          */
         PositionView: {
             /** Age S */
@@ -1328,7 +1340,7 @@ export interface components {
         };
         /**
          * PreflightOverrideRequest
-         * @description Why a vehicle may fly missions although its checklist is not passed.
+         * @description The reason for allowing missions although the checklist is not passed.
          */
         PreflightOverrideRequest: {
             /** Reason */
@@ -1336,7 +1348,7 @@ export interface components {
         };
         /**
          * PreflightView
-         * @description A vehicle's checklist as of now; missions fly when it is passed or overridden.
+         * @description A vehicle's checklist as of now; missions are allowed when it is passed or overridden.
          */
         PreflightView: {
             /** Is Passed */
@@ -1351,7 +1363,7 @@ export interface components {
         };
         /**
          * Problem
-         * @description Why a request was not carried out.
+         * @description Why a request failed, in one sentence.
          */
         Problem: {
             /** Error */
@@ -1370,7 +1382,7 @@ export interface components {
         };
         /**
          * ReturningView
-         * @description One vehicle of a fleet return; without a flight (yet) wave, heights and pad are null.
+         * @description One vehicle of a fleet return; wave, heights and pad are null before it is planned.
          */
         ReturningView: {
             /** Hold Command Id */
@@ -1407,12 +1419,12 @@ export interface components {
         };
         /**
          * ShadeLineView
-         * @description How the line from the eye's frames to shade maps and forecasts stands.
+         * @description State of shade detection and sun forecast from the imaging drone's frames.
          */
         ShadeLineView: {
             /**
              * Detection
-             * @description the method that reads shade
+             * @description the method that detects shade
              */
             detection: string;
             /** Error */
@@ -1420,12 +1432,12 @@ export interface components {
             forecast: components["schemas"]["ForecastView"] | null;
             /**
              * Forecaster
-             * @description the method that foresees sun
+             * @description the method that forecasts sun
              */
             forecaster: string;
             /**
              * Frames Dropped
-             * @description ground images that were never read: no time
+             * @description ground images dropped because the worker was busy
              */
             frames_dropped: number;
             /** Frames Rejected */
@@ -1433,7 +1445,7 @@ export interface components {
             map: components["schemas"]["ShadeMapView"] | null;
             /**
              * Rejected
-             * @description why the newest frame was not read, if it was not
+             * @description why the newest frame was rejected; null if it was not
              */
             rejected: string | null;
         };
@@ -1455,7 +1467,7 @@ export interface components {
             ][];
             /**
              * Known Share
-             * @description of all cells: those of which anything is known
+             * @description of all cells: those with a known value
              */
             known_share: number;
             /**
@@ -1478,19 +1490,19 @@ export interface components {
         };
         /**
          * SiteView
-         * @description The site: its place, what holds in its air, and the quality of the eye's marked pose.
+         * @description The site: position, limits, areas, pads, quality of the imaging drone's marked pose.
          */
         SiteView: {
             /** Areas */
             areas: components["schemas"]["AreaView"][];
             /**
              * Areas Drawn Within M
-             * @description how far the outlines may be off; 0 when every corner is there
+             * @description largest error of the simplified outlines; 0 when not simplified
              */
             areas_drawn_within_m: number;
             /**
              * Areas Left Out
-             * @description how many areas are too many to be drawn
+             * @description number of areas beyond the limit, not sent
              */
             areas_left_out: number;
             /** Ground Altitude M */
@@ -1558,7 +1570,7 @@ export interface components {
             link_addresses: string[];
             /**
              * Separation Hold On
-             * @description whether the watchdogs hold vehicles; else they only raise alarms
+             * @description whether the watchdogs hold vehicles; if not, they only raise alarms
              */
             separation_hold_on: boolean;
             /** Uptime S */
@@ -1568,21 +1580,21 @@ export interface components {
         };
         /**
          * SteeringView
-         * @description Where the station steers a vehicle with sticks, for the order of this number.
+         * @description The target of a steered order, flown with virtual sticks.
          */
         SteeringView: {
             /** Command Id */
             command_id: number;
             /**
              * Has Arrived
-             * @description it holds the place
+             * @description it holds the position
              */
             has_arrived: boolean;
             /** Height Above Takeoff M */
             height_above_takeoff_m: number;
             /**
              * Is Ending
-             * @description zero has been sent, and a hold follows
+             * @description the neutral setpoint has been sent, and a hold follows
              */
             is_ending: boolean;
             /** Latitude Deg */
@@ -1624,7 +1636,7 @@ export interface components {
         };
         /**
          * SurveyBudgetRequest
-         * @description When the survey ends although it is not done; null: never for that reason.
+         * @description Limits that end the survey before it is complete; null: no limit.
          */
         SurveyBudgetRequest: {
             /** Flown M */
@@ -1660,7 +1672,7 @@ export interface components {
         };
         /**
          * SurveyCellsView
-         * @description Where the picture of the cells lies; its number rises as they do.
+         * @description Position of the picture of the cells; `number` rises with every change.
          */
         SurveyCellsView: {
             /** Cell M */
@@ -1679,12 +1691,12 @@ export interface components {
         };
         /**
          * SurveyFiguresView
-         * @description Areas by counted cells; times from the start, null: not yet.
+         * @description Areas by counted cells; times from the start, null: not reached.
          */
         SurveyFiguresView: {
             /**
              * In Shade M2
-             * @description imaged, and not for sure in sun
+             * @description imaged, not certainly in sun
              */
             in_shade_m2: number;
             /** In Sun M2 */
@@ -1693,14 +1705,14 @@ export interface components {
             not_yet_m2: number;
             /**
              * Reached M2
-             * @description what the rows see for sure
+             * @description imaged by the rows with certainty
              */
             reached_m2: number;
             /** Region M2 */
             region_m2: number;
             /**
              * Sun Unknown M2
-             * @description imaged, and nobody knows in which light
+             * @description imaged, light unknown
              */
             sun_unknown_m2: number;
             /** Time To 95 Imaged S */
@@ -1715,19 +1727,19 @@ export interface components {
         SurveyingView: {
             /**
              * Has Come Home
-             * @description called home by the survey, it has landed
+             * @description landed after the survey returned it home
              */
             has_come_home: boolean;
             /**
              * Is Flying Rows
-             * @description a mission of the survey is under way
+             * @description a mission of the survey is in flight
              */
             is_flying_rows: boolean;
             /** Mission Command Id */
             mission_command_id: number | null;
             /**
              * Refused
-             * @description why its newest mission was refused, if it was
+             * @description why its newest mission was refused; null if it was not
              */
             refused: string | null;
             /** Serial */
@@ -1736,7 +1748,7 @@ export interface components {
             vehicle_name: string;
             /**
              * Waits For
-             * @description why it flies nothing (more) for the survey now
+             * @description why it does not fly for the survey now
              */
             waits_for: string | null;
         };
@@ -1744,7 +1756,7 @@ export interface components {
          * SurveyRequest
          * @description A survey to plan. Either `region`, a survey region of the site by name, or `polygon`.
          *
-         *     Nothing flies by this: see `/api/surveys/{id}/start`.
+         *     Nothing flies yet: see `/api/surveys/{id}/start`.
          */
         SurveyRequest: {
             /**
@@ -1780,7 +1792,7 @@ export interface components {
             height_above_takeoff_m: number;
             /**
              * Name
-             * @description null: the region's
+             * @description null: the region's name
              */
             name?: string | null;
             /**
@@ -1806,7 +1818,7 @@ export interface components {
             speed_mps: number;
             /**
              * When Done
-             * @description what its vehicles do when it is done, or no battery lasts for a row
+             * @description what vehicles do when it is complete, or no battery is sufficient for a row
              * @default return_home
              * @enum {string}
              */
@@ -1814,7 +1826,7 @@ export interface components {
         };
         /**
          * SurveyResponse
-         * @description What became of a word on a survey: taken, or refused for a reason; and the survey.
+         * @description The outcome of a survey command: accepted, or refused with a reason; and the survey.
          */
         SurveyResponse: {
             /** Accepted */
@@ -1827,9 +1839,9 @@ export interface components {
         };
         /**
          * SurveyStartRequest
-         * @description With whom to fly. By this word the vehicles are given to the station's guidance.
+         * @description The vehicles to fly with. Their control authority passes to the station's guidance.
          *
-         *     `takeoff` is the explicit word that each may leave the ground, once.
+         *     `takeoff` explicitly allows each to leave the ground once, for this start.
          */
         SurveyStartRequest: {
             /** Serials */
@@ -1842,7 +1854,7 @@ export interface components {
         };
         /**
          * SurveyView
-         * @description One survey: a light summary; its ways and cells are asked for by themselves.
+         * @description Summary of one survey; paths and cells have routes of their own.
          */
         SurveyView: {
             /** Age S */
@@ -1874,7 +1886,7 @@ export interface components {
             round: number;
             /**
              * Rows
-             * @description how many rows, or pieces of rows, are planned
+             * @description number of planned rows or parts of rows
              */
             rows: number;
             /** Speed Mps */
@@ -1885,7 +1897,7 @@ export interface components {
             vehicles: components["schemas"]["SurveyingView"][];
             /**
              * Ways
-             * @description rises as flown ways grow
+             * @description rises as flown paths grow
              */
             ways: number;
             /**
@@ -1896,7 +1908,7 @@ export interface components {
         };
         /**
          * SurveyWay
-         * @description The way of one mission: (longitude, latitude) of its corners.
+         * @description The path of one mission: (longitude, latitude) of its corners.
          */
         SurveyWay: {
             /** Number */
@@ -1911,7 +1923,7 @@ export interface components {
         };
         /**
          * SurveyWays
-         * @description A survey's rows, each from end to end; the missions flown now; and the ways flown so far.
+         * @description A survey's rows, each from end to end; the missions in flight; the paths flown so far.
          */
         SurveyWays: {
             /** Flown */
@@ -1941,7 +1953,7 @@ export interface components {
         };
         /**
          * VehicleView
-         * @description One vehicle. `number` is stable for the life of the station: colour and shortcut.
+         * @description One vehicle. `number`, for colour and shortcut, is constant while the station runs.
          */
         VehicleView: {
             attitude: components["schemas"]["AttitudeView"];
@@ -2002,7 +2014,7 @@ export interface components {
         };
         /**
          * VelocityView
-         * @description How a vehicle moves: metres per second, north-east-down.
+         * @description A vehicle's velocity, north-east-down.
          */
         VelocityView: {
             /** Age S */
@@ -2016,7 +2028,7 @@ export interface components {
         };
         /**
          * WaypointOrder
-         * @description One waypoint; null loiter and gimbal mean no action.
+         * @description One waypoint; null `loiter_s` or `gimbal_pitch_deg` means no action.
          */
         WaypointOrder: {
             /**
@@ -2036,18 +2048,6 @@ export interface components {
             longitude_deg: number;
             /** Speed Mps */
             speed_mps: number;
-        };
-        /**
-         * WordResponse
-         * @description What became of a word that is no order: taken, or refused by a rule for a reason.
-         */
-        WordResponse: {
-            /** Accepted */
-            accepted: boolean;
-            /** Reason */
-            reason: string | null;
-            /** Rule */
-            rule: string | null;
         };
     };
     responses: never;
@@ -2590,13 +2590,13 @@ export interface operations {
             };
         };
     };
-    stop_api_surveys__survey_id___word__post: {
+    stop_api_surveys__survey_id___command__post: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                command: "pause" | "abort";
                 survey_id: number;
-                word: "pause" | "abort";
             };
             cookie?: never;
         };
@@ -2821,7 +2821,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["WordResponse"];
+                    "application/json": components["schemas"]["CommandResponse"];
                 };
             };
             /** @description Validation Error */
@@ -2974,7 +2974,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["WordResponse"];
+                    "application/json": components["schemas"]["CommandResponse"];
                 };
             };
             /** @description Validation Error */

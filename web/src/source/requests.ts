@@ -94,9 +94,9 @@ export class Requests {
   }
 
   stopSurvey(survey_id: number, word: "pause" | "abort"): Promise<Outcome<SurveyResponse>> {
-    const options = { params: { path: { survey_id, word } }, signal: timeout() };
+    const options = { params: { path: { survey_id, command: word } }, signal: timeout() };
     return answered(
-      () => this.client.POST("/api/surveys/{survey_id}/{word}", options),
+      () => this.client.POST("/api/surveys/{survey_id}/{command}", options),
       asSurveyResponse,
     );
   }
