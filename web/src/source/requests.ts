@@ -1,12 +1,12 @@
 import createClient from "openapi-fetch";
 import type {
   AuthorityHolder,
+  CommandResponse,
   OrderResult,
   PreflightView,
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
-  CommandResponse,
 } from "../protocol";
 import type { paths } from "../protocol/schema";
 import type { NamedOrder, NewSurvey, Outcome, Picture } from "./stationSource";

@@ -1,6 +1,7 @@
 import type { Accessor } from "solid-js";
 import type {
   AuthorityHolder,
+  CommandResponse,
   Order,
   OrderResult,
   PreflightView,
@@ -8,7 +9,6 @@ import type {
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
-  CommandResponse,
 } from "../protocol";
 import type { Instant } from "./clock";
 

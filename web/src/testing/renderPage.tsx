@@ -3,10 +3,10 @@ import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
 import type {
   AuthorityHolder,
+  CommandResponse,
   OrderResult,
   PreflightView,
   StationState,
-  CommandResponse,
 } from "../protocol";
 import type {
   Connection,

@@ -1,10 +1,10 @@
 import type {
   AlarmView,
+  CommandResponse,
   CommandView,
   Phase,
   Severity,
   VehicleView,
-  CommandResponse,
 } from "../protocol";
 import type { Outcome } from "../source/stationSource";
 
