@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.station.station_world import HOME
 
+from recon.detection import DETECTORS
 from recon.model.event import Event
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
@@ -136,7 +137,7 @@ def test_an_unknown_method_is_an_error_that_names_the_known_ones(line: Line) -> 
     line.happens(laid(ground_image(1)))
     line.works()
     assert line.station.shade.error is not None
-    assert "brightness_ratio or otsu" in line.station.shade.error
+    assert " or ".join(DETECTORS) in line.station.shade.error
 
 
 def test_the_methods_are_the_settings(line: Line) -> None:
