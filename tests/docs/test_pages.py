@@ -92,7 +92,7 @@ def test_examples_run(
     expected = {
         "01": "EmergencyCommand",
         "02": "confirmed",
-        "03": "of the grid seen",
+        "03": "of the grid covered",
         "04": "landing: confirmed",
         "05": "it is there",
         "06": "SIM-6: wave 2, 36 m, landed",
