@@ -23,7 +23,7 @@ def hold() -> ApprovedCommand:
     return approved(approve(command(Hover()), situation()))
 
 
-class TestNobodyElseMakesOne:
+class TestOnlyTheGateMakesOne:
     def test_no_file_but_the_gate_calls_the_class(self) -> None:
         makers = {
             name_of(path)
@@ -53,7 +53,7 @@ class TestNobodyElseMakesOne:
         ]
         assert found == []
 
-    def test_nobody_inherits_from_it(self) -> None:
+    def test_no_class_inherits_from_it(self) -> None:
         heirs = [
             name_of(path)
             for path in files()

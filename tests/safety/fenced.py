@@ -130,7 +130,7 @@ def here(air: PreparedAirspace, state: VehicleState | None = None) -> Situation:
 def asked(
     rule: Rule, body: Body, air: PreparedAirspace, state: VehicleState | None = None
 ) -> Refusal | None:
-    """What one rule says to an order."""
+    """One rule's refusal of an order."""
     refusal = rule(command(body), here(air, state))
     assert refusal is None or refusal.rule == rule.__name__
     return refusal

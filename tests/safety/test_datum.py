@@ -59,7 +59,7 @@ class TestHome:
         assert home(stands) == place(50.0, 20.0)
         assert home(replace(stands, position=Stamped())) == PLACE
 
-    def test_otherwise_nobody_knows(self) -> None:
+    def test_otherwise_it_is_unknown(self) -> None:
         assert home(flier(takeoff_point=None)) is None
         assert home(vehicle(None, takeoff_point=None)) is None
 
@@ -91,7 +91,7 @@ class TestTakeoffHeight:
         far = flier(takeoff_point=place(900.0, 0.0))
         assert takeoff_up_m(air, far) is None
 
-    def test_without_a_takeoff_point_nobody_knows(self) -> None:
+    def test_without_a_takeoff_point_it_is_unknown(self) -> None:
         assert takeoff_up_m(FLAT, flier(takeoff_point=None)) is None
 
     def test_without_a_site_it_is_flat_everywhere(self) -> None:

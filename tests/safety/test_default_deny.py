@@ -27,7 +27,7 @@ UNKNOWN: dict[str, object] = {
     "takeoff_point": None,
     "profile": None,
 }
-TOLD: dict[str, object] = {"endurance_s": None, "go_home_height_m": None, "failsafe": None}
+UNSET: dict[str, object] = {"endurance_s": None, "go_home_height_m": None, "failsafe": None}
 AWAY: list[Body] = [
     mission(),
     GoTo(LatLon(42.001, -93.6), 40.0, 5.0),
@@ -45,9 +45,9 @@ def test_one_unknown_is_enough_to_refuse_what_leads_away(body: Body, name: str) 
     assert isinstance(judge(command(body), situation(state)), Refusal)
 
 
-@pytest.mark.parametrize("name", TOLD)
-def test_what_nobody_told_refuses_missions(name: str) -> None:
-    profile = replace(TAKEOFF, **{name: TOLD[name]})  # type: ignore[arg-type]
+@pytest.mark.parametrize("name", UNSET)
+def test_an_unset_value_refuses_missions(name: str) -> None:
+    profile = replace(TAKEOFF, **{name: UNSET[name]})  # type: ignore[arg-type]
     assert isinstance(judge(command(mission()), situation(vehicle(profile))), Refusal)
 
 
@@ -64,10 +64,10 @@ def test_one_unknown_is_enough_to_refuse_a_takeoff(body: Body, name: str) -> Non
     assert isinstance(judge(command(body, takeoff=True), situation(state)), Refusal)
 
 
-@pytest.mark.parametrize("name", TOLD)
+@pytest.mark.parametrize("name", UNSET)
 @pytest.mark.parametrize("body", [STICK, Hover()])
-def test_what_nobody_told_refuses_takeoffs(body: Body, name: str) -> None:
-    profile = replace(TAKEOFF, **{name: TOLD[name]})  # type: ignore[arg-type]
+def test_an_unset_value_refuses_takeoffs(body: Body, name: str) -> None:
+    profile = replace(TAKEOFF, **{name: UNSET[name]})  # type: ignore[arg-type]
     grounded = situation(vehicle(profile, flying=False))
     assert isinstance(judge(command(body, takeoff=True), grounded), Refusal)
 

@@ -185,7 +185,7 @@ class TestVehicle:
         assert uses == Consumption(900.0, 1.0, 45.0, SETTINGS)
 
     @pytest.mark.parametrize("profile", [None, replace(TAKEOFF, endurance_s=None)])
-    def test_without_endurance_nobody_can_say(self, profile: object) -> None:
+    def test_without_endurance_it_is_unknown(self, profile: object) -> None:
         state = replace(vehicle(), profile=profile)  # type: ignore[arg-type]
         assert consumption(state, OPEN_AIRSPACE, SETTINGS) is None
         assert fraction_to_get_home(state, OPEN_AIRSPACE, SETTINGS) is None
@@ -217,7 +217,7 @@ class TestVehicle:
         assert 0.05 < uses.home(here) < 0.15
 
 
-def test_the_pages_example_is_what_the_model_says() -> None:
+def test_the_pages_example_is_what_the_model_computes() -> None:
     """docs/energy-model.md counts a goto of 300 m by hand."""
     uses = Consumption(1_500.0, 1.0, 60.0, EnergySettings())
     need = path_need(uses, [(0.0, 0.0, 40.0), (300.0, 0.0, 40.0)], 5.0)

@@ -109,7 +109,7 @@ def test_what_ends_a_metre_farther_from_home_leads_away(body: Body, is_away: boo
 
 
 @pytest.mark.parametrize("lost", [{"position": Stamped()}, {"takeoff_point": None}])
-def test_what_is_not_known_leads_away_and_needs_nobody_knows_what(
+def test_the_unknown_leads_away_and_has_no_need(
     lost: dict[str, object],
 ) -> None:
     state: VehicleState = replace(OUT, **lost)  # type: ignore[arg-type]

@@ -34,4 +34,4 @@ def test_the_rules_agree_with_dense_sampling_on_every_drawn_scene() -> None:
 def test_the_sampling_finds_out_a_fence_that_looks_at_corners_only() -> None:
     found = compare(range(20_000, 20_100), {"boundary": boundary_at_corners_only})
     assert found.disagreements
-    assert all("approves" in said for said in found.disagreements)
+    assert all("approves" in text for text in found.disagreements)

@@ -1,4 +1,4 @@
-"""Separation says what an independent, slow checker measures; `make study` draws 10,000 fleets."""
+"""Separation agrees with an independent, slow checker; `make study` draws 10,000 fleets."""
 
 from dataclasses import replace
 from math import hypot
@@ -68,7 +68,7 @@ def test_the_rule_agrees_with_dense_sampling_on_every_drawn_fleet() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rule", "seeds", "says"),
+    ("rule", "seeds", "answer"),
     [
         pytest.param(present_places, range(20_000, 20_050), "approves", id="present places"),
         pytest.param(whole_paths, range(20_000, 20_100), "refuses", id="whole paths at once"),
@@ -76,7 +76,7 @@ def test_the_rule_agrees_with_dense_sampling_on_every_drawn_fleet() -> None:
     ],
 )
 def test_the_sampling_finds_out_a_rule_that_does_without_time(
-    rule: Rule, seeds: range, says: str
+    rule: Rule, seeds: range, answer: str
 ) -> None:
     found = compare(seeds, rule)
-    assert any(says in said for said in found.disagreements)
+    assert any(answer in text for text in found.disagreements)

@@ -226,7 +226,7 @@ class TestTheOffsetOfTheHeights:
         assert answer.altitude_offset_m is None
 
     @pytest.mark.parametrize("state", [None, vehicle(None)])
-    def test_nor_one_for_an_app_nobody_knows(
+    def test_nor_one_for_an_unknown_app(
         self, monkeypatch: pytest.MonkeyPatch, state: VehicleState | None
     ) -> None:
         """The rules refuse it; here none is asked."""
@@ -238,8 +238,8 @@ class TestTheOffsetOfTheHeights:
     @pytest.mark.parametrize("offset_age_s", [0.1, 2.0])
     def test_no_approval_outlives_it(self, offset_age_s: float) -> None:
         """It may be 2 s old; the order is void in the nanosecond after that."""
-        said = Stamped(260.0, NOW - round(offset_age_s * S))
-        now = situation(vehicle(WGS84, altitude_offset_m=said))
+        offset = Stamped(260.0, NOW - round(offset_age_s * S))
+        now = situation(vehicle(WGS84, altitude_offset_m=offset))
         ends_ns = approved(approve(command(mission()), now)).command.expires_at_ns
         assert ends_ns == NOW + round((2.0 - offset_age_s) * S) + 1
 
@@ -251,7 +251,7 @@ class TestTheOffsetOfTheHeights:
 
 
 class TestTheLinks:
-    """Hover and return spare a link that says it is on the ground; everything else goes to all."""
+    """Hover and return spare a link that reports being on the ground; other orders do not."""
 
     @pytest.mark.parametrize(
         ("body", "takeoff", "links"),

@@ -153,7 +153,7 @@ class TestMission:
             False,
         )
 
-    def test_one_whose_failsafe_nobody_told_goes_home(self) -> None:
+    def test_an_unset_failsafe_goes_home(self) -> None:
         assert pieces(path(self.square, flier(failsafe=None)), Kind.WAY_HOME)
 
     def test_it_lands_at_its_end(self) -> None:
@@ -301,7 +301,7 @@ class TestStick:
         assert farthest_m < 1.04 * reach_m + 0.01
 
     @pytest.mark.parametrize("attitude", [Stamped(), Stamped(Attitude(0.0, 0.0, 0.0), NOW)])
-    def test_it_may_go_anywhere_when_it_turns_round_or_nobody_knows_its_yaw(
+    def test_it_may_go_anywhere_when_it_turns_round_or_its_yaw_is_unknown(
         self, attitude: Stamped[Attitude]
     ) -> None:
         body = stick(5.0, 0.0, frame=StickFrame.BODY, yaw_deg=175.0)
@@ -313,21 +313,21 @@ class TestStick:
 
 class TestUnknown:
     def test_without_a_position(self) -> None:
-        told = unknown(goto(9.0, 9.0), flier(position=Stamped()))
-        assert told == "A: position unknown; wait for a GNSS fix"
+        refusal_text = unknown(goto(9.0, 9.0), flier(position=Stamped()))
+        assert refusal_text == "A: position unknown; wait for a GNSS fix"
 
     def test_without_a_height(self) -> None:
-        told = unknown(stick(1.0, 0.0), flier(height_above_takeoff_m=Stamped()))
-        assert told == "A: no height telemetry; check its companion app"
+        refusal_text = unknown(stick(1.0, 0.0), flier(height_above_takeoff_m=Stamped()))
+        assert refusal_text == "A: no height telemetry; check its companion app"
 
     def test_without_a_home(self) -> None:
-        told = unknown(TestMission.square, flier(takeoff_point=None))
-        assert told.startswith("A: home unknown")
+        refusal_text = unknown(TestMission.square, flier(takeoff_point=None))
+        assert refusal_text.startswith("A: home unknown")
 
     def test_without_ground_at_home(self) -> None:
         air = airspace(elevation=hills([[0.0, 0.0], [0.0, 0.0]]))
-        told = unknown(HoldPosition(), flier(takeoff_point=place(500.0, 0.0)), air)
-        assert "has no ground at its takeoff point" in told
+        refusal_text = unknown(HoldPosition(), flier(takeoff_point=place(500.0, 0.0)), air)
+        assert "has no ground at its takeoff point" in refusal_text
 
 
 def test_several_rules_share_one_path() -> None:

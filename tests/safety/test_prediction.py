@@ -45,7 +45,7 @@ from recon.safety.prediction.trajectory import ALL_HEIGHTS_M, FOREVER_S, Samples
 
 
 def where(state: VehicleState, intent: Intent, *times_s: float) -> Samples:
-    """Where a vehicle that does as it was told is at these moments, phases and all."""
+    """Where a vehicle that follows its intent is at these moments, phases and all."""
     predictor = Predictor(seen(state), SETTINGS, exactly=True)
     predictor.follow(intent)
     return sample([predictor.writer.rows], times_s)
@@ -223,11 +223,11 @@ class TestOtherIntents:
         assert climbs.low_m[0, 2] == 60.0
         assert climbs.low_m[0, 3] < -100.0
 
-    def test_returning_higher_than_told_stays_there(self) -> None:
+    def test_returning_above_the_go_home_height_stays_there(self) -> None:
         high = where(aircraft(place=(0.0, 200.0), height_m=90.0), Intent(Commanded.RETURN), 10.0)
         assert (high.low_m[0, 0], high.high_m[0, 0]) == (90.0, 90.0)
 
-    def test_returning_at_a_height_nobody_told_may_be_at_any(self) -> None:
+    def test_returning_at_an_unknown_height_may_be_at_any(self) -> None:
         unknown = aircraft(place=(0.0, 200.0), go_home_m=None)
         flown = where(unknown, Intent(Commanded.RETURN), 180.0)
         assert (flown.low_m[0, 0], flown.high_m[0, 0]) == (40.0, 540.0)
@@ -238,18 +238,18 @@ class TestOtherIntents:
         assert flown.east_m[0] == pytest.approx([100.0], abs=1.0)
         assert (flown.low_m[0, 0], flown.high_m[0, 0]) == (40.0, 60.0)
 
-    def test_returning_to_a_home_nobody_knows_may_go_anywhere(self) -> None:
+    def test_returning_to_an_unknown_home_may_go_anywhere(self) -> None:
         flown = where(aircraft(home=None), Intent(Commanded.RETURN), 60.0)
         assert flown.radius_m[0, 0] == 150.0
 
-    def test_told_nothing_it_stands_or_uses_its_speed_in_any_direction(self) -> None:
+    def test_without_an_intent_it_stands_or_uses_its_speed_in_any_direction(self) -> None:
         assert where(aircraft(), Intent(), 600.0).radius_m[0, 0] == 0.0
         free = where(aircraft(velocity=(4.0, 0.0, 0.0)), Intent(), 2.5, 600.0)
         assert free.radius_m[0] == pytest.approx([13.6, 27.2])
         rises = where(aircraft(velocity=(0.0, 0.0, 2.0)), Intent(), 600.0)
         assert (rises.low_m[0, 0], rises.high_m[0, 0]) == (40.0, 50.0)
 
-    def test_a_mission_nobody_has_is_like_being_told_nothing(self) -> None:
+    def test_an_intent_without_a_mission_is_like_none(self) -> None:
         assert where(aircraft(), Intent(Commanded.MISSION), 600.0).radius_m[0, 0] == 0.0
 
 
@@ -299,9 +299,7 @@ class TestOrders:
         assert (east, north) == pytest.approx((0.0, -20.0), abs=0.1)
 
     @pytest.mark.parametrize("yaw_deg", [None, 0.0, -100.0])
-    def test_one_that_turns_or_points_nobody_knows_where_sweeps(
-        self, yaw_deg: float | None
-    ) -> None:
+    def test_one_that_turns_or_has_no_known_yaw_sweeps(self, yaw_deg: float | None) -> None:
         forward = VirtualStick(StickFrame.BODY, 90.0, 5.0, 0.0, 40.0, 1.0)
         assert self.end(forward, aircraft(yaw_deg=yaw_deg))[4] == pytest.approx(15.0)
 
@@ -318,13 +316,13 @@ class TestFlyers:
         assert (found.east_m, found.north_m) == pytest.approx((0.0, 0.0), abs=0.01)
         assert placed(aircraft(place=None), AIR, Plane(at(0, 0)), NOW, SETTINGS) is None
 
-    def test_a_velocity_nobody_told_may_be_any_and_an_implausible_one_is_cut(self) -> None:
+    def test_an_unknown_velocity_may_be_any_and_an_implausible_one_is_cut(self) -> None:
         assert seen(aircraft(velocity=None)).speed_mps == 15.0
         fast = seen(aircraft(velocity=(30.0, 40.0, 0.0)))
         assert fast.speed_mps == 23.0
         assert fast.velocity_mps[:2] == pytest.approx((18.4, 13.8))
 
-    def test_a_profile_nobody_wrote_may_go_home_at_any_height(self) -> None:
+    def test_a_missing_profile_may_go_home_at_any_height(self) -> None:
         bare = seen(replace(aircraft(), profile=None))
         assert (bare.go_home_up_m, bare.goes_home) == (None, True)
 
@@ -348,7 +346,7 @@ class TestFlyers:
 
 
 class TestHazards:
-    def test_it_grows_with_what_it_was_told_to_fly(self) -> None:
+    def test_it_grows_with_its_commanded_speed(self) -> None:
         mission = Mission((waypoint(0.0, 0.0, speed_mps=3.0), waypoint(90.0, 0.0, speed_mps=12.0)))
         still = aircraft(age_s=5.0)
         for intent, expected in (
@@ -391,7 +389,7 @@ class TestHazards:
         assert [len(trajectory.rows) for trajectory in hazard_trajectories(young)] == [2, 1, 1]
         assert [len(trajectory.rows) for trajectory in hazard_trajectories(old)] == [1]
 
-    def test_one_with_a_mission_is_foreseen_to_fly_it_on(self) -> None:
+    def test_one_with_a_mission_is_predicted_to_continue_it(self) -> None:
         stale = seen(aircraft(age_s=5.0))
         assert len(predict_traffic(stale, Intent(), SETTINGS, FOREVER_S)) == 3
         assert (

@@ -37,7 +37,7 @@ def test_a_ready_vehicle_passes_every_point_that_matters() -> None:
     assert {check.key for check in checks if check.state is CheckState.ATTENTION} == {"ground"}
 
 
-def test_of_a_vehicle_nobody_knows_nothing_of_every_needed_point_is_unknown_or_fails() -> None:
+def test_of_an_unknown_vehicle_every_needed_point_is_unknown_or_fails() -> None:
     bare = VehicleState(serial="A")
     nothing = replace(situation(bare), airspace=OPEN_AIRSPACE, facts=NO_FACTS)
     held = [check.key for check in checklist(bare, nothing) if check.holds_back]

@@ -55,7 +55,7 @@ class TestHeight:
     def test_a_known_height_is_worth_more_than_the_stick_before(self) -> None:
         assert not stops(60.0, vehicle(), stick_height_above_takeoff_m=60.0)
 
-    def test_velocity_takeoff_another_body_and_nobody_are_no_stop(self) -> None:
+    def test_velocity_takeoff_another_body_and_no_vehicle_are_no_stop(self) -> None:
         now = situation(vehicle())
         assert is_stop(command(zero(40.0)), now)
         assert not is_stop(command(replace(zero(40.0), velocity_x_mps=0.001)), now)
@@ -96,7 +96,7 @@ class TestTakeoff:
     def test_all_being_well_it_takes_off(self, body: Hover | VirtualStick) -> None:
         assert approved(approve(command(body, takeoff=True), on_ground()))
 
-    def test_it_is_the_leaders_to_order(self, body: Hover | VirtualStick) -> None:
+    def test_only_the_holder_may_order_it(self, body: Hover | VirtualStick) -> None:
         led = replace(
             on_ground(),
             authority=ControlAuthority(AuthorityHolder.PILOT, "pilot", 0, "the pilot has it"),

@@ -1,4 +1,4 @@
-"""Vehicles in the air of one flat site, told in metres north and east of its origin."""
+"""Vehicles in the air of one flat site, in metres north and east of its origin."""
 
 from recon.geo.distance import moved_m
 from recon.model.airspace import Airspace
@@ -95,7 +95,7 @@ def flies(mission: Mission, passed: int = 0) -> Intent:
 
 
 def seen(state: VehicleState) -> VehicleMotion:
-    """The vehicle in the plane; it must have told where it is."""
+    """The vehicle in the plane; it must have a position."""
     found = vehicle_motion(state, AIR, PLANE, NOW, SETTINGS)
     assert found is not None
     return found
@@ -107,7 +107,7 @@ def judged(
     *traffic: VehicleState | Traffic,
     airspace: PreparedAirspace = AIR,
 ) -> Refusal | None:
-    """What the rule says to an order for `own` among others."""
+    """The rule's refusal of an order for `own` among others."""
     others = tuple(t if isinstance(t, Traffic) else Traffic(t) for t in traffic)
     claiming_links = (ClaimingLink(1, own.is_flying),)
     situation = Situation(NOW, own, claiming_links, airspace=airspace, traffic=others)

@@ -25,9 +25,9 @@ class PreparedAirspace:
     """An airspace whose polygons and ground are prepared once; build one for each site, keep it.
 
     Heights of the ground are up_m: ellipsoidal, minus that of the frame's origin. Without an
-    elevation model the ground is flat at 0; with one, ground that it does not tell is NaN, the
+    elevation model the ground is flat at 0; with one, ground outside it is NaN, the
     highest of it +inf and the lowest -inf.
-    Raises `ValueError` for a polygon that is none, an elevation model that is no surface, and for
+    Raises `ValueError` for an invalid polygon, an elevation model that is no surface, and for
     any of them without the frame whose metres they are in.
     """
 

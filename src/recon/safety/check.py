@@ -9,14 +9,14 @@ class CheckState(Enum):
 
     OK = "ok"
     ATTENTION = "attention"
-    """Somebody should look; it holds nothing back."""
+    """An operator should look; it holds nothing back."""
     UNKNOWN = "unknown"
     FAILS = "fails"
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A point: `key` never changes, `name` is for people; what is the case, and what to do about it
+    """A point: `key` never changes, `name` is for operators; the finding, and what to do about it
     (empty when it is ok)."""
 
     key: str
@@ -39,17 +39,17 @@ class Point:
     name: str
 
     def ok(self, text: str) -> Check:
-        """It is as it should be."""
+        """Return a passed check."""
         return Check(self.key, self.name, CheckState.OK, text)
 
     def attention(self, text: str, to_do: str) -> Check:
-        """It is worth a look."""
+        """Return a check that an operator should look at."""
         return Check(self.key, self.name, CheckState.ATTENTION, text, to_do)
 
     def unknown(self, text: str, to_do: str) -> Check:
-        """Nobody can say."""
+        """Return the check of an unknown value."""
         return Check(self.key, self.name, CheckState.UNKNOWN, text, to_do)
 
     def fails(self, text: str, to_do: str) -> Check:
-        """It is not as it must be."""
+        """Return a failed check."""
         return Check(self.key, self.name, CheckState.FAILS, text, to_do)

@@ -3,10 +3,10 @@
 East and north are in the tangent plane of the frame's origin, at the origin's height; up is the
 ellipsoidal height minus the origin's. Every function returns None for what is not known.
 
-A vehicle reports heights above its own takeoff point. How high that point is, is told by the pad
-it took off from (within 10 m: its own first, else the nearest), else by the elevation model, else
-it is taken for as high as the frame's origin: "flat assumed". Without a site nobody knows the
-ground: the frame is put at the vehicle itself, and all ground is flat, at its origin's height.
+A vehicle reports heights above its own takeoff point. The height of that point is the pad's
+it took off from (within 10 m: its own first, else the nearest), else the elevation model's, else
+that of the frame's origin: "flat assumed". Without a site the ground is unknown: the frame is put
+at the vehicle itself, and all ground is flat, at its origin's height.
 """
 
 from collections.abc import Iterable, Sequence
@@ -62,7 +62,7 @@ def home(vehicle: VehicleState) -> LatLon | None:
     """Return where the vehicle would go home to.
 
     On the ground it is where the vehicle stands, for there it will take off. In the air it is where
-    the station saw it take off, or else its own pad: the aircraft does not tell its home.
+    the station observed its takeoff, or else its own pad: the aircraft does not report its home.
     """
     if vehicle.is_flying.value is False and vehicle.position.value is not None:
         return vehicle.position.value
@@ -75,7 +75,7 @@ def home(vehicle: VehicleState) -> LatLon | None:
 def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | None:
     """Return how high the vehicle's takeoff point is.
 
-    None when nobody knows where it took off, or the elevation model tells no ground there. Without
+    None when the takeoff point is unknown, or outside the elevation model. Without
     a site it is always 0.
     """
     if airspace.airspace.frame is None:
@@ -88,14 +88,14 @@ def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | N
 
 
 def is_ground_assumed_flat(airspace: PreparedAirspace) -> bool:
-    """Return whether no elevation model tells the ground's heights."""
+    """Return whether no elevation model is loaded."""
     return airspace.airspace.elevation is None
 
 
 def vehicle_enu_m(
     airspace: PreparedAirspace, vehicle: VehicleState, frame: LocalFrame | None = None
 ) -> FloatArray | None:
-    """Return where the vehicle was last heard to be, (3,).
+    """Return the vehicle's last known position, (3,).
 
     `frame` is for comparing several vehicles where there is no site; else the airspace's own.
     """
@@ -128,7 +128,7 @@ def _takeoff_up_m(
     serial: str | None,
 ) -> float | None:
     frame = airspace.airspace.frame
-    assert frame is not None, "without one nobody asks"
+    assert frame is not None, "only called with a frame"
     pad = _pad_at(airspace, point, own_pad, serial)
     if pad is not None:
         return pad.ellipsoid_height_m - frame.origin.ellipsoid_height_m

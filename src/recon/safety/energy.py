@@ -10,11 +10,11 @@ loaded seconds over endurance.
   ends standing still.
 - A waypoint costs its loiter and the turn of its gimbal.
 - The way home from a point costs the climb to the go-home height, the straight way at that height,
-  and the landing. While that height is not told, it is taken to be the highest the site allows.
+  and the landing. While that height is unknown, the highest the site allows is assumed.
 
 The way home is dearest at the end of a leg: along it, both the way flown and the straight way home
 are convex. So it is enough to ask at the legs' ends. Points are (north_m, east_m, height_m): from
-home, height above takeoff. `docs/energy-model.md` tells the same to pilots.
+home, height above takeoff. `docs/energy-model.md` explains it for pilots.
 """
 
 from collections.abc import Sequence
@@ -100,7 +100,7 @@ class Need:
 def consumption(
     vehicle: VehicleState, airspace: PreparedAirspace, settings: EnergySettings
 ) -> Consumption | None:
-    """Return what a vehicle uses, or None while its profile tells no endurance."""
+    """Return what a vehicle uses, or None while its profile has no endurance."""
     profile = vehicle.profile
     if profile is None or profile.endurance_s is None:
         return None
@@ -111,7 +111,7 @@ def consumption(
 
 
 def place_of(vehicle: VehicleState) -> Point | None:
-    """Return where a vehicle was last heard to be, from its home; None when either is unknown."""
+    """Return a vehicle's last known position relative to its home; None when either is unknown."""
     at, base = vehicle.position.value, home(vehicle)
     height_m = vehicle.height_above_takeoff_m.value
     if at is None or base is None or height_m is None:
@@ -125,7 +125,7 @@ def fraction_to_get_home(
     """Return the share of a full battery that the way home takes from where a vehicle is now.
 
     From straight above its takeoff point it is the landing's. None when its endurance, its place
-    or its home is not known: then nobody can say.
+    or its home is unknown.
     """
     uses, here = consumption(vehicle, airspace, settings), place_of(vehicle)
     return None if uses is None or here is None else uses.home(here)

@@ -1,4 +1,16 @@
-"""The gate: every rule must agree before a command becomes an approved one."""
+"""The gate: every rule must agree before a command becomes an approved one.
+
+Theory of operation. `approve` asks the rules in their fixed order; the first refusal ends it.
+
+    command -> rules 1..n -> refusal                      (a value with rule, sentence, parameters)
+                          -> ApprovedCommand until `expires_at_ns` -> sent, or expired unsent
+
+Default deny: an unknown order type, unknown telemetry and a rule that raises an exception all
+refuse motion. The one exception is a stop: a failing rule never holds back an emergency order
+without takeoff. An approval is short (`approval_holds_s`), since the facts behind it age; a mission
+may first wait for the answer to the one before it, land and camera orders keep their own expiry.
+Steered orders are judged as a whole and never sent themselves; each of their sticks is approved.
+"""
 
 from dataclasses import InitVar, dataclass, replace
 from typing import Final, NoReturn
@@ -24,7 +36,7 @@ from recon.safety.situation import Situation
 from recon.vehicles.mission_repair import joined
 
 _KEY: Final = object()
-"""Held by this module alone: without it nobody makes an `ApprovedCommand`."""
+"""Held by this module alone: an `ApprovedCommand` cannot be made without it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -69,8 +69,8 @@ def columns(path: PathVolume, situation: Situation, is_stop: bool) -> BoolArray:
 
     So does a piece of which nothing is farther than `column_radius_m` from the home, or from one of
     the site's or the vehicle's pads. And so does one that begins where the vehicle is, goes no
-    farther than that from there, and no lower than the vehicle is now: who is too low already may
-    climb. (A stick without velocity: no more than `stop_slack_m` lower.)
+    farther than that from there, and no lower than the vehicle is now: a vehicle that is too low
+    already may climb. (A stick without velocity: no more than `stop_slack_m` lower.)
     """
     settings, pieces = situation.settings.fences, path.pieces
     radius_m = settings.column_radius_m

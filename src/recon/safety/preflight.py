@@ -1,9 +1,9 @@
 """The preflight checklist, worked out from a vehicle's state and profile, and its airspace.
 
-Nobody ticks anything: a point is ok when what the station knows says so. A point that fails or is
-unknown holds missions back (rule preflight) until somebody overrides the list, with a reason, which
-is logged and ends with the landing. Attention holds nothing back. What the ICD does not tell
-(propellers, memory cards, the controller's mode switch) is the pilot's list, not this one.
+Every point is computed; none is ticked by hand. A point that fails or is unknown holds missions
+back (rule preflight) until an operator overrides the list with a reason, which is logged and ends
+with the landing. Attention holds nothing back. What the ICD does not carry (propellers, memory
+cards, the controller's mode switch) is on the pilot's own list.
 """
 
 from collections.abc import Callable
@@ -33,5 +33,5 @@ _CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
 
 
 def checklist(vehicle: VehicleState, situation: Situation) -> tuple[Check, ...]:
-    """Return every point of a vehicle's checklist, in the order people go through it. Pure."""
+    """Return every point of a vehicle's checklist, in display order. Pure."""
     return tuple(check(vehicle, situation) for check in _CHECKS)

@@ -22,7 +22,7 @@ class PreflightSettings:
     """Beside what the site's limits and the gate's rules say."""
 
     early_battery_fraction: float = 0.5
-    """A flight begun with less is a short one; somebody should know."""
+    """A flight begun with less is a short one; the operator should know."""
 
     earliest_clock_s: float = 1_735_689_600.0
     """2025-01-01 UTC. A clock before this program was written was never set: a computer without a
@@ -134,7 +134,7 @@ class FenceSettings:
 
     same_height_m: float = 1.0
     """A stick without velocity only stops while it asks for the present height within this, which
-    is how well a barometer tells one and a hovering aircraft keeps it: any more is a climb."""
+    is the accuracy of a barometer and of a hovering aircraft: a larger difference is a climb."""
 
     speed_rounding_mps: float = 1e-5
     """What the wire's 32-bit floats may add to a speed of 15 m/s, and to the norm of two."""
@@ -165,7 +165,7 @@ class PredictionSettings:
     """Paths are compared in pieces of this time, or of their own uncertainty when that is more."""
 
     stick: StickBounds = StickBounds(reaction_s=1.0, braking_mps2=2.5)
-    """As an order's: `reaction_s` passes before the vehicle brakes, whoever ends the stick."""
+    """As an order's: `reaction_s` passes before the vehicle brakes, whatever ends the stick."""
 
     stick_line_deg: float = 15.0
     """A body-frame stick that turns the vehicle by more than this sweeps a disc, not a line."""
@@ -174,7 +174,7 @@ class PredictionSettings:
     """A stick without a known target is predicted this far: no app holds one longer."""
 
     free_s: float = 5.0
-    """A vehicle that the station has told nothing may be flown by a pilot. It may use its speed in
+    """A vehicle without a commanded motion may be flown by a pilot. It may use its speed in
     any direction for this long; a standing one is taken to stand, and watched."""
 
     stands_s: float = 30.0
@@ -196,7 +196,7 @@ class PredictionSettings:
     """DJI's aircraft fly home at 8 to 15 m/s."""
 
     unknown_climb_m: float = 500.0
-    """The highest go-home height that can be set in an aircraft: assumed when nobody has told."""
+    """The highest go-home height that can be set in an aircraft: assumed while it is unknown."""
 
     plausible_speed_mps: float = 23.0
     """No DJI survey aircraft flies faster: a reported speed above is cut to this."""
@@ -276,7 +276,7 @@ class WatchdogSettings:
     """Of the stopping distance: what is looked at ahead for fences and zones."""
 
     link_late_s: float = 1.0
-    """A vehicle in the air that says nothing for this long, ten times its usual pause."""
+    """A vehicle in the air without telemetry for this long, ten times the usual interval."""
 
     height_drift_m: float = 10.0
     """Between the reported altitude and the height above takeoff since takeoff: barometers drift

@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class ClockReading:
-    """What the computer's clock said last, and by how much it was set since the station began.
+    """The computer's clock at its last reading, and how far it was set since the station started.
 
     The station's own time never jumps; the computer's may.
     """
@@ -28,8 +28,8 @@ class ClockReading:
 
 @dataclass(frozen=True, slots=True)
 class StationFacts:
-    """`others` are all other vehicles that are connected or may be in the air; `app_warnings` what
-    the vehicle's app has said and nobody has seen."""
+    """`others` are all other vehicles that are connected or may be in the air; `app_warnings` the
+    app's unacknowledged warnings."""
 
     clock: ClockReading | None = None
     others: tuple[VehicleState, ...] = ()
@@ -42,7 +42,7 @@ NO_FACTS = StationFacts()
 
 @dataclass(frozen=True, slots=True)
 class ClaimingLink:
-    """An open link that says it is the vehicle, and what it says about flying."""
+    """An open link reporting this serial, with its reported in-air flag."""
 
     link_id: int
     is_flying: Stamped[bool]
@@ -50,7 +50,7 @@ class ClaimingLink:
 
 @dataclass(frozen=True, slots=True)
 class Traffic:
-    """Another vehicle that is in the air or may be, and what it was last told."""
+    """Another vehicle that is or may be in the air, and its last commanded motion."""
 
     vehicle: VehicleState
     intent: Intent = Intent()
@@ -58,7 +58,7 @@ class Traffic:
 
 @dataclass(frozen=True, slots=True)
 class Override:
-    """Somebody's word that a vehicle may fly missions without its checklist."""
+    """An operator's override of a vehicle's preflight checklist."""
 
     by: str
     reason: str
@@ -72,7 +72,7 @@ class Situation:
     `vehicle` is the state of the command's vehicle, or of the unidentified link it names; None when
     there is neither. `claiming_links` are its open links, its own first; more than one while its
     identity is unsettled. `stick_height_above_takeoff_m` is what its newest stick asked for.
-    `traffic` are the other vehicles in the air, those not heard included.
+    `traffic` are the other vehicles in the air, lost ones included.
     """
 
     now_ns: int

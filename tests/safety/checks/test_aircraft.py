@@ -1,4 +1,4 @@
-"""What the aircraft says of itself, on both sides of every threshold."""
+"""Checks of the aircraft's own reports, on both sides of every threshold."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ class TestLink:
     def test_telemetry_is_young(self, age_s: float, state: CheckState) -> None:
         assert checked(link, vehicle(age_s=age_s)).state is state
 
-    def test_before_any_nobody_knows(self) -> None:
+    def test_before_any_telemetry_it_is_unknown(self) -> None:
         assert checked(link, vehicle(core_received_at_ns=None)).state is UNKNOWN
 
     def test_one_app_speaks_for_it(self) -> None:
@@ -73,13 +73,13 @@ class TestWind:
 
 
 class TestApp:
-    def test_what_it_said_is_told_until_somebody_has_seen_it(self) -> None:
+    def test_its_warnings_stay_until_acknowledged(self) -> None:
         assert checked(app, vehicle()).state is OK
         facts = replace(FACTS, app_warnings=("compass error", "storage full"))
         found = checked(app, vehicle(), facts=facts)
         assert (found.state, found.text) == (ATTENTION, "compass error; storage full")
 
 
-def test_ages_are_told_in_tenths_of_a_second() -> None:
+def test_ages_are_shown_in_tenths_of_a_second() -> None:
     state = vehicle(core_received_at_ns=NOW - S // 5)
     assert checked(link, state).text == "telemetry is 0.2 s old"

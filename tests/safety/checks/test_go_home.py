@@ -38,7 +38,7 @@ def zone(ceiling_m: float | None, datum: HeightDatum = HeightDatum.GROUND, **cha
     return PreparedAirspace(ready_airspace(ORIGIN, zones=(replace(wood, **changes),)))  # type: ignore[arg-type]
 
 
-def test_it_is_told_or_not() -> None:
+def test_it_is_set_or_not() -> None:
     assert at(60.0).text == "60 m above takeoff"
     assert at(None).state is UNKNOWN
     assert "go_home_height_m = METRES" in at(None).to_do
@@ -61,15 +61,15 @@ class TestNeighbours:
     @pytest.mark.parametrize(
         ("height_m", "state"), [(60.0, FAILS), (65.9, FAILS), (66.0, OK), (54.0, OK), (54.1, FAILS)]
     )
-    def test_nobody_else_goes_home_in_its_layer(self, height_m: float, state: CheckState) -> None:
+    def test_no_other_vehicle_goes_home_in_its_layer(
+        self, height_m: float, state: CheckState
+    ) -> None:
         facts = replace(FACTS, others=(other(height_m),))
         assert at(60.0, facts=facts).state is state
 
-    def test_who_does_is_told(self) -> None:
+    def test_the_neighbour_is_named(self) -> None:
         facts = replace(FACTS, others=(other(90.0), other(62.0, serial="C")))
-        assert at(60.0, facts=facts).text == (
-            "60 m: C goes home 2.0 m from that, 6 m apart is needed"
-        )
+        assert at(60.0, facts=facts).text == ("must be 6 m from that of C; got 2.0 m at 60 m")
 
     def test_heights_are_compared_in_one_frame(self) -> None:
         """Its pad lies 40 m lower: 100 m above it are 60 m above here."""
@@ -78,14 +78,14 @@ class TestNeighbours:
         assert at(100.0, facts=low).state is OK
 
     @pytest.mark.parametrize("airspace", [AIRSPACE, OPEN_AIRSPACE])
-    def test_a_home_nobody_knows_counts_from_the_origins_height(
+    def test_an_unknown_home_counts_from_the_origins_height(
         self, airspace: PreparedAirspace
     ) -> None:
         lost = replace(other(60.0), profile=replace(TAKEOFF, serial="B", go_home_height_m=62.0))
         facts = replace(FACTS, others=(lost,))
         assert at(60.0, facts=facts, airspace=airspace).state is FAILS
 
-    def test_of_others_whose_height_is_not_told_nothing_can_be_said(self) -> None:
+    def test_others_without_a_height_are_not_compared(self) -> None:
         unsaid = (other(None), replace(other(60.0), profile=None))
         assert at(60.0, facts=replace(FACTS, others=unsaid)).state is OK
 
@@ -100,7 +100,7 @@ class TestZones:
     def test_a_ceiling_above_the_ellipsoid(self, ceiling_m: float, state: CheckState) -> None:
         assert at(60.0, airspace=zone(ceiling_m, HeightDatum.WGS84)).state is state
 
-    def test_one_without_a_ceiling_is_cleared_by_nobody_and_not_named(self) -> None:
+    def test_one_without_a_ceiling_is_never_cleared_and_not_named(self) -> None:
         assert at(60.0, airspace=zone(None)).state is OK
 
     def test_a_height_zone_is_no_obstacle(self) -> None:

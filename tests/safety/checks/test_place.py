@@ -50,14 +50,14 @@ class TestHome:
     def test_it_is_where_it_takes_off(self, flying: bool) -> None:
         assert checked(home_place, vehicle(flying=flying)).state is OK
 
-    def test_nobody_saw_it_take_off_and_it_has_no_pad(self) -> None:
+    def test_takeoff_not_observed_and_no_pad(self) -> None:
         assert checked(home_place, vehicle(takeoff_point=None)).state is UNKNOWN
 
     def test_its_pad_is_a_good_guess_in_the_air(self) -> None:
         found = checked(home_place, vehicle(pad_at(), takeoff_point=None))
         assert (found.state, found.text) == (
             ATTENTION,
-            "taken to be its pad: nobody saw it take off",
+            "assumed at its pad: takeoff not observed",
         )
         assert checked(home_place, vehicle(pad_at(), takeoff_point=None, flying=False)).state is OK
 
@@ -65,7 +65,7 @@ class TestHome:
     def test_it_stands_on_its_pad(self, north_m: float, state: CheckState) -> None:
         assert checked(home_place, vehicle(pad_at(north_m), flying=False)).state is state
 
-    def test_how_far_from_its_pad_is_told(self) -> None:
+    def test_the_distance_from_its_pad_is_stated(self) -> None:
         assert checked(home_place, vehicle(pad_at(50.0))).text == "50 m from its pad"
 
     def test_a_pad_of_the_layer_counts_when_it_is_the_vehicles(self) -> None:
@@ -85,11 +85,9 @@ class TestPad:
         profile = pad_at(altitude_m=altitude_m)
         assert checked(pad_altitude, vehicle(profile), airspace=hilly()).state is state
 
-    def test_how_far_off_it_is_is_told(self) -> None:
+    def test_the_difference_is_stated(self) -> None:
         found = checked(pad_altitude, vehicle(pad_at(altitude_m=250.0)), airspace=hilly())
-        assert found.text == (
-            "the pad is -22.0 m from the ground that the elevation model tells there"
-        )
+        assert found.text == ("the pad is -22.0 m from the elevation model's ground")
 
     @pytest.mark.parametrize("airspace", [AIRSPACE, OPEN_AIRSPACE])
     def test_without_a_model_it_is_not_compared(self, airspace: PreparedAirspace) -> None:
@@ -104,7 +102,7 @@ class TestPad:
         found = checked(pad_altitude, vehicle(pad_at(80.0, -80.0)), airspace=hilly())
         assert (found.state, found.text) == (
             ATTENTION,
-            "the elevation model tells no ground at the pad",
+            "the elevation model has no ground at the pad",
         )
 
 
@@ -122,15 +120,15 @@ class TestClock:
     @pytest.mark.parametrize(
         ("set_s", "state"), [(2.0, OK), (-2.0, OK), (2.1, ATTENTION), (-3600.0, ATTENTION)]
     )
-    def test_nobody_has_set_it_since(self, set_s: float, state: CheckState) -> None:
+    def test_it_was_not_set_since(self, set_s: float, state: CheckState) -> None:
         facts = replace(FACTS, clock=ClockReading(SET_S * S, round(set_s * S)))
         assert checked(clock, vehicle(), facts=facts).state is state
 
-    def test_what_it_says_is_told(self) -> None:
+    def test_its_time_is_shown(self) -> None:
         assert checked(clock, vehicle()).text == "2026-05-28 20:26 UTC"
         unset = replace(FACTS, clock=ClockReading(0))
-        told = checked(clock, vehicle(), facts=unset).text
-        assert told == "the computer's clock says 1970-01-01 00:00"
+        refusal_text = checked(clock, vehicle(), facts=unset).text
+        assert refusal_text == "the computer's clock shows 1970-01-01 00:00"
 
-    def test_until_it_is_read_nobody_knows(self) -> None:
+    def test_until_it_is_read_it_is_unknown(self) -> None:
         assert checked(clock, vehicle(), facts=NO_FACTS).state is UNKNOWN

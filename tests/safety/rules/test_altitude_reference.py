@@ -32,12 +32,12 @@ def judged(state: VehicleState) -> ApprovedCommand | Refusal:
 
 
 def aged(age_s: float) -> Stamped[float]:
-    """The offset of takeoff, told this long ago."""
+    """The offset of takeoff, received this long ago."""
     return Stamped(260.0, NOW - round(age_s * S))
 
 
 @pytest.mark.parametrize("profile", [None, VehicleProfile("A")])
-def test_unset_is_refused_and_says_how_to_set_it(profile: VehicleProfile | None) -> None:
+def test_unset_is_refused_and_states_how_to_set_it(profile: VehicleProfile | None) -> None:
     answer = judged(vehicle(profile))
     assert refused_by(answer) == "altitude_reference"
     assert isinstance(answer, Refusal)
@@ -59,8 +59,8 @@ def test_heights_above_takeoff_go_out_as_they_are() -> None:
 class TestWgs84:
     def test_an_unknown_offset_is_refused(self) -> None:
         assert refused_by(judged(vehicle(WGS84, offset_m=None))) == "altitude_reference"
-        unheard = replace(vehicle(WGS84), altitude_offset_m=Stamped())
-        assert refused_by(judged(unheard)) == "altitude_reference"
+        lost = replace(vehicle(WGS84), altitude_offset_m=Stamped())
+        assert refused_by(judged(lost)) == "altitude_reference"
 
     @pytest.mark.parametrize(("age_s", "is_sent"), [(2.0, True), (2.000000001, False)])
     def test_an_offset_older_than_2_s_is_refused(self, age_s: float, is_sent: bool) -> None:
@@ -110,7 +110,7 @@ class TestWgs84:
             ),
         ],
     )
-    def test_what_it_says(self, state: VehicleState, reason: str) -> None:
+    def test_the_reasons(self, state: VehicleState, reason: str) -> None:
         assert altitude_reference(command(mission()), situation(state)) == Refusal(
             "altitude_reference", reason
         )

@@ -1,4 +1,4 @@
-"""Who leads a vehicle sets it in motion; anybody may stop it."""
+"""The authority holder sets a vehicle in motion; any client may stop it."""
 
 from dataclasses import replace
 
@@ -32,18 +32,18 @@ MOVES: list[Body] = [
 STOPS: list[Body] = [Hover(), LandNow(), ReturnHome(), StartCamera(1.0), StopCamera()]
 
 
-def led_by(who: AuthorityHolder) -> Situation:
+def held_by(who: AuthorityHolder) -> Situation:
     return replace(situation(), authority=ControlAuthority(who, "Ann", 5, "taken over by Ann"))
 
 
 def judged(body: Body, asked_as: AuthorityHolder, who: AuthorityHolder) -> Refusal | None:
-    return authority(replace(command(body), asked_as=asked_as), led_by(who))
+    return authority(replace(command(body), asked_as=asked_as), held_by(who))
 
 
 @pytest.mark.parametrize("body", MOVES)
 @pytest.mark.parametrize("who", AuthorityHolder)
 @pytest.mark.parametrize("asked_as", AuthorityHolder)
-def test_only_the_leader_sets_a_vehicle_in_motion(
+def test_only_the_holder_sets_a_vehicle_in_motion(
     body: Body, asked_as: AuthorityHolder, who: AuthorityHolder
 ) -> None:
     answer = judged(body, asked_as, who)
@@ -54,13 +54,13 @@ def test_only_the_leader_sets_a_vehicle_in_motion(
 @pytest.mark.parametrize("body", STOPS)
 @pytest.mark.parametrize("who", AuthorityHolder)
 @pytest.mark.parametrize("asked_as", AuthorityHolder)
-def test_anybody_stops_it_or_looks(
+def test_any_client_stops_it_or_uses_the_camera(
     body: Body, asked_as: AuthorityHolder, who: AuthorityHolder
 ) -> None:
     assert judged(body, asked_as, who) is None
 
 
-def test_a_refusal_says_who_leads_and_how_that_came_about() -> None:
+def test_a_refusal_names_the_holder_and_the_reason() -> None:
     answer = judged(mission(), AuthorityHolder.GUIDANCE, AuthorityHolder.OPERATOR)
     assert answer == Refusal(
         "authority",
@@ -82,17 +82,17 @@ def test_a_refusal_says_who_leads_and_how_that_came_about() -> None:
         ),
     ],
 )
-def test_a_refusal_says_what_to_do(who: AuthorityHolder, what_to_do: str) -> None:
+def test_a_refusal_states_what_to_do(who: AuthorityHolder, what_to_do: str) -> None:
     answer = judged(STICK, AuthorityHolder.OPERATOR, who)
     assert answer is not None
     assert f": {what_to_do}" in answer.reason
 
 
-def test_nobody_at_all_is_another_rules_matter() -> None:
+def test_a_missing_vehicle_is_another_rules_matter() -> None:
     assert (
-        authority(command(mission()), replace(led_by(AuthorityHolder.PILOT), vehicle=None)) is None
+        authority(command(mission()), replace(held_by(AuthorityHolder.PILOT), vehicle=None)) is None
     )
 
 
-def test_until_somebody_takes_it_the_operator_leads() -> None:
+def test_by_default_the_operator_is_the_holder() -> None:
     assert authority(command(mission()), situation(vehicle())) is None

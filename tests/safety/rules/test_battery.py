@@ -26,7 +26,7 @@ AWAY: list[Body] = [
     replace(STICK, velocity_x_mps=5.0),
 ]
 LANDING = replace(mission(waypoint(200.0), waypoint(0.0)).mission, land_at_end=True)
-HOMEWARDS: list[Body] = [
+TOWARDS_HOME: list[Body] = [
     FlyMission(LANDING),
     NEARER,
     Nudge(-20.0, 0.0, 0.0),
@@ -62,7 +62,7 @@ class TestReserve:
         assert reason(body, out(battery_fraction=enough)) is None
         assert reason(body, out(battery_fraction=enough - 1e-6)) is not None
 
-    @pytest.mark.parametrize("body", HOMEWARDS)
+    @pytest.mark.parametrize("body", TOWARDS_HOME)
     def test_the_reserve_is_for_coming_home(self, body: Body) -> None:
         enough = whole(body, out()) + 0.10
         assert reason(body, out(battery_fraction=enough)) is None
@@ -87,7 +87,7 @@ class TestReserve:
         empty = out(None, battery_fraction=0.0, battery_warning=BatteryWarning.SERIOUS)
         assert reason(body, empty) is None
 
-    def test_nobody_at_all_is_another_rules_matter(self) -> None:
+    def test_a_missing_vehicle_is_another_rules_matter(self) -> None:
         assert battery(command(FAR), replace(situation(), vehicle=None)) is None
 
     def test_an_unknown_go_home_height_counts_as_the_highest_the_site_allows(self) -> None:
@@ -109,12 +109,12 @@ class TestWarning:
             (None, False),
         ],
     )
-    def test_the_aircrafts_own_word_counts_whatever_the_model_says(
+    def test_the_aircrafts_own_warning_counts_whatever_the_model_computes(
         self, body: Body, warning: BatteryWarning | None, goes: bool
     ) -> None:
         assert (reason(body, out(battery_warning=warning)) is None) is goes
 
-    @pytest.mark.parametrize("body", HOMEWARDS)
+    @pytest.mark.parametrize("body", TOWARDS_HOME)
     @pytest.mark.parametrize("warning", [None, *BatteryWarning])
     def test_until_it_is_serious_it_may_come_nearer(
         self, body: Body, warning: BatteryWarning | None
@@ -123,7 +123,7 @@ class TestWarning:
         assert goes is (warning is not BatteryWarning.SERIOUS)
 
     @pytest.mark.parametrize(
-        ("warning", "told"),
+        ("warning", "refusal_text"),
         [
             (
                 BatteryWarning.SERIOUS,
@@ -139,17 +139,17 @@ class TestWarning:
             ),
         ],
     )
-    def test_a_refusal_says_what_the_aircraft_says(
-        self, warning: BatteryWarning | None, told: str
+    def test_a_refusal_states_the_aircrafts_warning(
+        self, warning: BatteryWarning | None, refusal_text: str
     ) -> None:
-        assert reason(FAR, out(battery_warning=warning)) == told
+        assert reason(FAR, out(battery_warning=warning)) == refusal_text
 
 
 class TestUnknown:
     @pytest.mark.parametrize("profile", [None, replace(TAKEOFF, endurance_s=None)])
     def test_endurance_and_how_to_tell_it(self, profile: VehicleProfile | None) -> None:
-        told = reason(HoldPosition(), replace(out(), profile=profile))
-        assert told == (
+        refusal_text = reason(HoldPosition(), replace(out(), profile=profile))
+        assert refusal_text == (
             "endurance unknown, so the way home cannot be checked; write "
             'endurance_min = MINUTES under [[vehicles]] serial = "A" in site.toml'
         )
@@ -167,7 +167,7 @@ class TestUnknown:
 
 
 class TestNumbers:
-    def test_a_missions_refusal_says_what_it_needs_and_where(self) -> None:
+    def test_a_missions_refusal_states_what_it_needs_and_where(self) -> None:
         body = mission(waypoint(200.0), waypoint(700.0, speed_mps=10.0), waypoint(650.0))
         assert reason(body, out(battery_fraction=0.459)) == (
             "the mission needs 47 % of its battery; got 45 %: 9 % to waypoint 3, 12 % home "
@@ -187,21 +187,21 @@ class TestNumbers:
     def test_whole_percents_are_rounded_to_the_careful_side(self) -> None:
         limits = FlightLimits(battery_reserve_fraction=0.62)
         now = replace(situation(), airspace=PreparedAirspace(Airspace(limits)))
-        told = reason(FAR, out(battery_fraction=0.29), now)
-        assert told is not None
-        assert "got 29 %" in told
-        assert "and 62 % reserve" in told
+        refusal_text = reason(FAR, out(battery_fraction=0.29), now)
+        assert refusal_text is not None
+        assert "got 29 %" in refusal_text
+        assert "and 62 % reserve" in refusal_text
 
     def test_a_whole_percent_is_not_rounded_up_to_the_next(self) -> None:
         limits = FlightLimits(battery_reserve_fraction=0.62)
         now = replace(situation(), airspace=PreparedAirspace(Airspace(limits)))
         endless = replace(TAKEOFF, endurance_s=1e300)
-        told = reason(FAR, out(endless, battery_fraction=0.5), now)
-        assert told is not None
-        assert "the goto needs 62 % of its battery; got 50 %" in told
+        refusal_text = reason(FAR, out(endless, battery_fraction=0.5), now)
+        assert refusal_text is not None
+        assert "the goto needs 62 % of its battery; got 50 %" in refusal_text
 
-    def test_what_no_battery_could_do_is_said_so(self) -> None:
+    def test_more_than_a_full_battery_is_stated(self) -> None:
         endless = replace(TAKEOFF, endurance_s=5e-324)
-        told = reason(FAR, out(endless))
-        assert told is not None
-        assert "needs more than 100 % of its battery" in told
+        refusal_text = reason(FAR, out(endless))
+        assert refusal_text is not None
+        assert "needs more than 100 % of its battery" in refusal_text

@@ -30,7 +30,7 @@ WHOLE = airspace(boundary=square(-50.0, -50.0, 400.0, 400.0))
 CORNERED = airspace(boundary=L_SHAPE)
 
 
-def told(body: Body, state: VehicleState | None = None) -> str:
+def refusal_text(body: Body, state: VehicleState | None = None) -> str:
     return reason(asked(boundary, body, CORNERED, state))
 
 
@@ -54,7 +54,7 @@ class TestMissions:
     def test_a_leg_across_the_notch_is_refused_though_its_ends_are_inside(self) -> None:
         arms = mission((0.0, 300.0, 40.0), (300.0, 0.0, 40.0))
         assert asked(boundary, arms, WHOLE) is None
-        assert told(arms) == (
+        assert refusal_text(arms) == (
             "A: leg 1 to 2 goes 100.0 m beyond the site's boundary; it must stay inside, 5 m from "
             "the edge"
         )
@@ -63,21 +63,21 @@ class TestMissions:
     def test_the_margin_is_kept(self, east_m: float, allowed: bool) -> None:
         body = mission((0.0, 300.0, 40.0), (east_m, 300.0, 40.0))
         assert is_allowed(body) is allowed
-        assert allowed or told(body) == (
+        assert allowed or refusal_text(body) == (
             "A: leg 1 to 2 comes within 4.90 m of the site's boundary; it must stay inside, 5 m "
             "from the edge"
         )
 
     def test_the_way_to_the_first_waypoint_counts(self) -> None:
         assert is_allowed(self.inside, flier(0.0, 0.0))
-        assert told(self.inside, flier(300.0, 0.0)).startswith(
+        assert refusal_text(self.inside, flier(300.0, 0.0)).startswith(
             "A: the way to waypoint 1 goes 100.0 m beyond"
         )
 
     def test_the_way_home_counts(self) -> None:
         """Its legs are in one arm, its home is in the other."""
         away = flier(0.0, 300.0, takeoff_point=flier(300.0, 0.0).position.value)
-        assert told(self.inside, away).startswith(
+        assert refusal_text(self.inside, away).startswith(
             "A: the way home from the way to waypoint 1 goes 100.0 m beyond"
         )
 
@@ -88,15 +88,15 @@ class TestMissions:
 
     def test_a_home_in_the_margin_is_no_home_to_come_to(self) -> None:
         state = flier(0.0, 0.0, takeoff_point=flier(0.0, -46.0).position.value)
-        assert "the way home from" in told(self.inside, state)
-        assert "comes within 4.00 m" in told(self.inside, state)
+        assert "the way home from" in refusal_text(self.inside, state)
+        assert "comes within 4.00 m" in refusal_text(self.inside, state)
 
     def test_a_rounded_corner_counts(self) -> None:
         """Between the arms, just inside: cutting the corner by 30 m leaves the site."""
         turn = ((30.0, 300.0, 40.0), (30.0, 30.0, 40.0), (300.0, 30.0, 40.0))
         assert is_allowed(mission(*turn, curved=True, radius_m=20.0))
         assert is_allowed(mission(*turn, radius_m=80.0))
-        assert told(mission(*turn, curved=True, radius_m=80.0)).startswith(
+        assert refusal_text(mission(*turn, curved=True, radius_m=80.0)).startswith(
             "A: the corner at waypoint 2 goes 19.8 m beyond"
         )
 
@@ -112,8 +112,8 @@ class TestMissions:
         assert "leg 1 to 2 goes" in reason(asked(boundary, body, holed))
 
     def test_a_vehicle_that_is_nowhere_known_is_refused(self) -> None:
-        assert "position unknown" in told(self.inside, flier(position=Stamped()))
-        assert "home unknown" in told(self.inside, flier(takeoff_point=None))
+        assert "position unknown" in refusal_text(self.inside, flier(position=Stamped()))
+        assert "home unknown" in refusal_text(self.inside, flier(takeoff_point=None))
 
 
 class TestSteered:
@@ -124,16 +124,16 @@ class TestSteered:
         assert is_allowed(goto(0.0, north_m)) is allowed
 
     def test_a_goto_across_the_notch_is_refused(self) -> None:
-        assert "the way to the target" in told(goto(0.0, 300.0), flier(300.0, 0.0))
+        assert "the way to the target" in refusal_text(goto(0.0, 300.0), flier(300.0, 0.0))
 
     def test_a_nudge_is_measured_from_the_vehicle(self) -> None:
         assert is_allowed(Nudge(0.0, 10.0, 0.0), flier(30.0, 300.0))
-        assert "the nudge" in told(Nudge(0.0, 20.0, 0.0), flier(30.0, 300.0))
+        assert "the nudge" in refusal_text(Nudge(0.0, 20.0, 0.0), flier(30.0, 300.0))
 
     def test_holding_the_place_is_allowed_wherever_it_is(self) -> None:
         for east_m in (0.0, 48.0, 90.0):
             assert is_allowed(HoldPosition(), flier(east_m, 300.0))
-        assert "position unknown" in told(HoldPosition(), flier(position=Stamped()))
+        assert "position unknown" in refusal_text(HoldPosition(), flier(position=Stamped()))
 
     @pytest.mark.parametrize(("speed_mps", "allowed"), [(9.9, True), (10.1, False)])
     def test_a_stick_reaches_as_far_as_it_brakes(self, speed_mps: float, allowed: bool) -> None:
@@ -145,7 +145,7 @@ class TestSteered:
             assert is_allowed(stick(0.0, 0.0), state)
 
     def test_a_stick_with_velocity_needs_to_know_where(self) -> None:
-        assert "position unknown" in told(stick(0.1, 0.0), flier(position=Stamped()))
+        assert "position unknown" in refusal_text(stick(0.1, 0.0), flier(position=Stamped()))
 
 
 class TestAlreadyOutside:
@@ -159,7 +159,7 @@ class TestAlreadyOutside:
         assert is_allowed(mission((20.0, 300.0, 40.0), (20.0, 100.0, 40.0)), self.out)
 
     def test_farther_out_is_not(self) -> None:
-        assert told(stick(0.0, 1.0), self.out) == (
+        assert refusal_text(stick(0.0, 1.0), self.out) == (
             "A: the stick's way goes 21.2 m beyond the site's boundary; the vehicle is 20.00 m "
             "outside now and may only be moved back in"
         )
@@ -171,25 +171,25 @@ class TestAlreadyOutside:
 
     def test_what_comes_later_must_keep_the_margin(self) -> None:
         body = mission((40.0, 300.0, 40.0), (47.0, 300.0, 40.0), (0.0, 100.0, 40.0))
-        assert told(body, self.out).endswith("it must stay inside, 5 m from the edge")
+        assert refusal_text(body, self.out).endswith("it must stay inside, 5 m from the edge")
 
     def test_its_way_home_may_go_no_farther_out_either(self) -> None:
         """From far up the notch the way home leads through the middle of it: a stick may help."""
         deep = flier(300.0, 55.0, takeoff_point=flier(20.0, 390.0).position.value)
-        assert "the way home from the way to the target" in told(goto(300.0, 0.0), deep)
+        assert "the way home from the way to the target" in refusal_text(goto(300.0, 0.0), deep)
         assert is_allowed(stick(-5.0, 0.0), deep)
 
     @pytest.mark.parametrize(("east_mps", "allowed"), [(-0.5, True), (0.5, False)])
     def test_in_the_margin_it_is_the_same(self, east_mps: float, allowed: bool) -> None:
         near = flier(47.0, 300.0)
         assert is_allowed(stick(0.0, east_mps), near) is allowed
-        assert allowed or "is 3.00 m inside now" in told(stick(0.0, east_mps), near)
+        assert allowed or "is 3.00 m inside now" in refusal_text(stick(0.0, east_mps), near)
 
     def test_close_to_the_edge_the_words_say_which_side(self) -> None:
-        assert "comes within 0.50 m of the site's boundary" in told(
+        assert "comes within 0.50 m of the site's boundary" in refusal_text(
             mission((0.0, 300.0, 40.0), (49.5, 300.0, 40.0))
         )
-        assert "is 0.50 m inside now" in told(stick(0.0, 0.1), flier(49.5, 300.0))
+        assert "is 0.50 m inside now" in refusal_text(stick(0.0, 0.1), flier(49.5, 300.0))
 
     def test_on_the_margin_itself_it_may_be_moved_inwards(self) -> None:
         """The margin is counted as kept only beyond it: there, the way in must still be open."""
@@ -228,9 +228,9 @@ class TestAlreadyOutside:
 
     def test_a_stick_that_crosses_an_arm_may_not_leave_it_on_the_other_side(self) -> None:
         assert is_allowed(stick(0.0, -15.0, timeout_s=2.0), self.out)
-        assert "beyond" in told(stick(0.0, -15.0, timeout_s=7.0), self.out)
+        assert "beyond" in refusal_text(stick(0.0, -15.0, timeout_s=7.0), self.out)
 
 
 def test_telemetry_of_no_position_at_all_is_refused() -> None:
     state = flier(position=Stamped(None, NOW))
-    assert "position unknown" in told(goto(0.0, 0.0), state)
+    assert "position unknown" in refusal_text(goto(0.0, 0.0), state)

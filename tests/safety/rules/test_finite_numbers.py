@@ -62,7 +62,7 @@ def test_in_a_frame_rate(value: float) -> None:
         (StartCamera(10**400), f"fps_hz must be a finite number; got {10**400}"),
     ],
 )
-def test_a_refusal_says_where_it_is(body: Body, reason: str) -> None:
+def test_a_refusal_states_where_it_is(body: Body, reason: str) -> None:
     assert finite_numbers(command(body), situation()) == Refusal("finite_numbers", reason)
 
 

@@ -1,4 +1,4 @@
-"""Nothing leaves the ground unless the order says takeoff (decisions on the ICD, 16 and 17)."""
+"""Nothing leaves the ground unless the order includes takeoff (decisions on the ICD, 16 and 17)."""
 
 from dataclasses import replace
 
@@ -36,11 +36,11 @@ MOVES = [Hover(), ReturnHome(), mission(), STICK]
 STEERED = [GoTo(PLACE, 40.0, 5.0), Nudge(1.0, 0.0, 0.0), HoldPosition()]
 
 
-def test_of_a_vehicle_nobody_knows_another_rule_speaks() -> None:
+def test_an_unknown_vehicle_is_another_rules_matter() -> None:
     asked = command(Hover(), takeoff=True)
-    nobody = replace(situation(), vehicle=None, claiming_links=())
-    assert flying(asked, nobody) is None
-    assert refused_by(approve(asked, nobody)) == "reachable"
+    unknown = replace(situation(), vehicle=None, claiming_links=())
+    assert flying(asked, unknown) is None
+    assert refused_by(approve(asked, unknown)) == "reachable"
 
 
 @pytest.mark.parametrize("body", MOVES)
@@ -62,9 +62,9 @@ class TestWithoutTakeoff:
         assert (judged is None) is is_open
 
     def test_it_is_not_sent_before_any_telemetry(self, body: Body) -> None:
-        unheard = vehicle()
-        unheard = type(unheard)(serial="A", link_id=1, profile=unheard.profile)
-        assert refused_by(approve(command(body), situation(unheard))) == "flying"
+        lost = vehicle()
+        lost = type(lost)(serial="A", link_id=1, profile=lost.profile)
+        assert refused_by(approve(command(body), situation(lost))) == "flying"
 
 
 class TestWithTakeoff:
@@ -81,9 +81,7 @@ class TestWithTakeoff:
         assert f"got {command(body).name}. Give" in judged.reason
 
     @pytest.mark.parametrize("body", [Hover(), mission(), STICK])
-    def test_an_app_that_does_not_say_whether_it_flies_takes_off_for_nobody(
-        self, body: Body
-    ) -> None:
+    def test_an_app_that_does_not_report_flight_never_takes_off(self, body: Body) -> None:
         asked = command(body, takeoff=True)
         assert refused_by(flying(asked, situation(vehicle(flying=None)))) == "flying"
         assert flying(asked, replace(situation(), vehicle=None)) is None
@@ -110,7 +108,9 @@ def test_camera_orders_need_no_flight(body: Body) -> None:
 
 class TestRivals:
     @pytest.mark.parametrize("body", [Hover(), ReturnHome()])
-    def test_hover_and_return_spare_a_rival_link_that_says_on_the_ground(self, body: Body) -> None:
+    def test_hover_and_return_spare_a_rival_link_that_reports_on_the_ground(
+        self, body: Body
+    ) -> None:
         now = situation(vehicle(), Stamped(False, NOW), Stamped(True, NOW), Stamped(False, 1))
         assert approved(approve(command(body), now)).link_ids == (1, 3)
 
@@ -122,20 +122,20 @@ class TestRivals:
         now = situation(vehicle(), Stamped(False, NOW), Stamped(None, None))
         assert approved(approve(command(LandNow()), now)).link_ids == (1, 2, 3)
 
-    def test_a_rival_that_has_said_nothing_is_held_while_the_vehicle_flies(self) -> None:
+    def test_a_rival_without_telemetry_is_held_while_the_vehicle_flies(self) -> None:
         now = situation(vehicle(), Stamped(None, None))
         assert approved(approve(command(Hover()), now)).link_ids == (1, 2)
 
-    def test_a_rival_whose_old_telemetry_says_flying_opens_no_door(self) -> None:
+    def test_a_rival_whose_old_telemetry_shows_flight_opens_no_door(self) -> None:
         now = situation(vehicle(flying=False), Stamped(True, NOW - 4 * S))
         assert refused_by(approve(command(Hover()), now)) == "flying"
 
 
-class TestWhatItSays:
-    """Word for word, and whether an order is told apart that only waits to be heard of again."""
+class TestReasons:
+    """Word for word, and whether only stale telemetry is the cause."""
 
     @pytest.mark.parametrize(
-        ("flying_said", "age_s", "reason", "is_stale"),
+        ("is_flying", "age_s", "reason", "is_stale"),
         [
             (False, 0.1, "on the ground; takeoff was not allowed", False),
             (False, 3.0, "on the ground; takeoff was not allowed", False),
@@ -162,19 +162,19 @@ class TestWhatItSays:
         ],
     )
     def test_without_takeoff(
-        self, flying_said: bool | None, age_s: float, reason: str, is_stale: bool
+        self, is_flying: bool | None, age_s: float, reason: str, is_stale: bool
     ) -> None:
-        answer = flying(command(Hover()), situation(vehicle(flying=flying_said, age_s=age_s)))
+        answer = flying(command(Hover()), situation(vehicle(flying=is_flying, age_s=age_s)))
         assert answer == Refusal("flying", f"A: {reason}", is_stale=is_stale)
         assert answer.is_stale is is_stale
 
     def test_before_any_telemetry(self) -> None:
-        unheard = vehicle(is_flying=Stamped(None, None))
-        assert flying(command(Hover()), situation(unheard)) == Refusal(
+        lost = vehicle(is_flying=Stamped(None, None))
+        assert flying(command(Hover()), situation(lost)) == Refusal(
             "flying", "A: no telemetry shows flight; the order could start a takeoff"
         )
 
-    def test_telemetry_of_just_the_age_is_not_too_old_to_be_heard(self) -> None:
+    def test_telemetry_of_exactly_the_age_is_not_stale(self) -> None:
         answer = flying(command(Hover()), replace(situation(vehicle(age_s=3.0)), claiming_links=()))
         assert answer is not None
         assert answer.is_stale is False

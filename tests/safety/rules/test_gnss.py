@@ -24,7 +24,7 @@ WITHOUT = {FlightMode.MANUAL, FlightMode.ATTI, FlightMode.ATTI_COURSE_LOCK, Flig
 
 
 def judged(body: Body = MOVES[0], *, flying: bool | None = True, **changes: object) -> str | None:
-    """The reason of a refusal, None when there is none."""
+    """The reason of a refusal, or None."""
     answer = gnss(command(body), situation(vehicle(flying=flying, **changes)))
     assert answer is None or (answer.rule, answer.reason[:3]) == ("gnss", "A: ")
     return None if answer is None else answer.reason
@@ -102,7 +102,7 @@ def test_modes_without_gnss_are_the_pilots(mode: FlightMode | None) -> None:
         ),
     ],
 )
-def test_a_refusal_says_what_is_needed_what_came_and_what_to_do(
+def test_a_refusal_states_what_is_needed_what_came_and_what_to_do(
     changes: dict[str, object], reason: str
 ) -> None:
     assert judged(**changes) == f"A: {reason}"  # type: ignore[arg-type]

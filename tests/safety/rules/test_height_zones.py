@@ -40,7 +40,7 @@ def is_allowed(body: Body, air: PreparedAirspace, state: VehicleState | None = N
     return asked(height_zones, body, air, state) is None
 
 
-def told(body: Body, air: PreparedAirspace, state: VehicleState | None = None) -> str:
+def refusal_text(body: Body, air: PreparedAirspace, state: VehicleState | None = None) -> str:
     return reason(asked(height_zones, body, air, state))
 
 
@@ -53,7 +53,7 @@ class TestFloor:
     def test_no_lower(self, height_m: float, allowed: bool) -> None:
         state = flier(0.0, 0.0, height_m)
         assert is_allowed(across(height_m), FLOOR, state) is allowed
-        assert allowed or told(across(height_m), FLOOR, state) == (
+        assert allowed or refusal_text(across(height_m), FLOOR, state) == (
             "A: leg 1 to 2 is at 50.0 m above takeoff in the height zone 'yard'; fly no lower than "
             "50 m above ground there"
         )
@@ -68,11 +68,13 @@ class TestFloor:
         assert is_allowed(body, FLOOR, state)  # it goes home as high as it is
         low = mission((250.0, 0.0, 45.0), (250.0, 90.0, 45.0))
         state = flier(250.0, 0.0, 45.0, go_home_m=40.0)
-        assert "the way home from the way to waypoint 1 is at 45.0 m" in told(low, FLOOR, state)
+        assert "the way home from the way to waypoint 1 is at 45.0 m" in refusal_text(
+            low, FLOOR, state
+        )
 
     def test_a_landing_in_the_zone_is_below_its_floor(self) -> None:
         body = mission((90.0, 0.0, 60.0), (150.0, 0.0, 60.0), land=True)
-        assert "the landing at the end is at the ground to 60.0 m" in told(
+        assert "the landing at the end is at the ground to 60.0 m" in refusal_text(
             body, FLOOR, flier(0.0, 0.0, 60.0)
         )
 
@@ -84,7 +86,7 @@ class TestFloor:
         pad = place(40.0, 0.0)
         pads = [LandingPad("p", None, GeoPoint(pad.latitude_deg, pad.longitude_deg, 270.0))]
         landing = mission((0.0, 0.0, 40.0), (40.0, 0.0, 40.0), land=True)
-        assert "the landing at the end" in told(landing, air)
+        assert "the landing at the end" in refusal_text(landing, air)
         padded = airspace(height_zone(ROUND_HOME, floor_m=30.0), pads=pads)
         assert is_allowed(landing, padded)
 
@@ -100,24 +102,25 @@ class TestCeiling:
     def test_no_higher(self, height_m: float, allowed: bool) -> None:
         state = flier(0.0, 0.0, 40.0, go_home_m=40.0)
         assert is_allowed(across(height_m), CEILING, state) is allowed
-        assert allowed or told(across(height_m), CEILING, state).endswith(
+        assert allowed or refusal_text(across(height_m), CEILING, state).endswith(
             "in the height zone 'yard'; fly no higher than 50 m above ground there"
         )
 
     def test_the_go_home_height_counts(self) -> None:
         state = flier(0.0, 0.0, 40.0, go_home_m=60.0)
-        assert "the climb before the way home from leg 1 to 2 is at 40.0 m to 60.0 m" in told(
-            across(40.0), CEILING, state
+        assert (
+            "the climb before the way home from leg 1 to 2 is at 40.0 m to 60.0 m"
+            in refusal_text(across(40.0), CEILING, state)
         )
         unknown = flier(0.0, 0.0, 40.0, go_home_m=None)
-        assert "unknown go-home height" in told(across(40.0), CEILING, unknown)
+        assert "unknown go-home height" in refusal_text(across(40.0), CEILING, unknown)
 
     def test_who_is_above_may_be_brought_down(self) -> None:
         high = flier(150.0, 0.0, 70.0, go_home_m=40.0)
         assert is_allowed(Nudge(0.0, 0.0, -10.0), CEILING, high)
         assert is_allowed(stick(1.0, 1.0, 69.0), CEILING, high)
         assert not is_allowed(Nudge(0.0, 0.0, 10.0), CEILING, high)
-        assert "leg 1 to 2" in told(mission((150, 0, 60), (120, 0, 60)), CEILING, high)
+        assert "leg 1 to 2" in refusal_text(mission((150, 0, 60), (120, 0, 60)), CEILING, high)
 
         level = Nudge(5.0, 0.0, 0.0)
         assert is_allowed(level, CEILING, high)
@@ -157,7 +160,9 @@ class TestDatum:
         ground = hills([[30.0] * 10] * 10)
         floor = airspace(height_zone(FARM, floor_m=height_m, datum=datum), elevation=ground)
         assert is_allowed(across(20.0), floor, flier(0.0, 0.0, 20.0))
-        assert "320 m above the ellipsoid" in told(across(19.0), floor, flier(0.0, 0.0, 19.0))
+        assert "320 m above the ellipsoid" in refusal_text(
+            across(19.0), floor, flier(0.0, 0.0, 19.0)
+        )
         ceiling = airspace(height_zone(FARM, ceiling_m=height_m, datum=datum), elevation=ground)
         low = flier(0.0, 0.0, 20.0, go_home_m=20.0)
         assert is_allowed(across(20.0), ceiling, low)
@@ -198,7 +203,7 @@ class TestAsked:
 
     def test_a_vehicle_that_is_nowhere_known(self) -> None:
         nowhere = flier(position=Stamped())
-        assert "position unknown" in told(across(60.0), FLOOR, nowhere)
+        assert "position unknown" in refusal_text(across(60.0), FLOOR, nowhere)
         assert is_allowed(stick(0.0, 0.0), FLOOR, nowhere)
 
     def test_a_zero_has_slack_below(self) -> None:

@@ -33,7 +33,7 @@ def is_allowed(body: Body, state: VehicleState | None = None) -> bool:
     return asked(home_distance, body, NEAR, state) is None
 
 
-def told(body: Body, state: VehicleState | None = None) -> str:
+def refusal_text(body: Body, state: VehicleState | None = None) -> str:
     return reason(asked(home_distance, body, NEAR, state))
 
 
@@ -41,7 +41,9 @@ def told(body: Body, state: VehicleState | None = None) -> str:
 def test_every_waypoint_counts(east_m: float, allowed: bool) -> None:
     body = mission((0.0, 0.0, 400.0), (east_m, 180.0, 40.0), (0.0, 0.0, 40.0))
     assert is_allowed(body) is allowed
-    assert allowed or told(body) == ("A: leg 1 to 2 must stay within 300 m of home; got 300.1 m")
+    assert allowed or refusal_text(body) == (
+        "A: leg 1 to 2 must stay within 300 m of home; got 300.1 m"
+    )
 
 
 def test_the_limit_itself_is_allowed() -> None:
@@ -62,7 +64,9 @@ def test_home_is_where_it_took_off() -> None:
 
 def test_the_first_way_is_judged() -> None:
     body = mission((310.0, 0.0, 40.0), (290.0, 50.0, 40.0))
-    assert told(body) == "A: the way to waypoint 1 must stay within 300 m of home; got 310.0 m"
+    assert (
+        refusal_text(body) == "A: the way to waypoint 1 must stay within 300 m of home; got 310.0 m"
+    )
 
 
 @pytest.mark.parametrize(("north_m", "allowed"), [(296.9, True), (297.1, False)])
@@ -91,8 +95,8 @@ class TestAlreadyTooFar:
         assert not is_allowed(stick(0.0, -1.0), flier(-400.0, 0.0, takeoff_point=place(300.0, 0.0)))
 
     def test_no_farther_and_nothing_later(self) -> None:
-        assert "got 401.2 m" in told(stick(0.0, 1.0), self.far)
-        assert "leg 1 to 2 must stay within 300 m of home; got 350.0 m" in told(
+        assert "got 401.2 m" in refusal_text(stick(0.0, 1.0), self.far)
+        assert "leg 1 to 2 must stay within 300 m of home; got 350.0 m" in refusal_text(
             mission((350.0, 0.0, 40.0), (0.0, 0.0, 40.0)), self.far
         )
 
@@ -107,7 +111,7 @@ def test_without_a_site_the_default_limit_holds() -> None:
 def test_an_unknown_home_refuses_every_motion() -> None:
     lost = flier(takeoff_point=None)
     for body in (mission((9.0, 0.0, 40.0), (0.0, 0.0, 40.0)), goto(1.0, 1.0), stick(1.0, 0.0)):
-        assert "home unknown" in told(body, lost)
+        assert "home unknown" in refusal_text(body, lost)
 
 
 def test_stops_are_not_asked() -> None:

@@ -60,7 +60,7 @@ def test_a_vehicle_with_rivals_gets_emergency_orders_on_every_link(body: Body) -
 
 @pytest.mark.parametrize("body", EMERGENCIES)
 def test_takeoff_is_for_one_known_aircraft(body: Body) -> None:
-    """One order must not start two aircraft, nor one that nobody knows."""
+    """One order must not start two aircraft, nor an unknown one."""
     unknown = replace(command(body, takeoff=True), serial=None, link_id=1)
     assert refused_by(approve(unknown, unidentified())) == "identified"
     rivals = situation(vehicle(flying=False), Stamped(False, NOW))
@@ -68,7 +68,7 @@ def test_takeoff_is_for_one_known_aircraft(body: Body) -> None:
     assert refused_by(approve(command(body, takeoff=True), contended)) == "identified"
 
 
-def test_return_spares_what_is_on_the_ground_whatever_it_says() -> None:
+def test_return_spares_what_is_on_the_ground_whatever_it_reports() -> None:
     order = command(ReturnHome(), takeoff=True)
     judged = approve(order, situation(vehicle(flying=False)))
     assert refused_by(judged) == "flying"

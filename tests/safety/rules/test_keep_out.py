@@ -38,7 +38,7 @@ def is_allowed(
     return asked(keep_out, body, air, state) is None
 
 
-def told(
+def refusal_text(
     body: Body, air: PreparedAirspace = AT_ALL_HEIGHTS, state: VehicleState | None = None
 ) -> str:
     return reason(asked(keep_out, body, air, state))
@@ -60,28 +60,30 @@ class TestBeside:
         body = mission((90.0, north_m, 40.0), (210.0, north_m, 40.0))
         state = flier(0.0, 200.0, takeoff_point=flier(0.0, 200.0).position.value)
         assert is_allowed(body, state=state) is allowed
-        assert allowed or told(body, state=state) == (
+        assert allowed or refusal_text(body, state=state) == (
             "A: leg 1 to 2 comes within 4.90 m of the keep-out zone 'yard' at 40.0 m above "
             "takeoff; the margin is 5 m horizontally"
         )
 
     def test_a_leg_through_it_is_refused_though_its_ends_are_outside(self) -> None:
-        assert told(across(40.0)).startswith(
+        assert refusal_text(across(40.0)).startswith(
             "A: leg 1 to 2 goes through the keep-out zone 'yard' at 40.0 m above takeoff"
         )
 
     def test_so_are_the_way_there_the_way_home_and_corners(self) -> None:
         there = mission((250.0, 0.0, 40.0), (250.0, 90.0, 40.0))
-        assert "the way to waypoint 1 goes through" in told(there)
+        assert "the way to waypoint 1 goes through" in refusal_text(there)
         beyond = flier(250.0, 0.0)
-        assert told(there, state=beyond).startswith("A: the way home from the way to waypoint 1")
+        assert refusal_text(there, state=beyond).startswith(
+            "A: the way home from the way to waypoint 1"
+        )
         assert is_allowed(there, state=flier(250.0, 0.0, failsafe=Failsafe.HOVER))
         cut = ((80.0, -60.0, 40.0), (80.0, 80.0, 40.0), (-100.0, -100.0, 40.0))
         assert is_allowed(mission(*cut, curved=True))
         around = ((90.0, -90.0, 40.0), (90.0, 60.0, 40.0), (240.0, 60.0, 40.0))
         state = flier(failsafe=Failsafe.HOVER)
         assert is_allowed(mission(*around, curved=True), state=state)
-        assert "the corner at waypoint 2 goes through" in told(
+        assert "the corner at waypoint 2 goes through" in refusal_text(
             mission(*around, curved=True, radius_m=60.0), state=state
         )
 
@@ -96,7 +98,7 @@ class TestBeside:
 
     def test_a_vehicle_that_is_nowhere_known_is_refused(self) -> None:
         nowhere = flier(position=Stamped())
-        assert "position unknown" in told(across(40.0), state=nowhere)
+        assert "position unknown" in refusal_text(across(40.0), state=nowhere)
         assert is_allowed(across(40.0), airspace(), nowhere)
         assert is_allowed(stick(0.0, 0.0), state=nowhere)
 
@@ -108,7 +110,7 @@ class TestAboveAndBelow:
     def test_above_the_ceiling(self, height_m: float, allowed: bool) -> None:
         state = flier(0.0, 0.0, height_m, go_home_m=60.0)
         assert is_allowed(across(height_m), LOW, state) is allowed
-        assert allowed or told(across(height_m), LOW, state) == (
+        assert allowed or refusal_text(across(height_m), LOW, state) == (
             "A: leg 1 to 2 goes through the keep-out zone 'yard' (up to 40 m above ground) at "
             "45.0 m above takeoff; the margin is 5 m horizontally or 5 m vertically"
         )
@@ -122,17 +124,17 @@ class TestAboveAndBelow:
         for height_m, allowed in ((50.0, True), (70.0, False), (90.0, True)):
             state = flier(0.0, 0.0, height_m, go_home_m=height_m)
             assert is_allowed(across(height_m), BAND, state) is allowed
-        assert "(from 60 m above ground up to 80 m above ground)" in told(
+        assert "(from 60 m above ground up to 80 m above ground)" in refusal_text(
             across(70.0), BAND, flier(0.0, 0.0, 70.0)
         )
 
     def test_all_of_a_leg_must_be_above(self) -> None:
         body = mission((90.0, 0.0, 30.0), (300.0, 0.0, 130.0))
-        assert "at 30.0 m to 130.0 m above takeoff" in told(body, LOW)
+        assert "at 30.0 m to 130.0 m above takeoff" in refusal_text(body, LOW)
 
     def test_the_climb_before_the_way_home_must_not_pass_through_a_band(self) -> None:
         state = flier(0.0, 0.0, 40.0, go_home_m=100.0)
-        assert told(across(40.0), BAND, state).startswith(
+        assert refusal_text(across(40.0), BAND, state).startswith(
             "A: the climb before the way home from leg 1 to 2 goes through"
         )
         assert is_allowed(across(40.0), BAND, flier(0.0, 0.0, 40.0, go_home_m=50.0))
@@ -142,23 +144,29 @@ class TestAboveAndBelow:
         assert is_allowed(across(50.0), LOW, low_home)  # it stays as high as it is
         band_home = flier(250.0, 0.0, 40.0, go_home_m=70.0)
         beside = mission((250.0, 0.0, 40.0), (250.0, 90.0, 40.0))
-        assert told(beside, BAND, band_home).startswith("A: the way home from the way to waypoint")
+        assert refusal_text(beside, BAND, band_home).startswith(
+            "A: the way home from the way to waypoint"
+        )
 
     def test_an_unknown_go_home_height_may_be_any(self) -> None:
         state = flier(0.0, 0.0, 40.0, go_home_m=None)
-        assert "at 40.0 m to an unknown go-home height above takeoff" in told(
+        assert "at 40.0 m to an unknown go-home height above takeoff" in refusal_text(
             across(40.0), BAND, state
         )
         assert is_allowed(across(90.0), BAND, flier(0.0, 0.0, 90.0, go_home_m=None))
 
     def test_who_lands_by_itself_may_not_pass_above(self) -> None:
         state = flier(0.0, 0.0, 60.0, failsafe=Failsafe.LAND)
-        assert told(across(60.0), LOW, state).startswith("A: the landing at leg 1 to 2 goes")
+        assert refusal_text(across(60.0), LOW, state).startswith(
+            "A: the landing at leg 1 to 2 goes"
+        )
         assert is_allowed(across(50.0), HIGH, state)
 
     def test_a_landing_at_the_end_goes_to_the_ground(self) -> None:
         body = mission((50.0, 0.0, 60.0), (150.0, 0.0, 60.0), land=True)
-        assert "the landing at the end goes through" in told(body, LOW, flier(0.0, 0.0, 60.0))
+        assert "the landing at the end goes through" in refusal_text(
+            body, LOW, flier(0.0, 0.0, 60.0)
+        )
         assert is_allowed(mission((50.0, 0.0, 60.0), (150.0, 0.0, 60.0)), LOW)
 
     def test_a_home_below_a_band_is_not_landed_at_from_above(self) -> None:
@@ -167,7 +175,7 @@ class TestAboveAndBelow:
         )
         body = mission((50.0, 0.0, 90.0), (150.0, 0.0, 90.0))
         state = flier(50.0, 0.0, 90.0, go_home_m=90.0)
-        assert told(body, air, state).startswith("A: the landing at home goes through")
+        assert refusal_text(body, air, state).startswith("A: the landing at home goes through")
 
 
 class TestDatum:
@@ -177,7 +185,9 @@ class TestDatum:
     def test_a_ceiling_above_the_ellipsoid(self) -> None:
         air = airspace(self.zoned(ceiling_m=ORIGIN.ellipsoid_height_m + 40.0))
         assert is_allowed(across(45.0), air, flier(0.0, 0.0, 45.0))
-        assert "up to 310 m above the ellipsoid" in told(across(44.9), air, flier(0.0, 0.0, 45.0))
+        assert "up to 310 m above the ellipsoid" in refusal_text(
+            across(44.9), air, flier(0.0, 0.0, 45.0)
+        )
 
     def test_a_floor_above_the_ellipsoid(self) -> None:
         air = airspace(self.zoned(floor_m=ORIGIN.ellipsoid_height_m + 60.0))
@@ -211,7 +221,7 @@ class TestDatum:
         small = hills([[0.0] * 4] * 4, cell_m=40.0)
         for heights in ({"ceiling_m": 10.0}, {"floor_m": 300.0}):
             air = airspace(keep_out_zone(YARD, **heights), elevation=small)
-            assert "goes through" in told(across(100.0), air, flier(0.0, 0.0, 100.0))
+            assert "goes through" in refusal_text(across(100.0), air, flier(0.0, 0.0, 100.0))
 
 
 class TestSticks:
@@ -224,7 +234,9 @@ class TestSticks:
         assert is_allowed(stick(0.0, 0.0, 41.0), LOW, over(42.0))
         assert is_allowed(stick(0.0, 0.0, 45.1), LOW, over(60.0))
         assert not is_allowed(stick(0.0, 0.0, 44.9), LOW, over(60.0))
-        assert "the stick's way goes through" in told(stick(0.0, 0.0, 37.9), LOW, over(60.0))
+        assert "the stick's way goes through" in refusal_text(
+            stick(0.0, 0.0, 37.9), LOW, over(60.0)
+        )
         assert is_allowed(stick(0.0, 0.0, 59.0), HIGH, over(58.0))
         assert not is_allowed(stick(0.0, 0.0, 62.1), HIGH, over(50.0))
 
@@ -254,7 +266,7 @@ class TestAlreadyInside:
         assert is_allowed(Nudge(0.0, -60.0, 0.0), state=self.inside)
 
     def test_deeper_in_is_not(self) -> None:
-        assert "goes through" in told(stick(0.0, 1.0), state=self.inside)
+        assert "goes through" in refusal_text(stick(0.0, 1.0), state=self.inside)
         assert not is_allowed(goto(300.0, 0.0), state=self.inside)
 
     def test_along_the_edge_it_may_be_moved(self) -> None:
@@ -268,12 +280,12 @@ class TestAlreadyInside:
 
     def test_the_rest_of_a_mission_must_keep_out(self) -> None:
         body = mission((50.0, 0.0, 40.0), (98.0, 0.0, 40.0))
-        assert "leg 1 to 2 comes within 2.00 m" in told(body, state=self.inside)
+        assert "leg 1 to 2 comes within 2.00 m" in refusal_text(body, state=self.inside)
         assert is_allowed(mission((50.0, 0.0, 40.0), (90.0, 0.0, 40.0)), state=self.inside)
 
     def test_its_way_home_may_go_no_deeper_either(self) -> None:
         far = flier(170.0, 0.0, 40.0)
-        assert "the way home from the nudge" in told(Nudge(0.0, 60.0, 0.0), state=far)
+        assert "the way home from the nudge" in refusal_text(Nudge(0.0, 60.0, 0.0), state=far)
 
     def test_just_above_the_ceiling_it_may_not_sink(self) -> None:
         """3 m above the ceiling, 40 m: too close, and moved up or sideways it is no worse."""

@@ -76,7 +76,7 @@ def test_what_moves_nothing_needs_no_young_telemetry(body: Body) -> None:
     assert judged(body, None, None) is None
 
 
-def test_a_refusal_says_the_age_and_what_is_needed() -> None:
+def test_a_refusal_states_the_age_and_what_is_needed() -> None:
     assert judged(mission(), 1.25, 0.1) == Refusal(
         "link_age",
         "A: core telemetry must be at most 1 s old for motion; got 1.2 s; wait for the link, or "
@@ -87,5 +87,5 @@ def test_a_refusal_says_the_age_and_what_is_needed() -> None:
     )
 
 
-def test_nobody_at_all_is_another_rules_matter() -> None:
+def test_a_missing_vehicle_is_another_rules_matter() -> None:
     assert link_age(command(mission()), replace(situation(), vehicle=None)) is None

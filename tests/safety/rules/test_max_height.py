@@ -40,7 +40,9 @@ def is_allowed(body: Body, air: PreparedAirspace = FLAT, state: VehicleState | N
     return asked(max_height, body, air, state) is None
 
 
-def told(body: Body, air: PreparedAirspace = FLAT, state: VehicleState | None = None) -> str:
+def refusal_text(
+    body: Body, air: PreparedAirspace = FLAT, state: VehicleState | None = None
+) -> str:
     return reason(asked(max_height, body, air, state))
 
 
@@ -52,7 +54,7 @@ class TestFlatGround:
     @pytest.mark.parametrize(("height_m", "allowed"), [(100.0, True), (100.01, False)])
     def test_the_limit(self, height_m: float, allowed: bool) -> None:
         assert is_allowed(level(height_m)) is allowed
-        assert allowed or told(level(height_m)) == (
+        assert allowed or refusal_text(level(height_m)) == (
             "A: the way to waypoint 1 must be at most 100 m above ground (flat ground "
             "assumed); got 100.0 m"
         )
@@ -69,8 +71,8 @@ class TestFlatGround:
     def test_corners_count(self) -> None:
         """On the legs it is refused as well; nothing else is as high."""
         body = mission((0.0, 50.0, 90.0), (100.0, 50.0, 110.0), (200.0, 90.0, 90.0), curved=True)
-        assert told(body).startswith("A: leg 1 to 2 must be")
-        assert told(body).endswith("got 110.0 m")
+        assert refusal_text(body).startswith("A: leg 1 to 2 must be")
+        assert refusal_text(body).endswith("got 110.0 m")
 
 
 class TestTheWayHome:
@@ -78,7 +80,7 @@ class TestTheWayHome:
     def test_the_go_home_height_counts(self, go_home_m: float, allowed: bool) -> None:
         state = flier(go_home_m=go_home_m)
         assert is_allowed(level(40.0), state=state) is allowed
-        assert allowed or told(level(40.0), state=state) == (
+        assert allowed or refusal_text(level(40.0), state=state) == (
             "A: the way home from the way to waypoint 1 must be at most 100 m above ground (flat "
             "ground assumed); got 101.0 m; set a lower go-home height in the aircraft and in "
             "site.toml"
@@ -89,14 +91,14 @@ class TestTheWayHome:
         for height_m in (None, 300.0):
             assert is_allowed(level(40.0), state=flier(go_home_m=height_m, failsafe=failsafe))
 
-    def test_one_that_nobody_knows_is_refused(self) -> None:
+    def test_an_unknown_one_is_refused(self) -> None:
         expected = (
             "A: go-home height unknown; write go_home_height_m, as set in the aircraft, "
             'into site.toml under [[vehicles]] serial = "A"'
         )
-        assert told(level(40.0), state=flier(go_home_m=None)) == expected
-        assert told(Nudge(1.0, 0.0, 0.0), state=flier(go_home_m=None)) == expected
-        assert told(level(40.0), state=vehicle(None)) == expected
+        assert refusal_text(level(40.0), state=flier(go_home_m=None)) == expected
+        assert refusal_text(Nudge(1.0, 0.0, 0.0), state=flier(go_home_m=None)) == expected
+        assert refusal_text(level(40.0), state=vehicle(None)) == expected
 
     def test_sticks_and_holding_need_none(self) -> None:
         for body in (stick(1.0, 0.0), HoldPosition()):
@@ -107,14 +109,14 @@ class TestValleys:
     def test_the_lowest_ground_under_a_leg_counts(self) -> None:
         low_home = flier(0.0, 50.0, 60.0, go_home_m=60.0)
         assert is_allowed(level(70.0), over(PIT), low_home)
-        assert told(level(71.0), over(PIT), low_home) == (
+        assert refusal_text(level(71.0), over(PIT), low_home) == (
             "A: leg 1 to 2 must be at most 100 m above ground; got 101.0 m"
         )
 
     def test_a_valley_under_the_way_home_counts(self) -> None:
         beyond = mission((300.0, 20.0, 60.0), (300.0, 100.0, 60.0))
         state = flier(300.0, -60.0, 60.0, go_home_m=90.0)
-        assert told(beyond, over(PIT), state).startswith(
+        assert refusal_text(beyond, over(PIT), state).startswith(
             "A: the way home from the way to waypoint 1"
         )
         assert is_allowed(beyond, over(PIT), flier(300.0, -60.0, 60.0, go_home_m=60.0))
@@ -123,13 +125,13 @@ class TestValleys:
         around = ((150.0, -20.0, 90.0), (360.0, -20.0, 90.0), (360.0, 160.0, 90.0))
         state = flier(0.0, -300.0, 60.0, failsafe=Failsafe.HOVER)
         assert is_allowed(mission(*around, curved=True), over(PIT), state)
-        assert "the corner at waypoint 2" in told(
+        assert "the corner at waypoint 2" in refusal_text(
             mission(*around, curved=True, radius_m=100.0), over(PIT), state
         )
 
-    def test_ground_that_nobody_knows_is_refused(self) -> None:
+    def test_unknown_ground_is_refused(self) -> None:
         body = mission((100.0, 50.0, 20.0), (700.0, 50.0, 20.0))
-        assert told(body, over(PIT)) == (
+        assert refusal_text(body, over(PIT)) == (
             "A: leg 1 to 2 goes over ground outside the site's elevation model"
         )
 
@@ -143,10 +145,10 @@ class TestAlreadyTooHigh:
         assert is_allowed(mission((150.0, 0.0, 90.0), (0.0, 0.0, 90.0)), state=self.high)
 
     def test_it_may_not_climb_and_a_mission_may_not_stay_there(self) -> None:
-        assert "got 141.0 m" in told(Nudge(0.0, 0.0, 1.0), state=self.high)
+        assert "got 141.0 m" in refusal_text(Nudge(0.0, 0.0, 1.0), state=self.high)
         assert (
             "leg 1 to 2 must be at most 100 m above ground (flat ground assumed); got 130.0 m"
-            in (told(mission((150.0, 0.0, 130.0), (0.0, 0.0, 130.0)), state=self.high))
+            in (refusal_text(mission((150.0, 0.0, 130.0), (0.0, 0.0, 130.0)), state=self.high))
         )
 
     def test_over_lower_ground_it_would_be_higher(self) -> None:
@@ -157,7 +159,7 @@ class TestAlreadyTooHigh:
         over_the_rim = flier(160.0, 50.0, 110.0)
         assert not is_allowed(stick(0.0, 15.0, 110.0), pit, over_the_rim)
 
-    def test_over_ground_that_nobody_knows_nothing_is_excused(self) -> None:
+    def test_over_unknown_ground_nothing_is_excused(self) -> None:
         holed = PIT.copy()
         holed[4, 7] = np.nan
         assert not is_allowed(stick(0.0, 0.1, 140.0), over(holed), flier(250.0, 50.0, 140.0))
@@ -170,7 +172,7 @@ class TestZeroAndUnknown:
         for state in (flier(200.0, 0.0, 101.5), nowhere):
             body = stick(0.0, 0.0, height_m)
             assert is_allowed(body, state=state) is allowed
-        assert allowed or told(stick(0.0, 0.0, height_m), state=nowhere) == (
+        assert allowed or refusal_text(stick(0.0, 0.0, height_m), state=nowhere) == (
             "Height must be at most 100 m above takeoff; got 102.1 m"
         )
 
@@ -185,8 +187,8 @@ class TestZeroAndUnknown:
 
     def test_a_vehicle_that_is_nowhere_known(self) -> None:
         nowhere = flier(position=Stamped())
-        assert "position unknown" in told(level(40.0), state=nowhere)
-        assert "position unknown" in told(stick(0.1, 0.0), state=nowhere)
+        assert "position unknown" in refusal_text(level(40.0), state=nowhere)
+        assert "position unknown" in refusal_text(stick(0.1, 0.0), state=nowhere)
 
     @pytest.mark.parametrize(("height_m", "allowed"), [(102.0, True), (103.0, False)])
     def test_a_zero_of_one_whose_height_is_unknown_too(

@@ -45,7 +45,9 @@ def is_allowed(body: Body, air: PreparedAirspace = FLAT, state: VehicleState | N
     return asked(min_height, body, air, state) is None
 
 
-def told(body: Body, air: PreparedAirspace = FLAT, state: VehicleState | None = None) -> str:
+def refusal_text(
+    body: Body, air: PreparedAirspace = FLAT, state: VehicleState | None = None
+) -> str:
     return reason(asked(min_height, body, air, state))
 
 
@@ -57,7 +59,7 @@ class TestFlatGround:
     @pytest.mark.parametrize(("height_m", "allowed"), [(10.0, True), (9.99, False)])
     def test_the_limit(self, height_m: float, allowed: bool) -> None:
         assert is_allowed(level(height_m)) is allowed
-        assert allowed or told(level(height_m)) == (
+        assert allowed or refusal_text(level(height_m)) == (
             "A: the way to waypoint 1 must be at least 10 m above ground (flat ground assumed) "
             "outside takeoff and landing; got 10.0 m"
         )
@@ -68,20 +70,20 @@ class TestFlatGround:
 
     def test_the_default_is_five_metres(self) -> None:
         assert is_allowed(level(5.0), airspace())
-        assert "at least 5 m above ground" in told(level(4.9), airspace())
+        assert "at least 5 m above ground" in refusal_text(level(4.9), airspace())
 
     def test_corners_and_ways_home_count(self) -> None:
         low_home = flier(0.0, 50.0, 20.0, go_home_m=2.0)
         assert is_allowed(level(20.0), state=low_home)  # as high as it is
         dip = mission((0.0, 50.0, 40.0), (100.0, 50.0, 4.0), (200.0, 90.0, 40.0), curved=True)
-        assert "leg 1 to 2 must be" in told(dip)
-        assert "got 4.0 m" in told(dip)
+        assert "leg 1 to 2 must be" in refusal_text(dip)
+        assert "got 4.0 m" in refusal_text(dip)
 
 
 class TestHills:
     def test_a_hill_under_the_middle_of_a_leg_counts(self) -> None:
         assert is_allowed(level(45.0), over(HILL), flier(0.0, 50.0, 45.0))
-        assert told(level(44.0), over(HILL), flier(0.0, 50.0, 45.0)) == (
+        assert refusal_text(level(44.0), over(HILL), flier(0.0, 50.0, 45.0)) == (
             "A: leg 1 to 2 must be at least 10 m above ground outside takeoff and landing; got "
             "9.0 m"
         )
@@ -91,7 +93,7 @@ class TestHills:
         around = ((150.0, -20.0, 22.0), (360.0, -20.0, 22.0), (360.0, 160.0, 22.0))
         state = flier(0.0, -300.0, 30.0, failsafe=Failsafe.HOVER)
         assert is_allowed(mission(*around, curved=True), over(HILL), state)
-        assert "the corner at waypoint 2" in told(
+        assert "the corner at waypoint 2" in refusal_text(
             mission(*around, curved=True, radius_m=100.0), over(HILL), state
         )
 
@@ -107,8 +109,8 @@ class TestHills:
         state = flier(300.0, -80.0, 30.0, go_home_m=30.0)
         assert is_allowed(low, over(HILL), state)
         wide = mission((300.0, -60.0, 30.0), (300.0, 120.0, 30.0))
-        assert "the way home from leg 1 to 2 must be" in told(wide, over(HILL), state)
-        assert "got -5.0 m" in told(wide, over(HILL), state)
+        assert "the way home from leg 1 to 2 must be" in refusal_text(wide, over(HILL), state)
+        assert "got -5.0 m" in refusal_text(wide, over(HILL), state)
         assert is_allowed(wide, over(HILL), replace(state, profile=flier(go_home_m=50.0).profile))
 
     def test_home_on_a_hill_raises_every_height(self) -> None:
@@ -121,21 +123,21 @@ class TestHills:
             body = mission(*((*point, height_m) for point in beside))
             assert is_allowed(body, over(HILL), state) is allowed
 
-    def test_ground_that_nobody_knows_is_refused(self) -> None:
+    def test_unknown_ground_is_refused(self) -> None:
         body = mission((100.0, 50.0, 200.0), (700.0, 50.0, 200.0))
-        assert told(body, over(HILL)) == (
+        assert refusal_text(body, over(HILL)) == (
             "A: leg 1 to 2 goes over ground outside the site's elevation model"
         )
         holed = HILL.copy()
         holed[4, 7] = np.nan
-        assert "outside the site's elevation model" in told(level(200.0), over(holed))
+        assert "outside the site's elevation model" in refusal_text(level(200.0), over(holed))
 
 
 class TestColumns:
     def test_takeoff_from_home(self) -> None:
         grounded = flier(0.0, 0.0, 0.0, is_flying=False)
         assert is_allowed(mission((0.0, 3.0, 40.0), (50.0, 0.0, 40.0)), state=grounded)
-        assert told(mission((0.0, 30.0, 40.0), (50.0, 0.0, 40.0)), state=grounded).endswith(
+        assert refusal_text(mission((0.0, 30.0, 40.0), (50.0, 0.0, 40.0)), state=grounded).endswith(
             "; climb straight up first (a mission's first waypoint may be above the vehicle)"
         )
 
@@ -159,16 +161,16 @@ class TestColumns:
     def test_the_landing_at_the_end_is_open_anywhere(self) -> None:
         assert is_allowed(mission((0.0, 50.0, 40.0), (300.0, 50.0, 40.0), land=True))
 
-    def test_who_is_too_low_may_climb_where_it_is(self) -> None:
+    def test_one_too_low_may_climb_where_it_is(self) -> None:
         low = flier(200.0, 0.0, 3.0)
         assert is_allowed(Nudge(0.0, 0.0, 20.0), state=low)
         assert is_allowed(stick(0.5, 0.0, 5.0), state=low)
         assert not is_allowed(Nudge(0.0, 30.0, 20.0), state=low)
-        assert told(Nudge(0.0, 30.0, 0.0), state=low).endswith("may be above the vehicle)")
-        assert told(Nudge(0.0, 0.0, -1.0), state=low).endswith(
+        assert refusal_text(Nudge(0.0, 30.0, 0.0), state=low).endswith("may be above the vehicle)")
+        assert refusal_text(Nudge(0.0, 0.0, -1.0), state=low).endswith(
             "outside takeoff and landing; got 2.0 m"
         )
-        assert told(level(40.0), state=low).endswith(
+        assert refusal_text(level(40.0), state=low).endswith(
             "(a mission's first waypoint may be above the vehicle)"
         )
         assert not is_allowed(stick(0.5, 0.0, 2.5), state=low)
@@ -203,6 +205,6 @@ class TestZeroAndUnknown:
 
     def test_a_vehicle_that_is_nowhere_known(self) -> None:
         nowhere = flier(position=Stamped())
-        assert "position unknown" in told(level(40.0), state=nowhere)
-        assert "position unknown" in told(stick(0.1, 0.0), state=nowhere)
+        assert "position unknown" in refusal_text(level(40.0), state=nowhere)
+        assert "position unknown" in refusal_text(stick(0.1, 0.0), state=nowhere)
         assert is_allowed(stick(0.0, 0.0), state=nowhere)

@@ -12,7 +12,7 @@ from recon.safety import OPEN_AIRSPACE, Override, Situation
 from recon.safety.rules.preflight import preflight
 from recon.safety.situation import NO_FACTS
 
-HOMEWARDS = FlyMission(replace(mission(waypoint(50.0), waypoint(0.0)).mission, land_at_end=True))
+TOWARDS_HOME = FlyMission(replace(mission(waypoint(50.0), waypoint(0.0)).mission, land_at_end=True))
 OVERRIDE = Override("Ann", "the fence comes tomorrow", 5)
 
 
@@ -32,18 +32,21 @@ def test_a_vehicle_whose_list_is_passed_flies() -> None:
     assert reason(mission()) is None
 
 
-def test_one_whose_list_is_not_says_which_point_and_what_to_do() -> None:
+def test_a_failed_list_names_the_point_and_what_to_do() -> None:
     assert reason(mission(), now=UNFENCED) == (
         "A: preflight checklist not passed: Fence: no boundary is loaded (name one in "
         "site.toml under [layers]). Resolve these points, or override the checklist with a reason"
     )
 
 
-def test_all_points_are_told_at_once() -> None:
+def test_all_points_are_listed_at_once() -> None:
     both = replace(UNFENCED, facts=NO_FACTS)
-    told = reason(mission(), now=both)
-    assert told is not None
-    assert "Fence: no boundary is loaded (name one in site.toml under [layers]); Clock: " in told
+    refusal_text = reason(mission(), now=both)
+    assert refusal_text is not None
+    assert (
+        "Fence: no boundary is loaded (name one in site.toml under [layers]); Clock: "
+        in refusal_text
+    )
 
 
 def test_a_point_that_only_wants_attention_holds_nothing_back() -> None:
@@ -70,9 +73,9 @@ def test_the_list_is_for_missions(body: Body) -> None:
 
 def test_coming_home_needs_no_list() -> None:
     out = vehicle(position=LatLon(waypoint(60.0).latitude_deg, -93.6))
-    assert reason(HOMEWARDS, out, UNFENCED) is None
+    assert reason(TOWARDS_HOME, out, UNFENCED) is None
     assert reason(mission(waypoint(50.0), waypoint(0.0)), out, UNFENCED) is not None
 
 
-def test_nobody_at_all_is_another_rules_matter() -> None:
+def test_a_missing_vehicle_is_another_rules_matter() -> None:
     assert preflight(command(mission()), replace(UNFENCED, vehicle=None)) is None

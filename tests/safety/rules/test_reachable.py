@@ -12,13 +12,13 @@ from recon.safety.rules.reachable import reachable
 LAND = command(LandNow())
 
 
-def test_nobody_of_that_serial() -> None:
+def test_an_unknown_serial() -> None:
     assert approve(LAND, Situation(NOW, None, ())) == Refusal(
         "reachable", "A is unknown: no app has reported this serial"
     )
 
 
-def test_nobody_on_that_link() -> None:
+def test_an_unknown_link() -> None:
     unsaid = replace(LAND, serial=None, link_id=7)
     assert approve(unsaid, Situation(NOW, None, ())) == Refusal(
         "reachable", "link 7 is unknown: no app has reported this serial"

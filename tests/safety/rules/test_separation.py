@@ -1,4 +1,4 @@
-"""Paths are kept apart in space and time; what is not heard is a hazard."""
+"""Paths are kept apart in space and time; a lost vehicle is a hazard."""
 
 from dataclasses import replace
 
@@ -131,8 +131,8 @@ class TestTime:
         self, velocity: tuple[float, float, float] | None, passed: int, passes: bool
     ) -> None:
         """What A crosses when B is past passes, unless B may still set out 8 s from now."""
-        told = flies(route((20.0, -60.0), (20.0, 600.0)), passed)
-        other = Traffic(aircraft("B", (20.0, -60.0), velocity=velocity), told)
+        refusal_text = flies(route((20.0, -60.0), (20.0, 600.0)), passed)
+        other = Traffic(aircraft("B", (20.0, -60.0), velocity=velocity), refusal_text)
         there = GoTo(at(200.0, 0.0), 40.0, 5.0)
         assert (judged(there, aircraft("A", (-165.0, 0.0)), other) is None) is passes
         assert judged(there, aircraft("A", (-250.0, 0.0)), other) is None
@@ -236,21 +236,21 @@ class TestLeadingApart:
     def test_one_that_has_yet_to_come_down_is_not_too_near_already(
         self, stays: tuple[float, float, float]
     ) -> None:
-        """It is 8 m higher, and was told to come down to here."""
+        """It is 8 m higher, and was sent down to here."""
         above = Traffic(aircraft("B", height_m=44.0), flies(route((0.0, 0.0, 36.0), stays)))
         own = aircraft("A", height_m=36.0)
         refused(judged(route((0.0, 0.0, 36.0), (0.0, 0.0, 36.0)), own, above), "from B")
 
     @pytest.mark.parametrize("age_s", [0.0, 0.2, 1.0])
     def test_one_that_is_leaving_already_may_go_on(self, age_s: float) -> None:
-        """Where it was last heard is nearer than where it is now; that is over."""
+        """Its last reported position is nearer than where it is now; that is over."""
         leaving = aircraft("A", velocity=(-5.0, 0.0, 0.0), age_s=age_s)
         away = VirtualStick(StickFrame.GROUND, 0.0, -5.0, 0.0, 40.0, 1.0)
         assert judged(away, leaving, self.near) is None
         assert judged(GoTo(at(-50.0, 0.0), 40.0, 5.0), leaving, self.near) is None
         refused(judged(GoTo(at(50.0, 0.0), 40.0, 5.0), leaving, self.near))
 
-    def test_how_far_a_turn_may_lead_makes_nobody_too_near_already(self) -> None:
+    def test_how_far_a_turn_may_lead_counts_not_as_too_near_already(self) -> None:
         """At 10 m/s towards B it comes 20 m nearer before it flies back, be the stick ever so."""
         back = VirtualStick(StickFrame.GROUND, 0.0, -12.0, 0.0, 40.0, 1.0)
         rushing = aircraft("A", velocity=(10.0, 0.0, 0.0))
@@ -259,7 +259,7 @@ class TestLeadingApart:
 
 
 class TestUnseen:
-    def test_a_ghost_is_kept_clear_of_as_wide_as_it_may_grow(self) -> None:
+    def test_a_hazard_area_is_kept_clear_of_as_wide_as_it_may_grow(self) -> None:
         own = aircraft("A", (0.0, -400.0))
         hazard = aircraft("B", (0.0, 0.0), age_s=3.1, failsafe=Failsafe.HOVER)
         for east_m, passes in ((-170.0, True), (-160.0, False)):
@@ -293,7 +293,7 @@ class TestUnseen:
         found = judged(crossing, aircraft("A", (-100.0, 400.0), height_m), hazard)
         assert (found is None) is passes
 
-    def test_an_unheard_vehicle_may_fly_its_mission_on(self) -> None:
+    def test_a_lost_vehicle_may_continue_its_mission(self) -> None:
         far = route((0.0, 800.0), (0.0, 1800.0))
         hazard = aircraft("B", (0.0, 800.0), age_s=10.0, failsafe=Failsafe.HOVER)
         own = aircraft("A", (-100.0, 1200.0))
@@ -301,14 +301,14 @@ class TestUnseen:
         assert judged(crossing, own, Traffic(hazard)) is None
         refused(judged(crossing, own, Traffic(hazard, flies(far, passed=1))))
 
-    def test_one_may_be_led_out_of_a_ghosts_circle(self) -> None:
+    def test_one_may_be_led_out_of_a_hazard_area(self) -> None:
         hazard = aircraft("B", (0.0, 0.0), age_s=60.0, failsafe=Failsafe.HOVER)
         own = aircraft("A", (0.0, 80.0))
         assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, hazard) is None
         refused(judged(GoTo(at(0.0, -200.0), 40.0, 10.0), own, hazard))
 
-    def test_one_may_be_led_away_from_where_a_ghost_will_have_grown_to(self) -> None:
-        """Unheard for 4 s it is within 8 m; 80 m away it may still come."""
+    def test_one_may_be_led_away_from_where_a_hazard_area_will_have_grown_to(self) -> None:
+        """Lost for 4 s it is within 8 m; 80 m away it may still come."""
         hazard = aircraft("B", (0.0, 0.0), age_s=4.0, failsafe=Failsafe.HOVER)
         own = aircraft("A", (0.0, 80.0))
         assert judged(GoTo(at(0.0, 200.0), 40.0, 10.0), own, hazard) is None
@@ -322,7 +322,7 @@ class TestUnseen:
         )
         refused(judged(NORTH, aircraft("A"), blind), "B")
 
-    def test_one_that_has_never_told_where_it_is_refuses_motion(self) -> None:
+    def test_one_that_has_never_reported_a_position_refuses_motion(self) -> None:
         refused(judged(NORTH, aircraft("A"), aircraft("B", None)), "A: B may be in the air")
 
     def test_an_app_without_an_aircraft_is_no_traffic_and_hides_none(self) -> None:
@@ -342,14 +342,14 @@ class TestUnseen:
             assert found is not None
             assert found.reason == words
 
-    def test_a_vehicle_nobody_knows_is_another_rules_matter(self) -> None:
+    def test_an_unknown_vehicle_is_another_rules_matter(self) -> None:
         situation = Situation(NOW, None, (), airspace=AIR, traffic=(Traffic(aircraft("B")),))
         command = Command(1, FlyMission(NORTH), "test", NOW, NOW, serial="A")
         assert separation(command, situation) is None
 
 
 class TestUnknownHeights:
-    def test_a_height_nobody_knows_is_every_height(self) -> None:
+    def test_an_unknown_height_is_every_height(self) -> None:
         for state in (
             aircraft("B", (100.0, 0.0), None),
             aircraft("B", (100.0, 0.0), 90.0, home=None),
@@ -360,7 +360,7 @@ class TestUnknownHeights:
 
 
 class TestOtherIntents:
-    """What others were told decides where they will be."""
+    """The intents of others decide where they will be."""
 
     def test_one_that_returns_climbs_flies_home_and_lands(self) -> None:
         returning = Traffic(aircraft("B", (0.0, 300.0)), Intent(Commanded.RETURN))

@@ -1,4 +1,4 @@
-"""Vehicles flown at 100 Hz under the watchdogs' eyes: what they do when they are told to hold.
+"""Vehicles flown at 100 Hz under the watchdogs, and how they hold.
 
 Nothing here is taken from the prediction: motion is integrated in small steps from accelerations.
 """
@@ -34,7 +34,7 @@ Vector = tuple[float, float, float]
 
 @dataclass(slots=True)
 class Aircraft:
-    """Flies straight until told to hold; place and velocity are north, east, up."""
+    """Flies straight until held; place and velocity are north, east, up."""
 
     serial: str
     place: Vector
@@ -59,7 +59,7 @@ class Aircraft:
             at + STEP_S * v for at, v in zip(self.place, self.velocity, strict=True)
         )
 
-    def is_told_to_hold(self, now_s: float) -> None:
+    def is_ordered_to_hold(self, now_s: float) -> None:
         self.held_at_s = now_s
         if self.holds_at_s is None:
             self.holds_at_s = now_s + self.delay_s
@@ -127,7 +127,7 @@ class Air:
         self.found += [(self.now_s, finding) for finding in findings]
         for finding in findings if self.acts else ():
             if finding.holds is not None:
-                self.one(finding.holds).is_told_to_hold(self.now_s)
+                self.one(finding.holds).is_ordered_to_hold(self.now_s)
                 self.holds.append((self.now_s, finding.holds))
         return findings
 

@@ -1,4 +1,4 @@
-"""One look of a watchdog at vehicles told in metres; `traffic` has the vehicles."""
+"""One look of a watchdog at vehicles in metres; `traffic` has the vehicles."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -41,14 +41,14 @@ def looks(
     lasted_s: float = 5.0,
     is_hold_on: bool = True,
 ) -> list[Finding]:
-    """What a watchdog says to vehicles it has said the same about for a while."""
+    """A watchdog's findings that have lasted for a while."""
     once = list(watchdog(picture(*vehicles, airspace=airspace, is_hold_on=is_hold_on)))
     since = {finding.key: NOW - round(lasted_s * S) for finding in once}
     again = picture(*vehicles, airspace=airspace, since_ns=since, is_hold_on=is_hold_on)
     return list(watchdog(again))
 
 
-def told(state: VehicleState, **changes: object) -> WatchedVehicle:
+def in_context(state: VehicleState, **changes: object) -> WatchedVehicle:
     """A vehicle and what the station knows beside its state."""
     return replace(WatchedVehicle(state), **changes)  # type: ignore[arg-type]
 
@@ -67,7 +67,7 @@ __all__ = [
     "S",
     "aircraft",
     "held",
+    "in_context",
     "looks",
     "picture",
-    "told",
 ]

@@ -110,7 +110,7 @@ def alarms_and_holds(apart_m: float) -> tuple[int, int]:
     return began, holds
 
 
-def test_lines_20_m_apart_raise_hardly_any_alarm_and_hold_nobody() -> None:
+def test_lines_20_m_apart_raise_hardly_any_alarm_and_hold_no_vehicle() -> None:
     began, holds = alarms_and_holds(20.0)
     assert holds == 0
     assert began <= FALSE_ALARMS_PER_VEHICLE_HOUR * 8 * MINUTES / 60.0

@@ -12,9 +12,9 @@ from tests.safety.watchdogs.looks import (
     FlightMode,
     Intent,
     held,
+    in_context,
     looks,
     picture,
-    told,
 )
 
 from recon.model.airspace import Airspace, ElevationModel, FlightLimits
@@ -61,15 +61,15 @@ class TestBoundary:
         state = aircraft("A", (north_m, 0.0), velocity=(10.0, 0.0, 0.0))
         assert len(looks(fences, state, airspace=SITE)) == count
 
-    def test_one_about_to_leave_is_held_and_said_so(self) -> None:
+    def test_one_about_to_leave_is_held_and_reported(self) -> None:
         leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
         found = only(looks(fences, leaving, airspace=SITE))
         assert (found.rule, found.severity, found.holds) == ("fence_ahead", Severity.ERROR, "A")
         assert found.text == "A: is about to leave the site's boundary"
-        ordered = only(looks(fences, told(leaving, held=held(0.1, 10.0)), airspace=SITE))
-        assert ordered.text.endswith("boundary; A has been told to hold")
-        refused = only(looks(fences, told(leaving, hold_refused="no link"), airspace=SITE))
-        assert refused.text.endswith("boundary; A could not be told to hold (no link)")
+        ordered = only(looks(fences, in_context(leaving, held=held(0.1, 10.0)), airspace=SITE))
+        assert ordered.text.endswith("boundary; A was ordered to hold")
+        refused = only(looks(fences, in_context(leaving, hold_refused="no link"), airspace=SITE))
+        assert refused.text.endswith("boundary; A could not be held (no link)")
         assert refused.holds is None
 
     def test_the_alarm_is_first(self) -> None:
@@ -88,16 +88,16 @@ class TestBoundary:
     def test_a_pilot_and_one_coming_down_are_alarmed_about_only(self) -> None:
         leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
         for one in (
-            told(leaving, holder=AuthorityHolder.PILOT),
-            told(leaving, intent=Intent(Commanded.RETURN, NOW)),
-            told(leaving, held=held(1.0, 10.0), intent=Intent()),
+            in_context(leaving, holder=AuthorityHolder.PILOT),
+            in_context(leaving, intent=Intent(Commanded.RETURN, NOW)),
+            in_context(leaving, held=held(1.0, 10.0), intent=Intent()),
         ):
             finding = only(looks(fences, one, airspace=SITE))
             assert finding.holds is None
 
     def test_a_hold_that_does_nothing_is_given_again(self) -> None:
         leaving = aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0))
-        again = told(leaving, held=held(5.1, 10.0))
+        again = in_context(leaving, held=held(5.1, 10.0))
         assert only(looks(fences, again, airspace=SITE)).holds == "A"
 
     def test_a_mission_that_ends_at_the_fence_is_followed_to_its_stop(self) -> None:
@@ -105,7 +105,7 @@ class TestBoundary:
             "A", (470.0, 0.0), velocity=(10.0, 0.0, 0.0), mode=FlightMode.GPS_WAYPOINT
         )
         to_the_edge = route((0.0, 0.0), (494.0, 0.0), (494.0, 50.0))
-        assert looks(fences, told(flying, intent=flies(to_the_edge, 1)), airspace=SITE) == []
+        assert looks(fences, in_context(flying, intent=flies(to_the_edge, 1)), airspace=SITE) == []
         assert len(looks(fences, flying, airspace=SITE)) == 1
 
     @pytest.mark.parametrize(
@@ -124,7 +124,7 @@ class TestBoundary:
     ) -> None:
         flying = aircraft("A", (480.0, -480.0), velocity=velocity, mode=FlightMode.GPS_WAYPOINT)
         rows = route((300.0, -481.0), (484.0, -476.0), (484.0, 300.0), (300.0, 300.0))
-        seen = looks(fences, told(flying, intent=flies(rows, 1)), airspace=SITE)
+        seen = looks(fences, in_context(flying, intent=flies(rows, 1)), airspace=SITE)
         assert len(seen) == count
 
     @pytest.mark.parametrize("commanded", [Commanded.STICK, Commanded.RETURN])
@@ -137,12 +137,12 @@ class TestBoundary:
         home = (300.0, 470.0)
         flying = aircraft("A", (0.0, 470.0), velocity=(10.0, east_mps, 0.0), mode=mode, home=home)
         target = at(*home) if commanded is Commanded.STICK else None
-        watched = told(flying, intent=Intent(commanded, target=target))
+        watched = in_context(flying, intent=Intent(commanded, target=target))
         assert len(looks(fences, watched, airspace=SITE)) == count
 
     def test_over_its_target_any_direction_is_as_good(self) -> None:
         flying = aircraft("A", (494.0, 0.0), velocity=(2.5, 0.0, 0.0), mode=FlightMode.JOYSTICK)
-        there = told(flying, intent=Intent(Commanded.STICK, target=at(494.0, 0.5)))
+        there = in_context(flying, intent=Intent(Commanded.STICK, target=at(494.0, 0.5)))
         assert looks(fences, there, airspace=SITE) == []
 
     def test_without_a_site_or_a_boundary_nothing_is_asked(self) -> None:
@@ -186,14 +186,14 @@ class TestKeepOut:
         sinking = aircraft("A", (300.0, 0.0), 33.0, (0.0, 0.0, -3.0))
         assert only(looks(fences, sinking, airspace=site(TREES))).rule == "zone_ahead"
 
-    def test_a_height_nobody_knows_is_in_it(self) -> None:
+    def test_an_unknown_height_is_in_it(self) -> None:
         blind = aircraft("A", (300.0, 0.0), None)
         assert only(looks(fences, blind, airspace=site(TREES))).rule == "zone_ahead"
 
 
 class TestHeights:
     @pytest.mark.parametrize(("height_m", "word"), [(29.0, "low"), (31.0, ""), (61.0, "high")])
-    def test_a_height_zone_is_alarmed_about_and_nobody_is_held(
+    def test_a_height_zone_is_alarmed_about_and_no_vehicle_is_held(
         self, height_m: float, word: str
     ) -> None:
         inside = aircraft("A", (300.0, 0.0), height_m)
@@ -206,7 +206,7 @@ class TestHeights:
         assert len(looks(fences, low, airspace=airspace)) == 1
         takes_off = aircraft("A", (300.0, 0.0), 10.0, home=(300.0, 5.0))
         assert looks(fences, takes_off, airspace=airspace) == []
-        landing = told(low, intent=Intent(Commanded.LAND, NOW))
+        landing = in_context(low, intent=Intent(Commanded.LAND, NOW))
         assert looks(fences, landing, airspace=airspace) == []
         homeless = replace(low, takeoff_point=None)
         assert looks(fences, homeless, airspace=airspace) == []
@@ -231,7 +231,7 @@ class TestHeights:
             found = looks(fences, aircraft("A", (0.0, 0.0), height_m), airspace=airspace)
             assert len(found) == count
 
-    def test_a_height_nobody_knows_is_not_called_too_high_or_too_low(self) -> None:
+    def test_an_unknown_height_is_not_called_too_high_or_too_low(self) -> None:
         assert looks(fences, aircraft("A", (0.0, 0.0), None), airspace=SITE) == []
 
     @pytest.mark.parametrize(("height_m", "count"), [(5.5, 0), (4.5, 1)])
@@ -259,12 +259,12 @@ class TestHeights:
         low = aircraft("A", (0.0, 0.0), 3.0, home=FAR_HOME)
         for one in (
             aircraft("A", (0.0, 0.0), 3.0, home=(10.0, 0.0)),
-            told(low, intent=Intent(Commanded.LAND, NOW)),
-            told(low, intent=Intent(Commanded.RETURN, NOW)),
+            in_context(low, intent=Intent(Commanded.LAND, NOW)),
+            in_context(low, intent=Intent(Commanded.RETURN, NOW)),
         ):
             assert looks(fences, one, airspace=SITE) == []
 
-    def test_over_ground_that_nobody_knows_one_alarm_is_enough(self) -> None:
+    def test_over_unknown_ground_one_alarm_is_enough(self) -> None:
         grid = GroundGrid(FRAME, -600.0, 600.0, 100.0, 12, 12)
         unknown = np.full((12, 12), 275.0)
         unknown[:, 6:] = np.nan
@@ -274,15 +274,15 @@ class TestHeights:
         assert "is higher above ground than 120 m" in found.text
 
 
-def test_one_that_may_fly_its_mission_on_unheard_is_not_asked_and_others_are() -> None:
+def test_a_lost_one_that_may_continue_its_mission_is_not_judged_and_others_are() -> None:
     mission = route((0.0, 0.0), (0.0, 400.0))
-    lost = told(aircraft("G", age_s=10.0), intent=flies(mission, 1))
+    lost = in_context(aircraft("G", age_s=10.0), intent=flies(mission, 1))
     outside = aircraft("A", (520.0, 0.0))
     assert [f.serial for f in looks(fences, lost, outside, airspace=SITE)] == ["A"]
     assert looks(fences, lost, airspace=SITE) == []
 
 
-def test_no_vehicle_is_asked_that_is_not_heard_flying() -> None:
+def test_only_vehicles_flying_in_contact_are_judged() -> None:
     stale = aircraft("A", (520.0, 0.0), age_s=5.0)
     assert picture(stale, airspace=SITE).flying == ()
     assert looks(fences, stale, airspace=SITE) == []

@@ -1,4 +1,4 @@
-"""Who is found in conflict, who is held for it, and who never is."""
+"""Which vehicles are in conflict, which are held, and which never are."""
 
 from dataclasses import replace
 
@@ -13,8 +13,8 @@ from tests.safety.watchdogs.looks import (
     S,
     aircraft,
     held,
+    in_context,
     looks,
-    told,
 )
 
 from recon.model.severity import Severity
@@ -52,12 +52,11 @@ class TestAlarms:
         a, b = head_on(80.0)
         apart = "0 m, and 0 m in height"
         assert only(looks(separation, a, b)).holds == "B"
-        given = only(looks(separation, a, told(b, held=held(0.5, 10.0))))
-        assert given.text.endswith("; B has been told to hold")
-        other = only(looks(separation, a, told(b, hold_refused="no link")))
+        given = only(looks(separation, a, in_context(b, held=held(0.5, 10.0))))
+        assert given.text.endswith("; B was ordered to hold")
+        other = only(looks(separation, a, in_context(b, hold_refused="no link")))
         assert (
-            other.text
-            == f"B: comes too near in 3 s to A: {apart}; B could not be told to hold (no link)"
+            other.text == f"B: comes too near in 3 s to A: {apart}; B could not be held (no link)"
         )
         assert other.holds == "A"
 
@@ -90,22 +89,22 @@ class TestAlarms:
         turns = route((0.0, 0.0), (60.0, 0.0), (60.0, -200.0))
         flying = aircraft("A", (0.0, 0.0), velocity=(5.0, 0.0, 0.0), mode=FlightMode.GPS_WAYPOINT)
         standing = aircraft("B", (80.0, 0.0))
-        assert looks(separation, told(flying, intent=flies(turns, 1)), standing) == []
+        assert looks(separation, in_context(flying, intent=flies(turns, 1)), standing) == []
         manual = replace(flying, flight_mode=Stamped(FlightMode.GPS_ATTI, NOW))
-        by_hand = told(manual, intent=flies(turns, 1))
+        by_hand = in_context(manual, intent=flies(turns, 1))
         assert len(looks(separation, by_hand, aircraft("B", (60.0, 0.0)))) == 1
 
     def test_a_mission_into_another_round_a_corner_is_found(self) -> None:
         turns = route((0.0, 0.0), (10.0, 0.0), (10.0, -200.0))
         flying = aircraft("A", (0.0, 0.0), velocity=(5.0, 0.0, 0.0), mode=FlightMode.GPS_WAYPOINT)
         standing = aircraft("B", (10.0, -30.0))
-        assert len(looks(separation, told(flying, intent=flies(turns, 1)), standing)) == 1
+        assert len(looks(separation, in_context(flying, intent=flies(turns, 1)), standing)) == 1
         assert looks(separation, flying, standing) == []
 
     def test_one_that_flies_a_mission_backwards_is_not_followed(self) -> None:
         back = route((0.0, 0.0), (200.0, 0.0))
         flying = aircraft("A", (60.0, 0.0), velocity=SOUTH, mode=FlightMode.GPS_WAYPOINT)
-        assert len(looks(separation, told(flying, intent=flies(back, 1)), aircraft("B"))) == 1
+        assert len(looks(separation, in_context(flying, intent=flies(back, 1)), aircraft("B"))) == 1
 
     def test_nothing_in_the_air_is_nothing(self) -> None:
         assert looks(separation) == []
@@ -142,34 +141,34 @@ class TestHolds:
 
     def test_the_imager_yields_after_others_and_an_operators_after_guidances(self) -> None:
         a, b = head_on()
-        assert only(looks(separation, a, told(b, is_imager=True))).holds == "A"
-        guided = told(a, holder=AuthorityHolder.GUIDANCE)
+        assert only(looks(separation, a, in_context(b, is_imager=True))).holds == "A"
+        guided = in_context(a, holder=AuthorityHolder.GUIDANCE)
         assert only(looks(separation, guided, b)).holds == "A"
-        low = told(aircraft("A", velocity=NORTH, priority=-1), is_imager=True)
+        low = in_context(aircraft("A", velocity=NORTH, priority=-1), is_imager=True)
         assert only(looks(separation, low, b)).holds == "A"
 
     def test_a_vehicle_without_a_profile_has_no_priority(self) -> None:
         a, b = head_on()
         assert only(looks(separation, replace(a, profile=None), b)).holds == "B"
 
-    def test_switched_off_it_only_says_so(self) -> None:
+    def test_switched_off_it_only_reports(self) -> None:
         found = only(looks(separation, *head_on(), is_hold_on=False))
         assert found.holds is None
         assert "holding is switched off" in found.text
 
     def test_what_the_pilot_leads_is_never_held(self) -> None:
         a, b = head_on()
-        assert only(looks(separation, a, told(b, holder=AuthorityHolder.PILOT))).holds == "A"
-        both = [told(v, holder=AuthorityHolder.PILOT) for v in (a, b)]
+        assert only(looks(separation, a, in_context(b, holder=AuthorityHolder.PILOT))).holds == "A"
+        both = [in_context(v, holder=AuthorityHolder.PILOT) for v in (a, b)]
         found = only(looks(separation, *both))
         assert found.holds is None
-        assert "told to hold" not in found.text
+        assert "ordered to hold" not in found.text
 
     def test_what_is_on_the_ground_is_neither_held_nor_a_reason(self) -> None:
         a, b = head_on(flying=False)
         assert looks(separation, a, b) == []
 
-    def test_what_does_not_say_whether_it_flies_is_no_reason_until_it_is_unheard(self) -> None:
+    def test_an_unknown_in_air_flag_is_no_reason_until_telemetry_is_lost(self) -> None:
         a, b = head_on(flying=None)
         assert looks(separation, a, b) == []
 
@@ -182,9 +181,9 @@ class TestHolds:
         behind = aircraft("A", (0.0, 0.0), velocity=(12.0, 0.0, 0.0))
         assert only(looks(separation, front, behind)).holds == "A"
 
-    def test_the_one_in_front_of_a_pilot_is_held_by_nobody(self) -> None:
+    def test_the_one_in_front_of_a_pilot_is_never_held(self) -> None:
         front = aircraft("B", (60.0, 0.0), velocity=(4.0, 0.0, 0.0))
-        behind = told(aircraft("A", velocity=(12.0, 0.0, 0.0)), holder=AuthorityHolder.PILOT)
+        behind = in_context(aircraft("A", velocity=(12.0, 0.0, 0.0)), holder=AuthorityHolder.PILOT)
         assert only(looks(separation, front, behind)).holds is None
 
 
@@ -193,38 +192,38 @@ class TestTheOtherToo:
 
     def test_it_waits_for_the_hold_to_show(self) -> None:
         a, b = head_on(125.0)
-        assert only(looks(separation, a, told(b, held=held(0.5, 10.0)))).holds is None
+        assert only(looks(separation, a, in_context(b, held=held(0.5, 10.0)))).holds is None
 
     def test_a_hold_that_shows_nothing_makes_it_hold_the_other(self) -> None:
         a, b = head_on(125.0)
-        assert only(looks(separation, a, told(b, held=held(2.1, 10.0)))).holds == "A"
+        assert only(looks(separation, a, in_context(b, held=held(2.1, 10.0)))).holds == "A"
 
     def test_it_does_not_wait_when_the_other_needs_the_time(self) -> None:
         a, b = head_on(95.0)
-        assert only(looks(separation, a, told(b, held=held(0.5, 10.0)))).holds == "A"
+        assert only(looks(separation, a, in_context(b, held=held(0.5, 10.0)))).holds == "A"
 
     def test_a_held_one_that_stands_in_the_way_makes_it_hold_the_other(self) -> None:
         a, b = head_on(80.0, velocity=(0.0, 0.0, 0.0))
-        assert only(looks(separation, a, told(b, held=held(20.0, 10.0)))).holds == "A"
+        assert only(looks(separation, a, in_context(b, held=held(20.0, 10.0)))).holds == "A"
 
     def test_a_held_one_that_brakes_is_believed(self) -> None:
         a = aircraft("A", velocity=(0.0, 0.0, 0.0))
-        b = told(aircraft("B", (60.0, 0.0), velocity=SOUTH), held=held(1.0, 10.0))
+        b = in_context(aircraft("B", (60.0, 0.0), velocity=SOUTH), held=held(1.0, 10.0))
         assert looks(separation, a, b) == []
 
-    def test_one_that_does_not_brake_is_foreseen_to_go_on_and_held_again(self) -> None:
+    def test_one_that_does_not_brake_is_predicted_to_go_on_and_held_again(self) -> None:
         a = aircraft("A", velocity=(0.0, 0.0, 0.0))
         b = aircraft("B", (60.0, 0.0), velocity=SOUTH)
-        assert only(looks(separation, a, told(b, held=held(4.9, 10.0)))).holds is None
-        assert only(looks(separation, a, told(b, held=held(5.1, 10.0)))).holds == "B"
+        assert only(looks(separation, a, in_context(b, held=held(4.9, 10.0)))).holds is None
+        assert only(looks(separation, a, in_context(b, held=held(5.1, 10.0)))).holds == "B"
 
     def test_a_newer_order_ends_the_belief_in_a_hold(self) -> None:
         a = aircraft("A", velocity=(0.0, 0.0, 0.0))
         b = aircraft("B", (60.0, 0.0), velocity=SOUTH, mode=FlightMode.GPS_WAYPOINT)
         on = replace(flies(route((60.0, 0.0), (-100.0, 0.0)), 1), since_ns=NOW - S // 2)
-        assert len(looks(separation, a, told(b, held=held(1.0, 10.0), intent=on))) == 1
+        assert len(looks(separation, a, in_context(b, held=held(1.0, 10.0), intent=on))) == 1
         holds = Intent(Commanded.HOLD, NOW - S // 2)
-        assert looks(separation, a, told(b, held=held(1.0, 10.0), intent=holds)) == []
+        assert looks(separation, a, in_context(b, held=held(1.0, 10.0), intent=holds)) == []
 
 
 class TestComingDown:
@@ -239,29 +238,29 @@ class TestComingDown:
 
     def test_by_its_order_too(self) -> None:
         a, b = head_on()
-        coming = told(b, intent=Intent(Commanded.LAND, NOW))
+        coming = in_context(b, intent=Intent(Commanded.LAND, NOW))
         assert only(looks(separation, a, coming)).holds == "A"
 
-    def test_one_that_was_held_and_lands_now_is_foreseen_to_land(self) -> None:
+    def test_one_that_was_held_and_lands_now_is_predicted_to_land(self) -> None:
         a = aircraft("A", (60.0, 0.0), 20.0, velocity=(0.0, 0.0, 0.0))
         lands = aircraft("B", (60.0, 0.0), 45.0, (0.0, 0.0, -3.0), mode=FlightMode.AUTO_LANDING)
-        landing = told(lands, held=held(1.0), intent=Intent(Commanded.LAND, NOW - 2 * S))
+        landing = in_context(lands, held=held(1.0), intent=Intent(Commanded.LAND, NOW - 2 * S))
         assert len(looks(separation, a, landing)) == 1
 
     def test_it_is_held_when_that_helps_and_the_other_cannot_be(self) -> None:
         a, b = head_on(mode=FlightMode.GO_HOME)
-        pilot = told(a, holder=AuthorityHolder.PILOT)
-        coming = told(b, intent=Intent(Commanded.RETURN, NOW))
+        pilot = in_context(a, holder=AuthorityHolder.PILOT)
+        coming = in_context(b, intent=Intent(Commanded.RETURN, NOW))
         assert only(looks(separation, pilot, coming)).holds == "B"
 
     def test_one_that_sinks_out_of_the_others_way_is_not_held(self) -> None:
         lands = aircraft("B", (60.0, 0.0), 38.0, (0.0, 0.0, -3.0), mode=FlightMode.AUTO_LANDING)
-        pilot = told(aircraft("A", velocity=NORTH), holder=AuthorityHolder.PILOT)
+        pilot = in_context(aircraft("A", velocity=NORTH), holder=AuthorityHolder.PILOT)
         for finding in looks(separation, lands, pilot):
             assert finding.holds is None
 
-    def test_a_return_flies_home_as_it_was_told(self) -> None:
-        coming = told(
+    def test_a_return_flies_home_as_commanded(self) -> None:
+        coming = in_context(
             aircraft("B", (0.0, 100.0), 60.0, (0.0, -8.0, 0.0), mode=FlightMode.GO_HOME),
             intent=Intent(Commanded.RETURN, NOW - S),
         )
@@ -277,7 +276,7 @@ class TestHazards:
         coming = aircraft("A", (0.0, 230.0), velocity=(0.0, -10.0, 0.0))
         found = only(looks(separation, self.hazard, coming))
         assert found.holds == "A"
-        assert "where G may be, which has not been heard for 10 s" in found.text
+        assert "the hazard area of G, telemetry lost for 10 s" in found.text
         assert looks(separation, self.hazard, aircraft("A", (0.0, 230.0))) == []
 
     def test_one_in_the_circle_is_alarmed_about_and_held_only_if_it_flies_in_deeper(self) -> None:
@@ -316,15 +315,15 @@ class TestHazards:
         ):
             assert len(looks(separation, hazard, aircraft("A", place, height_m))) == count, place
 
-    def test_one_that_may_fly_its_mission_on_is_foreseen_to(self) -> None:
-        """Sent 900 m east at 5 m/s and not heard for 100 s: half-way, give or take 50 m."""
+    def test_one_that_may_continue_its_mission_is_predicted_to(self) -> None:
+        """Sent 900 m east at 5 m/s and lost for 100 s: half-way, give or take 50 m."""
         mission = route((0.0, 0.0), (0.0, 900.0))
         state = aircraft("G", velocity=(0.0, 5.0, 0.0), age_s=100.0, failsafe=Failsafe.HOVER)
-        hazard = told(state, intent=flies(mission, 1))
+        hazard = in_context(state, intent=flies(mission, 1))
         found = only(looks(separation, hazard, aircraft("A", (0.0, 540.0))))
         assert found.vehicle_name == "A"
-        assert "to G (not heard for 100 s, if it flies its mission on)" in found.text
-        assert looks(separation, told(state), aircraft("A", (0.0, 540.0))) == []
+        assert "to G (telemetry lost for 100 s, if it continues its mission)" in found.text
+        assert looks(separation, in_context(state), aircraft("A", (0.0, 540.0))) == []
         assert looks(separation, hazard, aircraft("A", (0.0, 800.0))) == []
         coming = aircraft("A", (0.0, 660.0), velocity=(0.0, -10.0, 0.0))
         assert only(looks(separation, hazard, coming)).holds == "A"
@@ -332,19 +331,21 @@ class TestHazards:
     def test_two_that_may_fly_their_missions_on_are_no_conflict(self) -> None:
         mission = flies(route((0.0, 0.0), (0.0, 900.0)), 1)
         hazards = [
-            told(aircraft(n, (0.0, e), age_s=20.0, failsafe=Failsafe.HOVER), intent=mission)
+            in_context(aircraft(n, (0.0, e), age_s=20.0, failsafe=Failsafe.HOVER), intent=mission)
             for n, e in (("G", 0.0), ("H", 10.0))
         ]
         far = aircraft("A", (500.0, 0.0))
         assert looks(separation, far, *hazards) == []
 
-    def test_two_ghosts_are_no_conflict(self) -> None:
+    def test_two_hazard_areas_are_no_conflict(self) -> None:
         assert looks(separation, self.hazard, replace(self.hazard, serial="H")) == []
 
     def test_a_pilots_vehicle_is_not_held_for_one(self) -> None:
         inside = aircraft("A", (0.0, 80.0), velocity=(0.0, -10.0, 0.0))
         assert (
-            only(looks(separation, self.hazard, told(inside, holder=AuthorityHolder.PILOT))).holds
+            only(
+                looks(separation, self.hazard, in_context(inside, holder=AuthorityHolder.PILOT))
+            ).holds
             is None
         )
         off = looks(separation, self.hazard, inside, is_hold_on=False)
@@ -352,8 +353,8 @@ class TestHazards:
 
 
 class TestSticks:
-    def test_one_steered_to_a_place_is_foreseen_to_stop_there(self) -> None:
-        steered = told(
+    def test_one_steered_to_a_place_is_predicted_to_stop_there(self) -> None:
+        steered = in_context(
             aircraft("A", velocity=NORTH, mode=FlightMode.JOYSTICK),
             intent=Intent(
                 Commanded.STICK,
@@ -367,7 +368,7 @@ class TestSticks:
         assert len(looks(separation, steered, aircraft("B", (60.0, 0.0)))) == 1
 
     def test_one_under_free_sticks_flies_on_for_some_seconds(self) -> None:
-        free = told(
+        free = in_context(
             aircraft("A", velocity=NORTH, mode=FlightMode.JOYSTICK),
             intent=Intent(Commanded.STICK, NOW - S),
         )
@@ -375,7 +376,7 @@ class TestSticks:
         assert looks(separation, free, aircraft("B", (95.0, 0.0))) == []
 
     def test_at_its_target_it_may_move_as_it_likes(self) -> None:
-        here = told(
+        here = in_context(
             aircraft("A", velocity=(3.0, 0.0, 0.0), mode=FlightMode.JOYSTICK),
             intent=Intent(Commanded.STICK, NOW - S, target=at(0.0, 0.0), speed_mps=3.0),
         )

@@ -11,8 +11,8 @@ from tests.safety.watchdogs.looks import (
     Intent,
     S,
     aircraft,
+    in_context,
     looks,
-    told,
 )
 
 from recon.model.severity import Severity
@@ -56,14 +56,14 @@ class TestBattery:
 
     def test_its_text_has_both_numbers(self) -> None:
         (found,) = looks(battery_home, self.state(0.15))
-        assert found.text.startswith("A: its battery is at 15% and the way home takes 1")
+        assert found.text.startswith("A: battery 15%, way home 1")
 
     @pytest.mark.parametrize(("fraction", "count"), [(0.3, 0), (0.2, 0), (0.05, 1)])
     def test_one_coming_home_needs_only_the_way_itself(self, fraction: float, count: int) -> None:
-        coming = told(self.state(fraction), intent=Intent(Commanded.RETURN, NOW))
+        coming = in_context(self.state(fraction), intent=Intent(Commanded.RETURN, NOW))
         assert len(looks(battery_home, coming)) == count
 
-    def test_without_an_endurance_nobody_can_say(self) -> None:
+    def test_without_an_endurance_it_is_unknown(self) -> None:
         blind = replace(aircraft("A", (800.0, 0.0)), battery_fraction=Stamped(0.05, NOW))
         assert looks(battery_home, blind) == []
 
@@ -105,7 +105,7 @@ class TestHeights:
     def test_on_a_leg_it_must_be_between_its_ends(self, height_m: float, word: str) -> None:
         leg = route((0.0, 0.0, 30.0), (200.0, 0.0, 50.0))
         state = aircraft("A", (100.0, 0.0), height_m, mode=FlightMode.GPS_WAYPOINT)
-        found = looks(heights, told(state, intent=flies(leg, 1)))
+        found = looks(heights, in_context(state, intent=flies(leg, 1)))
         assert [word in finding.text for finding in found] == ([True] if word else [])
 
     def test_off_a_leg_nothing_is_known(self) -> None:
@@ -114,12 +114,12 @@ class TestHeights:
         manual = aircraft("A", (100.0, 0.0), 90.0)
         blind = aircraft("A", (100.0, 0.0), None, mode=FlightMode.GPS_WAYPOINT)
         for one in (
-            told(flying, intent=flies(leg, 0)),
-            told(flying, intent=flies(leg, 2)),
-            told(flying, intent=Intent(Commanded.MISSION)),
-            told(flying),
-            told(manual, intent=flies(leg, 1)),
-            told(blind, intent=flies(leg, 1)),
+            in_context(flying, intent=flies(leg, 0)),
+            in_context(flying, intent=flies(leg, 2)),
+            in_context(flying, intent=Intent(Commanded.MISSION)),
+            in_context(flying),
+            in_context(manual, intent=flies(leg, 1)),
+            in_context(blind, intent=flies(leg, 1)),
         ):
             assert looks(heights, one) == []
 
@@ -128,7 +128,7 @@ class TestJumps:
     def moved(self, metres: float, seconds: float, speed_mps: float = 0.0) -> list[Finding]:
         state = aircraft("A", (metres, 0.0), velocity=(speed_mps, 0.0, 0.0))
         before = PreviousPosition(at(0.0, 0.0), speed_mps, NOW - round(seconds * S))
-        return looks(jumps, told(state, before=before))
+        return looks(jumps, in_context(state, before=before))
 
     @pytest.mark.parametrize(
         ("metres", "seconds", "speed_mps", "count"),
@@ -153,10 +153,10 @@ class TestJumps:
     def test_the_same_position_or_none_is_no_jump(self) -> None:
         far = PreviousPosition(at(500.0, 0.0), 0.0, NOW)
         for one in (
-            told(aircraft("A"), before=far),
-            told(aircraft("A")),
-            told(aircraft("A", None), before=replace(far, at_ns=0)),
-            told(replace(aircraft("A"), position=Stamped(at(0.0, 0.0))), before=far),
+            in_context(aircraft("A"), before=far),
+            in_context(aircraft("A")),
+            in_context(aircraft("A", None), before=replace(far, at_ns=0)),
+            in_context(replace(aircraft("A"), position=Stamped(at(0.0, 0.0))), before=far),
         ):
             assert looks(jumps, one) == []
 
@@ -164,6 +164,6 @@ class TestJumps:
 class TestSticks:
     @pytest.mark.parametrize(("quiet_s", "count"), [(None, 0), (0.5, 0), (0.6, 1)])
     def test_a_stream_that_has_run_dry(self, quiet_s: float | None, count: int) -> None:
-        found = looks(sticks, told(aircraft("A"), stick_quiet_s=quiet_s))
+        found = looks(sticks, in_context(aircraft("A"), stick_quiet_s=quiet_s))
         assert len(found) == count
         assert all("0.6 s" in finding.text for finding in found)

@@ -1,4 +1,4 @@
-"""What the aircraft itself says: its link, battery, GNSS, wind and its app's warnings."""
+"""Checks of the aircraft's own reports: link, battery, GNSS, wind and its app's warnings."""
 
 from recon.model.stamped import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
@@ -14,26 +14,26 @@ APP = Point("app", "App's warnings")
 
 
 def link(vehicle: VehicleState, situation: Situation) -> Check:
-    """One app speaks for the vehicle, and is heard now."""
+    """Exactly one app reports the vehicle, with recent telemetry."""
     if vehicle.rival_link_ids:
         return LINK.fails(
             "two connections claim this serial", "close the one that is not this aircraft's"
         )
     age_s = Stamped(True, vehicle.core_received_at_ns).age_s(situation.now_ns)
     if age_s is None:
-        return LINK.unknown("no telemetry has come yet", "look at the app")
+        return LINK.unknown("no telemetry received yet", "check the app")
     if age_s > situation.settings.motion_telemetry_s:
         return LINK.fails(f"telemetry is {age_s:.1f} s old", "bring the app's connection back")
     return LINK.ok(f"telemetry is {age_s:.1f} s old")
 
 
 def battery(vehicle: VehicleState, situation: Situation) -> Check:
-    """It is charged for more than the reserve, and the aircraft does not warn."""
+    """The charge exceeds the reserve, and the aircraft reports no warning."""
     warning, has = vehicle.battery_warning.value, vehicle.battery_fraction.value
     if warning in (BatteryWarning.LOW, BatteryWarning.SERIOUS):
         return BATTERY.fails("the aircraft warns of a low battery", "change the battery")
     if has is None or warning is None:
-        return BATTERY.unknown("the app does not tell its charge", "look at the app")
+        return BATTERY.unknown("battery charge unknown", "check the app")
     reserve = situation.airspace.airspace.limits.battery_reserve_fraction
     if has <= reserve:
         return BATTERY.fails(f"{has:.0%}, all of it reserve ({reserve:.0%})", "change the battery")
@@ -43,7 +43,7 @@ def battery(vehicle: VehicleState, situation: Situation) -> Check:
 
 
 def gnss(vehicle: VehicleState, situation: Situation) -> Check:
-    """It knows where it is, by the gate's own measure."""
+    """The GNSS fix passes the gate's rule."""
     refusal = gnss_refusal(vehicle, situation.settings)
     if refusal is not None:
         return GNSS.fails(refusal.reason, "wait for a better fix, or move to open sky")
@@ -52,10 +52,10 @@ def gnss(vehicle: VehicleState, situation: Situation) -> Check:
 
 
 def wind(vehicle: VehicleState, situation: Situation) -> Check:
-    """The aircraft does not warn of strong wind. Not every app tells of any."""
+    """The aircraft reports no strong wind. Not every app reports wind."""
     level = vehicle.wind_level.value
     if level is None:
-        return WIND.ok("the app tells nothing of the wind")
+        return WIND.ok("the app reports no wind")
     if level >= situation.settings.preflight.strong_wind_level:
         return WIND.attention(
             "the aircraft warns of strong wind", "land, or fly low and near; battery goes faster"
@@ -64,8 +64,8 @@ def wind(vehicle: VehicleState, situation: Situation) -> Check:
 
 
 def app(_vehicle: VehicleState, situation: Situation) -> Check:
-    """The app has said nothing that nobody has seen."""
-    said = situation.facts.app_warnings
-    if said:
-        return APP.attention("; ".join(said), "read it, and acknowledge the alarm")
-    return APP.ok("none that nobody has seen")
+    """Every warning of the app has been acknowledged."""
+    warnings = situation.facts.app_warnings
+    if warnings:
+        return APP.attention("; ".join(warnings), "read it, and acknowledge the alarm")
+    return APP.ok("no unacknowledged warnings")

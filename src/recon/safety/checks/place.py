@@ -28,26 +28,26 @@ def fence(_vehicle: VehicleState, situation: Situation) -> Check:
 
 
 def ground(_vehicle: VehicleState, situation: Situation) -> Check:
-    """An elevation model tells the ground's heights."""
+    """An elevation model is loaded."""
     if is_ground_assumed_flat(situation.airspace):
         return GROUND.attention(
-            "taken for flat: no elevation model is loaded",
+            "flat ground assumed: no elevation model is loaded",
             "mind slopes and mounds, or name an elevation model in site.toml",
         )
     return GROUND.ok("by the elevation model")
 
 
 def home_place(vehicle: VehicleState, situation: Situation) -> Check:
-    """Where it will come home to is known."""
+    """The home point is known."""
     base, pad = home(vehicle), _pad(vehicle, situation)
     if base is None:
         return HOME.unknown(
-            "where it took off is not known, nor has it a pad",
+            "home unknown: takeoff not observed, and no pad",
             "write its pad into site.toml, or let its pilot land it and take off again",
         )
     if vehicle.is_flying.value is not False and vehicle.takeoff_point is None:
         return HOME.attention(
-            "taken to be its pad: nobody saw it take off", "ask its pilot where its home is"
+            "assumed at its pad: takeoff not observed", "confirm the home point with the pilot"
         )
     if pad is not None and horizontal_distance_m(base, _place(pad)) > NEAR_PAD_M:
         far_m = horizontal_distance_m(base, _place(pad))
@@ -61,7 +61,7 @@ def pad_altitude(vehicle: VehicleState, situation: Situation) -> Check:
     """The pad's altitude agrees with the ground there."""
     pad, frame = _pad(vehicle, situation), situation.airspace.airspace.frame
     if pad is None:
-        return PAD.ok("it has no pad: its heights count from the ground where it takes off")
+        return PAD.ok("no pad: heights count from the ground at takeoff")
     if frame is None or is_ground_assumed_flat(situation.airspace):
         return PAD.attention(
             "not compared with the ground: no elevation model is loaded",
@@ -70,12 +70,12 @@ def pad_altitude(vehicle: VehicleState, situation: Situation) -> Check:
     up_m = float(situation.airspace.ground_up_m(places_m(frame, [_place(pad)]))[0])
     ground_m = up_m + frame.origin.ellipsoid_height_m
     if isnan(ground_m):
-        return PAD.attention("the elevation model tells no ground at the pad", "look at its extent")
+        return PAD.attention("the elevation model has no ground at the pad", "check its extent")
     off_m = pad.ellipsoid_height_m - ground_m
     if abs(off_m) > situation.settings.preflight.pad_ground_m:
         return PAD.fails(
-            f"the pad is {off_m:+.1f} m from the ground that the elevation model tells there",
-            "mend the pad's altitude, or the model's datum, in site.toml",
+            f"the pad is {off_m:+.1f} m from the elevation model's ground",
+            "correct the pad's altitude, or the model's datum, in site.toml",
         )
     return PAD.ok(f"{off_m:+.1f} m from the elevation model's ground")
 
@@ -85,10 +85,10 @@ def clock(_vehicle: VehicleState, situation: Situation) -> Check:
     reading, settings = situation.facts.clock, situation.settings.preflight
     if reading is None:
         return CLOCK.unknown("the computer's clock has not been read", "wait a second")
-    says_s = ns_to_seconds(reading.wall_ns)
-    if says_s < settings.earliest_clock_s:
+    clock_s = ns_to_seconds(reading.wall_ns)
+    if clock_s < settings.earliest_clock_s:
         return CLOCK.fails(
-            f"the computer's clock says {_date(says_s)}", "set it, and start the station anew"
+            f"the computer's clock shows {_date(clock_s)}", "set it, and start the station anew"
         )
     set_s = ns_to_seconds(reading.set_by_ns)
     if abs(set_s) > settings.clock_set_s:
@@ -96,7 +96,7 @@ def clock(_vehicle: VehicleState, situation: Situation) -> Check:
             f"the computer's clock was set by {set_s:+.1f} s since the start",
             "times in the record count from before: start the station anew between flights",
         )
-    return CLOCK.ok(f"{_date(says_s)} UTC")
+    return CLOCK.ok(f"{_date(clock_s)} UTC")
 
 
 def _pad(vehicle: VehicleState, situation: Situation) -> GeoPoint | None:

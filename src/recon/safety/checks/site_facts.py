@@ -1,4 +1,4 @@
-"""What people have told of the vehicle in the site's file, since the ICD carries none of it."""
+"""Checks of the vehicle's profile in site.toml: settings that the ICD does not carry."""
 
 from collections.abc import Iterator
 
@@ -24,32 +24,30 @@ _DOES = {
 
 
 def altitude_reference(vehicle: VehicleState, _situation: Situation) -> Check:
-    """What its app takes a waypoint's altitude for is told."""
+    """The altitude reference of its app's waypoints is set."""
     reference = _profile(vehicle).waypoint_altitude
     if reference is AltitudeReference.UNSET:
         return ALTITUDE.unknown(
-            "what its app takes a waypoint's altitude for is not told",
+            "altitude reference not set",
             _write(vehicle, 'waypoint_altitude = "takeoff" or "wgs84"'),
         )
     return ALTITUDE.ok(f"{reference.value}")
 
 
 def endurance(vehicle: VehicleState, _situation: Situation) -> Check:
-    """How long a full battery lasts is told."""
+    """The endurance of a full battery is set."""
     seconds = _profile(vehicle).endurance_s
     if seconds is None:
-        return ENDURANCE.unknown(
-            "how long a full battery lasts is not told", _write(vehicle, "endurance_min = MINUTES")
-        )
+        return ENDURANCE.unknown("endurance not set", _write(vehicle, "endurance_min = MINUTES"))
     return ENDURANCE.ok(f"{seconds / 60.0:.0f} min")
 
 
 def failsafe(vehicle: VehicleState, _situation: Situation) -> Check:
-    """What it does when it loses its controller is told."""
+    """The failsafe for a lost controller is set."""
     does = _profile(vehicle).failsafe
     if does is None:
         return FAILSAFE.unknown(
-            "what it does when it loses its controller is not told",
+            "failsafe for a lost controller not set",
             _write(
                 vehicle, 'failsafe = "go_home", "hover" or "land", as it is set in the aircraft'
             ),
@@ -58,11 +56,11 @@ def failsafe(vehicle: VehicleState, _situation: Situation) -> Check:
 
 
 def camera_interval(vehicle: VehicleState, _situation: Situation) -> Check:
-    """The interval of the camera's timer is told; only the photos depend on it."""
+    """The camera interval is set; only photos depend on it."""
     seconds = _profile(vehicle).camera_interval_s
     if seconds is None:
         return CAMERA.attention(
-            "the interval of the camera's timer is not told",
+            "camera interval not set",
             f"{_write(vehicle, 'camera_interval_s = SECONDS')}, if it takes survey photos",
         )
     return CAMERA.ok(f"a photo every {seconds:g} s, once the pilot has started the timer")
@@ -80,12 +78,12 @@ HEIGHT = Point("go_home_height", "Go-home height")
 
 
 def go_home_height(vehicle: VehicleState, situation: Situation) -> Check:
-    """It is told, possible, under the ceiling, and in nobody else's layer; zones are looked at."""
+    """It is set, valid, below the ceiling, separated from others' heights, and clears zones."""
     height_m = None if vehicle.profile is None else vehicle.profile.go_home_height_m
     if height_m is None:
         return HEIGHT.unknown(
-            "the height at which it goes home is not told",
-            "read it in the aircraft's settings and write go_home_height_m = METRES under "
+            "go-home height not set",
+            "read it from the aircraft's settings and write go_home_height_m = METRES under "
             f'[[vehicles]] serial = "{vehicle.serial}" in site.toml',
         )
     fault = next(_faults(height_m, vehicle, situation), None)
@@ -95,7 +93,7 @@ def go_home_height(vehicle: VehicleState, situation: Situation) -> Check:
     if low:
         return HEIGHT.attention(
             f"{height_m:g} m does not clear {', '.join(low)}",
-            "nothing is flown whose way home leads there; a greater height would clear it",
+            "orders whose way home crosses it are refused; set a greater height to clear it",
         )
     return HEIGHT.ok(f"{height_m:g} m above takeoff")
 
@@ -104,16 +102,16 @@ def _faults(height_m: float, vehicle: VehicleState, situation: Situation) -> Ite
     settings, limits = situation.settings.preflight, situation.airspace.airspace.limits
     if not settings.least_go_home_m <= height_m <= settings.most_go_home_m:
         yield (
-            f"{height_m:g} m: aircraft take {settings.least_go_home_m:g} to "
-            f"{settings.most_go_home_m:g} m"
+            f"must be {settings.least_go_home_m:g} to {settings.most_go_home_m:g} m; got "
+            f"{height_m:g} m"
         )
     if height_m > limits.max_height_above_ground_m:
-        yield f"{height_m:g} m: the site allows {limits.max_height_above_ground_m:g} m at most"
+        yield f"must be at most {limits.max_height_above_ground_m:g} m; got {height_m:g} m"
     for other, apart_m in _neighbours(vehicle, situation):
         if apart_m < limits.min_separation_vertical_m:
             yield (
-                f"{height_m:g} m: {other.display_name} goes home {apart_m:.1f} m from that, "
-                f"{limits.min_separation_vertical_m:g} m apart is needed"
+                f"must be {limits.min_separation_vertical_m:g} m from that of "
+                f"{other.display_name}; got {apart_m:.1f} m at {height_m:g} m"
             )
 
 
@@ -129,8 +127,7 @@ def _neighbours(
 
 
 def _go_home_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | None:
-    """How high it goes home, in the site's frame; from the origin's height when nobody knows where
-    it took off."""
+    """The go-home height in the site's frame; above the origin without a takeoff point."""
     if vehicle.profile is None or vehicle.profile.go_home_height_m is None:
         return None
     return (takeoff_up_m(airspace, vehicle) or 0.0) + vehicle.profile.go_home_height_m

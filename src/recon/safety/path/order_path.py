@@ -147,8 +147,8 @@ def as_sent(value: float) -> float:
 def is_stop(command: Command, situation: Situation) -> bool:
     """Return whether an order is a stick that only stops its vehicle, in height too.
 
-    It has no velocity, and asks for the height that the vehicle was last heard at, within
-    `same_height_m`; while its height is not known, for the height that its stick before asked for.
+    It has no velocity, and requests the vehicle's last known height, within
+    `same_height_m`; while its height is unknown, the height that the previous stick requested.
     Any other height is a climb or a descent, and judged as motion. So is what may take off.
     """
     body, vehicle = command.body, situation.vehicle

@@ -21,7 +21,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class UnknownPath:
-    """Why nobody can say where the vehicle would fly."""
+    """Why the path of an order cannot be determined."""
 
     reason: str
 
@@ -31,7 +31,7 @@ class Departure:
     """What is known of a vehicle before it sets out, in the frame's metres.
 
     `here_m` and `home_m` are (3,). `go_home_m` are the least and the most up_m that it goes home
-    at: the same, or -inf and +inf when nobody has told.
+    at: equal, or -inf and +inf while unknown.
     """
 
     frame: LocalFrame
@@ -86,7 +86,7 @@ def _go_home_m(profile: VehicleProfile | None, takeoff_m: float) -> tuple[float,
 
 
 def _failsafe(profile: VehicleProfile | None) -> Failsafe:
-    """Going home is what aircraft do unless somebody has set them otherwise."""
+    """Aircraft go home unless their profile states otherwise."""
     return (profile.failsafe if profile is not None else None) or Failsafe.GO_HOME
 
 
@@ -119,7 +119,7 @@ class Pieces:
     """N pieces. Each is somewhere in the hull of its three points, between low and high.
 
     `triangles_m` is (N, 3, 2), east and north; a leg is (start, end, end). `low_m` and `high_m`
-    (N,) are up_m of the frame; -inf is the ground, +inf a height that nobody knows. `is_entry`
+    (N,) are up_m of the frame; -inf is the ground, +inf an unknown height. `is_entry`
     (N,) tells which begin where the vehicle is. `names` has what each piece, or the flight that it
     is about, is called.
     """
@@ -146,7 +146,7 @@ class Pieces:
         )
 
     def label(self, index: int) -> str:
-        """Return what people call a piece."""
+        """Return the name of a piece, as refusals show it."""
         return _WORDS[Kind(self.kinds[index])].format(self.names[index])
 
 
@@ -232,7 +232,7 @@ def block(
     *,
     is_entry: BoolArray | None = None,
 ) -> Pieces:
-    """Return pieces of one kind, none of them an entry unless told."""
+    """Return pieces of one kind, none of them an entry by default."""
     count = len(triangles_m)
     return Pieces(
         np.full(count, int(kind)),

@@ -169,23 +169,25 @@ def _now(
 ) -> _Now:
     """How near the others are from here.
 
-    Here is all the way since it was last heard: one that is leaving was nearer then.
+    Here is all the way since its last telemetry: a leaving vehicle was nearer then.
     """
     here = sample([own.rows], [0.0])
     now = sample([trajectory.rows for trajectory in others], [0.0])
-    heard_m = own.rows[:1, [EAST_0, NORTH_0]]
+    last_known_m = own.rows[:1, [EAST_0, NORTH_0]]
     place_m = np.column_stack([here.east_m[:, 0], here.north_m[:, 0]])
     starts_m = np.column_stack([now.east_m[:, 0], now.north_m[:, 0]])
     ends_m = starts_m.copy()
     radius_m = now.radius_m[:, 0]
-    # What nobody sees is all of its way home now, and as wide as it is kept clear of.
+    # A hazard area is all of its way home now, and as wide as it may grow.
     whole = theirs.first[:-1]
     is_hazard = theirs.part[whole] == FlightPart.HAZARD
     starts_m[is_hazard] = theirs.starts_m[whole[is_hazard]]
     ends_m[is_hazard] = theirs.ends_m[whole[is_hazard]]
     radius_m = np.where(is_hazard, theirs.radius_m[whole], radius_m)
-    heard_m, place_m = (np.broadcast_to(each, starts_m.shape) for each in (heard_m, place_m))
-    apart_m = segments_apart_m(heard_m, place_m, starts_m, ends_m)
+    last_known_m, place_m = (
+        np.broadcast_to(each, starts_m.shape) for each in (last_known_m, place_m)
+    )
+    apart_m = segments_apart_m(last_known_m, place_m, starts_m, ends_m)
     gap_m = apart_m - radius_m  # its own place is known now, how far a turn may lead is not counted
     low_m, high_m = np.array([trajectory.here_m for trajectory in others]).T
     vertical_m = np.maximum(low_m - own.here_m[1], own.here_m[0] - high_m)

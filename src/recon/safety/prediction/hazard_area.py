@@ -1,4 +1,4 @@
-"""A stale vehicle is a hazard, not an absence: where one may be that nobody hears.
+"""The hazard area of a vehicle with lost telemetry: everywhere it may be.
 
 It is somewhere in a circle about its last place, or on its way home. The circle grows with its last
 plausible speed and reaches down to the ground, for its battery ends somewhere.
@@ -28,7 +28,7 @@ class HazardArea:
     """Where a stale vehicle may be, in the plane; heights are bands of up metres.
 
     `radius_m` is now's, and grows by `growth_mps` up to `largest_m`. `home_m` ends its corridor,
-    None when it is not expected to go home, or nobody knows where that is.
+    None when it is not expected to go home, or its home is unknown.
     """
 
     name: str
@@ -49,7 +49,7 @@ class HazardArea:
 def hazard_area_of(
     motion: VehicleMotion, intent: Intent, settings: PredictionSettings
 ) -> HazardArea | None:
-    """Return the hazard area of a vehicle that is too long unheard; None of one that is heard."""
+    """Return the hazard area of a vehicle with lost telemetry; None while it is in contact."""
     if motion.age_s <= settings.stale_s:
         return None
     growth_mps = max(_plausible_mps(motion, intent), settings.hazard_least_speed_mps)
@@ -96,10 +96,10 @@ def hazard_trajectories(hazard: HazardArea) -> tuple[Trajectory, ...]:
 
 
 def _plausible_mps(motion: VehicleMotion, intent: Intent) -> float:
-    """What it flew last, or what it was told to fly."""
-    told_mps = 0.0
+    """Its last speed, or the commanded one when that is higher."""
+    commanded_mps = 0.0
     if intent.commanded is Commanded.MISSION and intent.mission is not None:
-        told_mps = max(w.speed_mps for w in intent.mission.waypoints)
+        commanded_mps = max(w.speed_mps for w in intent.mission.waypoints)
     elif intent.commanded is Commanded.STICK:
-        told_mps = intent.speed_mps or 0.0
-    return max(motion.speed_mps, told_mps)
+        commanded_mps = intent.speed_mps or 0.0
+    return max(motion.speed_mps, commanded_mps)

@@ -9,14 +9,14 @@ from recon.safety.settings import PredictionSettings
 LEAST_M = 1e-3
 LEAST_S = 1e-3
 LEAST_SPEED_MPS = 0.1
-"""Nothing waits for ever for a vehicle told to fly at no speed."""
+"""A leg commanded at zero speed still ends."""
 
 STANDING_MPS = 0.5
 """Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
 
 VERTICAL_BRAKING_MPS2 = 2.0
 LONGEST_RISE_S = 600.0
-"""To a height that nobody knows no leg takes for ever."""
+"""A leg to an unknown height still ends."""
 
 Point = tuple[float, float]
 Phase = tuple[float, float, float, float]

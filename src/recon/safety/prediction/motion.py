@@ -1,4 +1,4 @@
-"""What foreseeing needs to know of a vehicle, in the plane."""
+"""A vehicle's position and velocity in the plane, as prediction needs them."""
 
 from typing import NamedTuple
 
@@ -32,9 +32,9 @@ class Plane:
 
 
 class VehicleMotion(NamedTuple):
-    """A vehicle as it was last heard, `age_s` ago.
+    """A vehicle at its last telemetry, `age_s` ago.
 
-    `low_m` and `high_m` are equal but for a vehicle whose height nobody knows. `velocity_mps` is
+    `low_m` and `high_m` are equal but for a vehicle of unknown height. `velocity_mps` is
     east, north, up. `go_home_up_m` is the height of its way home, None when it is not known;
     `home_m` the place in the plane.
     """
@@ -52,11 +52,11 @@ class VehicleMotion(NamedTuple):
     home_m: tuple[float, float] | None
     go_home_up_m: float | None
     goes_home: bool
-    """Whether it may go home by itself when nobody controls it."""
+    """Whether it may go home by itself when it loses its controller."""
 
     @property
     def name(self) -> str:
-        """The name people see."""
+        """The display name."""
         return self.state.display_name
 
     def up_m(self, height_above_takeoff_m: float) -> tuple[float, float]:
@@ -74,9 +74,9 @@ def vehicle_motion(
     now_ns: int,
     settings: PredictionSettings,
 ) -> VehicleMotion | None:
-    """Return a vehicle in the plane; None when it has never told where it is.
+    """Return a vehicle in the plane; None when it has never reported a position.
 
-    One that tells no position now is where it was last seen, as long ago as that was.
+    One without a position now is at its last known one, with that position's age.
     """
     place, at_ns = last_place(state)
     if place is None:
@@ -107,7 +107,7 @@ def vehicle_motion(
 
 
 def last_place(state: VehicleState) -> tuple[LatLon | None, int]:
-    """Return where a vehicle was last known to be, and when; None when it has never told."""
+    """Return a vehicle's last known position and its time; None if it never reported one."""
     position: Stamped[LatLon] = state.position
     if position.value is not None:
         return position.value, position.received_at_ns or 0

@@ -147,8 +147,8 @@ def _reach_m(
     motion: VehicleMotion, intent: Intent, seconds: float, settings: PredictionSettings
 ) -> float:
     """How far from its last place a vehicle comes at most."""
-    is_told = intent.commanded in (Commanded.MISSION, Commanded.STICK, Commanded.RETURN)
-    fastest_mps = max(motion.speed_mps, settings.unknown_speed_mps if is_told else 0.0)
+    is_commanded = intent.commanded in (Commanded.MISSION, Commanded.STICK, Commanded.RETURN)
+    fastest_mps = max(motion.speed_mps, settings.unknown_speed_mps if is_commanded else 0.0)
     lasts_s = motion.age_s + max(seconds, settings.stick_horizon_s)
     own_m = fastest_mps * lasts_s + stopping_distance_m(fastest_mps, settings)
     if motion.age_s <= settings.stale_s and (

@@ -1,4 +1,4 @@
-"""The trajectory of a vehicle that does what it was told."""
+"""The trajectory of a vehicle that follows its intent, the last commanded motion."""
 
 from math import hypot
 
@@ -24,10 +24,10 @@ from recon.safety.prediction.trajectory import (
 from recon.safety.settings import PredictionSettings
 
 UNDER_WAY_MPS = 2.0
-"""A returning vehicle this fast towards its home is under way, be it higher or lower than told."""
+"""A returning vehicle this fast towards its home is under way, at whatever height."""
 
 UNHOMED_RADIUS_M = 150.0
-"""A vehicle told to return whose home nobody knows: the station's hazard areas grow as far."""
+"""Of a vehicle commanded to return while its home is unknown: hazard areas grow as far."""
 
 
 class Predictor:
@@ -76,7 +76,7 @@ class Predictor:
                 self.drift()
 
     def fly_mission(self, mission: Mission, passed: int) -> None:
-        """The rest of a mission, and for ever what it ends with."""
+        """The rest of a mission, and indefinitely what it ends with."""
         waypoints, writer, plane = mission.waypoints, self.writer, self.motion.plane
         start_mps: float | None = None
         for index in range(passed, len(waypoints)):
@@ -137,7 +137,7 @@ class Predictor:
         )
 
     def hold(self, reaction_s: float = 0.0) -> None:
-        """Brake, when the order has come through, and stand for ever."""
+        """Brake after the reaction time, and hover indefinitely."""
         stop(self.writer, self.motion.velocity_mps, self.settings, reaction_s=reaction_s)
         self.writer.stays(FlightPart.HOVERING)
 

@@ -40,7 +40,7 @@ class ProtectedVolumes:
     within `radius_m` of the straight line and between the two heights. Each array is (N,).
 
     `at_s` is when it is thought to enter the piece, `until_s` when to leave it. `first` (G + 1,)
-    says where each trajectory begins.
+    is the index at which each trajectory begins.
     """
 
     early_s: FloatArray

@@ -71,7 +71,7 @@ class Trajectory:
     seconds
     from now, east and north in the plane, heights as up metres of the site's frame. All of it may
     be flown later by `delay_s`: a mission that has not begun. `here_m` are the two heights between
-    which it was last heard; on its first row it may be higher or lower by then."""
+    of its last telemetry; on its first row it may be higher or lower by then."""
 
     name: str
     serial: str | None
@@ -124,7 +124,7 @@ class TrajectoryWriter:
         self.low_m, self.high_m = min(self.low_m, low_m), max(self.high_m, high_m)
 
     def stays(self, part: int) -> None:
-        """Stay for ever."""
+        """Stay indefinitely."""
         self.waits(FOREVER_S, part)
 
     def trajectory(self, name: str, serial: str | None) -> Trajectory:

@@ -21,10 +21,10 @@ def height_zones(command: Command, situation: Situation) -> Refusal | None:
     region, and for all of that piece: no lower than the floor (over the ground: above the highest
     ground under the piece), no higher than the ceiling (above the lowest). A landing is as low as
     the ground. Not held to the floor is what keeps to a column of takeoff or landing: `columns`
-    says which, and a place where a mission lands is none in a zone. When the vehicle is in the zone
-    now, a piece that begins where it is may be as high above the ceiling's datum as it is. A stick
-    without velocity is held to zones that the vehicle is in, with `stop_slack_m`; where the vehicle
-    is not known to be, it is not judged.
+    states which; a mission's landing place in a zone is not such a column. When the vehicle is in
+    the zone now, a piece that begins where it is may be as high above the ceiling's datum as it is.
+    A stick without velocity is held to zones that the vehicle is in, with `stop_slack_m`; where the
+    vehicle is not known to be, it is not judged.
     """
     airspace = situation.airspace
     path = path_volume(command, situation) if airspace.zones_of(ZoneKind.HEIGHT) else None

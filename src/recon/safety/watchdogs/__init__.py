@@ -1,4 +1,19 @@
-"""The watchdogs: each looks at one picture and says what is wrong. Pure, one file each."""
+"""Watchdogs: safety monitors that look at one traffic picture ten times a second. Pure.
+
+Theory of operation. `build_traffic_picture` gathers every vehicle that is or may be in the air and
+predicts the next `horizon_s`. Each watchdog yields `Finding`s: an alarm text with a stable key, and
+perhaps the serial of a vehicle to hold. A finding's life:
+
+    absent -> found -> lasted `confirm_s` -> hold requested -> effect within `effect_s`
+       ^                                        |                 | no effect, or hold failed
+       +---- `lingers_s` after the last time ---+                 v
+                                                   the other vehicle of the pair is held
+
+A hold is an ordinary order that the gate judges. It is requested only if it helps, only when the
+remaining time is little more than stopping takes (`hold_margin_s`), and for one vehicle at most
+every `hold_again_s`. A pilot's vehicle is never held, nor one on the ground; fences hold no
+vehicle that lands or returns. The station's runner keeps the times between two pictures.
+"""
 
 from collections.abc import Callable, Iterable
 

@@ -25,12 +25,12 @@ def _compared(
 ) -> Iterator[Finding]:
     """Below what a landing must leave it is critical; below the reserve it is time to turn back."""
     least, reserve = picture.energy.landing_fraction, _reserve(picture)
-    told = f"its battery is at {has:.0%} and the way home takes {needs:.0%}"
+    figures = f"battery {has:.0%}, way home {needs:.0%}"
     if has < needs + least and not (watched.is_coming_down and has >= needs):
-        text = f"{told}: it may not come home; land it where it can, or call it home now"
+        text = f"{figures}: it may not reach home; land it or call it home now"
         yield watched.finding(RULE, Severity.CRITICAL, text, after_s=1.0)
     elif has < needs + reserve and not watched.is_coming_down:
-        text = f"{told}: less than the reserve of {reserve:.0%} would be left; call it home"
+        text = f"{figures}: less than the reserve of {reserve:.0%} would be left; call it home"
         yield watched.finding(RULE, Severity.WARNING, text, after_s=1.0)
 
 

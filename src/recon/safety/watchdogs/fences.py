@@ -1,7 +1,7 @@
 """Looks ahead for the boundary and for zones: alarms, and stops what is about to leave or enter.
 
 What is looked at is where each vehicle is, and the way it will go in 1.25 times the time in which
-it would cover its stopping distance: straight on, or along its way as it was told. A vehicle that
+it would cover its stopping distance: straight on, or along its commanded path. A vehicle that
 is about to go out, or into a keep-out zone, is held. One that is there already is alarmed about,
 and held only while it goes deeper. What lands or returns is not stopped on its way, and what a
 pilot leads is alarmed about only.
@@ -52,7 +52,7 @@ class Way:
 
 
 def fences(picture: TrafficPicture) -> Iterator[Finding]:
-    """Find vehicles that are, or will soon be, where the site says they must not."""
+    """Find vehicles that are, or will soon be, outside the site's limits."""
     frame = picture.airspace.airspace.frame
     if frame is None or not picture.flying:
         return
@@ -95,7 +95,7 @@ def _keep_out(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator
 def _heights(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
     """Heights are alarmed about and not held: standing too low or too high is no better.
 
-    A height that nobody knows is neither.
+    An unknown height is neither.
     """
     airspace, name, datum = picture.airspace, zone.zone.name, zone_datum(zone.zone)
     indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead) & _is_height_known(way))
@@ -114,7 +114,7 @@ def _heights(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[
 
 
 def _limits(picture: TrafficPicture, way: Way) -> Iterator[Finding]:
-    """The site's own least and greatest height; over ground that nobody knows it is too high."""
+    """The site's own least and greatest height; outside the elevation model it is too high."""
     airspace, limits = picture.airspace, picture.airspace.airspace.limits
     most_m, least_m = limits.max_height_above_ground_m, limits.min_height_above_ground_m
     is_known = _is_height_known(way)
@@ -195,7 +195,7 @@ def way_ahead(picture: TrafficPicture, frame: LocalFrame) -> Way:
     here_m = places_m(frame, [_place(picture, number) for number in range(len(motions))])
     last_known_m = np.array([(f.east_m, f.north_m) if f else (0.0, 0.0) for f in motions])
     at_m = _at_m(picture, np.stack([np.zeros_like(last), (last + 1) // 2, last], axis=1))
-    # Exact where the vehicles were heard, and from there on in the plane, which is exact enough.
+    # Exact at the vehicles' last positions, and from there on in the plane, which suffices.
     triangles_m = here_m[:, np.newaxis] + at_m - last_known_m[:, np.newaxis]
     flies, rows = picture.ahead.as_it_flies, np.arange(len(motions))
     return Way(
@@ -211,7 +211,7 @@ def way_ahead(picture: TrafficPicture, frame: LocalFrame) -> Way:
 
 def _place(picture: TrafficPicture, number: int) -> LatLon:
     place, _at_ns = last_place(picture.flying[number].state)
-    assert place is not None, "a vehicle that is heard flying has told where it is"
+    assert place is not None, "a vehicle in contact has a position"
     return place
 
 

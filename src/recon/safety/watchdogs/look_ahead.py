@@ -18,10 +18,10 @@ from recon.safety.prediction.trajectory import FlightPart, FloatArray, Row, Samp
 from recon.safety.settings import WatchdogSettings
 
 ASIDE_COSINE = 0.64
-"""A vehicle that flies faster than `ASIDE_MPS` at more than 50 degrees from every way it was told
-to go, does something else: a pilot's stick turns a mission without changing its mode, and the wind
-carries off what cannot fly against it. A rounded right angle is never farther from both its legs
-than 45 degrees."""
+"""A vehicle that flies faster than `ASIDE_MPS` at more than 50 degrees from every commanded
+direction, does something else: a pilot's stick turns a mission without changing its mode, and the
+wind carries off what cannot fly against it. A rounded right angle is never farther from both its
+legs than 45 degrees."""
 ASIDE_MPS = 2.0
 LEAST_WAY_M = 1.0
 """A nearer place has no direction worth comparing."""
@@ -33,12 +33,12 @@ _MODES = {
         {FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING}
     ),
 }
-"""The modes of vehicles that do what they were told; while the mode is unknown they may."""
+"""The flight modes that fit each commanded motion; an unknown mode may fit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Braking:
-    """A vehicle was told to stop so long ago, when it was so fast."""
+    """A hold was commanded this long ago, at this speed."""
 
     since_s: float
     speed_mps: float
@@ -87,8 +87,8 @@ def next_rows(
 ) -> list[Row]:
     """Return a vehicle's trajectory for the next seconds.
 
-    One that does as it was told is followed along its way, around corners and into stops. Any other
-    flies on as it does now: the longer one looks, the less it will, but nobody knows better.
+    One that follows its intent is predicted along its path, around corners and into stops. Any
+    other is predicted straight on at its present velocity.
     """
     predictor = Predictor(motion, prediction, until_s=horizon_s, exactly=True)
     if not _flies_as_commanded(motion, intent, braking, now_ns, prediction):
@@ -108,14 +108,14 @@ def _flies_as_commanded(
     now_ns: int,
     prediction: PredictionSettings,
 ) -> bool:
-    told = intent.commanded
-    if told is Commanded.NOTHING:
+    commanded = intent.commanded
+    if commanded is Commanded.NOTHING:
         return False
-    if told in (Commanded.HOLD, Commanded.LAND):
+    if commanded in (Commanded.HOLD, Commanded.LAND):
         since_s = (now_ns - intent.since_ns) / NS_PER_S
         return _brakes(motion, braking or Braking(since_s, DJI.max_speed_mps), prediction)
     mode = motion.state.flight_mode.value
-    if mode is not None and mode not in _MODES[told]:
+    if mode is not None and mode not in _MODES[commanded]:
         return False
     return not _flies_aside(motion, intent)
 
@@ -141,7 +141,7 @@ def _along_mps(motion: VehicleMotion, way_m: Point) -> float:
 
 
 def _commanded_directions(motion: VehicleMotion, intent: Intent) -> Iterator[Point]:
-    """The directions that it may be flying in: to where it was told, and at a mission's waypoint
+    """The directions that it may be flying in: to its target, and at a mission's waypoint
     along the legs before and after, whichever it has come to."""
     here_m = motion.east_m, motion.north_m
     if intent.mission is not None:
@@ -161,7 +161,7 @@ def _way(from_m: Point, to_m: Point) -> Point:
 
 
 def _held(flies: Samples, times_s: FloatArray, prediction: PredictionSettings) -> Samples:
-    """The same vehicles, told now to hold: they fly on for the reaction's time and brake."""
+    """The same vehicles if held now: they fly on for the reaction time and brake."""
     last = int(np.searchsorted(times_s, prediction.reaction_s))
     step_s = float(times_s[1] - times_s[0])
     braked_s = np.maximum(times_s - times_s[last], 0.0)

@@ -1,15 +1,19 @@
-"""Keeps vehicles in the air apart: alarms ten seconds ahead, and holds in time.
+"""The separation watchdog: predicted loss of separation within the next seconds.
 
-First an alarm. When what is left is little more than the time that both need to stop, the vehicle
-of lower priority is held; while the conflict stays predicted although that hold has had its time to
-show, or when the other's own time to stop runs out, the other one too.
+Theory of operation. Pairs whose reach within the horizon cannot bring them below the minima are
+dropped first (`near_pairs`). For the rest the closest approach of the sampled trajectories is
+computed, in shares of the minima: below 1 both the horizontal and the vertical one are violated.
 
-Who yields: first the one with the lower `priority` in its profile, then any other before the eye,
-then what guidance leads before what an operator leads, then the later serial. A vehicle that lands
-or returns yields last, for it is leaving the air and its battery may not last. And nobody is held
-whom that does not help: the one in front of a faster one behind, one that flies out of a hazard
-area's circle, one that lands out of another's way. What a pilot leads is never held, only alarmed
-about; what is on the ground is neither held nor a reason to hold.
+    no conflict -> predicted: alarm -> lasted `confirm_s`, and the time left is what both need to
+    stop and `hold_margin_s`: the yielding vehicle is held -> still predicted after `effect_s`, or
+    the other's own time to stop runs out: the other vehicle is held too
+
+The order of yielding: a vehicle in contact before a lost one; one that lands or returns last, for
+its battery may not last; then the lower `priority` of the profile first, then any vehicle before
+the imaging drone, then one under guidance before one under operator control, then the later serial.
+A vehicle is held only if that helps: not one in front of a faster one, nor one leaving a hazard
+area. A vehicle of a pilot is never held. Lost vehicles are hazard areas, and may continue a
+mission.
 """
 
 from collections.abc import Iterator
@@ -38,7 +42,7 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
     """Find the pairs of vehicles, and of vehicles and hazard areas, that come too near."""
     if not picture.flying:
         return
-    need, heard = (
+    need, in_contact = (
         picture.minima,
         len(picture.flying),
     )
@@ -53,8 +57,8 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
         return
     close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need)
     for row in np.flatnonzero((close < 1.0).any(axis=1)):
-        if min(first[row], second[row]) >= heard:
-            continue  # nobody hears either: there is nothing to be done
+        if min(first[row], second[row]) >= in_contact:
+            continue  # both lost: no hold can reach either
         found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
         yield _pair(picture, int(first[row]), int(second[row]), found, need)
 
@@ -62,7 +66,7 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
 def in_order_of_yielding(
     one: WatchedVehicle, other: WatchedVehicle
 ) -> tuple[WatchedVehicle, WatchedVehicle]:
-    """Return who yields first and who second: always who is heard before who is not."""
+    """Return the vehicles in order of yielding; one in contact yields before a lost one."""
 
     def rank(watched: WatchedVehicle) -> tuple[bool, bool, int, bool, bool]:
         profile = watched.state.profile
@@ -113,7 +117,7 @@ def _hazard(
         is_due = _is_due(picture, key, found, watched)
         can = is_due and _can_be_held(picture, watched) and _is_better(picture, found, instead)
         held = watched if can else None
-        where = f"where {hazard.name} may be, which has not been heard for {hazard.age_s:.0f} s"
+        where = f"the hazard area of {hazard.name}, telemetry lost for {hazard.age_s:.0f} s"
         text = f"{_text(found, where)}{_outcome(picture, watched)}"
         yield _finding(picture, key, watched, text, found, held)
 
@@ -186,7 +190,7 @@ def _text(found: Approach, what: str) -> str:
 def _lost_text(watched: WatchedVehicle) -> str:
     if watched.hazard is None:
         return ""
-    return f" (not heard for {watched.hazard.age_s:.0f} s, if it flies its mission on)"
+    return f" (telemetry lost for {watched.hazard.age_s:.0f} s, if it continues its mission)"
 
 
 def _outcome(picture: TrafficPicture, *both: WatchedVehicle) -> str:

@@ -63,8 +63,8 @@ class CommandedHold:
 def hold_outcome(held: CommandedHold | None, refused: str) -> str:
     """Return what became of a hold, to follow the vehicle's name; empty when none was given."""
     if refused:
-        return f"could not be told to hold ({refused})"
-    return "" if held is None else "has been told to hold"
+        return f"could not be held ({refused})"
+    return "" if held is None else "was ordered to hold"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +80,9 @@ class PreviousPosition:
 class WatchedVehicle:
     """A vehicle that flies or may, and what the station knows beside its state.
 
-    `motion` is None while it has never told where it is; `hazard area` is set while it is not
-    heard. `stick_quiet_s` is set while sticks are streamed to it: how long none was sent.
-    `hold_refused` tells why a hold could not be given to it just now.
+    `motion` is None while it has never reported a position; `hazard` is set while telemetry is
+    lost. `stick_quiet_s` is the time since the last stick of a stream, None without a stream.
+    `hold_refused` is the reason a hold could not be given to it just now.
     """
 
     state: VehicleState
@@ -98,24 +98,24 @@ class WatchedVehicle:
 
     @property
     def key(self) -> str:
-        """What its findings are told apart by."""
+        """The key of its findings."""
         return self.state.serial or f"link {self.state.link_id}"
 
     @property
     def name(self) -> str:
-        """The name people see."""
+        """The display name."""
         return self.state.display_name
 
     @property
     def is_flying_in_contact(self) -> bool:
-        """Whether it tells of itself that it flies, and where."""
+        """Whether its telemetry is recent and reports flight and a position."""
         return (
             self.motion is not None and self.hazard is None and self.state.is_flying.value is True
         )
 
     @property
     def may_continue_mission(self) -> bool:
-        """Whether it is not heard and was sent a mission: its app may fly that on by itself."""
+        """Whether telemetry is lost and its app may continue the mission it was sent."""
         return self.hazard is not None and self.intent.commanded is Commanded.MISSION
 
     @property
@@ -165,9 +165,9 @@ class WatchedVehicle:
 class TrafficPicture:
     """Everything that is watched, at one moment.
 
-    `flying` are heard to fly. `lost` are not heard any more, and may be flying on a mission.
-    `ahead` is of the one and then of the other, in their order. `since_ns` says since when each
-    finding has been made, by its key.
+    `flying` report flight. `lost` have lost telemetry and may continue a mission.
+    `ahead` is of the former and then the latter, in order. `since_ns` is the time of each
+    finding's first occurrence, by its key.
     """
 
     now_ns: int
@@ -272,7 +272,7 @@ def _placed(
 
 def _next_rows(one: WatchedVehicle, settings: SafetySettings, now_ns: int) -> list[Row]:
     """A hold that the station gave counts from its giving on, until a newer order."""
-    assert one.motion is not None, "a vehicle that is heard flying has told where it is"
+    assert one.motion is not None, "a vehicle in contact has a position"
     intent, braking, held = one.intent, None, one.held
     if held is not None and held.holds_against(intent):
         if not one.is_coming_down:
@@ -285,7 +285,7 @@ def _next_rows(one: WatchedVehicle, settings: SafetySettings, now_ns: int) -> li
 def _lost_rows(one: WatchedVehicle, settings: SafetySettings) -> list[Row]:
     """The mission it was sent, flown on: anywhere within what time has made of its place."""
     motion, prediction = one.motion, settings.prediction
-    assert motion is not None, "only a vehicle that has told where it is has a hazard area"
+    assert motion is not None, "only a vehicle with a position has a hazard area"
     predictor = Predictor(motion, prediction, until_s=settings.watchdogs.horizon_s)
     predictor.follow(one.intent)
     off_m = prediction.time_uncertainty * motion.age_s * motion.speed_mps

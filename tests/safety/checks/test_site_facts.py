@@ -1,4 +1,4 @@
-"""What people have told in the site's file, and how to tell it."""
+"""Settings of site.toml, and how to set them."""
 
 from dataclasses import replace
 
@@ -24,11 +24,11 @@ from recon.safety.checks.site_facts import altitude_reference, camera_interval, 
     ],
 )
 class TestNeeded:
-    def test_told_it_is_ok(self, point, lost, text, key) -> None:  # type: ignore[no-untyped-def]
+    def test_set_it_is_ok(self, point, lost, text, key) -> None:  # type: ignore[no-untyped-def]
         found = checked(point, vehicle())
         assert (found.state, found.text) == (OK, text)
 
-    def test_not_told_it_says_what_to_write(self, point, lost, text, key) -> None:  # type: ignore[no-untyped-def]
+    def test_not_set_it_states_what_to_write(self, point, lost, text, key) -> None:  # type: ignore[no-untyped-def]
         for profile in (replace(TAKEOFF, **lost), None):
             found = checked(point, replace(vehicle(), profile=profile))
             assert found.state is UNKNOWN
@@ -43,7 +43,7 @@ class TestNeeded:
         (Failsafe.LAND, "lands where it is"),
     ],
 )
-def test_every_failsafe_is_told_in_words(does: Failsafe, text: str) -> None:
+def test_every_failsafe_is_described(does: Failsafe, text: str) -> None:
     found = checked(failsafe, vehicle(replace(TAKEOFF, failsafe=does)))
     assert (found.state, found.text) == (OK, f"{text} when it loses its controller")
 
