@@ -13,9 +13,9 @@ import numpy as np
 
 from recon.guidance.fleet_return import (
     FleetReturnSettings,
-    Flight,
     Hovering,
     Place,
+    ReturnFlight,
     ReturnPlan,
     Separation,
     claim_left,
@@ -51,7 +51,7 @@ class Flier:
         east_m, north_m, up_m = self.place_m
         return east_m + self.drift_m[0], north_m + self.drift_m[1], up_m
 
-    def begin(self, flight: Flight, now_s: float) -> None:
+    def begin(self, flight: ReturnFlight, now_s: float) -> None:
         layer_m, pad = flight.layer_up_m, flight.pad
         self.began_s = now_s
         self.waits_s = self.rng.uniform(0.5, 4.0)
@@ -112,7 +112,7 @@ def fly(
     hoverers = {n: Flier(n, place, Random(rng.random())) for n, place in others.items()}
     flown = Flown(fliers | hoverers)
     waiting = list(plan.flights)
-    under_way: list[Flight] = []
+    under_way: list[ReturnFlight] = []
     for count in range(round(at_most_s / STEP_S)):
         now_s = count * STEP_S
         if count % 10 == 0:
@@ -129,8 +129,8 @@ def fly(
 
 
 def _begin(
-    waiting: list[Flight],
-    under_way: list[Flight],
+    waiting: list[ReturnFlight],
+    under_way: list[ReturnFlight],
     fliers: dict[str, Flier],
     separation: Separation,
     settings: FleetReturnSettings,
@@ -154,7 +154,7 @@ def _begin(
             moving.add(flight.name)
 
 
-def _note(flown: Flown, under_way: Sequence[Flight], now_s: float) -> None:
+def _note(flown: Flown, under_way: Sequence[ReturnFlight], now_s: float) -> None:
     flown.most_at_once = max(flown.most_at_once, len(under_way))
     heights: dict[str, tuple[float, float]] = {}
     landing: dict[str, int] = {}

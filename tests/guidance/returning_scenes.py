@@ -7,9 +7,9 @@ from random import Random
 import numpy as np
 
 from recon.guidance.fleet_return import (
+    CalledVehicle,
     FleetReturnSettings,
     Pad,
-    Returning,
     ReturnPlan,
     Separation,
     WayHome,
@@ -34,14 +34,14 @@ LOW_GROUND_M, HIGH_GROUND_M = -2.0, 3.0
 class Scene:
     """A fleet and its site. `airspace` has no boundary unless asked for."""
 
-    vehicles: tuple[Returning, ...]
+    vehicles: tuple[CalledVehicle, ...]
     airspace: Airspace
     home: WayHome
 
     def plan(self) -> ReturnPlan:
         return plan_return(self.vehicles, self.home, KEPT, SETTINGS)
 
-    def vehicle(self, name: str) -> Returning:
+    def vehicle(self, name: str) -> CalledVehicle:
         return next(v for v in self.vehicles if v.name == name)
 
 
@@ -63,7 +63,7 @@ def row_of_pads(count: int, spacing_m: float) -> list[Pad]:
 
 
 def scene_of(
-    vehicles: list[Returning],
+    vehicles: list[CalledVehicle],
     ceiling_m: float = 120.0,
     zones: tuple[Zone, ...] = (),
     boundary: Region | None = None,
@@ -89,7 +89,7 @@ def drawn_scene(
     rng = Random(seed)
     row = row_of_pads(pads, rng.uniform(8.0, 30.0))
     zones = tuple(_zone(rng, number) for number in range(zone_count))
-    vehicles: list[Returning] = []
+    vehicles: list[CalledVehicle] = []
     for _ in range(60 * count):
         if len(vehicles) == count:
             break
@@ -103,7 +103,9 @@ def drawn_scene(
         number = len(vehicles) + 1
         takeoff_m, battery = rng.uniform(-2.0, 3.0), rng.uniform(0.15, 1.0)
         pad = rng.choice(row)
-        vehicles.append(Returning(f"S-{number}", f"Drone {number}", place, takeoff_m, pad, battery))
+        vehicles.append(
+            CalledVehicle(f"S-{number}", f"Drone {number}", place, takeoff_m, pad, battery)
+        )
     fence = box(0.0, 100.0, 420.0) if is_fenced else None
     return scene_of(vehicles, ceiling_m, zones, fence)
 
@@ -115,7 +117,7 @@ def _zone(rng: Random, number: int) -> Zone:
     return keep_out(f"zone {number + 1}", region, None, ceiling_m)
 
 
-def _is_clear(place: tuple[float, float, float], vehicles: list[Returning]) -> bool:
+def _is_clear(place: tuple[float, float, float], vehicles: list[CalledVehicle]) -> bool:
     return all(
         abs(place[2] - v.place_m[2]) >= KEPT.vertical_m
         or hypot(place[0] - v.place_m[0], place[1] - v.place_m[1]) >= KEPT.horizontal_m

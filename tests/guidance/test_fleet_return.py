@@ -25,7 +25,14 @@ from tests.guidance.returning_scenes import (
 )
 
 from recon.geo import enu_from_geo
-from recon.guidance.fleet_return import Flight, Pad, Returning, ReturnPlan, Separation, mission_of
+from recon.guidance.fleet_return import (
+    CalledVehicle,
+    Pad,
+    ReturnFlight,
+    ReturnPlan,
+    Separation,
+    mission_of,
+)
 from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 
 CEILINGS_M = st.sampled_from([30.0, 45.0, 60.0, 120.0])
@@ -44,10 +51,10 @@ def scenes(most: int = 40) -> st.SearchStrategy[Scene]:
     )
 
 
-def hovering_row(count: int, pads: list[Pad], up_m: float = 30.0) -> list[Returning]:
+def hovering_row(count: int, pads: list[Pad], up_m: float = 30.0) -> list[CalledVehicle]:
     """Vehicles side by side 200 m north of their pads, the first with the lowest battery."""
     return [
-        Returning(
+        CalledVehicle(
             f"S-{i + 1}",
             f"Drone {i + 1}",
             (40.0 * i, 200.0, up_m),
@@ -214,7 +221,9 @@ class TestWays:
         over = box(0.0, 100.0, 20.0)
         zone = Zone("under wires", ZoneKind.HEIGHT, over, None, 30.0, HeightDatum.GROUND)
         vehicles = [lone(0.0, 200.0), lone(3.0, 260.0, "B")]
-        vehicles[1] = Returning("B", "B", (3.0, 260.0, 40.0), 0.0, Pad("q", 40.0, -40.0, 0.0), 0.9)
+        vehicles[1] = CalledVehicle(
+            "B", "B", (3.0, 260.0, 40.0), 0.0, Pad("q", 40.0, -40.0, 0.0), 0.9
+        )
         low, high = scene_of(vehicles, zones=(zone,)).plan().flights
         assert (low.layer_up_m, len(low.way_m)) == (pytest.approx(23.0), 2)
         assert high.layer_up_m == pytest.approx(31.0)
@@ -232,12 +241,12 @@ class TestWays:
         over = scene_of([lone(0.0, 200.0)], zones=(zone,)).plan().left_out
         assert "it is over the keep-out zone house" in over[0].reason
         pad = Pad("p", 0.0, 200.0, 0.0)
-        inside = Returning("A", "A", (0.0, 0.0, 30.0), 0.0, pad, 0.5)
+        inside = CalledVehicle("A", "A", (0.0, 0.0, 30.0), 0.0, pad, 0.5)
         (left,) = scene_of([inside], zones=(zone,)).plan().left_out
         assert "its pad p is in the keep-out zone house" in left.reason
 
     def test_a_pad_outside_the_fence_is_told(self) -> None:
-        vehicle = Returning("A", "A", (0.0, 100.0, 30.0), 0.0, Pad("p", 0.0, -600.0, 0.0), 0.5)
+        vehicle = CalledVehicle("A", "A", (0.0, 100.0, 30.0), 0.0, Pad("p", 0.0, -600.0, 0.0), 0.5)
         (left,) = scene_of([vehicle], boundary=box(0.0, 100.0, 420.0)).plan().left_out
         assert "its pad p is outside the site" in left.reason
 
@@ -250,15 +259,15 @@ class TestWays:
         assert "above the ceiling" in left.reason
 
     def test_two_that_hover_too_near_are_both_left_to_their_pilots(self) -> None:
-        near = Returning("B", "B", (5.0, 200.0, 32.0), 0.0, Pad("q", 60.0, -40.0, 0.0), 0.9)
+        near = CalledVehicle("B", "B", (5.0, 200.0, 32.0), 0.0, Pad("q", 60.0, -40.0, 0.0), 0.9)
         plan = scene_of([lone(0.0, 200.0), near]).plan()
         assert [left.name for left in plan.left_out] == ["A", "B"]
         assert "B hovers where it would climb, sink or land" in plan.left_out[0].reason
 
     def test_one_above_the_other_the_lower_goes_first(self) -> None:
         """The upper would have to sink through the lower one, whatever their batteries say."""
-        low = Returning("L", "L", (0.0, 200.0, 15.0), 0.0, Pad("p", 0.0, -40.0, 0.0), 0.9)
-        high = Returning("H", "H", (0.0, 200.0, 90.0), 0.0, Pad("q", 60.0, -40.0, 0.0), 0.2)
+        low = CalledVehicle("L", "L", (0.0, 200.0, 15.0), 0.0, Pad("p", 0.0, -40.0, 0.0), 0.9)
+        high = CalledVehicle("H", "H", (0.0, 200.0, 90.0), 0.0, Pad("q", 60.0, -40.0, 0.0), 0.2)
         names = [flight.name for flight in scene_of([low, high], ceiling_m=40.0).plan().flights]
         assert sorted(names) == ["H", "L"]
         flown = fly(scene_of([low, high], ceiling_m=40.0).plan(), {}, KEPT, LEAST, SETTINGS, seed=3)
@@ -266,11 +275,11 @@ class TestWays:
         assert flown.nearest_m >= LEAST.horizontal_m
 
 
-def lone(east_m: float, north_m: float, name: str = "A") -> Returning:
-    return Returning(name, name, (east_m, north_m, 30.0), 0.0, Pad("p", 0.0, -40.0, 0.0), 0.5)
+def lone(east_m: float, north_m: float, name: str = "A") -> CalledVehicle:
+    return CalledVehicle(name, name, (east_m, north_m, 30.0), 0.0, Pad("p", 0.0, -40.0, 0.0), 0.5)
 
 
-def sampled(flight: Flight) -> np.ndarray:
+def sampled(flight: ReturnFlight) -> np.ndarray:
     corners = [
         flight.start_m,
         *((east_m, north_m, flight.layer_up_m) for east_m, north_m in flight.way_m),

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from tests.guidance.returning_scenes import KEPT, SETTINGS
 
 from recon.guidance.fleet_return import (
-    Flight,
     Hovering,
     Pad,
     Place,
+    ReturnFlight,
     Separation,
     claim_left,
     hindrance,
@@ -33,9 +33,9 @@ def flight(
     start: Place = (0.0, 200.0, 60.0),
     pad: tuple[float, float] = (0.0, 0.0),
     layer_m: float = 20.0,
-) -> Flight:
+) -> ReturnFlight:
     way = (start[:2], pad)
-    return Flight(name, name, start, 0.0, Pad(f"pad {name}", *pad, 0.0), layer_m, way, 1)
+    return ReturnFlight(name, name, start, 0.0, Pad(f"pad {name}", *pad, 0.0), layer_m, way, 1)
 
 
 class TestDistance:

@@ -59,7 +59,7 @@ def short(folder: Path) -> tuple[Scenario, RunScore]:
 
 
 def test_a_field_in_sun_is_imaged_in_one_round(clear: RunScore) -> None:
-    assert clear.end == "all that the rows reach is imaged in sun"
+    assert clear.end == "Complete: all reachable ground photographed in sun"
     assert clear.missions == 2
     assert clear.to_95_imaged_s is not None
     assert clear.to_95_in_sun_s == clear.to_95_imaged_s
@@ -197,7 +197,7 @@ def test_rows_longer_than_the_shade_history_count_in_sun(folder: Path) -> None:
     text = CLEAR.replace("90.0", "1200.0").replace("60.0]", "40.0]")
     text = text.replace("radius_m = 160.0", "radius_m = 700.0\ncell_m = 20.0")
     found = run(guidance_alone(small(folder, text)), 0)
-    assert found.end == "all that the rows reach is imaged in sun"
+    assert found.end == "Complete: all reachable ground photographed in sun"
     assert found.missions == 2
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from tests.station.returning_world import ReturningWorld, returning_world
 
-from recon.guidance.survey import SurveyFigures, SurveyState, figures
+from recon.guidance.survey import CoverageFigures, SurveyState, figures
 from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission
 from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
@@ -61,7 +61,7 @@ class SurveyedWorld:
     def phase(self, number: int = SURVEY_ID) -> SurveyPhase:
         return self.state(number).phase
 
-    def figures(self) -> SurveyFigures:
+    def figures(self) -> CoverageFigures:
         return figures(self.state())
 
     def asks(self, survey: Survey | None = None) -> None:

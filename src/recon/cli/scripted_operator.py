@@ -17,7 +17,7 @@ from recon.score.scripted_operator import (
     DroneView,
     FieldView,
     OperatorAction,
-    PlanSurvey,
+    RequestPlan,
     ScriptedOperator,
     StartDrones,
     SurveyStage,
@@ -110,7 +110,7 @@ class _HttpOperator:
     async def _carry_out(self, action: OperatorAction) -> Refusal | None:
         surveys = self._station.surveys
         match action:
-            case PlanSurvey():
+            case RequestPlan():
                 answer = await surveys.create(**survey_request(self._scenario))
                 if isinstance(answer, SurveyStatus):
                     self._survey_id = answer.id

@@ -1,11 +1,21 @@
-"""Steering towards a place with velocities: from telemetry that is late to the next stick. Pure.
+"""The steering law: from delayed telemetry to the next velocity setpoint towards a place. Pure.
 
-The demanded speed falls with the distance that is left, so that the vehicle brakes in time: far out
-as the square root (constant deceleration), close in as a line (so that it settles and does not
-swing). Distance is counted from where the vehicle will be when the stick takes effect. The demand
-itself changes by a bounded acceleration only. What wind pushes past the aircraft's own velocity
-control is learnt while the demand is steady, and taken off it. Heights are above takeoff and asked
-for as such: the demanded one moves at a bounded rate.
+Theory of operation. At each setpoint:
+
+1. Predict the position at which the setpoint takes effect: the last reported position plus the
+   demanded velocity over the telemetry's age and `latency_s`, at most `longest_lead_s`.
+2. Speed from the remaining distance d: sqrt(2 a d) far out (constant deceleration
+   `braking_mps2`), proportional to d close in (`approach_gain_per_s`), so that the vehicle settles
+   without oscillation (ArduPilot's `sqrt_controller` has the same shape). With gain times loop
+   delay under 1/e the linear part does not oscillate.
+3. Slew: the demand changes by at most `acceleration_mps2`.
+4. Wind: the part of the velocity that the aircraft's own control leaves as an error is learnt
+   slowly while the demand is steady, and subtracted. It is bounded by `longest_push_mps`: more is
+   an aircraft that does not follow its setpoints.
+5. Height is demanded as height above takeoff and moves at `climb_mps` or `sink_mps`, at most
+   `longest_height_lead_m` ahead of the aircraft; the heading turns at `turn_dps`.
+
+`halted` demands zero velocity at once. Streams, their ends and timeouts are the station's.
 """
 
 from dataclasses import dataclass, replace
@@ -36,7 +46,7 @@ class SteeringSettings:
     that the station sees."""
 
     longest_lead_s: float = 1.3
-    """Telemetry is foreseen this far at most: a second of age, and the latency."""
+    """Longest prediction of telemetry: a second of age, and the latency."""
 
     climb_mps: float = 2.0
     sink_mps: float = 1.5
@@ -153,8 +163,8 @@ def steer(
 
 
 def halted(before: Steered, height_above_takeoff_m: float | None, now_ns: int) -> Steered:
-    """Return the demand to stand still at once: heading kept, and the height last heard; while that
-    is unknown, the height last demanded."""
+    """Return the demand to stop at once: heading kept, at the height last reported or, without one,
+    last demanded."""
     kept_m = before.height_above_takeoff_m
     return replace(
         before,

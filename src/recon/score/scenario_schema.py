@@ -39,7 +39,7 @@ class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A table that refuses unknown keys."""
 
 
-class SiteTable(Table, frozen=True):
+class ScenarioSiteTable(Table, frozen=True):
     """A site's folder, relative to the scenario file; or the origin of a generated site."""
 
     folder: Annotated[str, Meta(min_length=1, description="a folder's name")] | None = None
@@ -76,7 +76,7 @@ class FleetTable(Table, frozen=True):
     swap_min: Annotated[float, Meta(ge=0.0, le=60.0)] = 3.0
 
 
-class ImagerTable(Table, frozen=True):
+class ScenarioImagerTable(Table, frozen=True):
     """The imaging drone; by default it hovers 120 m above the middle of the region.
 
     With a site's folder it hovers where the site's marked frame was taken.
@@ -135,10 +135,10 @@ class ScenarioFile(Table, frozen=True):
 
     about: Annotated[str, Meta(min_length=1, description="a sentence")]
     start_utc: Annotated[datetime, Meta(tz=True, description="a moment like 2025-06-20T16:00:00Z")]
-    site: SiteTable
+    site: ScenarioSiteTable
     task: TaskTable
     fleet: FleetTable
-    imager: ImagerTable = ImagerTable()
+    imager: ScenarioImagerTable = ScenarioImagerTable()
     methods: MethodsTable = MethodsTable()
     clouds: list[CloudsTable] = []
     wind: WindTable = WindTable()

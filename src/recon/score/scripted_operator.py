@@ -81,7 +81,7 @@ class FieldView:
 
 
 @dataclass(frozen=True, slots=True)
-class PlanSurvey:
+class RequestPlan:
     """Ask the station to plan the task."""
 
 
@@ -111,7 +111,7 @@ class AbortSurvey:
     """End the survey for good."""
 
 
-OperatorAction = PlanSurvey | StartDrones | TakeAuthority | CallHome | AbortSurvey
+OperatorAction = RequestPlan | StartDrones | TakeAuthority | CallHome | AbortSurvey
 
 
 @dataclass(slots=True)
@@ -144,13 +144,13 @@ class ScriptedOperator:
     def _plan(self, drones: Sequence[DroneView], now_s: float) -> Iterator[OperatorAction]:
         are_ready = len(drones) == len(self.serials) and all(each.is_ready for each in drones)
         if self._lasts("ready", are_ready, now_s, SETTLED_S):
-            yield PlanSurvey()
+            yield RequestPlan()
 
     def _repeat(self, drones: Sequence[DroneView], now_s: float) -> Iterator[OperatorAction]:
         are_charged = all(each.is_charged and each.is_ready for each in drones)
         if self._lasts("next survey", are_charged, now_s):
             self._is_started = False
-            yield PlanSurvey()
+            yield RequestPlan()
 
     def _supervise(
         self, view: FieldView, drones: Sequence[DroneView], now_s: float

@@ -11,7 +11,7 @@ from recon.model.survey import Survey
 from recon.model.zone import Region
 from recon.score.scenario import EastNorth, ScenarioFleet, ScenarioImager
 from recon.score.scenario_errors import ScenarioErrors
-from recon.score.scenario_schema import FleetTable, ImagerTable, ScenarioFile
+from recon.score.scenario_schema import FleetTable, ScenarioFile, ScenarioImagerTable
 from recon.score.scenario_site import generated_site
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.site import Site, SiteError, load_site
@@ -122,7 +122,7 @@ def _middle_m(region: Region) -> EastNorth:
 
 
 def _imager(
-    table: ImagerTable, beneath_m: EastNorth, height_m: float = USUAL_IMAGER_HEIGHT_M
+    table: ScenarioImagerTable, beneath_m: EastNorth, height_m: float = USUAL_IMAGER_HEIGHT_M
 ) -> ScenarioImager:
     over_m = beneath_m if table.over_m is None else (table.over_m[0], table.over_m[1])
     over_ground_m = height_m if table.height_m is None else table.height_m

@@ -23,7 +23,7 @@ from recon.score.scripted_operator import (
     DroneView,
     FieldView,
     OperatorAction,
-    PlanSurvey,
+    RequestPlan,
     ScriptedOperator,
     StartDrones,
     SurveyStage,
@@ -54,7 +54,7 @@ class StationOperator:
 
     def _event(self, action: OperatorAction) -> Event:
         match action:
-            case PlanSurvey():
+            case RequestPlan():
                 return SurveyAsked(replace(self.survey, id=SURVEY_ID), BY)
             case StartDrones(serials):
                 return SurveyStarted(SURVEY_ID, serials, BY, takeoff=True)

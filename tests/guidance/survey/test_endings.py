@@ -27,14 +27,12 @@ def flown(tells_shade: bool = True, sky=closed, **budget: object) -> Flights:  #
     return flights
 
 
-@pytest.mark.parametrize(
-    ("rounds", "words"), [(1, "the one round allowed is"), (3, "all 3 rounds allowed are")]
-)
+@pytest.mark.parametrize(("rounds", "words"), [(1, "The only round"), (3, "All 3 rounds")])
 def test_under_a_closed_sky_its_rounds_end_it(rounds: int, words: str) -> None:
     end = flown(rounds=rounds).state
     assert (end.phase, end.round) == (SurveyPhase.DONE, rounds)
     assert end.reason == (
-        f"{words} flown; of 6.00 ha, 6.00 ha are imaged in shade only, 0.00 ha are not imaged"
+        f"{words} flown; of 6.00 ha, 6.00 ha imaged in shade only, 0.00 ha not imaged"
     )
 
 
@@ -42,24 +40,24 @@ def test_under_a_closed_sky_its_time_ends_it_and_who_flies_flies_to_the_end() ->
     flights = flown(time_s=300.0)
     end = flights.state
     assert end.phase is SurveyPhase.DONE
-    assert end.reason.startswith("the 300 s allowed are over; of 6.00 ha, ")
+    assert end.reason.startswith("Time budget of 300 s spent; of 6.00 ha, ")
     assert 300.0 <= flights.time_s < 600.0
     assert all(not flyer.is_flying for flyer in flights.flyers)
 
 
 def test_its_metres_end_it() -> None:
     end = flown(flown_m=100.0).state
-    assert end.reason.startswith("the 100 m allowed are flown; of 6.00 ha, ")
+    assert end.reason.startswith("Distance budget of 100 m flown; of 6.00 ha, ")
     assert end.round == 1
 
 
 def test_where_nobody_sees_the_light_nothing_is_flown_again_for_it() -> None:
     end = flown(tells_shade=False).state
     assert (end.phase, end.round) == (SurveyPhase.DONE, 1)
-    assert "in light that nobody knows" in end.reason
+    assert "light unknown" in end.reason
     assert figures(end).not_yet_m2 <= 0.01 * figures(end).region_m2
 
 
 def test_in_sun_it_ends_after_one_round() -> None:
     end = flown(sky=clear).state
-    assert (end.round, end.reason) == (1, "all that the rows reach is imaged in sun")
+    assert (end.round, end.reason) == (1, "Complete: all reachable ground photographed in sun")

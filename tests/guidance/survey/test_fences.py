@@ -8,10 +8,10 @@ from tests.guidance.survey.fields import l_shape, rectangle, star, survey_of
 from tests.safety.fenced import FRAME, airspace, asked, flier, keep_out_zone
 
 from recon.guidance.survey import (
-    Surroundings,
     Surveyor,
     SurveyPlan,
     SurveyState,
+    SurveySurroundings,
     create,
     plan_survey,
     start,
@@ -34,7 +34,7 @@ def refusals(field: Region, fence: Region, shut: tuple[Region, ...], count: int)
 
     It would hover without its link: the way to the field and home is not the survey's.
     """
-    told = Surroundings(fence, shut, LIMITS.boundary_margin_m)
+    told = SurveySurroundings(fence, shut, LIMITS.boundary_margin_m)
     plan = plan_survey(survey_of(field), FRAME, told)
     if not isinstance(plan, SurveyPlan):
         return []

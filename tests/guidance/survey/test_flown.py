@@ -16,10 +16,10 @@ from tests.guidance.survey.flyers import (
 )
 
 from recon.guidance.survey import (
-    Surroundings,
     Surveyor,
     SurveyPlan,
     SurveyState,
+    SurveySurroundings,
     abort,
     create,
     figures,
@@ -114,7 +114,7 @@ class TestOnce:
         flyers = fleet(1, height_m=70.0)
         budget = SurveyBudget(rounds=1)
         end = Flights(begun(survey_of(rectangle(), budget=budget), flyers), flyers).run()
-        assert end.reason == "the one round allowed is flown; of 6.00 ha, 6.00 ha are not imaged"
+        assert end.reason == "The only round flown; of 6.00 ha, 6.00 ha not imaged"
         assert figures(end).not_yet_m2 == figures(end).region_m2
 
 
@@ -126,7 +126,7 @@ class TestAgain:
         end = flights.run()
         assert (end.phase, end.reason) == (
             SurveyPhase.DONE,
-            "all that the rows reach is imaged in sun",
+            "Complete: all reachable ground photographed in sun",
         )
         assert end.round > 1
         first, later = flights.given[:3], flights.given[3:]
@@ -231,7 +231,7 @@ class TestTroubles:
     def test_nobody_able_waits(self) -> None:
         flyers = fleet(1, is_able=False)
         waiting = Flights(begun(survey_of(rectangle()), flyers), flyers).run(most_s=20.0)
-        assert "none of its vehicles" in waiting.reason
+        assert "no vehicle can fly now" in waiting.reason
 
     def test_when_all_are_refused_it_pauses_and_says_why(self) -> None:
         flyers = fleet(2)
@@ -288,7 +288,7 @@ class TestTroubles:
 
     def test_a_field_in_two_parts_is_flown_in_two_missions(self) -> None:
         across = Region(np.array([(130.0, -50.0), (160.0, -50.0), (160.0, 250.0), (130.0, 250.0)]))
-        plan = plan_survey(survey_of(rectangle()), FRAME, Surroundings(keep_out=(across,)))
+        plan = plan_survey(survey_of(rectangle()), FRAME, SurveySurroundings(keep_out=(across,)))
         assert isinstance(plan, SurveyPlan)
         created = create(plan)
         assert isinstance(created, SurveyState)

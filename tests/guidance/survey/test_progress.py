@@ -12,8 +12,8 @@ from tests.guidance.survey.fields import FRAME, planned, rectangle, survey_of
 from tests.guidance.survey.flyers import middles_m
 
 from recon.guidance.survey import (
+    CoverageProgress,
     PositionSample,
-    Progress,
     SurveyPlan,
     SurveyState,
     create,
@@ -49,7 +49,9 @@ def row_flown(speed_mps: float = 8.0, hz: float = 1.0, **changes: float) -> list
     return [replace(each, **changes) for each in seen]
 
 
-def counted(seen: list[PositionSample], *shade: ShadeMap, plan: SurveyPlan = PLAN) -> Progress:
+def counted(
+    seen: list[PositionSample], *shade: ShadeMap, plan: SurveyPlan = PLAN
+) -> CoverageProgress:
     progress = no_progress(plan.cells)
     for each in shade:
         progress = with_shade(progress, each, plan)
@@ -64,7 +66,7 @@ def shade(at_s: float, is_lit: bool = True, valid: bool = True) -> ShadeMap:
     return ShadeMap(grid, seconds_to_ns(at_s), (), lit, np.full(shape, valid), one, one)
 
 
-def imaged(progress: Progress) -> BoolArray:
+def imaged(progress: CoverageProgress) -> BoolArray:
     return np.asarray(progress.state >= CellState.IN_SHADE)
 
 

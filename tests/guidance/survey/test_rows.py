@@ -23,7 +23,7 @@ from tests.guidance.survey.fields import (
     survey_of,
 )
 
-from recon.guidance.survey import Surroundings, SurveyPlan, plan_survey
+from recon.guidance.survey import SurveyPlan, SurveySurroundings, plan_survey
 from recon.guidance.survey.plan import row_reach_m
 from recon.guidance.survey.rows import Piece
 from recon.model.command import Refusal
@@ -243,7 +243,9 @@ class TestSurroundings:
     def test_rows_keep_off_zones_and_boundary(self) -> None:
         shut = Region(np.array([(100.0, 60.0), (180.0, 60.0), (180.0, 140.0), (100.0, 140.0)]))
         field = rectangle()
-        plan = plan_survey(survey_of(field), FRAME, Surroundings(field, (shut,), margin_m=5.0))
+        plan = plan_survey(
+            survey_of(field), FRAME, SurveySurroundings(field, (shut,), margin_m=5.0)
+        )
         assert isinstance(plan, SurveyPlan)
         for start_m, end_m in flown_m(plan):
             places = start_m + np.linspace(0.0, 1.0, 200)[:, np.newaxis] * (end_m - start_m)
@@ -252,14 +254,14 @@ class TestSurroundings:
 
     def test_what_is_not_reached_is_said(self) -> None:
         shut = Region(np.array([(100.0, 60.0), (180.0, 60.0), (180.0, 140.0), (100.0, 140.0)]))
-        plan = plan_survey(survey_of(rectangle()), FRAME, Surroundings(keep_out=(shut,)))
+        plan = plan_survey(survey_of(rectangle()), FRAME, SurveySurroundings(keep_out=(shut,)))
         assert isinstance(plan, SurveyPlan)
         missed = plan.cells.is_inside & ~plan.cells.is_reached
         assert 0 < missed.sum() * plan.cells.cell_m2 < 90.0 * 90.0
 
     def test_no_room_for_a_row_is_refused(self) -> None:
         far = Region(np.array([(900.0, 900.0), (990.0, 900.0), (990.0, 990.0)]))
-        refusal = plan_survey(survey_of(rectangle()), FRAME, Surroundings(far))
+        refusal = plan_survey(survey_of(rectangle()), FRAME, SurveySurroundings(far))
         assert isinstance(refusal, Refusal)
         assert "no row of the region north field" in refusal.reason
 
@@ -269,7 +271,7 @@ class TestSurroundings:
         rng = np.random.default_rng(seed)
         survey = drawn(seed, (0.7, 0.6))
         zone = star(rng, 40.0, has_hole=False)
-        surroundings = Surroundings(survey.region, (zone,), margin_m=3.0)
+        surroundings = SurveySurroundings(survey.region, (zone,), margin_m=3.0)
         plan = plan_survey(survey, FRAME, surroundings)
         if isinstance(plan, Refusal):
             return

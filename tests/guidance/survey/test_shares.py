@@ -13,7 +13,7 @@ from tests.guidance.survey.flyers import east_north
 
 from recon.geo.distance import horizontal_distance_m
 from recon.guidance.survey import Surveyor, SurveyPlan, SurveyState, create, start, step
-from recon.guidance.survey.route import Cost, Leg, Route, route_of, shared
+from recon.guidance.survey.route import Cost, Route, RowLeg, route_of, shared
 from recon.guidance.survey.rows import Piece
 from recon.model.geo import LatLon
 from recon.model.survey import MissionFor
@@ -138,7 +138,7 @@ class TestShares:
 
     def test_one_short_row_is_one_share(self) -> None:
         plan = planned(survey_of(rectangle()))
-        row = (Leg(Piece(0, 0.0, 40.0), False),)
+        row = (RowLeg(Piece(0, 0.0, 40.0), False),)
         assert shared(row, 3, plan.lattice, COST) == (row,)
 
 

@@ -1,4 +1,4 @@
-"""Ways between rows: inside, no longer than they must be."""
+"""Paths between rows: inside the region, and the shortest."""
 
 from itertools import pairwise
 from math import hypot, inf
@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.guidance.survey.fields import planned, star, survey_of
 
-from recon.guidance.survey.missions import MOST_CORNERS, Ways
+from recon.guidance.survey.missions import MOST_CORNERS, RegionPaths
 
 Place = tuple[float, float]
 
@@ -21,7 +21,7 @@ def box_with_hole() -> shapely.Polygon:
     )
 
 
-def found(ways: Ways, start: Place, end: Place) -> list[Place]:
+def found(ways: RegionPaths, start: Place, end: Place) -> list[Place]:
     """The whole way, ends and all."""
     between = ways.between(start, end)
     assert between is not None
@@ -33,11 +33,11 @@ def length_m(way: list[Place]) -> float:
 
 
 def test_where_nothing_is_in_the_way_it_is_straight() -> None:
-    assert Ways(box_with_hole()).between((10.0, 10.0), (10.0, 90.0)) == ()
+    assert RegionPaths(box_with_hole()).between((10.0, 10.0), (10.0, 90.0)) == ()
 
 
 def test_round_a_hole_by_the_shorter_side() -> None:
-    way = found(Ways(box_with_hole()), (20.0, 30.0), (80.0, 30.0))
+    way = found(RegionPaths(box_with_hole()), (20.0, 30.0), (80.0, 30.0))
     shortest_m = 2.0 * hypot(20.0, 10.0) + 20.0
     assert shortest_m <= length_m(way) < shortest_m + 1.0
     assert all(north_m < 20.0 for _, north_m in way[1:-1])
@@ -45,7 +45,7 @@ def test_round_a_hole_by_the_shorter_side() -> None:
 
 def test_where_there_is_no_way_there_is_none() -> None:
     apart = shapely.MultiPolygon([shapely.box(0, 0, 10, 10), shapely.box(50, 0, 60, 10)])
-    assert Ways(apart).between((5.0, 5.0), (55.0, 5.0)) is None
+    assert RegionPaths(apart).between((5.0, 5.0), (55.0, 5.0)) is None
 
 
 def test_round_things_are_taken_with_few_corners() -> None:
@@ -54,7 +54,7 @@ def test_round_things_are_taken_with_few_corners() -> None:
         .buffer(100.0, quad_segs=600)
         .difference(shapely.Point(0, 0).buffer(50.0, quad_segs=600))
     )
-    ways = Ways(rough)
+    ways = RegionPaths(rough)
     assert len(ways._corners) <= MOST_CORNERS
     way = found(ways, (-80.0, 0.0), (80.0, 0.0))
     assert shapely.covers(rough, shapely.LineString(way))
@@ -98,7 +98,7 @@ def _part(area: shapely.Geometry, place: Place) -> shapely.Geometry:
 def test_no_way_over_three_corners_is_shorter(seed: int) -> None:
     """Every chain of up to two corners of the area, tried one by one."""
     rng = np.random.default_rng(seed)
-    ways = Ways(box_with_hole())
+    ways = RegionPaths(box_with_hole())
     start, end = ((float(e), float(n)) for e, n in rng.uniform((0, 25), (39, 75), (2, 2)))
     end = (100.0 - end[0], end[1])
     found_m = length_m(found(ways, start, end))

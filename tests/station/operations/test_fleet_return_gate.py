@@ -20,7 +20,7 @@ from tests.guidance.returning_scenes import (
 from tests.safety.cases import TAKEOFF, command, situation, vehicle
 
 from recon.geo import point_from_enu
-from recon.guidance.fleet_return import Flight, Pad, Returning, mission_of
+from recon.guidance.fleet_return import CalledVehicle, Pad, ReturnFlight, mission_of
 from recon.model.command import FlyMission
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import Failsafe, VehicleState
@@ -55,7 +55,7 @@ def on_flat_ground(scene: Scene) -> Scene:
     return scene_of(vehicles, ceiling_m, airspace.zones, airspace.boundary)
 
 
-def hovering(flight: Flight) -> VehicleState:
+def hovering(flight: ReturnFlight) -> VehicleState:
     """The state of a vehicle that hovers where its flight begins; it would hover by itself too."""
     here = point_from_enu(FRAME, (*flight.start_m[:2], 0.0))
     pad = point_from_enu(FRAME, (*flight.pad.east_north_m, 0.0))
@@ -68,7 +68,7 @@ def hovering(flight: Flight) -> VehicleState:
     )
 
 
-def judged(scene: Scene, flight: Flight) -> Situation:
+def judged(scene: Scene, flight: ReturnFlight) -> Situation:
     return replace(situation(hovering(flight)), airspace=PreparedAirspace(scene.airspace))
 
 
@@ -95,7 +95,7 @@ def test_every_planned_flight_passes(
 def test_the_rules_are_asked_for_real() -> None:
     """The control: the same flight straight through a zone, and out of the site, is refused."""
     zone = keep_out("road", box(0.0, 100.0, 20.0))
-    vehicle_there = Returning("A", "A", (0.0, 200.0, 30.0), 0.0, Pad("p", 0.0, -40.0, 0.0), 0.5)
+    vehicle_there = CalledVehicle("A", "A", (0.0, 200.0, 30.0), 0.0, Pad("p", 0.0, -40.0, 0.0), 0.5)
     scene = scene_of([vehicle_there], zones=(zone,), boundary=box(0.0, 100.0, 420.0))
     (flight,) = scene.plan().flights
     straight = replace(flight, way_m=(flight.way_m[0], flight.way_m[-1]))

@@ -112,7 +112,7 @@ class TestStart:
         world.runs(20.0)
         assert world.missions() == []
         assert not world.fleet.flies("SIM-1")
-        assert "waits" in world.state().reason
+        assert "waiting" in world.state().reason
         world.starts("SIM-1", takeoff=True)
         world.runs(20.0)
         assert [each.command.takeoff for each in world.missions()] == [True]

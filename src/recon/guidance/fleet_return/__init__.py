@@ -1,17 +1,17 @@
-"""Calling a fleet home: a height of its own for each vehicle, a way to its pad, and its turn.
+"""Fleet return: for each vehicle a layer of its own, a path to its pad, and its turn.
 
-`plan_return` is pure: places, pads and what the site allows in; flights in waves out. `hindrance`
-says whether a planned flight may begin now. `mission_of` makes the landing mission of it.
+`plan_return` is pure: places, pads and the site's airspace in, flights in waves out. `hindrance`
+returns why a planned flight must wait. `mission_of` makes its landing mission.
 """
 
 from recon.guidance.fleet_return.airspace import WayHome, way_home
 from recon.guidance.fleet_return.flight import (
-    Flight,
+    CalledVehicle,
     Hovering,
     LeftOut,
     Pad,
     Place,
-    Returning,
+    ReturnFlight,
     ReturnPlan,
     mission_of,
 )
@@ -28,15 +28,15 @@ from recon.guidance.fleet_return.turn import (
 from recon.guidance.fleet_return.volume import Separation
 
 __all__ = [
+    "CalledVehicle",
     "Claim",
     "FleetReturnSettings",
-    "Flight",
     "Hovering",
     "LeftOut",
     "Pad",
     "Place",
+    "ReturnFlight",
     "ReturnPlan",
-    "Returning",
     "Separation",
     "WayHome",
     "claim_left",

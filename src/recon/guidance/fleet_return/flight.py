@@ -44,7 +44,7 @@ class Hovering:
 
 
 @dataclass(frozen=True, slots=True)
-class Returning:
+class CalledVehicle:
     """A vehicle that hovers and is called home. `battery_fraction` None: not known, taken for
     the lowest."""
 
@@ -62,7 +62,7 @@ class Returning:
 
 
 @dataclass(frozen=True, slots=True)
-class Flight:
+class ReturnFlight:
     """One way home: up or down to the layer on the spot, along `way_m` in it, down at the pad.
 
     `way_m` begins over the vehicle's place and ends over its pad, at least two points. `wave`
@@ -103,11 +103,11 @@ class ReturnPlan:
     """Flights in the order of their turn, and those left out. `layers_up_m` from the lowest."""
 
     layers_up_m: tuple[float, ...]
-    flights: tuple[Flight, ...]
+    flights: tuple[ReturnFlight, ...]
     left_out: tuple[LeftOut, ...]
 
     @property
-    def waves(self) -> tuple[tuple[Flight, ...], ...]:
+    def waves(self) -> tuple[tuple[ReturnFlight, ...], ...]:
         """The flights by wave; in a wave every vehicle has a layer of its own."""
         numbers = sorted({flight.wave for flight in self.flights})
         return tuple(tuple(f for f in self.flights if f.wave == number) for number in numbers)
@@ -118,7 +118,7 @@ LEAST_LEG_M = 1.0
 
 
 def mission_of(
-    flight: Flight,
+    flight: ReturnFlight,
     frame: LocalFrame,
     place_m: Place,
     settings: FleetReturnSettings,

@@ -1,8 +1,23 @@
-"""The plan: who flies when, in which layer, along which way.
+"""The fleet return's plan: the order of vehicles, and the layer and path of each.
 
-One after the other, each vehicle gets the lowest layer that is left in its wave and from which its
-whole flight (column, way, pad's column) stays apart from all that still hover. So, whatever happens
-to those that are under way, the next in the plan can always begin when they have landed.
+Theory of operation. Vehicles hover, and are separated by height, not by time: arrival times depend
+on wind and on how long each landing takes.
+
+1. Layers are `layer_spacing_m` apart, from the lowest height that clears ground and zones, to the
+   ceiling (`airspace`).
+2. Vehicles are ordered by battery, lowest first in tenths; equal ones by distance to their pads.
+3. The first vehicle that can have a free layer gets the lowest one from which its whole flight
+   (column up or down, level path, column over the pad) is separated from all vehicles that still
+   hover. Paths avoid closed zones by a visibility graph and Dijkstra's search (`ways`).
+4. When no free layer is left or fits, the next wave begins with all layers free.
+5. A vehicle that fits in no layer while all layers are free is left out, with the reason.
+
+Since each flight is separated from everything that hovers after it in the order, the next flight
+can always begin once those under way have landed, whatever happens to them. When a flight may begin
+is decided by `turn`, from the volumes that others may still pass: never from predicted times.
+
+Source: layers assigned by priority are prioritized planning (Erdmann and Lozano-Perez 1987), with
+whole volumes in place of trajectories in time.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,12 +29,12 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.guidance.fleet_return.airspace import WayHome
 from recon.guidance.fleet_return.flight import (
+    CalledVehicle,
     EastNorth,
-    Flight,
     Hovering,
     LeftOut,
     Place,
-    Returning,
+    ReturnFlight,
     ReturnPlan,
 )
 from recon.guidance.fleet_return.settings import FleetReturnSettings
@@ -30,9 +45,9 @@ from recon.guidance.fleet_return.volume import (
     distance_to_leg_m,
     point,
 )
-from recon.guidance.fleet_return.ways import Ways
+from recon.guidance.fleet_return.ways import ReturnPaths
 
-NO_WAY = "there is no way to its pad in any layer around keep-out zones and those that hover"
+NO_WAY = "no path to its pad in any layer around keep-out zones and hovering vehicles"
 
 
 def layers_up_m(home: WayHome, settings: FleetReturnSettings) -> tuple[float, ...]:
@@ -45,7 +60,7 @@ def layers_up_m(home: WayHome, settings: FleetReturnSettings) -> tuple[float, ..
 
 
 def plan_return(
-    vehicles: Sequence[Returning],
+    vehicles: Sequence[CalledVehicle],
     home: WayHome,
     separation: Separation,
     settings: FleetReturnSettings,
@@ -59,7 +74,7 @@ def plan_return(
     layers_m = layers_up_m(home, settings)
     search = _Search(vehicles, home, separation, layers_m, others)
     waiting = sorted(vehicles, key=_turn)
-    flights: list[Flight] = []
+    flights: list[ReturnFlight] = []
     wave, free_m = first_wave, list(layers_m)
     while waiting:
         flight = search.next_flight(waiting, free_m, wave)
@@ -75,7 +90,7 @@ def plan_return(
     return ReturnPlan(layers_m, tuple(flights), left_out)
 
 
-def _turn(vehicle: Returning) -> tuple[int, float, str]:
+def _turn(vehicle: CalledVehicle) -> tuple[int, float, str]:
     """The lowest battery first, in tenths; among those the nearest to its pad."""
     tenths = floor((vehicle.battery_fraction or 0.0) * 10.0)
     east_m, north_m, _ = vehicle.place_m
@@ -96,14 +111,14 @@ class _Search:
 
     def __init__(
         self,
-        vehicles: Sequence[Returning],
+        vehicles: Sequence[CalledVehicle],
         home: WayHome,
         separation: Separation,
         layers_m: Sequence[float],
         others: Sequence[Hovering],
     ) -> None:
         self._home = home
-        self._ways = Ways(home)
+        self._ways = ReturnPaths(home)
         self._separation = separation
         self._layers_m = layers_m
         self._others = others
@@ -111,18 +126,18 @@ class _Search:
         self._faults: dict[tuple[str, float], _Fault] = {}
 
     def next_flight(
-        self, waiting: Sequence[Returning], free_m: Sequence[float], wave: int
-    ) -> Flight | None:
+        self, waiting: Sequence[CalledVehicle], free_m: Sequence[float], wave: int
+    ) -> ReturnFlight | None:
         """Return the flight of the first vehicle, in their order, that can have one."""
         hovering = self._hovering(waiting)
         for vehicle in waiting:
             for layer_m in free_m:
                 flight = self._flight(vehicle, hovering, layer_m, wave)
-                if isinstance(flight, Flight):
+                if isinstance(flight, ReturnFlight):
                     return flight
         return None
 
-    def reason(self, vehicle: Returning, waiting: Sequence[Returning]) -> str:
+    def reason(self, vehicle: CalledVehicle, waiting: Sequence[CalledVehicle]) -> str:
         """Return why a vehicle has no flight."""
         room_m = self._home.highest_up_m - self._home.lowest_up_m
         if not isfinite(room_m):
@@ -136,12 +151,12 @@ class _Search:
         tried = (self._flight(vehicle, hovering, layer_m, 1) for layer_m in self._layers_m)
         return next(fault.reason for fault in tried if isinstance(fault, _Fault))
 
-    def _hovering(self, waiting: Sequence[Returning]) -> dict[str, Hovering]:
+    def _hovering(self, waiting: Sequence[CalledVehicle]) -> dict[str, Hovering]:
         return {other.key: other for other in (*self._others, *(v.hovering for v in waiting))}
 
     def _flight(
-        self, vehicle: Returning, hovering: Mapping[str, Hovering], layer_m: float, wave: int
-    ) -> Flight | _Fault:
+        self, vehicle: CalledVehicle, hovering: Mapping[str, Hovering], layer_m: float, wave: int
+    ) -> ReturnFlight | _Fault:
         known = self._faults.get((vehicle.serial, layer_m))
         if known is not None and known.while_hovering <= hovering.keys():
             return known
@@ -150,7 +165,7 @@ class _Search:
         if isinstance(found, _Fault):
             self._faults[vehicle.serial, layer_m] = found
             return found
-        return Flight(
+        return ReturnFlight(
             vehicle.serial,
             vehicle.name,
             vehicle.place_m,
@@ -162,7 +177,7 @@ class _Search:
         )
 
     def _way(
-        self, vehicle: Returning, layer_m: float, others: Sequence[Hovering]
+        self, vehicle: CalledVehicle, layer_m: float, others: Sequence[Hovering]
     ) -> tuple[EastNorth, ...] | _Fault:
         start_m, end_m = vehicle.place_m[:2], vehicle.pad.east_north_m
         alone = self._ways.find(start_m, end_m, layer_m)
@@ -181,7 +196,7 @@ class _Search:
     def _is_near_height(self, place_m: Place, layer_m: float) -> bool:
         return abs(place_m[2] - layer_m) < self._separation.vertical_m
 
-    def _no_way(self, vehicle: Returning, layer_m: float) -> str:
+    def _no_way(self, vehicle: CalledVehicle, layer_m: float) -> str:
         if not self._ways.is_in_reach(vehicle.pad.east_north_m, layer_m):
             where = f"its pad {vehicle.pad.name}"
         elif not self._ways.is_in_reach(vehicle.place_m[:2], layer_m):
@@ -194,9 +209,9 @@ class _Search:
         )
 
     def _column_fault(
-        self, vehicle: Returning, layer_m: float, others: Sequence[Hovering]
+        self, vehicle: CalledVehicle, layer_m: float, others: Sequence[Hovering]
     ) -> _Fault | None:
-        """Why it cannot climb, sink or land: for a zone, or for somebody who hovers there."""
+        """Return why it cannot climb, sink or land: a zone, or a vehicle that hovers there."""
         shut = self._column_faults[vehicle.serial]
         if shut is not None:
             return _Fault(shut)
@@ -215,7 +230,7 @@ class _Search:
                 return _Fault(reason, frozenset({other.key}))
         return None
 
-    def _shut_column(self, vehicle: Returning) -> str | None:
+    def _shut_column(self, vehicle: CalledVehicle) -> str | None:
         """Why the vehicle can climb or sink neither where it is nor at its pad."""
         if not self._layers_m:
             return None

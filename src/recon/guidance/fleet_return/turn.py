@@ -1,6 +1,6 @@
-"""Whose turn it is: what a vehicle under way still has before it, and whether another may begin.
+"""Turns: the volumes a vehicle under way may still pass, and whether another flight may begin.
 
-Nothing here foresees times. A flight begins when all its places are apart from all places that the
+No times are predicted. A flight begins when all its places are apart from all places that the
 others still have before them, so that neither wind nor a slow landing brings two together.
 """
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, hypot
 
-from recon.guidance.fleet_return.flight import Flight, Hovering, Place
+from recon.guidance.fleet_return.flight import Hovering, Place, ReturnFlight
 from recon.guidance.fleet_return.settings import FleetReturnSettings
 from recon.guidance.fleet_return.volume import (
     Separation,
@@ -22,7 +22,7 @@ from recon.guidance.fleet_return.volume import (
 )
 
 
-def least_time_s(flight: Flight, settings: FleetReturnSettings) -> float:
+def least_time_s(flight: ReturnFlight, settings: FleetReturnSettings) -> float:
     """Return how long a flight takes at least, from its order to the ground at its pad."""
     level_m = sum(dist(a, b) for a, b in pairwise(flight.way_m))
     upright_m = abs(flight.layer_up_m - flight.start_m[2]) + flight.layer_up_m - flight.pad.up_m
@@ -38,20 +38,20 @@ class Claim:
     volumes: tuple[Volume, ...]
 
 
-def whole_claim(flight: Flight) -> Claim:
+def whole_claim(flight: ReturnFlight) -> Claim:
     """Return what a flight takes that has not begun."""
     return Claim(flight.name, flight.layer_up_m, flight.volumes)
 
 
-def claim_left(flight: Flight, place_m: Place, settings: FleetReturnSettings) -> Claim:
-    """Return what a flight under way still takes, its vehicle last heard at a place."""
+def claim_left(flight: ReturnFlight, place_m: Place, settings: FleetReturnSettings) -> Claim:
+    """Return what a flight under way still takes, from its vehicle's last reported place."""
     return Claim(flight.name, flight.layer_up_m, places_left(flight, place_m, settings))
 
 
 def layer_is_taken_by(
-    flight: Flight, before: Iterable[Flight], under_way: Iterable[Flight]
+    flight: ReturnFlight, before: Iterable[ReturnFlight], under_way: Iterable[ReturnFlight]
 ) -> str | None:
-    """Return who keeps a flight from its layer, in words, or None: the layer is free."""
+    """Return which vehicle keeps a flight from its layer, or None: the layer is free."""
     for other in under_way:
         if other.layer_up_m == flight.layer_up_m:
             return f"{other.name} is still in its layer"
@@ -62,7 +62,7 @@ def layer_is_taken_by(
 
 
 def hindrance(
-    flight: Flight,
+    flight: ReturnFlight,
     before: Iterable[Claim],
     under_way: Iterable[Claim],
     hovering: Iterable[Hovering],
@@ -87,7 +87,7 @@ def hindrance(
 
 
 def places_left(
-    flight: Flight, place_m: Place, settings: FleetReturnSettings
+    flight: ReturnFlight, place_m: Place, settings: FleetReturnSettings
 ) -> tuple[Volume, ...]:
     """Return every place a vehicle under way may still come to, where it is included.
 
@@ -110,12 +110,12 @@ def places_left(
     return (here, *level_legs(rest_m, flight.layer_up_m), landing)
 
 
-def _is_over_pad(flight: Flight, place_m: Place, settings: FleetReturnSettings) -> bool:
+def _is_over_pad(flight: ReturnFlight, place_m: Place, settings: FleetReturnSettings) -> bool:
     pad = flight.pad
     return hypot(place_m[0] - pad.east_m, place_m[1] - pad.north_m) < settings.over_pad_m
 
 
-def _leg(flight: Flight, place_m: Place, settings: FleetReturnSettings) -> int | None:
+def _leg(flight: ReturnFlight, place_m: Place, settings: FleetReturnSettings) -> int | None:
     """The first leg of the way that the vehicle is on; the first, for a way may meet itself."""
     for index in range(len(flight.way_m) - 1):
         beside_m = distance_to_leg_m(place_m[:2], *flight.way_m[index : index + 2])

@@ -20,7 +20,7 @@ CORNERS_OF_A_CIRCLE = 12
 Way = tuple[EastNorth, ...]
 
 
-class Ways:
+class ReturnPaths:
     """Finds ways in one site's air at any height; keeps what it has worked out."""
 
     def __init__(self, home: WayHome) -> None:

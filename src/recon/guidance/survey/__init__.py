@@ -1,7 +1,7 @@
-"""Surveys: a region cut into rows, shared among vehicles, flown in rounds, followed cell by cell.
+"""Surveys: a region cut into rows, shared among vehicles, flown in rounds, recorded cell by cell.
 
-`plan_survey` makes the rows; `create`, `start`, `pause`, `abort` and `step` are the survey's life;
-`observe` and `observe_shade` tell it what was seen. All of it is pure.
+`plan_survey` makes the rows. `create`, `start`, `pause`, `abort` and `step` are the life cycle.
+`observe` and `observe_shade` add positions and shade maps. Everything is pure.
 """
 
 from recon.guidance.survey.life import (
@@ -15,23 +15,29 @@ from recon.guidance.survey.life import (
     start,
     step,
 )
-from recon.guidance.survey.plan import Surroundings, SurveyPlan, plan_survey
+from recon.guidance.survey.plan import SurveyPlan, SurveySurroundings, plan_survey
 from recon.guidance.survey.planners import PLANNERS, Planner, lawnmower_again, lawnmower_once
-from recon.guidance.survey.progress import PositionSample, Progress
+from recon.guidance.survey.progress import CoverageProgress, PositionSample
 from recon.guidance.survey.settings import SurveySettings
-from recon.guidance.survey.state import Flight, SurveyFigures, Surveyor, SurveyState, figures
+from recon.guidance.survey.state import (
+    AssignedMission,
+    CoverageFigures,
+    Surveyor,
+    SurveyState,
+    figures,
+)
 
 __all__ = [
     "PLANNERS",
-    "Flight",
+    "AssignedMission",
+    "CoverageFigures",
+    "CoverageProgress",
     "Planner",
     "PositionSample",
-    "Progress",
-    "Surroundings",
-    "SurveyFigures",
     "SurveyPlan",
     "SurveySettings",
     "SurveyState",
+    "SurveySurroundings",
     "Surveyor",
     "abort",
     "create",

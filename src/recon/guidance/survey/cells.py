@@ -1,4 +1,4 @@
-"""The survey's cells on the ground, and which stretch of which row answers for each."""
+"""The survey's cells on the ground, and the stretch of a row responsible for each."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ BoolArray = npt.NDArray[np.bool_]
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-NOBODY = -1
-"""In place of a stretch, for cells that no row sees for sure."""
+NO_STRETCH = -1
+"""For cells that no row is certain to photograph."""
 
 ROUNDING_M = 0.01
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A part of a piece between two marks, the least that is flown again."""
+    """A part of a piece between two marks: the shortest part that is flown again."""
 
     piece: int
     start_m: float
@@ -33,10 +33,10 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SurveyCells:
+class CoverageCells:
     """All arrays are (R, C) on `grid`; a cell counts as its centre.
 
-    `stretch` is the index of the one in `stretches` that answers for a cell, or `NOBODY`.
+    `stretch` is the index in `stretches` of the one responsible for a cell, or `NO_STRETCH`.
     """
 
     grid: GroundGrid
@@ -48,8 +48,8 @@ class SurveyCells:
 
     @property
     def is_reached(self) -> BoolArray:
-        """The cells of the region that the rows see for sure."""
-        is_reached: BoolArray = self.stretch != NOBODY
+        """The cells of the region that are certain to be on a photo of the rows."""
+        is_reached: BoolArray = self.stretch != NO_STRETCH
         return is_reached
 
     @property
@@ -65,8 +65,8 @@ def cells_over(
     lattice: RowLattice,
     pieces: Sequence[Piece],
     swath: Swath,
-) -> SurveyCells:
-    """Return the cells of a region in east-north metres of `frame`, on whole multiples of them."""
+) -> CoverageCells:
+    """Return the cells of a region in east-north metres of `frame`, at multiples of `cell_m`."""
     grid = _grid(area, frame, cell_m)
     east_m = grid.west_m + cell_m * (np.arange(grid.cols) + 0.5)
     north_m = grid.north_m - cell_m * (np.arange(grid.rows) + 0.5)
@@ -76,12 +76,12 @@ def cells_over(
     lying = lattice.along_across_m(np.stack([east.ravel(), north.ravel()], axis=1))
     along_m, across_m = (axis.reshape(grid.rows, grid.cols) for axis in lying.T)
     stretches = tuple(_stretches(pieces, lattice))
-    stretch = np.full(is_inside.shape, NOBODY, dtype=np.int64)
+    stretch = np.full(is_inside.shape, NO_STRETCH, dtype=np.int64)
     inside = np.nonzero(is_inside)
     stretch[inside] = _answering(
         along_m[inside], lattice.row_of(across_m[inside]), pieces, stretches, swath
     )
-    return SurveyCells(grid, is_inside, along_m, across_m, stretch, stretches)
+    return CoverageCells(grid, is_inside, along_m, across_m, stretch, stretches)
 
 
 def _grid(area: shapely.Geometry, frame: LocalFrame, cell_m: float) -> GroundGrid:
@@ -106,8 +106,8 @@ def _answering(
     stretches: Sequence[Stretch],
     swath: Swath,
 ) -> IntArray:
-    """For each of N cells the stretch of its own row that sees it, or nobody, (N,)."""
-    answering = np.full(len(along_m), NOBODY, dtype=np.int64)
+    """Return (N,): for each cell the stretch of its own row that photographs it, or NO_STRETCH."""
+    answering = np.full(len(along_m), NO_STRETCH, dtype=np.int64)
     of_piece = np.array([stretch.piece for stretch in stretches], dtype=np.int64)
     starts_m = np.array([stretch.start_m for stretch in stretches])
     reach_m = swath.beyond_m + ROUNDING_M

@@ -1,7 +1,24 @@
-"""A survey's life: created, started, paused, aborted, done. Every step of it is pure.
+"""The life cycle of a survey.
 
-Pausing and aborting only end what the survey asks for; who does it also orders its vehicles
-(`flights` says which) to hover.
+Theory of operation. Phases and transitions (`model.survey.SurveyPhase`):
+
+    CREATED  --start-->  RUNNING  --all cells imaged, or budget spent-->  DONE
+                         RUNNING  --pause, or every mission refused---->  PAUSED
+                         PAUSED   --start (also with other vehicles)--->  RUNNING
+    CREATED, RUNNING, PAUSED  --abort--------------------------------->   ABORTED
+
+DONE and ABORTED are final. While RUNNING, `step` is called about once a second with the positions
+of the vehicles that can fly; the survey's planner then gives missions (`rounds`). Positions and
+shade maps settle for `settle_s` before they count, as frames arrive and are read later; they count
+while PAUSED too, since a vehicle may still be flying its row.
+
+- Timeouts: a refused mission is requested again after `retry_s` if other vehicles fly. If none
+  flies, the vehicle is barred until the next start, as nothing will change by itself. When all
+  are barred the survey pauses.
+- A vehicle drops out by not being able in `step`; its unimaged rows belong to the next round.
+- A pause discards the round under way, since its shares fit the vehicles of that moment only.
+
+Pausing and aborting do not command vehicles: the caller also sends hover to those in `flights`.
 """
 
 from collections.abc import Sequence
@@ -27,16 +44,16 @@ from recon.model.survey import SurveyPhase
 
 
 def create(plan: SurveyPlan) -> SurveyState | Refusal:
-    """Return a survey that waits to be started, or why there is none."""
+    """Return a survey ready to start, or a refusal."""
     name = plan.survey.planner
     if name not in PLANNERS:
         known = " or ".join(PLANNERS)
-        return Refusal(RULE, f"there is no planner {name}: choose {known}")
+        return Refusal(RULE, f"Unknown planner {name}: choose {known}")
     return SurveyState(plan, no_progress(plan.cells))
 
 
 def start(state: SurveyState, serials: Sequence[str], now_ns: int) -> SurveyState | Refusal:
-    """Return the survey running, with these vehicles; also after a pause, with others if wanted."""
+    """Return the survey running with these vehicles; after a pause they may be others."""
     if state.phase not in (SurveyPhase.CREATED, SurveyPhase.PAUSED):
         return _wrong_phase(state, "started")
     if not serials:
@@ -53,7 +70,7 @@ def start(state: SurveyState, serials: Sequence[str], now_ns: int) -> SurveyStat
 
 
 def pause(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
-    """Return the survey paused; a round that was under way does not count, and is planned anew."""
+    """Return the survey paused; the round under way does not count and is planned again."""
     if state.phase is not SurveyPhase.RUNNING:
         return _wrong_phase(state, "paused")
     was_flying = bool(state.flights or state.waiting)
@@ -62,17 +79,17 @@ def pause(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
 
 
 def abort(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
-    """Return the survey aborted, for good; what was imaged stays known."""
+    """Return the survey aborted for good; coverage is kept."""
     if state.phase.is_final:
         return _wrong_phase(state, "aborted")
     return ended(state, SurveyPhase.ABORTED, "aborted", now_ns)
 
 
 def refused(state: SurveyState, serial: str, number: int, reason: str, now_ns: int) -> SurveyState:
-    """Return the survey after the gate refused a mission; its rows wait.
+    """Return the survey after the gate refused a mission; its rows stay with the vehicle.
 
-    If others fly, it is asked for again a little later; if nobody does, that vehicle is barred and
-    its rows go to others. With nobody left to fly the survey pauses.
+    While others fly, the mission is requested again after `retry_s`; otherwise the vehicle is
+    barred and its rows go to others. Without a vehicle left the survey pauses.
     """
     flight = state.flights.get(serial)
     if flight is None or flight.number != number:
@@ -90,9 +107,9 @@ def refused(state: SurveyState, serial: str, number: int, reason: str, now_ns: i
 
 
 def observe(state: SurveyState, serial: str, seen: Sequence[PositionSample]) -> SurveyState:
-    """Return the survey after positions of a vehicle; nothing changes for one that is not of it.
+    """Return the survey after positions of a vehicle; other vehicles change nothing.
 
-    What is flown while it is paused counts as well; before the start and after the end nothing.
+    Positions count while running and paused, not before the start or after the end.
     """
     if serial not in state.serials or state.phase.is_final:
         return state
@@ -107,10 +124,9 @@ def observe_shade(state: SurveyState, shade: ShadeMap) -> SurveyState:
 
 
 def step(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
-    """Return the survey a moment later, and the missions to give; about once a second.
+    """Return the next state and the missions to give; called about once a second.
 
-    Positions of vehicles that are not of the survey are left out; vehicles without a position
-    count as dropped out.
+    Vehicles of other surveys are ignored; vehicles without a position count as dropped out.
     """
     if state.phase not in (SurveyPhase.RUNNING, SurveyPhase.PAUSED):
         return state, ()
@@ -128,9 +144,9 @@ def _wrong_phase(state: SurveyState, asked: str) -> Refusal:
 
 
 def spent(state: SurveyState, positions: Sequence[Surveyor]) -> tuple[str, ...]:
-    """Return the serials of those who could fly, fly nothing, and have no battery for a row.
+    """Return the serials of idle, able vehicles whose battery does not last for any row left.
 
-    Whose battery's time nobody knows is never among them: the gate alone says what it is good for.
+    Vehicles with unknown flight time are never among them: then only the gate checks the battery.
     """
     if state.phase is not SurveyPhase.RUNNING:
         return ()
@@ -144,22 +160,22 @@ def spent(state: SurveyState, positions: Sequence[Surveyor]) -> tuple[str, ...]:
 
 
 def _has_a_row(state: SurveyState, surveyor: Surveyor) -> bool:
-    """Whether the battery lasts for the next row, or at least to wait for one and fly home then."""
+    """Whether the battery lasts for the next row, or to wait for one and then return."""
     plan, own = state.plan, state.waiting.get(surveyor.serial)
     if own:
         return _lasts_for_any(state, own[:1], surveyor)
-    # While others fly, what they leave to be flown is not known: it is waited for.
+    # While others fly, the rows they will leave are unknown: wait for them.
     legs = () if state.flights else _left(state, surveyor)
     if legs:
         return _lasts_for_any(state, legs, surveyor)
-    assert surveyor.time_left_s is not None  # or it is not asked
+    assert surveyor.time_left_s is not None  # `spent` asks only with a known flight time
     way_m = apart_m(surveyor.place_m, surveyor.home_m or surveyor.place_m)
     needed_s = way_m / plan.survey.speed_mps + plan.settings.way_home_waits_s
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share
 
 
 def _left(state: SurveyState, surveyor: Surveyor) -> Route:
-    """What waits to be flown by anybody; between two rounds what the next one would fly."""
+    """Return the rows left for any vehicle; between rounds those of the next one."""
     waiting = tuple(leg for route in state.waiting.values() for leg in route)
     if waiting:
         return waiting

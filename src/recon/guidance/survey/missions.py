@@ -1,4 +1,7 @@
-"""Ways between the ends of rows that do not leave what may be flown over, round holes and bays."""
+"""Missions along rows, and the shortest paths between rows inside the region.
+
+The paths are found by Dijkstra's search on a visibility graph of the region's corners.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,7 +33,7 @@ COARSEST_M = 50.0
 """A region that has more corners even so has no room to spare."""
 
 
-class Ways:
+class RegionPaths:
     """Shortest ways in one area; what it has worked out it keeps."""
 
     def __init__(self, area: shapely.Geometry) -> None:
@@ -127,7 +130,7 @@ class Track:
         return sum(apart_m(a, b) for a, b in pairwise(self.corners_m))
 
 
-def track_of(route: Route, lattice: RowLattice, lead_m: float, ways: Ways) -> Track | None:
+def track_of(route: Route, lattice: RowLattice, lead_m: float, ways: RegionPaths) -> Track | None:
     """Return where a route leads; between rows inside the ways' area, None where it has no way."""
     corners: list[Place] = []
     for leg in route:

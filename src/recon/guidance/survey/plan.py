@@ -1,4 +1,4 @@
-"""What keeps a survey from being flown as it is asked for, in a grower's words."""
+"""Survey feasibility checks with operator-readable reasons, and the plan: rows and cells."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -8,10 +8,10 @@ import numpy as np
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import region_fault
-from recon.guidance.survey.cells import BoolArray, SurveyCells, cells_over
+from recon.guidance.survey.cells import BoolArray, CoverageCells, cells_over
 from recon.guidance.survey.lattice import RowLattice, Swath, swath_of
-from recon.guidance.survey.missions import Ways
-from recon.guidance.survey.route import Leg, Place
+from recon.guidance.survey.missions import RegionPaths
+from recon.guidance.survey.route import Place, RowLeg
 from recon.guidance.survey.rows import Piece, best_bearing_deg, lattice_over, row_pieces
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
 from recon.model.command import Refusal
@@ -21,14 +21,14 @@ from recon.model.units import is_finite
 from recon.model.zone import Region
 
 MOST_CELLS = 4_000_000
-"""400 ha in cells of 1 m: more takes memory and is no field."""
+"""400 ha in cells of 1 m: more takes too much memory."""
 
 MOST_ROWS = 2_000
-"""A region this many rows wide is a mistake in the height or in the region."""
+"""More rows than this come from a wrong height or region."""
 
 
 def survey_fault(survey: Survey, settings: SurveySettings = DEFAULT) -> str | None:
-    """Return the first thing wrong with a survey, with what to do; None when it can be flown."""
+    """Return why a survey cannot be flown and what to change; None when it can."""
     return next(_faults(survey, settings), None)
 
 
@@ -99,7 +99,7 @@ RULE = "survey"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Surroundings:
+class SurveySurroundings:
     """What a site leaves to fly over; rows and the ways between them keep `margin_m` to it.
 
     What the gate asks besides (heights, ways to the first row and home) is not looked at here.
@@ -122,14 +122,14 @@ class SurveyPlan:
     counted_swath: Swath
     """What of the swath counts as imaged: all of it, or the row's own band."""
     pieces: tuple[Piece, ...]
-    ways: Ways
-    cells: SurveyCells
+    ways: RegionPaths
+    cells: CoverageCells
 
     @property
     def rows_m(self) -> tuple[tuple[Place, Place], ...]:
         """From where to where each row is flown, lead and all, in east-north metres; to show."""
         lattice, lead_m = self.lattice, self.swath.lead_m
-        legs = [Leg(piece, False).ends_m(lattice, lead_m) for piece in self.pieces]
+        legs = [RowLeg(piece, False).ends_m(lattice, lead_m) for piece in self.pieces]
         ends = lattice.east_north_m(np.array(legs).reshape(-1, 2)).reshape(-1, 2, 2).tolist()
         return tuple(((a[0], a[1]), (b[0], b[1])) for a, b in ends)
 
@@ -169,10 +169,10 @@ class SurveyPlan:
 def plan_survey(
     survey: Survey,
     frame: LocalFrame,
-    surroundings: Surroundings | None = None,
+    surroundings: SurveySurroundings | None = None,
     settings: SurveySettings = DEFAULT,
 ) -> SurveyPlan | Refusal:
-    """Return the plan of a survey, or why there is none. Takes tens of milliseconds."""
+    """Return the plan of a survey, or a refusal with the reason. Takes tens of milliseconds."""
     fault = survey_fault(survey, settings)
     if fault is not None:
         return Refusal(RULE, fault)
@@ -188,7 +188,7 @@ def plan_survey(
     pieces = row_pieces(area, lattice, swath, settings, limits)
     if not pieces:
         return Refusal(RULE, _no_rows(survey, surroundings))
-    ways = Ways(flyable)
+    ways = RegionPaths(flyable)
     cells = cells_over(area, frame, survey.cell_m, lattice, pieces, swath)
     counted = _counted(survey, swath, lattice, settings)
     return SurveyPlan(survey, frame, settings, lattice, swath, counted, pieces, ways, cells)
@@ -209,7 +209,7 @@ def _counted(survey: Survey, swath: Swath, lattice: RowLattice, settings: Survey
 
 
 def _left(
-    flyable: shapely.Geometry, surroundings: Surroundings, settings: SurveySettings
+    flyable: shapely.Geometry, surroundings: SurveySurroundings, settings: SurveySettings
 ) -> shapely.Geometry:
     margin_m = surroundings.margin_m + settings.kept_off_m
     if surroundings.boundary is not None:
@@ -223,7 +223,7 @@ def _area(region: Region) -> shapely.Polygon:
     return shapely.Polygon(region.outline_m, list(region.holes_m))
 
 
-def _no_rows(survey: Survey, surroundings: Surroundings | None) -> str:
+def _no_rows(survey: Survey, surroundings: SurveySurroundings | None) -> str:
     if surroundings is None:
         return f"the region {survey.name} is too small for a row"
     return (

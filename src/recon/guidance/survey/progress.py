@@ -1,13 +1,15 @@
-"""What has been imaged, and in which light: worked out from where vehicles were seen to fly.
+"""What has been imaged, and in which light, from the reported positions of vehicles.
+
+A state machine per cell: NOT_YET -> IN_SHADE -> IN_SUN; a cell never falls back.
 
 A photo is taken every `interval_s`, but not at known moments. So a cell counts as imaged when it
 was in view, without a break, for at least that long: then a photo shows it, whatever the timer's
-phase. It counts as imaged in sun when it was so in view and sunlit for that long. Unless the survey
-says otherwise only what lies in the row's own band is looked at: seen from nearly above.
+phase. It counts as imaged in sun when it was in view and sunlit for that long. By default only the
+row's own band counts, which is photographed from nearly above.
 
 Assumed: the timer runs, the camera looks straight down with its longer side across the course, and
 the vehicle flew straight between two positions a moment apart. What is flown across the rows, at
-another height, or faster than planned counts for nothing.
+another height, or faster than planned does not count.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,7 +20,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from recon.guidance.survey.cells import BoolArray, IntArray, SurveyCells
+from recon.guidance.survey.cells import BoolArray, CoverageCells, IntArray
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.view import Crossing, Window, crossing, nearest_map, sunlit_cells
 from recon.model.shade import ShadeMap
@@ -53,11 +55,11 @@ class InView:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Progress:
+class CoverageProgress:
     """`state` (R, C) holds `CellState`s on the plan's cells; never written to once made.
 
-    `is_sun_known` (R, C): a shade map told of the cell when it was imaged. The two moments are when
-    95 % of the cells that rows reach were imaged, and imaged in sun.
+    `is_sun_known` (R, C): a shade map had a value for the cell when it was imaged. The two moments
+    are when 95 % of the reached cells were imaged, and imaged in sun.
     """
 
     state: StateArray
@@ -72,22 +74,22 @@ class Progress:
     in_sun_95_at_ns: int | None = None
 
 
-def no_progress(cells: SurveyCells) -> Progress:
+def no_progress(cells: CoverageCells) -> CoverageProgress:
     """Return the progress of a survey that has not begun."""
     shape = (cells.grid.rows, cells.grid.cols)
     state = np.full(shape, CellState.NOT_YET, dtype=np.uint8)
-    return Progress(state, np.zeros(shape, dtype=np.bool_))
+    return CoverageProgress(state, np.zeros(shape, dtype=np.bool_))
 
 
-def with_shade(progress: Progress, shade: ShadeMap, plan: SurveyPlan) -> Progress:
+def with_shade(progress: CoverageProgress, shade: ShadeMap, plan: SurveyPlan) -> CoverageProgress:
     """Return the progress with one more shade map to look at; the oldest is dropped."""
     kept = (*progress.shade, shade)[-plan.settings.shade_maps_kept :]
     return replace(progress, shade=kept)
 
 
 def with_seen(
-    progress: Progress, serial: str, seen: Sequence[PositionSample], plan: SurveyPlan
-) -> Progress:
+    progress: CoverageProgress, serial: str, seen: Sequence[PositionSample], plan: SurveyPlan
+) -> CoverageProgress:
     """Return the progress with more of a vehicle's way, oldest first; it counts when settled.
 
     Positions that are out of order, or too near in time to the one before, are left out; of a
@@ -106,7 +108,7 @@ def with_seen(
     return replace(progress, waiting=MappingProxyType({**progress.waiting, serial: kept}))
 
 
-def settled(progress: Progress, plan: SurveyPlan, now_ns: int) -> Progress:
+def settled(progress: CoverageProgress, plan: SurveyPlan, now_ns: int) -> CoverageProgress:
     """Return the progress with all that has waited long enough counted."""
     until_ns = now_ns - seconds_to_ns(plan.settings.settle_s)
     due = {
@@ -125,7 +127,7 @@ def settled(progress: Progress, plan: SurveyPlan, now_ns: int) -> Progress:
     return _timed(replace(counting.result(), waiting=MappingProxyType(waiting)), plan, until_ns)
 
 
-def _timed(progress: Progress, plan: SurveyPlan, at_ns: int) -> Progress:
+def _timed(progress: CoverageProgress, plan: SurveyPlan, at_ns: int) -> CoverageProgress:
     reached = plan.cells.is_reached
     states = progress.state[reached]
     enough = 0.95 * max(1, len(states))
@@ -139,7 +141,7 @@ def _timed(progress: Progress, plan: SurveyPlan, at_ns: int) -> Progress:
 class _Count:
     """Counts ways on a copy of the progress."""
 
-    def __init__(self, progress: Progress, plan: SurveyPlan) -> None:
+    def __init__(self, progress: CoverageProgress, plan: SurveyPlan) -> None:
         self._plan = plan
         self._progress = progress
         self._state = progress.state.copy()
@@ -147,7 +149,7 @@ class _Count:
         self._in_view = dict(progress.in_view)
         self._interval_ns = seconds_to_ns(plan.survey.camera.interval_s)
 
-    def result(self) -> Progress:
+    def result(self) -> CoverageProgress:
         """The progress with what was counted."""
         return replace(
             self._progress,

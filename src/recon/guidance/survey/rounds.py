@@ -1,8 +1,20 @@
-"""Rounds: what is missing is shared among all who can fly, and flown; then what is missing still.
+"""The rounds planner: share the missing rows among able vehicles, fly them, and repeat.
 
-Within a round a vehicle goes on with its share for as many missions as its batteries make of it;
-when nobody flies any more, what is left of the shares is shared anew. When a vehicle drops out of
-a mission, what it has not imaged is missing, and so is part of the next round.
+Theory of operation. One call of `fly_rounds` does the first of these that applies:
+
+1. Missions of vehicles that ended or dropped out are removed. Rows they did not image are missing.
+2. Each able vehicle without a mission gets the longest start of its share that its battery allows
+   (`_sortie`, flight time times `flight_time_share`).
+3. While any vehicle flies, wait: its rows may still be imaged.
+4. Budget spent: DONE.
+5. No vehicle can fly: wait, or pause when all missions were refused.
+6. Shares are left over (battery change, refusal): share them again among the able vehicles.
+7. Wait `settle_s`, so that late shade maps count. Then DONE when enough cells have the wanted state
+   or the rounds are used up; else begin a round over the pieces that still miss cells.
+
+Sharing: one route over all pieces is cut into equal runs, so that vehicles sweep the field in the
+same direction and meet only at the ends of runs. The runs are assigned to vehicles by the least
+sum of distances to their starts (linear assignment; Kuhn 1955, as in `scipy.optimize`).
 """
 
 from bisect import bisect_left
@@ -19,7 +31,7 @@ from recon.guidance.survey.route import Cost, Place, Route, between_m, route_of,
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.state import (
     NO_ROUTES,
-    Flight,
+    AssignedMission,
     Surveyor,
     SurveyState,
     end_between_rounds,
@@ -34,10 +46,7 @@ Step = tuple[SurveyState, tuple[MissionFor, ...]]
 def fly_rounds(
     state: SurveyState, positions: Sequence[Surveyor], now_ns: int, wanted: CellState
 ) -> Step:
-    """Return the running survey a moment later, and the missions to give.
-
-    Rounds are flown until every cell that rows reach is in the wanted state, or the budget ends.
-    """
+    """Return the next state and the missions to give, for cells up to the `wanted` state."""
     able = {each.serial: each for each in positions if each.is_able}
     state = _without_ended(state, able, now_ns)
     spent = spent_budget(state, wanted, now_ns)
@@ -51,7 +60,7 @@ def fly_rounds(
         return ended(state, SurveyPhase.DONE, spent, now_ns), ()
     free = {serial: each for serial, each in able.items() if serial not in state.barred}
     if not free:
-        return _nobody(state, able, now_ns), ()
+        return _without_able(state, able, now_ns), ()
     if state.waiting:
         return _shared_anew(state, free, now_ns)
     if now_ns < state.quiet_since_ns + seconds_to_ns(state.plan.settings.settle_s):
@@ -64,7 +73,7 @@ def fly_rounds(
 
 
 def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> SurveyState:
-    """Return the survey in a phase in which nobody flies for it."""
+    """Return the survey in a phase in which no vehicle flies for it."""
     return replace(
         state,
         phase=phase,
@@ -77,7 +86,7 @@ def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> S
 
 
 def _without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
-    """Without the missions that have ended, and without what was left for who has dropped out."""
+    """Return it without missions that have ended or whose vehicle has dropped out."""
     flights = {
         serial: flight
         for serial, flight in state.flights.items()
@@ -87,18 +96,17 @@ def _without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int
     return replace(state, flights=MappingProxyType(flights), quiet_since_ns=quiet_ns)
 
 
-def _nobody(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
-    """Nobody can fly now: wait for it, or pause when all who could were refused."""
+def _without_able(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
+    """Wait for an able vehicle, or pause when the missions of all were refused."""
     if not able:
-        return replace(state, reason="waits: none of its vehicles can fly now")
+        return replace(state, reason="waiting: no vehicle can fly now")
     serial = next(iter(able))
     reason = f"every mission was refused; {serial}: {state.refusals[serial].reason}"
     return ended(state, SurveyPhase.PAUSED, reason, now_ns)
 
 
 def _shared_anew(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) -> Step:
-    """Nobody flies and rows are left: who can fly now shares them; else they wait, as a battery is
-    changed or a refusal is a moment old."""
+    """Share left-over rows among able vehicles; wait while a refusal is newer than `retry_s`."""
     again_ns = now_ns - seconds_to_ns(state.plan.settings.retry_s)
     if any(serial in free and state.refusals[serial].at_ns > again_ns for serial in state.refusals):
         return state, ()
@@ -109,7 +117,7 @@ def _shared_anew(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) 
 def _begun(
     state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
 ) -> Step:
-    """The next round over these pieces; while nobody can fly one of them it has not begun."""
+    """Begin the next round over these pieces; without any mission it does not count as begun."""
     begun = replace(state, round=state.round + 1, reason=f"round {state.round + 1}")
     after, missions = _handed_out(begun, pieces, free, now_ns)
     if missions:
@@ -120,22 +128,19 @@ def _begun(
 def _handed_out(
     state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
 ) -> Step:
-    """Pieces shared and the first missions given; unchanged but for the reason when none can be."""
+    """Share pieces and give the first missions; without any, change the reason only."""
     shares = MappingProxyType(_shares(state.plan, pieces, list(free.values())))
     given, missions = _given(replace(state, waiting=shares), free, now_ns)
     if missions:
         return replace(given, reason=f"round {state.round}"), missions
-    reason = "waits: no battery lasts for the next row, the way there and the way home"
+    reason = "waiting: no battery lasts for the next row, the way there and the return"
     return replace(state, reason=reason), ()
 
 
 def _shares(
     plan: SurveyPlan, pieces: Sequence[Piece], surveyors: Sequence[Surveyor]
 ) -> dict[str, Route]:
-    """Each vehicle's share of the pieces; who gets which by the shortest ways to where they begin.
-
-    All shares are of one route, so vehicles in neighbouring rows sweep the field the same way.
-    """
+    """Return each vehicle's share of the pieces: runs of one route, by the nearest starts."""
     survey, settings = plan.survey, plan.settings
     cost = Cost(survey.speed_mps**2 / settings.turning_mps2, settings.least_cut_m)
     lying = plan.lattice.along_across_m([each.place_m for each in surveyors])
@@ -144,12 +149,12 @@ def _shares(
     runs = shared(route, len(surveyors), plan.lattice, cost)
     places: list[Place] = [(along_m, across_m) for along_m, across_m in lying.tolist()]
     far_m = np.array([[between_m(run[:1], plan.lattice, at) for run in runs] for at in places])
-    who, which = linear_sum_assignment(far_m)
-    return {surveyors[int(i)].serial: runs[int(j)] for i, j in zip(who, which, strict=True)}
+    vehicle, run = linear_sum_assignment(far_m)
+    return {surveyors[int(i)].serial: runs[int(j)] for i, j in zip(vehicle, run, strict=True)}
 
 
 def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Step:
-    """Give each vehicle that flies no mission as much of what waits for it as it can fly."""
+    """Give each idle vehicle as much of its share as its battery allows."""
     missions: list[MissionFor] = []
     for serial, route in state.waiting.items():
         if not _may_ask(state, serial, able, now_ns):
@@ -158,14 +163,14 @@ def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Ste
         if track is None:
             continue
         number = state.missions + 1
-        flight = Flight(number, route[:count], track.corners_m, track.length_m)
+        flight = AssignedMission(number, route[:count], track.corners_m, track.length_m)
         state, mission = _flying(state, serial, flight, route[count:])
         missions.append(mission)
     return state, tuple(missions)
 
 
 def _may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_ns: int) -> bool:
-    """Whether a mission for a vehicle may be asked for now."""
+    """Whether a mission for a vehicle may be requested now."""
     if serial not in able or serial in state.flights or serial in state.barred:
         return False
     refused = state.refusals.get(serial)
@@ -174,7 +179,7 @@ def _may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_
 
 
 def _flying(
-    state: SurveyState, serial: str, flight: Flight, rest: Route
+    state: SurveyState, serial: str, flight: AssignedMission, rest: Route
 ) -> tuple[SurveyState, MissionFor]:
     survey = state.plan.survey
     purpose = f"survey {survey.name}: round {state.round}"

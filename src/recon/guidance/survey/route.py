@@ -17,7 +17,7 @@ Place = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class RowLeg:
     """A piece and the direction it is flown in."""
 
     piece: Piece
@@ -31,7 +31,7 @@ class Leg:
         return (high, low) if self.is_reversed else (low, high)
 
 
-Route = tuple[Leg, ...]
+Route = tuple[RowLeg, ...]
 Chain = tuple[Piece, ...]
 
 
@@ -55,7 +55,7 @@ def chains(pieces: Sequence[Piece]) -> list[Chain]:
     return [tuple(_followed(first, ahead)) for first in firsts]
 
 
-def between_m(route: Sequence[Leg], lattice: RowLattice, start_m: Place | None) -> float:
+def between_m(route: Sequence[RowLeg], lattice: RowLattice, start_m: Place | None) -> float:
     """Return how far it is from the start to the first piece, and from each to the next."""
     ends = [leg.ends_m(lattice, 0.0) for leg in route]
     first_m = _apart_m(start_m, ends[0][0]) if ends and start_m is not None else 0.0
@@ -87,7 +87,7 @@ def _followed(first: Piece, ahead: dict[Piece, Piece]) -> Iterator[Piece]:
 def _entries(chain: Chain) -> tuple[Route, ...]:
     """The four serpentines of a chain: from either end of its first row, and of its last."""
     return tuple(
-        tuple(Leg(piece, index % 2 == side) for index, piece in enumerate(ordered))
+        tuple(RowLeg(piece, index % 2 == side) for index, piece in enumerate(ordered))
         for ordered in (chain, chain[::-1])
         for side in (0, 1)
     )
@@ -181,7 +181,7 @@ def _cut_up(route: Route, share_m: float, lattice: RowLattice, cost: Cost) -> tu
     return (*runs, run) if run else tuple(runs)
 
 
-def _cut(leg: Leg, most_m: float, lattice: RowLattice, least_m: float) -> tuple[Route, Route]:
+def _cut(leg: RowLeg, most_m: float, lattice: RowLattice, least_m: float) -> tuple[Route, Route]:
     """A leg in two at a mark, the first no longer than that; or whole, as the first or second."""
     piece = leg.piece
     if piece.length_m <= most_m:
@@ -190,12 +190,12 @@ def _cut(leg: Leg, most_m: float, lattice: RowLattice, least_m: float) -> tuple[
     mark_m = _mark_within(leg, first_m, lattice)
     if min(mark_m - piece.start_m, piece.end_m - mark_m) < least_m:
         return (), (leg,)
-    low = Leg(Piece(piece.row, piece.start_m, mark_m), leg.is_reversed)
-    high = Leg(Piece(piece.row, mark_m, piece.end_m), leg.is_reversed)
+    low = RowLeg(Piece(piece.row, piece.start_m, mark_m), leg.is_reversed)
+    high = RowLeg(Piece(piece.row, mark_m, piece.end_m), leg.is_reversed)
     return ((high,), (low,)) if leg.is_reversed else ((low,), (high,))
 
 
-def _mark_within(leg: Leg, first_m: float, lattice: RowLattice) -> float:
+def _mark_within(leg: RowLeg, first_m: float, lattice: RowLattice) -> float:
     """The last mark that is at most so far from where a leg begins."""
     if leg.is_reversed:
         return lattice.mark_at_or_after_m(leg.piece.end_m - first_m)
@@ -208,7 +208,7 @@ def _length_m(route: Route, lattice: RowLattice, cost: Cost) -> float:
     return rows_m + sum(_between_m(a, b, lattice) + cost.stop_m for a, b in pairwise(route))
 
 
-def _between_m(a: Leg, b: Leg, lattice: RowLattice) -> float:
+def _between_m(a: RowLeg, b: RowLeg, lattice: RowLattice) -> float:
     """How far it is from the end of a leg to the beginning of the next."""
     (_, end_m), (start_m, _) = a.ends_m(lattice, 0.0), b.ends_m(lattice, 0.0)
     return hypot(start_m[0] - end_m[0], start_m[1] - end_m[1])

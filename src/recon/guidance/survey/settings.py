@@ -34,17 +34,18 @@ class SurveySettings:
     """Of a battery's time that is planned with: wind, and turns that take longer."""
 
     longest_gap_s: float = 3.0
-    """Between two positions: over a longer one nobody knows the way."""
+    """Between two positions: over a longer gap the path is unknown."""
 
     least_step_s: float = 0.5
     """Positions nearer in time are thinned: telemetry comes in bursts, and two that are stamped a
-    moment apart tell no speed."""
+    moment apart give no speed."""
 
     burst_s: float = 0.03
-    """Positions stamped nearer than this came at once; aircraft tell theirs ten times a second."""
+    """Positions stamped nearer than this arrived together; aircraft report ten times a second."""
 
     least_move_m: float = 0.15
-    """Between two positions: who moves less has no course, and the camera may point anywhere."""
+    """Between two positions: with less movement the course is undefined, and so is the camera's
+    heading."""
 
     steepest_course: float = 0.27
     """Across over along a row, 15 degrees: the camera is turned with the course."""
@@ -63,7 +64,7 @@ class SurveySettings:
     images are up to a second late, the detection takes another."""
 
     shade_age_s: float = 5.0
-    """A shade map farther off in time tells nothing: shadows move at 10 m/s."""
+    """Shade maps farther off in time do not count: shadows move at 10 m/s."""
 
     shade_maps_kept: int = 16
     positions_kept: int = 1_000
@@ -74,7 +75,7 @@ class SurveySettings:
     elsewhere."""
 
     way_home_waits_s: float = 60.0
-    """Who waits for others' rows keeps this beside the way home: there too a turn is waited for."""
+    """A vehicle that waits for others' rows keeps this beside its return: there it may wait too."""
 
     enough_share: float = 0.99
     """Of the cells that rows reach: from here on a survey is done; a cell or two at an edge are not

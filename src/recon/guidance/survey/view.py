@@ -7,7 +7,7 @@ from math import ceil, cos, floor, radians, sin
 
 import numpy as np
 
-from recon.guidance.survey.cells import BoolArray, FloatArray, IntArray, SurveyCells
+from recon.guidance.survey.cells import BoolArray, CoverageCells, FloatArray, IntArray
 from recon.guidance.survey.lattice import RowLattice, Swath
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
@@ -54,7 +54,7 @@ class Crossing:
 
 
 def crossing(
-    cells: SurveyCells,
+    cells: CoverageCells,
     lattice: RowLattice,
     swath: Swath,
     way: tuple[Place, Place],

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
-from recon.guidance.fleet_return import Flight
+from recon.guidance.fleet_return import ReturnFlight
 from recon.model.authority import AuthorityHolder
 from recon.model.geo import LocalFrame
 
@@ -47,7 +47,7 @@ class ReturningVehicle:
     stage: Stage
     since_ns: int
     reason: str = ""
-    flight: Flight | None = None
+    flight: ReturnFlight | None = None
     mission_id: int | None = None
     judge_at_ns: int = 0
     refused_since_ns: int | None = None

@@ -21,8 +21,8 @@ from math import dist
 
 from recon.guidance.fleet_return import (
     Claim,
-    Flight,
     Place,
+    ReturnFlight,
     claim_left,
     hindrance,
     layer_is_taken_by,
@@ -130,7 +130,7 @@ def _with_free_layers(
     running: FleetReturn, settings: ReturnSettings, now_ns: int
 ) -> tuple[FleetReturn, list[ReturningVehicle]]:
     """Return the vehicles whose layer and pad are free, in turn; give the others their reason."""
-    before: list[Flight] = []
+    before: list[ReturnFlight] = []
     ready: list[ReturningVehicle] = []
     flying = [m.flight for m in running.at(*UNDER_WAY) if m.flight is not None]
     for member in _waiting_in_turn(running):
@@ -169,7 +169,7 @@ class _Traffic:
             if member.flight is not None
         ]
 
-    def from_here(self, member: ReturningVehicle) -> Flight | None:
+    def from_here(self, member: ReturningVehicle) -> ReturnFlight | None:
         """The flight from where the vehicle has drifted to since its plan; None if too far."""
         assert member.flight is not None
         start_m, place_m = member.flight.start_m, self._place_m(member)
@@ -179,7 +179,7 @@ class _Traffic:
             member.flight, start_m=place_m, way_m=(place_m[:2], *member.flight.way_m[1:])
         )
 
-    def hindrance(self, flight: Flight, running: FleetReturn) -> str | None:
+    def hindrance(self, flight: ReturnFlight, running: FleetReturn) -> str | None:
         """Why a flight whose layer is free must wait; None if it need not."""
         before: list[Claim] = []
         for member in _waiting_in_turn(running):
@@ -214,7 +214,7 @@ def _replanned_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: 
 
 
 def _vehicle_on_pad(
-    running: FleetReturn, flight: Flight, settings: ReturnSettings, now_ns: int
+    running: FleetReturn, flight: ReturnFlight, settings: ReturnSettings, now_ns: int
 ) -> str | None:
     """The vehicle that landed on this pad and might still stand there when this one arrives."""
     arrives_ns = now_ns + seconds_to_ns(least_time_s(flight, settings.plan))
@@ -231,7 +231,7 @@ def _order_mission(
     station: Station,
     running: FleetReturn,
     member: ReturningVehicle,
-    flight: Flight,
+    flight: ReturnFlight,
     settings: ReturnSettings,
     now_ns: int,
 ) -> Stepped:

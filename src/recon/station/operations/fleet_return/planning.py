@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 from recon.guidance.fleet_return import (
+    CalledVehicle,
     Hovering,
-    Returning,
     ReturnPlan,
     Separation,
     plan_return,
@@ -25,7 +25,7 @@ from recon.station.state.stepped import Stepped
 class ReturnPlanRequest:
     """All that a plan needs. `ground_up_m`: the lowest and the highest ground on the paths."""
 
-    vehicles: tuple[Returning, ...]
+    vehicles: tuple[CalledVehicle, ...]
     others: tuple[Hovering, ...]
     airspace: Airspace
     ground_up_m: tuple[float, float]
@@ -59,7 +59,7 @@ def ask(
         if now_ns - running.planning_since_ns < seconds_to_ns(within_s):
             return running, ()
         return _left_out(running, f"it was not planned within {within_s:g} s", now_ns), ()
-    vehicles: list[Returning] = []
+    vehicles: list[CalledVehicle] = []
     for member in running.at(Stage.WAITING):
         found = positions.returning(station, member.serial, running.frame)
         if isinstance(found, str):
@@ -114,7 +114,7 @@ PLAN_RETURN: JobKind[ReturnPlanRequest, ReturnPlan] = JobKind(
 
 
 def _work(
-    station: Station, running: FleetReturn, vehicles: list[Returning], settings: ReturnSettings
+    station: Station, running: FleetReturn, vehicles: list[CalledVehicle], settings: ReturnSettings
 ) -> ReturnPlanRequest:
     theirs = {member.serial for member in running.at(Stage.WAITING, *UNDER_WAY)}
     flying = positions.in_the_air(station, running.frame)

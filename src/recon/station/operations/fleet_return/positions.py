@@ -6,9 +6,9 @@ from math import dist
 import numpy as np
 
 from recon.guidance.fleet_return import (
+    CalledVehicle,
     Hovering,
     Pad,
-    Returning,
     Separation,
 )
 from recon.model.geo import GeoPoint, LocalFrame
@@ -47,7 +47,7 @@ def in_the_air(station: Station, frame: LocalFrame) -> dict[str, Hovering]:
     return found
 
 
-def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | str:
+def returning(station: Station, serial: str, frame: LocalFrame) -> CalledVehicle | str:
     """Return a vehicle as the plan needs it, or a sentence about what is unknown."""
     vehicle = station.fleet.vehicles[serial]
     found = vehicle_enu_m(station.airspace, vehicle, frame)
@@ -60,10 +60,10 @@ def returning(station: Station, serial: str, frame: LocalFrame) -> Returning | s
         )
     place_m = float(found[0]), float(found[1]), float(found[2])
     battery = vehicle.battery_fraction.value
-    return Returning(serial, vehicle.display_name, place_m, takeoff_m, pad, battery)
+    return CalledVehicle(serial, vehicle.display_name, place_m, takeoff_m, pad, battery)
 
 
-def ground_up_m(station: Station, vehicles: Sequence[Returning]) -> tuple[float, float]:
+def ground_up_m(station: Station, vehicles: Sequence[CalledVehicle]) -> tuple[float, float]:
     """Return the lowest and the highest ground on and around the paths of these vehicles."""
     spots = [v.place_m[:2] for v in vehicles] + [v.pad.east_north_m for v in vehicles]
     lowest_m, highest_m = station.airspace.ground_within_up_m(_box(spots))

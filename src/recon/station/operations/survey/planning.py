@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 from recon.guidance.survey import (
     PositionSample,
-    Surroundings,
     Surveyor,
     SurveyPlan,
     SurveyState,
+    SurveySurroundings,
     create,
     observe,
     observe_shade,
@@ -42,7 +42,7 @@ class SurveyPlanRequest:
 
     survey: Survey
     frame: LocalFrame
-    surroundings: Surroundings
+    surroundings: SurveySurroundings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,11 +102,11 @@ def refusal_of(station: Station) -> Refusal | None:
     return Refusal(RULE, TOO_MANY) if len(alive) >= SURVEYS_KEPT else None
 
 
-def surroundings(station: Station) -> Surroundings:
+def surroundings(station: Station) -> SurveySurroundings:
     """Return the site's boundary and all its keep-out zones, whatever their heights."""
     air = station.airspace.airspace
     keep_out = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
-    return Surroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
+    return SurveySurroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
 
 
 def _planned(station: Station, survey_id: int, plan: SurveyPlan | Refusal, _now_ns: int) -> Stepped:
