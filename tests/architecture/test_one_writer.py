@@ -13,7 +13,7 @@ WRITERS = {
     "authority": "station/control/authority.py",
     "intent": "station/control/intents.py",
     "tracking": "station/control/mode_tracking.py",
-    "lease": "station/steering/stream_ends.py",
+    "stream": "station/steering/stream_ends.py",
     "neutral": "station/steering/neutral_setpoint.py",
     "preflight_override": "station/control/preflight.py",
     "restored": "station/recovery/restart.py",
@@ -66,7 +66,7 @@ def test_nothing_else_makes_or_stores_a_control_state() -> None:
         if name.split(".")[-1] == "VehicleControl"
     }
     assert makers == {CONTROL}
-    stored = {"controls", "leased", "neutral_pending"}
+    stored = {"controls", "streaming", "neutral_pending"}
     storing = {
         name_of(path)
         for path in files("station")

@@ -8,7 +8,7 @@ REQUIRED = {
     *("audit", "control authority", "dry run", "fault isolation", "fleet return"),
     *("hazard area", "holder", "identity grace", "imaging drone", "intent", "job"),
     *("neutral setpoint", "operation", "order gateway", "owner", "recovery snapshot"),
-    *("refusal", "scripted operator", "setpoint lease", "setpoint stream", "snapshot"),
+    *("refusal", "scripted operator", "setpoint stream", "snapshot"),
     *("tracking", "unidentified", "vehicle snapshot", "watchdog", "claiming link"),
 }
 

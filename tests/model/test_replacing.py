@@ -12,7 +12,7 @@ from recon.model.replacing import replace
 from recon.model.stamped import Stamped
 from recon.model.vehicle import VehicleState
 from recon.station.state.station import Station
-from recon.station.state.tracking import Tracking
+from recon.station.state.vehicle_control import Tracking
 
 COPIED_OFTEN = (
     VehicleState("SIM-1", 3),

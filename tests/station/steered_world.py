@@ -15,7 +15,7 @@ from recon.model.geo import LatLon
 from recon.sim.app.app import MAIN_LINK, SimulatedApp
 from recon.sim.flight.aircraft import Aircraft
 from recon.station.kernel.virtual import FakeLink
-from recon.station.state.setpoint_lease import SetpointLease
+from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.steering.stream_ends import RULE
 
 SERIAL = "SIM-1"
@@ -66,8 +66,8 @@ class Steered:
         return self.tap.app.aircraft
 
     @property
-    def lease(self) -> SetpointLease | None:
-        return self.w.driver.station.control(SERIAL).lease
+    def stream(self) -> SetpointStream | None:
+        return self.w.driver.station.control(SERIAL).stream
 
     def order(self, body: Body, owner: str | None = None) -> int:
         number = self.w._next_order

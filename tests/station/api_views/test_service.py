@@ -76,7 +76,7 @@ class TestAllStop:
         bench.driver.handle(LinkClosed(1, "gone"))
         (result,) = bench.service.all_stop("test").results
         assert result.accepted
-        assert "waits until it is heard again" in (result.reason or "")
+        assert "waits for telemetry" in (result.reason or "")
 
 
 class TestOrders:
@@ -176,7 +176,7 @@ class TestView:
         assert [c.id for c in commands] == sorted((c.id for c in commands), reverse=True)
         assert commands[0].phase == "queued"
         assert commands[1].phase == "superseded"
-        assert commands[1].history[-1].note == f"by order {commands[0].id}"
+        assert commands[1].history[-1].note == f"Replaced by order {commands[0].id}"
 
     def test_the_station_speaks_of_itself(self, bench: Bench) -> None:
         bench.now_ns += 5 * NS_PER_S

@@ -143,7 +143,7 @@ class TestAMission:
         assert scene.phase(order) is Phase.STARTED
         scene.passes(20.0)
         assert scene.phase(order) is Phase.FAILED
-        assert "not heard" in scene.record(order).note
+        assert scene.record(order).note == "telemetry lost: outcome unknown"
 
     def test_finished_in_a_gap_of_telemetry_it_is_done_by_the_newest_place(self) -> None:
         scene, order = under_way()

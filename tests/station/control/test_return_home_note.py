@@ -27,7 +27,7 @@ def test_a_return_says_the_height_that_the_sites_file_tells() -> None:
 def test_a_return_says_that_nobody_has_told_its_height() -> None:
     scene = told_with(None)
     note = scene.record(scene.order(ReturnHome())).history[0].note
-    assert "which nobody has told the station" in note
+    assert "go-home height, unknown here" in note
 
 
 def test_other_orders_say_nothing_of_it() -> None:

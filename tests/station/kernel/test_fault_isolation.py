@@ -140,14 +140,14 @@ class TestATick:
         scene.order(Hover(), "A")
         scene.order(Hover(), "B")
         sent = len(scene.handed)
-        real = order_gateway._watch_order
+        real = order_gateway._update_order
 
         def watch(station: Station, record: OrderRecord, now_ns: int) -> Stepped:
             if record.command.serial == "A":
                 raise FAULT
             return real(station, record, now_ns)
 
-        monkeypatch.setattr(order_gateway, "_watch_order", watch)
+        monkeypatch.setattr(order_gateway, "_update_order", watch)
         scene.now_ns += NS_PER_S
         scene.station, outputs = after_fault(
             step.TICK_PARTS, scene.station, Tick(), FAULT, scene.now_ns
@@ -191,7 +191,7 @@ class TestAStream:
         assert s.sticks(failed_s + 0.15) == []
         assert s.hovers(failed_s) != []
         assert s.aircraft.motion.ground_speed_mps < 0.5
-        assert s.w.driver.station.leased == ()
+        assert s.w.driver.station.streaming == ()
 
 
 class TestAnEvent:

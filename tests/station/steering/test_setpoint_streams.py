@@ -1,4 +1,4 @@
-"""Steered orders over the whole way: leases, sticks, bytes, a simulated app and its aircraft."""
+"""Steered orders over the whole way: streams, sticks, bytes, a simulated app and its aircraft."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -67,8 +67,8 @@ class TestArrival:
         order = s.goto(60.0)
         s.run_for(30.0)
         assert list(s.w.driver.station.orders.records) == [order]
-        assert s.lease is not None
-        assert s.lease.packets_sent > 280
+        assert s.stream is not None
+        assert s.stream.packets_sent > 280
         s.order(Hover())
         assert s.w.record(order).times_sent > 280
 
@@ -110,14 +110,14 @@ class TestArrival:
         s.w.driver.station = replace(station, settings=replace(station.settings, streams=short))
         order = s.goto(5.0)
         s.run_for(25.0)
-        assert s.lease is None
+        assert s.stream is None
         assert "by the aircraft itself" in s.note(order)
         assert s.aircraft.flight_mode is FlightMode.GPS_ATTI
         assert s.alarm_texts() == []
 
 
 class TestTelemetryLost:
-    def test_two_seconds_are_zeros_and_then_the_same_lease_goes_on(self) -> None:
+    def test_two_seconds_are_zeros_and_then_the_same_stream_goes_on(self) -> None:
         s = steered(faults=(f"telemetry-dropout:{SERIAL}:8:2.5",))
         order = s.goto(80.0)
         s.run_for(6.5)
@@ -222,11 +222,11 @@ class TestEnds:
         s.goto(200.0)
         s.run_for(3.0)
         s.w.driver.handle(OwnerConnected("another-stream-here"))
-        lease = s.lease
+        stream = s.stream
         s.run_for(1.0)
-        assert lease is not None
-        assert s.lease is not None
-        assert s.lease.command == lease.command
+        assert stream is not None
+        assert s.stream is not None
+        assert s.stream.command == stream.command
 
     def test_an_order_held_by_nobody_that_is_open_is_refused(self) -> None:
         s = steered()
@@ -245,7 +245,7 @@ class TestEnds:
         s.run_for(6.0)
         stopped_s = s.now_s
         s.order(body)
-        assert s.lease is None
+        assert s.stream is None
         assert s.phase(order) is Phase.SUPERSEDED
         s.run_for(10.0)
         assert s.sticks(stopped_s + 0.03) == []
@@ -286,15 +286,15 @@ class TestEnds:
         s.run_for(3.0)
         refused = s.order(GoTo(s.there(100.0), float("nan"), 5.0), OWNER)
         assert s.phase(refused) is Phase.REFUSED_BY_STATION
-        assert s.lease is not None
-        assert s.lease.command.id == order
+        assert s.stream is not None
+        assert s.stream.command.id == order
 
     def test_the_pilot_takes_over_and_is_not_fought(self) -> None:
         s = steered()
         order = s.goto(200.0)
         s.run_for(6.0)
         s.aircraft.pilot_takes()
-        s.run_until(lambda: s.lease is None, 2.0)
+        s.run_until(lambda: s.stream is None, 2.0)
         seen_s = s.now_s
         assert s.phase(order) is Phase.SUPERSEDED
         assert "pilot" in s.note(order)
@@ -385,8 +385,8 @@ class TestEnds:
         s.w.driver.station = replace(station, settings=replace(station.settings, streams=one))
         first, second = s.goto(50.0), s.goto(60.0)
         assert s.phase(first) is Phase.SUPERSEDED
-        assert s.lease is not None
-        assert s.lease.command.id == second
+        assert s.stream is not None
+        assert s.stream.command.id == second
 
     def test_a_hold_between_the_zero_and_the_stations_own_takes_its_place(self) -> None:
         s = steered()
@@ -394,9 +394,9 @@ class TestEnds:
         s.run_for(5.0)
         s.holder_goes()
         s.run_for(0.05)
-        assert s.lease is not None
+        assert s.stream is not None
         order = s.order(Hover())
-        assert s.lease is None
+        assert s.stream is None
         s.run_for(5.0)
         issuers = {r.command.issued_by for r in s.w.driver.station.orders.records.values()}
         assert issuers == {"test"}
@@ -423,7 +423,7 @@ class TestEnds:
         assert s.phase(stop) is Phase.REFUSED_BY_STATION
         assert s.phase(order) is Phase.FAILED
         assert "land was ordered, and refused" in s.note(order)
-        assert s.lease is None
+        assert s.stream is None
 
     def test_a_vehicle_that_is_forgotten_is_steered_no_more(self) -> None:
         s = steered()
@@ -433,7 +433,7 @@ class TestEnds:
         s.w.driver.station = replace(station, fleet=replace(station.fleet, vehicles={}))
         s.w.driver.disconnect(s.w.connected[SERIAL].link_id)
         s.run_for(0.2)
-        assert s.lease is None
+        assert s.stream is None
 
     def test_a_vehicle_on_the_ground_is_not_steered(self) -> None:
         s = steered()
@@ -449,7 +449,7 @@ class TestEnds:
         s.goto(200.0)
         s.run_for(7.95)
         s.order(Hover())
-        assert s.lease is None
+        assert s.stream is None
 
 
 def lived(s: Steered, order: int) -> None:
@@ -461,7 +461,7 @@ def lived(s: Steered, order: int) -> None:
     assert all(packet.mode == 0 for _, packet in s.sticks())
     if record.phase is Phase.FAILED:
         assert s.alarm_texts()
-        assert s.lease is None
+        assert s.stream is None
 
 
 @settings(max_examples=10, deadline=None, phases=(Phases.explicit, Phases.generate))
@@ -472,7 +472,7 @@ def lived(s: Steered, order: int) -> None:
     st.integers(0, 1_000),
     st.sampled_from(["telemetry-dropout", "restart", "half-open", "second-link"]),
 )
-def test_whatever_happens_to_the_link_no_stick_outlives_its_lease(
+def test_whatever_happens_to_the_link_no_stick_outlives_its_stream(
     at_s: float, lasts_s: float, jitter_s: float, seed: int, fault: str
 ) -> None:
     s = steered(

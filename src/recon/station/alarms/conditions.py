@@ -205,7 +205,7 @@ def _lost_unidentified(name: str, state: VehicleState) -> Condition:
 
 
 def _waiting(record: OrderRecord) -> Iterator[Condition]:
-    if not record.waits_to_be_heard or record.phase is not Phase.QUEUED:
+    if not record.waits_for_telemetry or record.phase is not Phase.QUEUED:
         return
     name = record.vehicle_name
     yield Condition(

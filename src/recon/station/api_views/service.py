@@ -35,7 +35,7 @@ from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import Surroundings, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.control import authority, preflight
-from recon.station.control.dry_run import CHECKED_ID, check
+from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import is_dismissible
@@ -98,11 +98,11 @@ class Service:
     ) -> schema.OrderResponse:
         """Return what `order` would answer now; nothing is given and nothing changes."""
         orders = [
-            OperatorOrder(CHECKED_ID, body, issued_by, serial=serial, takeoff=takeoff, owner=owner)
+            OperatorOrder(DRY_RUN_ID, body, issued_by, serial=serial, takeoff=takeoff, owner=owner)
             for serial in dict.fromkeys(serials)
         ]
         station = self.driver.station
-        records = check(station, orders, self.driver.now_ns())
+        records = dry_run(station, orders, self.driver.now_ns())
         return schema.OrderResponse(
             results=[_result(r, _is_simulated(station, r)) for r in records]
         )

@@ -192,8 +192,8 @@ def _link_status(fleet: Fleet, record: LinkRecord) -> Any:
 
 def _commands(station: Station, now_ns: int) -> list[schema.CommandView]:
     newest = sorted(station.orders.records.values(), key=_issued, reverse=True)
-    # A stream of sticks is one order: how many have gone is counted in its lease.
-    sticks = {lease.command.id: lease.packets_sent for _, lease in station.leases()}
+    # A stream of sticks is one order: how many have gone is counted in its stream.
+    sticks = {stream.command.id: stream.packets_sent for _, stream in station.streams()}
     return [
         _command(record, sticks.get(record.command.id, record.times_sent), now_ns)
         for record in newest[:SHOWN_ORDERS]

@@ -133,11 +133,11 @@ def _with_authority(station: Station, serial: str, authority: ControlAuthority) 
 
 def _without_setpoints(station: Station, serial: str, why: str, now_ns: int) -> Station:
     station = neutral_setpoint.cancel(station, serial)
-    lease = station.control(serial).lease
-    if lease is None:
+    stream = station.control(serial).stream
+    if stream is None:
         return station
     end = Phase.SUPERSEDED, why
-    return stream_ends.end_silently(StreamUpdate(station), serial, lease, end, now_ns).station
+    return stream_ends.end_silently(StreamUpdate(station), serial, stream, end, now_ns).station
 
 
 def _superseded(station: Station, serial: str, why: str, now_ns: int) -> Station:

@@ -12,7 +12,7 @@ from recon.model.command import Body, FlyMission, Hover, LandNow, ReturnHome, Vi
 from recon.model.intent import Commanded, Intent
 from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
-from recon.station.state.setpoint_lease import SetpointLease
+from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.station import Station
 
 _COMMANDED: dict[type, Commanded] = {
@@ -62,15 +62,15 @@ def of_order(command_id: int, body: Body, sent_at_ns: int) -> Intent | None:
     )
 
 
-def of_stream(lease: SetpointLease) -> Intent:
+def of_stream(stream: SetpointStream) -> Intent:
     """Return the intent of a steered order."""
     return Intent(
         Commanded.STICK,
-        lease.started_at_ns,
-        lease.command.id,
-        target=lease.goal.target,
-        target_height_above_takeoff_m=lease.goal.height_above_takeoff_m,
-        speed_mps=lease.goal.speed_mps,
+        stream.started_at_ns,
+        stream.command.id,
+        target=stream.goal.target,
+        target_height_above_takeoff_m=stream.goal.height_above_takeoff_m,
+        speed_mps=stream.goal.speed_mps,
     )
 
 

@@ -13,8 +13,7 @@ from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety import Situation, judge_parts
 from recon.station.state import orders
-from recon.station.state.flight_plan import FlightPlan
-from recon.station.state.orders import OrderRecord
+from recon.station.state.orders import FlightPlan, OrderRecord
 from recon.station.state.outputs import SendCommand
 from recon.station.state.station import Station
 from recon.station.state.stepped import Judge, Stepped

@@ -19,8 +19,7 @@ from recon.station.state.orders import OrderRecord
 from recon.station.state.outputs import Output
 from recon.station.state.station import Station
 from recon.station.state.stepped import Judge, Stepped
-from recon.station.state.tracking import Tracking
-from recon.station.state.vehicle_control import NO_INTENT
+from recon.station.state.vehicle_control import NO_INTENT, Tracking
 
 _RECENT_S = 0.5
 """A vehicle heard within this is tracked at each of its packets, and not at ticks as well."""

@@ -1,33 +1,66 @@
-"""The life of an order that was sent: what time and telemetry make of it."""
+"""The life of a sent order: what telemetry and time make of it.
 
-from recon.fleet.confirmation import Progress, reading_of_sent
+Theory of operation. A record passes through these phases; a final one is never left:
+
+    queued -> sent -> acknowledged -> confirmed -> done      hold, land, return, camera, stick
+    queued -> sent -> acknowledged -> started   -> done      mission, steered order
+
+- An acknowledgement proves only that the app received the packet. Telemetry newer than the sending
+  confirms or starts an order (`fleet.confirmation`); a camera order is done at once.
+- Timeouts, see `StationSettings`. Not sent before it expires: *expired*. Not shown by telemetry
+  within its limit: *timed out*, with an alarm for what moves a vehicle; the limit is longer once
+  telemetry shows its beginning. Shown, then no telemetry for `telemetry_lost_s`: *failed*.
+- An emergency order (hold, land, return) is repeated every 0.7 s, three times at most, until
+  telemetry shows it. The gate judges each repeat anew, and a repeat never allows takeoff. A stop
+  refused only because telemetry is stale waits, and is judged again at each packet of its vehicle.
+- A newer order to the same vehicle ends it as *superseded*; so does its pilot. From *started* on
+  `mode_tracking` finds the end of a mission, and a setpoint stream reports that of a steered order.
+- Telemetry that shows an ended order late is noted and ends its alarm, but not its phase.
+"""
+
+from recon.fleet.confirmation import Progress, progress, reading_of_sent
 from recon.fleet.flight_table import Verdict
-from recon.model.command import CAMERA_BODIES, FlyMission, Phase, VirtualStick
+from recon.model.command import CAMERA_BODIES, FlyMission, Phase, Refusal, VirtualStick
+from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.station.control import missions, mode_tracking
-from recon.station.control.order_targets import flying_rivals, is_shown, target_of
+from recon.station.control.order_records import target_of
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
+from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
+from recon.station.state.stepped import Judge
 
 
-def pilot_of(station: Station, record: OrderRecord, target: VehicleState) -> str | None:
-    """Return why an order that telemetry has not shown meets a pilot, else None."""
-    if record.sent is None or isinstance(record.command.body, CAMERA_BODIES) or is_shown(record):
+def progress_of(
+    station: Station, record: OrderRecord, target: VehicleState, now_ns: int
+) -> Progress:
+    """Return how much of an order telemetry shows, on every link it is for."""
+    if record.sent is None:
+        return Progress.UNSEEN
+    body, sent = missions.present_part(record.command, record.plan).body, record.sent
+    states = (target, *_flying_rivals(station, record, target))
+    return min(progress(body, sent, state, now_ns) for state in states)
+
+
+def pilot_takeover(station: Station, record: OrderRecord, target: VehicleState) -> str | None:
+    """Return the reason if telemetry shows a pilot instead of an order just sent, else None."""
+    is_camera = isinstance(record.command.body, CAMERA_BODIES)
+    if record.sent is None or is_camera or _is_confirmed(record):
         return None
     body = missions.present_part(record.command, record.plan).body
-    states = (target, *flying_rivals(station, record, target))
+    states = (target, *_flying_rivals(station, record, target))
     readings = [reading_of_sent(body, record.sent, state) for state in states]
     is_pilot = all(r.verdict is Verdict.PILOT and r.is_at_once for r in readings)
     return readings[0].why if is_pilot else None
 
 
-def intents_after(
+def with_intent_of(
     station: Station, before: OrderRecord, record: OrderRecord, seen: Progress, now_ns: int
 ) -> Station:
-    """Keep what the vehicle does true to what telemetry has just shown of an order."""
+    """Return the station with its vehicle's intent as telemetry has just shown of an order."""
     target = target_of(station, record.command)
     if target is None or target.serial is None:
         return station
@@ -47,12 +80,10 @@ def timed_out_by_now(
     settings: StationSettings,
     now_ns: int,
 ) -> OrderRecord:
-    """What telemetry does not show in time has ended; that it is shown late ends the alarm."""
-    heard_ns = target.core_received_at_ns or record.command.issued_at_ns
-    if is_shown(record) and now_ns - heard_ns > seconds_to_ns(settings.unheard_s):
-        return orders.ended(
-            record, Phase.FAILED, now_ns, "not heard any more: nobody knows its end"
-        )
+    """Return the record after its timeouts."""
+    received_ns = target.core_received_at_ns or record.command.issued_at_ns
+    if _is_confirmed(record) and now_ns - received_ns > seconds_to_ns(settings.telemetry_lost_s):
+        return orders.ended(record, Phase.FAILED, now_ns, "telemetry lost: outcome unknown")
     if record.phase is Phase.QUEUED:
         if now_ns < record.command.expires_at_ns:
             return record
@@ -64,6 +95,42 @@ def timed_out_by_now(
     if waited_ns < seconds_to_ns(limit_s):
         return record
     return orders.timed_out(record, now_ns, limit_s)
+
+
+def repeat(
+    station: Station, record: OrderRecord, judge: Judge, now_ns: int
+) -> tuple[OrderRecord, tuple[Output, ...]]:
+    """Send an unconfirmed emergency order again if the gate still approves it.
+
+    One that was never sent uses up no repeat: it is judged again until it expires.
+    """
+    left = record.repeats_left - (record.sent is not None)
+    later_ns = now_ns + seconds_to_ns(station.settings.emergency_repeat_s)
+    record = replace(record, repeats_left=left, next_repeat_ns=later_ns if left > 0 else None)
+    command = record.command
+    if record.sent is not None:
+        # Nothing that starts motion is sent again by itself.
+        command = replace(command, takeoff=False)
+    judged = judge(station, command)
+    if isinstance(judged, Refusal):
+        waits = record.waits_for_telemetry and record.sent is None
+        return (replace(record, next_repeat_ns=now_ns) if waits else record), ()
+    waiting = tuple(dict.fromkeys((*record.waiting_link_ids, *judged.link_ids)))
+    return replace(record, waiting_link_ids=waiting), (SendCommand(judged),)
+
+
+def _is_confirmed(record: OrderRecord) -> bool:
+    return record.phase in (Phase.CONFIRMED, Phase.STARTED)
+
+
+def _flying_rivals(
+    station: Station, record: OrderRecord, target: VehicleState
+) -> tuple[VehicleState, ...]:
+    """Other links that claim the serial and fly: an emergency order is for them too."""
+    if not record.command.is_emergency:
+        return ()
+    links = (station.fleet.links[link_id] for link_id in target.rival_link_ids)
+    return tuple(link.own_state for link in links if link.own_state.is_flying.value is True)
 
 
 def _confirm_limit_s(record: OrderRecord, seen: Progress, settings: StationSettings) -> float:

@@ -53,8 +53,8 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
 
 def _stick_height_m(control: VehicleControl) -> float | None:
     """The height above takeoff that a vehicle's newest setpoint asked for."""
-    if control.lease is not None:
-        return control.lease.steered.height_above_takeoff_m
+    if control.stream is not None:
+        return control.stream.steered.height_above_takeoff_m
     if control.neutral is not None:
         return control.neutral.body.height_above_takeoff_m
     return control.intent.target_height_above_takeoff_m

@@ -70,15 +70,15 @@ def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
     come again at every beat.
     """
     outputs: tuple[Output, ...] = ()
-    for serial in station.leased:
+    for serial in station.streaming:
         where = f"steering {serial}"
         try:
-            station, more = order_gateway.drive_streams(station, now_ns, (serial,))
+            station, more = order_gateway.update_streams(station, now_ns, (serial,))
         except Exception as fault:
             station = note(station, StationFaulted(where, described(fault)), now_ns)
             station, more = _attempt(where, partial(_end_stream, serial), station, now_ns)
-            setpoint_lease = station.control(serial).lease
-            if setpoint_lease is not None and setpoint_lease.closing is None:
+            setpoint_stream = station.control(serial).stream
+            if setpoint_stream is not None and setpoint_stream.closing is None:
                 station, more = _attempt(where, partial(_hold, serial), station, now_ns)
         outputs += more
     return station, outputs
@@ -147,8 +147,8 @@ def _hold(serial: str, station: Station, now_ns: int) -> Stepped:
     """Hold a vehicle whose stream could not even be ended by a neutral setpoint."""
     station, number = take_id(order_gateway.release_stream(station, serial, now_ns))
     order = OperatorOrder(number, Hover(), ISSUER, serial=serial)
-    return order_gateway.place(station, order, now_ns)
+    return order_gateway.submit(station, order, now_ns)
 
 
 def _follow_orders_of(serial: str, station: Station, now_ns: int) -> Stepped:
-    return order_gateway.watch(station, now_ns, (serial,))
+    return order_gateway.update_orders(station, now_ns, (serial,))

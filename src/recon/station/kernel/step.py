@@ -80,7 +80,7 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     if isinstance(event.report, ImageReport):
         return station, outputs  # it shows nothing of any order
     serials = () if vehicle.serial is None else (vehicle.serial,)
-    station, orders = order_gateway.watch(station, now_ns, serials)
+    station, orders = order_gateway.update_orders(station, now_ns, serials)
     return station, (*outputs, *orders)
 
 
@@ -109,7 +109,7 @@ def _job_dropped(station: Station, event: JobDropped[Any, Any], now_ns: int) -> 
 
 
 def _sticks_due(station: Station, _event: SticksDue, now_ns: int) -> Stepped:
-    return order_gateway.drive_streams(station, now_ns)
+    return order_gateway.update_streams(station, now_ns)
 
 
 def _owner_connected(station: Station, event: OwnerConnected, _now_ns: int) -> Station:
@@ -117,7 +117,7 @@ def _owner_connected(station: Station, event: OwnerConnected, _now_ns: int) -> S
 
 
 def _owner_disconnected(station: Station, event: OwnerDisconnected, now_ns: int) -> Stepped:
-    return order_gateway.owner_disconnected(station, event.owner, now_ns)
+    return order_gateway.on_owner_disconnected(station, event.owner, now_ns)
 
 
 def _audit_troubled(station: Station, event: AuditTroubled, _now_ns: int) -> Station:
@@ -145,10 +145,12 @@ TICK_PARTS: tuple[TickPart, ...] = (
     TickPart("measuring the links' silence", _pass_time),
     TickPart(
         "driving the setpoint streams",
-        order_gateway.drive_streams,
+        order_gateway.update_streams,
         fault_isolation.drive_streams_isolated,
     ),
-    TickPart("following the orders", order_gateway.watch, fault_isolation.follow_orders_isolated),
+    TickPart(
+        "following the orders", order_gateway.update_orders, fault_isolation.follow_orders_isolated
+    ),
     *(TickPart(f"advancing the {each.name}", each.tick) for each in OPERATIONS),
     TickPart("running the watchdogs", run_watchdogs, fault_isolation.run_watchdogs_isolated),
     TickPart("raising alarms", raise_alarms, fault_isolation.raise_alarms_isolated),
@@ -165,10 +167,10 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         on(JobDone, _job_done),
         on(JobFailed, _job_failed),
         on(JobDropped, _job_dropped),
-        on(OperatorOrder, order_gateway.place),
-        changing(CommandSent, order_gateway.follow),
-        changing(CommandAnswered, order_gateway.follow),
-        changing(CommandDropped, order_gateway.follow),
+        on(OperatorOrder, order_gateway.submit),
+        changing(CommandSent, order_gateway.on_link_event),
+        changing(CommandAnswered, order_gateway.on_link_event),
+        changing(CommandDropped, order_gateway.on_link_event),
         changing(AuthorityTaken, authority.take),
         changing(OwnerConnected, _owner_connected),
         on(OwnerDisconnected, _owner_disconnected),

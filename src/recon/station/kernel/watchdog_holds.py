@@ -27,7 +27,7 @@ def run_watchdogs(
         station, number = take_id(station)
         issued_by = f"station: {request.finding.rule}"
         order = OperatorOrder(number, Hover(), issued_by, request.serial)
-        station, sent = order_gateway.place(station, order, now_ns)
+        station, sent = order_gateway.submit(station, order, now_ns)
         outputs += sent
         is_sent = any(isinstance(output, SendCommand) for output in sent)
         why_not = None if is_sent else station.orders.records[number].note

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 
 from recon.fleet.confirmation import Progress, SentContext
+from recon.model.authority import ControlAuthority
 from recon.model.command import (
     Body,
     Command,
@@ -21,8 +22,8 @@ from recon.model.command import (
     VirtualStick,
 )
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent
+from recon.model.mission import Mission
 from recon.model.units import seconds_to_ns
-from recon.station.state.flight_plan import FlightPlan
 
 UNCONFIRMED = "order_not_confirmed"
 MISSION_IGNORED = "mission_ignored"
@@ -37,6 +38,40 @@ class PhaseChange:
     phase: Phase
     at_ns: int
     note: str
+
+
+@dataclass(frozen=True, slots=True)
+class FlightPlan:
+    """A mission as it is sent: one part, or several flown one after the other.
+
+    A next part is only sent while the chain is whole: `link_id` is the link the order went to,
+    `lead` who led the vehicle then, and `heard_at_ns` when telemetry came last. `broken` says why
+    no further part will be flown.
+    """
+
+    parts: tuple[Mission, ...]
+    repairs: tuple[str, ...] = ()
+    index: int = 0
+    """Of the part sent last."""
+    link_id: int | None = None
+    authority: ControlAuthority | None = None
+    heard_at_ns: int | None = None
+    broken: str | None = None
+
+    @property
+    def part(self) -> Mission:
+        """The part sent last."""
+        return self.parts[self.index]
+
+    @property
+    def is_last(self) -> bool:
+        """Whether no part follows the present one."""
+        return self.index + 1 >= len(self.parts)
+
+    @property
+    def label(self) -> str:
+        """The present part as people name it; nothing for a mission of one."""
+        return "" if len(self.parts) == 1 else f"part {self.index + 1} of {len(self.parts)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +91,7 @@ class OrderRecord:
     times_sent: int = 0
     next_repeat_ns: int | None = None
     repeats_left: int = 0
-    waits_to_be_heard: bool = False
+    waits_for_telemetry: bool = False
     """A stop for a vehicle that cannot be heard: judged anew with every word of it."""
     waiting_link_ids: tuple[int, ...] = ()
     """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""

@@ -8,7 +8,7 @@ from recon.forecast import ForecastSettings
 from recon.guidance.steering import SteeringSettings
 from recon.safety import SafetySettings
 from recon.station.state.recovery_settings import RestartSettings
-from recon.station.state.setpoint_lease import StreamSettings
+from recon.station.state.setpoint_stream import StreamSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +54,13 @@ class StationSettings:
     parts_gap_s: float = 3.0
     """A vehicle not heard for longer may have been flown by anybody: no next part is sent to it."""
 
-    unheard_s: float = 600.0
+    telemetry_lost_s: float = 600.0
     """What has become of an order whose vehicle is not heard for this long, nobody will learn."""
 
     camera_confirm_s: float = 8.0
     stick_confirm_s: float = 2.0
 
-    stick_zero_waits_s: float = 3.0
+    neutral_setpoint_waits_s: float = 3.0
     """After a stick's time the mode may still be on its way; later than this nothing flies it."""
 
     steering: SteeringSettings = field(default_factory=SteeringSettings)

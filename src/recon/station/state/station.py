@@ -13,7 +13,7 @@ from recon.station.state.alarm_book import AlarmBook
 from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imaging import Imaging, ShadePipeline
 from recon.station.state.orders import OrderBook
-from recon.station.state.setpoint_lease import SetpointLease
+from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.settings import StationSettings
 from recon.station.state.survey_record import Surveys
 from recon.station.state.vehicle_control import NO_CONTROL, ControlChanges, VehicleControl
@@ -63,8 +63,8 @@ class Station:
     airspace: PreparedAirspace = field(default=OPEN_AIRSPACE, repr=False)
     controls: Mapping[str, VehicleControl] = field(default_factory=dict)
     """By serial; read with `control`, changed with `with_control` only."""
-    leased: tuple[str, ...] = ()
-    """Serials of the vehicles with a setpoint lease, kept by `with_control`: asked for with every
+    streaming: tuple[str, ...] = ()
+    """Serials of the vehicles with a setpoint stream, kept by `with_control`: asked for with every
     event, and few of many vehicles."""
     neutral_pending: tuple[str, ...] = ()
     """Serials of the vehicles with a pending neutral setpoint, kept likewise."""
@@ -101,16 +101,16 @@ class Station:
         return replace(
             self,
             controls={**self.controls, serial: control},
-            leased=_with_member(self.leased, serial, control.lease is not None),
+            streaming=_with_member(self.streaming, serial, control.stream is not None),
             neutral_pending=_with_member(self.neutral_pending, serial, control.neutral is not None),
         )
 
-    def leases(self) -> Iterator[tuple[str, SetpointLease]]:
-        """Yield the setpoint leases with their vehicles' serials, the oldest first."""
-        for serial in self.leased:
-            lease = self.control(serial).lease
-            assert lease is not None, "`leased` names the vehicles with a lease"
-            yield serial, lease
+    def streams(self) -> Iterator[tuple[str, SetpointStream]]:
+        """Yield the setpoint streams with their vehicles' serials, the oldest first."""
+        for serial in self.streaming:
+            stream = self.control(serial).stream
+            assert stream is not None, "`streaming` names the vehicles with a stream"
+            yield serial, stream
 
     def controls_changed_since(self, before: "Station") -> tuple[tuple[str, VehicleControl], ...]:
         """Return the control states, by serial, that are not the same values as in `before`."""

@@ -7,12 +7,14 @@ else reads `station.control(serial)`.
 from dataclasses import dataclass
 from typing import TypedDict
 
+from recon.fleet.flight_table import Verdict
 from recon.model.authority import ControlAuthority
 from recon.model.command import Command, VirtualStick
 from recon.model.intent import Intent
+from recon.model.stamped import Stamped
+from recon.model.vehicle import FlightMode
 from recon.safety import Override
-from recon.station.state.setpoint_lease import SetpointLease
-from recon.station.state.tracking import Tracking
+from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.vehicle_snapshot import VehicleSnapshot
 
 NEVER_TAKEN = ControlAuthority()
@@ -29,6 +31,32 @@ class PendingNeutral:
 
 
 @dataclass(frozen=True)
+class Tracking:
+    """What the flight table is asked with, beside the intent itself.
+
+    `told_at_ns` is the intent's time: only modes received later count. `mode_before` is the flight
+    mode that is no news. `doubt` is a verdict that counts once it has lasted, since the mode
+    report of `doubt_since_ns`. `failsafe` says what the aircraft does by itself, until it is told
+    something or has landed.
+    """
+
+    told_at_ns: int = 0
+    command_id: int | None = None
+    has_begun: bool = False
+    mode_before: FlightMode | None = None
+    link_id: int | None = None
+    read: Stamped[FlightMode] = Stamped()
+    """The mode report that was read last; each is read once, with a place as new."""
+    doubt: Verdict | None = None
+    doubt_since_ns: int = 0
+    core_at_ns: int | None = None
+    """When the telemetry came that the mission's passed waypoints were last counted by."""
+    failsafe: str | None = None
+    is_unbidden: bool = False
+    """New here, or on the ground and told nothing: if it moves, nobody at the station made it."""
+
+
+@dataclass(frozen=True)
 class VehicleControl:
     """The control state of one vehicle. The default is that of a vehicle never commanded."""
 
@@ -39,7 +67,7 @@ class VehicleControl:
     tracking: Tracking | None = None
     """How telemetry is compared with the intent; None before its first telemetry.
     Writer: `control/mode_tracking.py`."""
-    lease: SetpointLease | None = None
+    stream: SetpointStream | None = None
     """The steered order being carried out; not restored after a restart.
     Writer: `steering/stream_ends.py`."""
     neutral: PendingNeutral | None = None
@@ -62,7 +90,7 @@ class ControlChanges(TypedDict, total=False):
     authority: ControlAuthority
     intent: Intent
     tracking: Tracking | None
-    lease: SetpointLease | None
+    stream: SetpointStream | None
     neutral: PendingNeutral | None
     preflight_override: Override | None
     restored: VehicleSnapshot | None

@@ -8,7 +8,7 @@ from recon.guidance.steering import Goal, KinematicState, SteeringSettings, stop
 from recon.model.command import GoTo, HoldPosition, Nudge, Refusal, SteeredBody
 from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleState
-from recon.station.state.setpoint_lease import StreamSettings
+from recon.station.state.setpoint_stream import StreamSettings
 
 SIGHT = "sight"
 
@@ -36,12 +36,12 @@ def sight(vehicle: VehicleState, now_ns: int) -> KinematicState | None:
 def unseen(vehicle: VehicleState, now_ns: int, settings: StreamSettings) -> Refusal | None:
     """Refuse to begin steering what cannot be seen."""
     seen = sight(vehicle, now_ns)
-    if seen is not None and seen.age_s <= settings.sight_s:
+    if seen is not None and seen.age_s <= settings.max_telemetry_age_s:
         return None
     return Refusal(
         SIGHT,
-        f"{vehicle.display_name}: to be steered, its position, velocity, height and heading must "
-        f"be known and {settings.sight_s:g} s old at most: wait until its telemetry tells them",
+        f"{vehicle.display_name}: steering needs position, velocity, height and heading, at most "
+        f"{settings.max_telemetry_age_s:g} s old: wait for its telemetry",
     )
 
 

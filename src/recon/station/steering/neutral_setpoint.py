@@ -78,9 +78,9 @@ def _stands(station: Station, serial: str, body: VirtualStick) -> bool:
     return height_m is None or abs(body.height_above_takeoff_m - height_m) <= same_m
 
 
-def give_up(station: Station, now_ns: int) -> Station:
-    """Return the station without the zeros that nobody has needed for a while."""
-    wait_ns = seconds_to_ns(station.settings.stick_zero_waits_s)
+def drop_overdue(station: Station, now_ns: int) -> Station:
+    """Return the station without the neutral setpoints that were not needed in time."""
+    wait_ns = seconds_to_ns(station.settings.neutral_setpoint_waits_s)
     for serial, neutral in pending(station):
         if now_ns >= neutral.due_at_ns + wait_ns:
             station = cancel(station, serial)

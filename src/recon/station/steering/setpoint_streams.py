@@ -1,9 +1,9 @@
 """Steered orders carried out: a stream of sticks at 10 Hz, each approved by the gate anew.
 
-A lease binds one vehicle to one order. It ends at once, and for good, when a newer order to move,
+A stream binds one vehicle to one order. It ends at once, and for good, when a newer order to move,
 a stop, the pilot or a failsafe comes: then nothing more is sent for it. When the station itself
 must give up (`stream_ends`), zero is sent at once and hold a beat later, both through the gate.
-Nothing resumes a lease that has ended: no reconnect, no restart.
+Nothing resumes a stream that has ended: no reconnect, no restart.
 """
 
 from collections.abc import Collection
@@ -15,7 +15,7 @@ from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.state.outputs import SendCommand
-from recon.station.state.setpoint_lease import SetpointLease, first_due_ns, following_due_ns
+from recon.station.state.setpoint_stream import SetpointStream, first_due_ns, following_due_ns
 from recon.station.state.station import Station
 from recon.station.state.stepped import Judge
 from recon.station.steering import stream_ends
@@ -24,7 +24,7 @@ from recon.station.steering.stream_ends import (
     StreamUpdate,
     change_phase,
     judge_setpoint,
-    with_lease,
+    with_stream,
 )
 
 
@@ -36,7 +36,7 @@ def refusal_to_start(station: Station, order: OperatorOrder, now_ns: int) -> Ref
             "the connection that was to hold the order is not open (any more): open the stream of "
             "states, and name its owner in the order",
         )
-    steered = [serial for serial in station.leased if serial != order.serial]
+    steered = [serial for serial in station.streaming if serial != order.serial]
     most = station.settings.streams.most_at_once
     if len(steered) >= most:
         return Refusal(
@@ -48,9 +48,9 @@ def refusal_to_start(station: Station, order: OperatorOrder, now_ns: int) -> Ref
     return unseen(vehicle, now_ns, station.settings.streams)
 
 
-def start_lease(
+def start_stream(
     station: Station, command: Command, owner: str | None, now_ns: int
-) -> tuple[Station, SetpointLease]:
+) -> tuple[Station, SetpointStream]:
     """Lease a vehicle to an order just judged; its first setpoint is due at once."""
     serial, settings = command.serial or "", station.settings
     vehicle = station.fleet.vehicles[serial]
@@ -58,7 +58,7 @@ def start_lease(
     assert seen is not None, "asked before by `refusal_to_start`"
     assert isinstance(command.body, STEERED_BODIES)
     fastest_mps = station.airspace.airspace.limits.max_speed_mps
-    lease = SetpointLease(
+    stream = SetpointStream(
         command=command,
         owner=owner,
         goal=goal_of(command.body, seen, settings.steering, settings.streams),
@@ -69,12 +69,12 @@ def start_lease(
         seen_at_ns=now_ns - seconds_to_ns(seen.age_s),
         mode_before=vehicle.flight_mode.value,
     )
-    return with_lease(station, serial, lease), lease
+    return with_stream(station, serial, stream), stream
 
 
 def next_due_ns(station: Station) -> int | None:
     """Return when the next setpoint of any stream is due."""
-    return min((lease.next_due_ns for _, lease in station.leases()), default=None)
+    return min((stream.next_due_ns for _, stream in station.streams()), default=None)
 
 
 def due_serials(
@@ -83,33 +83,33 @@ def due_serials(
     """Return the vehicles whose next setpoint is due, of these vehicles; None: of all."""
     return tuple(
         serial
-        for serial, lease in station.leases()
-        if now_ns >= lease.next_due_ns and (serials is None or serial in serials)
+        for serial, stream in station.streams()
+        if now_ns >= stream.next_due_ns and (serials is None or serial in serials)
     )
 
 
 def owned_by(station: Station, owner: str) -> tuple[str, ...]:
     """Return the vehicles whose stream depends on a connection."""
-    return tuple(serial for serial, lease in station.leases() if lease.owner == owner)
+    return tuple(serial for serial, stream in station.streams() if stream.owner == owner)
 
 
 def abort(update: StreamUpdate, serial: str, why: str, now_ns: int, judge: Judge) -> StreamUpdate:
     """End a vehicle's stream as a failure, if it has one that is not ending yet."""
-    lease = update.station.control(serial).lease
-    if lease is None or lease.closing is not None:
+    stream = update.station.control(serial).stream
+    if stream is None or stream.closing is not None:
         return update
-    return stream_ends.abort(update, serial, lease, why, now_ns, judge)
+    return stream_ends.abort(update, serial, stream, why, now_ns, judge)
 
 
 def on_sent(station: Station, event: CommandSent, now_ns: int) -> Station:
     """Count a setpoint that has left; with the first one its order counts as sent."""
-    for serial, lease in station.leases():
-        if lease.last_stick_id == event.command_id:
-            sent = replace(lease, packets_sent=lease.packets_sent + 1)
-            if lease.first_sent_at_ns is None:
+    for serial, stream in station.streams():
+        if stream.last_stick_id == event.command_id:
+            sent = replace(stream, packets_sent=stream.packets_sent + 1)
+            if stream.first_sent_at_ns is None:
                 sent = replace(sent, first_sent_at_ns=now_ns)
-            station = with_lease(station, serial, sent)
-            if lease.first_sent_at_ns is None:
+            station = with_stream(station, serial, sent)
+            if stream.first_sent_at_ns is None:
                 return change_phase(station, sent, Phase.SENT, now_ns, "its first stick")
     return station
 
@@ -117,85 +117,85 @@ def on_sent(station: Station, event: CommandSent, now_ns: int) -> Station:
 def advance(update: StreamUpdate, serial: str, now_ns: int, judge: Judge) -> StreamUpdate:
     """Send a vehicle's next setpoint, or end its stream."""
     station = update.station
-    lease, vehicle = station.control(serial).lease, station.fleet.vehicles.get(serial)
-    if lease is None or vehicle is None:
+    stream, vehicle = station.control(serial).stream, station.fleet.vehicles.get(serial)
+    if stream is None or vehicle is None:
         return stream_ends.release(update, serial)
-    lost = stream_ends.control_lost(station, lease, vehicle)
+    lost = stream_ends.control_lost(station, stream, vehicle)
     if lost is not None:
-        return stream_ends.end_silently(update, serial, lease, lost, now_ns)
-    if lease.closing is not None:
+        return stream_ends.end_silently(update, serial, stream, lost, now_ns)
+    if stream.closing is not None:
         return stream_ends.order_hold(update, serial)
     seen = sight(vehicle, now_ns)
     if seen is not None:
         seen_at_ns = now_ns - seconds_to_ns(seen.age_s)
-        lease = replace(lease, seen_at_ns=max(lease.seen_at_ns, seen_at_ns))
-    failure = stream_ends.failure(station, lease, vehicle, now_ns)
+        stream = replace(stream, seen_at_ns=max(stream.seen_at_ns, seen_at_ns))
+    failure = stream_ends.failure(station, stream, vehicle, now_ns)
     if failure is not None:
-        return stream_ends.abort(update, serial, lease, failure, now_ns, judge)
-    if seen is not None and seen.age_s > station.settings.streams.sight_s:
+        return stream_ends.abort(update, serial, stream, failure, now_ns, judge)
+    if seen is not None and seen.age_s > station.settings.streams.max_telemetry_age_s:
         seen = None
-    station, lease = _with_progress(station, lease, vehicle, seen, now_ns)
+    station, stream = _with_progress(station, stream, vehicle, seen, now_ns)
     update = replace(update, station=station)
-    if stream_ends.has_held_long_enough(station, lease, now_ns):
-        return stream_ends.end_held_place(update, serial, lease, now_ns, judge)
-    lease = _with_next_setpoint(station, serial, lease, seen, now_ns)
-    return _send(update, serial, lease, now_ns, judge)
+    if stream_ends.has_held_long_enough(station, stream, now_ns):
+        return stream_ends.end_held_place(update, serial, stream, now_ns, judge)
+    stream = _with_next_setpoint(station, serial, stream, seen, now_ns)
+    return _send(update, serial, stream, now_ns, judge)
 
 
 def _with_next_setpoint(
-    station: Station, serial: str, lease: SetpointLease, seen: KinematicState | None, now_ns: int
-) -> SetpointLease:
-    """Return the lease with its next setpoint, and the time of the one after. Unseen: neutral."""
+    station: Station, serial: str, stream: SetpointStream, seen: KinematicState | None, now_ns: int
+) -> SetpointStream:
+    """Return the stream with its next setpoint, and the time of the one after. Unseen: neutral."""
     settings = station.settings
     if seen is None:
         height_m = station.fleet.vehicles[serial].height_above_takeoff_m.value
-        steered = halted(lease.steered, height_m, now_ns)
+        steered = halted(stream.steered, height_m, now_ns)
     else:
-        steered = steer(lease.steered, lease.goal, seen, now_ns, settings.steering)
-    if lease.last_stick_id == 0:
-        others = tuple(x.next_due_ns for s, x in station.leases() if s != serial)
+        steered = steer(stream.steered, stream.goal, seen, now_ns, settings.steering)
+    if stream.last_stick_id == 0:
+        others = tuple(x.next_due_ns for s, x in station.streams() if s != serial)
         due_ns = first_due_ns(others, now_ns, settings.streams)
     else:
-        due_ns = following_due_ns(lease.next_due_ns, now_ns, settings.streams)
-    return replace(lease, steered=steered, next_due_ns=due_ns)
+        due_ns = following_due_ns(stream.next_due_ns, now_ns, settings.streams)
+    return replace(stream, steered=steered, next_due_ns=due_ns)
 
 
 def _send(
-    update: StreamUpdate, serial: str, lease: SetpointLease, now_ns: int, judge: Judge
+    update: StreamUpdate, serial: str, stream: SetpointStream, now_ns: int, judge: Judge
 ) -> StreamUpdate:
-    station, answer, lease = judge_setpoint(update.station, lease, now_ns, judge)
+    station, answer, stream = judge_setpoint(update.station, stream, now_ns, judge)
     if isinstance(answer, Refusal):
         reason = f"the gate refused its setpoint: {answer.reason}"
-        update = replace(update, station=stream_ends.with_refusal(station, lease, answer))
-        return stream_ends.abort(update, serial, lease, reason, now_ns, judge)
-    station = with_lease(station, serial, lease)
+        update = replace(update, station=stream_ends.with_refusal(station, stream, answer))
+        return stream_ends.abort(update, serial, stream, reason, now_ns, judge)
+    station = with_stream(station, serial, stream)
     return replace(update, station=station, outputs=(*update.outputs, SendCommand(answer)))
 
 
 def _with_progress(
     station: Station,
-    lease: SetpointLease,
+    stream: SetpointStream,
     vehicle: VehicleState,
     seen: KinematicState | None,
     now_ns: int,
-) -> tuple[Station, SetpointLease]:
+) -> tuple[Station, SetpointStream]:
     """Take what telemetry shows into the order's life: sticks fly the vehicle, it is there."""
-    if not lease.is_obeyed and _shows_sticks(lease, vehicle):
-        lease = replace(lease, is_obeyed=True)
+    if not stream.is_obeyed and _shows_sticks(stream, vehicle):
+        stream = replace(stream, is_obeyed=True)
         note = "by telemetry: it flies by sticks"
-        station = change_phase(station, lease, Phase.STARTED, now_ns, note)
-    has_come = seen is not None and has_arrived(lease.goal, seen, station.settings.steering)
-    if lease.is_obeyed and lease.arrived_at_ns is None and has_come:
-        lease = replace(lease, arrived_at_ns=now_ns)
+        station = change_phase(station, stream, Phase.STARTED, now_ns, note)
+    has_come = seen is not None and has_arrived(stream.goal, seen, station.settings.steering)
+    if stream.is_obeyed and stream.arrived_at_ns is None and has_come:
+        stream = replace(stream, arrived_at_ns=now_ns)
         note = "by telemetry: it is there, and is held there"
-        station = change_phase(station, lease, Phase.DONE, now_ns, note)
-    return station, lease
+        station = change_phase(station, stream, Phase.DONE, now_ns, note)
+    return station, stream
 
 
-def _shows_sticks(lease: SetpointLease, vehicle: VehicleState) -> bool:
+def _shows_sticks(stream: SetpointStream, vehicle: VehicleState) -> bool:
     """Whether telemetry newer than the first stick says so; a mode it was in before may linger."""
-    mode, sent_at_ns = vehicle.flight_mode, lease.first_sent_at_ns
+    mode, sent_at_ns = vehicle.flight_mode, stream.first_sent_at_ns
     if mode.value is not FlightMode.JOYSTICK or mode.received_at_ns is None or sent_at_ns is None:
         return False
-    lingers_s = 1.0 if lease.mode_before is FlightMode.JOYSTICK else 0.0
+    lingers_s = 1.0 if stream.mode_before is FlightMode.JOYSTICK else 0.0
     return mode.received_at_ns > sent_at_ns + seconds_to_ns(lingers_s)

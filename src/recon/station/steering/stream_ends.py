@@ -1,6 +1,6 @@
 """How a setpoint stream ends: without a further packet, or with a neutral setpoint and a hold.
 
-The only writer of `VehicleControl.lease`.
+The only writer of `VehicleControl.stream`.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.command_ids import take_id
 from recon.station.state.outputs import Output, SendCommand
-from recon.station.state.setpoint_lease import SetpointLease
+from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.station import Station
 from recon.station.state.stepped import Judge
 
@@ -51,34 +51,34 @@ class StreamUpdate:
     released: tuple[ReleasedStream, ...] = ()
 
 
-def with_lease(station: Station, serial: str, lease: SetpointLease) -> Station:
-    """Return the station with a vehicle's lease replaced."""
-    return station.with_control(serial, lease=lease)
+def with_stream(station: Station, serial: str, stream: SetpointStream) -> Station:
+    """Return the station with a vehicle's stream replaced."""
+    return station.with_control(serial, stream=stream)
 
 
 def release(
     update: StreamUpdate, serial: str, commanded: Commanded = Commanded.NOTHING
 ) -> StreamUpdate:
-    """Remove a vehicle's lease, if it has one. Its order keeps the count of its setpoints."""
+    """Remove a vehicle's stream, if it has one. Its order keeps the count of its setpoints."""
     station = update.station
-    lease = station.control(serial).lease
-    if lease is None:
+    stream = station.control(serial).stream
+    if stream is None:
         return update
-    station = station.with_control(serial, lease=None)
-    record = station.orders.records.get(lease.command.id)
+    station = station.with_control(serial, stream=None)
+    record = station.orders.records.get(stream.command.id)
     if record is not None:
-        counted = replace(record, times_sent=lease.packets_sent)
+        counted = replace(record, times_sent=stream.packets_sent)
         book = orders.put(station.orders, counted, station.settings.orders_kept)
         station = replace(station, orders=book)
-    ended = ReleasedStream(serial, lease.command.id, commanded)
+    ended = ReleasedStream(serial, stream.command.id, commanded)
     return replace(update, station=station, released=(*update.released, ended))
 
 
 def change_phase(
-    station: Station, lease: SetpointLease, phase: Phase, now_ns: int, note: str
+    station: Station, stream: SetpointStream, phase: Phase, now_ns: int, note: str
 ) -> Station:
     """Return the station with the stream's order in another phase, as long as it is kept."""
-    record = station.orders.records.get(lease.command.id)
+    record = station.orders.records.get(stream.command.id)
     if record is None:
         return station
     changed = orders.changed(record, phase, now_ns, note)
@@ -86,9 +86,9 @@ def change_phase(
     return replace(station, orders=orders.put(station.orders, changed, kept))
 
 
-def with_refusal(station: Station, lease: SetpointLease, refusal: Refusal) -> Station:
+def with_refusal(station: Station, stream: SetpointStream, refusal: Refusal) -> Station:
     """Return the station with the refusal of a setpoint in the stream's order."""
-    record = station.orders.records.get(lease.command.id)
+    record = station.orders.records.get(stream.command.id)
     if record is None:
         return station
     refused, kept = replace(record, refusal=refusal), station.settings.orders_kept
@@ -96,10 +96,10 @@ def with_refusal(station: Station, lease: SetpointLease, refusal: Refusal) -> St
 
 
 def judge_setpoint(
-    station: Station, lease: SetpointLease, now_ns: int, judge: Judge
-) -> tuple[Station, ApprovedCommand | Refusal, SetpointLease]:
-    """Ask the gate about the lease's present setpoint, as a virtual stick command."""
-    settings, steered = station.settings.streams, lease.steered
+    station: Station, stream: SetpointStream, now_ns: int, judge: Judge
+) -> tuple[Station, ApprovedCommand | Refusal, SetpointStream]:
+    """Ask the gate about the stream's present setpoint, as a virtual stick command."""
+    settings, steered = station.settings.streams, stream.steered
     station, number = take_id(station)
     command = Command(
         id=number,
@@ -112,65 +112,65 @@ def judge_setpoint(
             max(0.0, steered.height_above_takeoff_m),
             settings.stick_timeout_s,
         ),
-        issued_by=lease.command.issued_by,
+        issued_by=stream.command.issued_by,
         issued_at_ns=now_ns,
         # After this the next setpoint has replaced it, or the stream has ended.
         expires_at_ns=now_ns + seconds_to_ns(1.5 * settings.period_s),
-        serial=lease.command.serial,
-        asked_as=lease.command.asked_as,
+        serial=stream.command.serial,
+        asked_as=stream.command.asked_as,
     )
-    return station, judge(station, command), replace(lease, last_stick_id=number)
+    return station, judge(station, command), replace(stream, last_stick_id=number)
 
 
 def control_lost(
-    station: Station, lease: SetpointLease, vehicle: VehicleState
+    station: Station, stream: SetpointStream, vehicle: VehicleState
 ) -> tuple[Phase, str] | None:
     """Return the order's final phase and the reason if a pilot or a failsafe flies the vehicle."""
     mode = vehicle.flight_mode
-    if mode.received_at_ns is not None and mode.received_at_ns > lease.started_at_ns:
+    if mode.received_at_ns is not None and mode.received_at_ns > stream.started_at_ns:
         reading = read(
-            Instruction.STICK if lease.is_obeyed else Instruction.STICK_SENT,
+            Instruction.STICK if stream.is_obeyed else Instruction.STICK_SENT,
             mode.value,
             vehicle.gnss_signal_level.value,
             Place.GROUND_ELSEWHERE if vehicle.is_flying.value is False else Place.ELSEWHERE,
-            None if lease.is_obeyed else lease.mode_before,
+            None if stream.is_obeyed else stream.mode_before,
         )
         if reading.verdict is Verdict.PILOT:
             return Phase.SUPERSEDED, f"the pilot has taken the sticks: {reading.why}"
         if reading.verdict is Verdict.FAILSAFE:
             return Phase.FAILED, reading.why
-    authority = station.control(lease.command.serial).authority
+    authority = station.control(stream.command.serial).authority
     if authority.holder is AuthorityHolder.PILOT and mode.value is not FlightMode.JOYSTICK:
         return Phase.SUPERSEDED, f"the pilot leads it ({authority.reason})"
     return None
 
 
 def failure(
-    station: Station, lease: SetpointLease, vehicle: VehicleState, now_ns: int
+    station: Station, stream: SetpointStream, vehicle: VehicleState, now_ns: int
 ) -> str | None:
     """Return why the station cannot continue a stream, else None."""
     settings = station.settings.streams
-    if vehicle.link_id != lease.link_id:
+    if vehicle.link_id != stream.link_id:
         return "its connection was lost, and a steered order never goes on after that"
-    if now_ns - lease.seen_at_ns > seconds_to_ns(settings.resumes_s):
+    if now_ns - stream.seen_at_ns > seconds_to_ns(settings.resumes_s):
         return f"its telemetry was incomplete or missing for {settings.resumes_s:g} s"
-    authority = station.control(lease.command.serial).authority
-    if authority.holder is not lease.command.asked_as:
+    authority = station.control(stream.command.serial).authority
+    if authority.holder is not stream.command.asked_as:
         return f"{authority.holder.value} leads the vehicle now ({authority.reason})"
-    waited_ns = now_ns - lease.started_at_ns
-    if not lease.is_obeyed and waited_ns > seconds_to_ns(settings.obeyed_s):
+    waited_ns = now_ns - stream.started_at_ns
+    if not stream.is_obeyed and waited_ns > seconds_to_ns(settings.obeyed_s):
         return f"the aircraft has not gone over to sticks within {settings.obeyed_s:g} s"
     return None
 
 
-def has_held_long_enough(station: Station, lease: SetpointLease, now_ns: int) -> bool:
+def has_held_long_enough(station: Station, stream: SetpointStream, now_ns: int) -> bool:
     """Return whether a place was held for as long as the station holds one by sticks."""
     hold_ns = seconds_to_ns(station.settings.streams.hold_at_most_s)
-    return lease.arrived_at_ns is not None and now_ns - lease.arrived_at_ns > hold_ns
+    return stream.arrived_at_ns is not None and now_ns - stream.arrived_at_ns > hold_ns
 
 
 def end_silently(
-    update: StreamUpdate, serial: str, lease: SetpointLease, end: tuple[Phase, str], now_ns: int
+    update: StreamUpdate, serial: str, stream: SetpointStream, end: tuple[Phase, str], now_ns: int
 ) -> StreamUpdate:
     """End a stream and send nothing: the pilot or the aircraft's failsafe flies the vehicle."""
     phase, why = end
@@ -178,33 +178,33 @@ def end_silently(
     if phase is Phase.SUPERSEDED:
         takeovers = (*update.pilot_takeovers, (serial, why))
         update = replace(update, pilot_takeovers=takeovers)
-    if lease.closing is not None:
+    if stream.closing is not None:
         return update
-    ended = phase if lease.arrived_at_ns is None else Phase.DONE
-    station = change_phase(update.station, lease, ended, now_ns, why)
+    ended = phase if stream.arrived_at_ns is None else Phase.DONE
+    station = change_phase(update.station, stream, ended, now_ns, why)
     if phase is Phase.FAILED:
-        station = _alarm(station, lease, f"{why}; nothing more is sent", now_ns)
+        station = _alarm(station, stream, f"{why}; nothing more is sent", now_ns)
     return replace(update, station=station)
 
 
 def abort(
-    update: StreamUpdate, serial: str, lease: SetpointLease, why: str, now_ns: int, judge: Judge
+    update: StreamUpdate, serial: str, stream: SetpointStream, why: str, now_ns: int, judge: Judge
 ) -> StreamUpdate:
     """End a stream that cannot continue: its order fails, with an alarm; the vehicle holds."""
-    phase = Phase.FAILED if lease.arrived_at_ns is None else Phase.DONE
-    station = change_phase(update.station, lease, phase, now_ns, why)
-    station = _alarm(station, lease, f"{why}; it is stopped and holds", now_ns)
-    return _close(replace(update, station=station), serial, lease, why, now_ns, judge)
+    phase = Phase.FAILED if stream.arrived_at_ns is None else Phase.DONE
+    station = change_phase(update.station, stream, phase, now_ns, why)
+    station = _alarm(station, stream, f"{why}; it is stopped and holds", now_ns)
+    return _close(replace(update, station=station), serial, stream, why, now_ns, judge)
 
 
 def end_held_place(
-    update: StreamUpdate, serial: str, lease: SetpointLease, now_ns: int, judge: Judge
+    update: StreamUpdate, serial: str, stream: SetpointStream, now_ns: int, judge: Judge
 ) -> StreamUpdate:
     """End a stream that has held its place long enough: the aircraft's own hold replaces it."""
     held_s = update.station.settings.streams.hold_at_most_s
     why = f"held for {held_s:g} s; from now on by the aircraft itself"
-    station = change_phase(update.station, lease, Phase.DONE, now_ns, why)
-    return _close(replace(update, station=station), serial, lease, why, now_ns, judge)
+    station = change_phase(update.station, stream, Phase.DONE, now_ns, why)
+    return _close(replace(update, station=station), serial, stream, why, now_ns, judge)
 
 
 def order_hold(update: StreamUpdate, serial: str) -> StreamUpdate:
@@ -219,33 +219,33 @@ def order_hold(update: StreamUpdate, serial: str) -> StreamUpdate:
 
 
 def _close(
-    update: StreamUpdate, serial: str, lease: SetpointLease, why: str, now_ns: int, judge: Judge
+    update: StreamUpdate, serial: str, stream: SetpointStream, why: str, now_ns: int, judge: Judge
 ) -> StreamUpdate:
     """Send a neutral setpoint now and hold a little later; hold at once if the gate refuses it."""
     vehicle = update.station.fleet.vehicles.get(serial)
     height_m = None if vehicle is None else vehicle.height_above_takeoff_m.value
-    lease = replace(lease, steered=halted(lease.steered, height_m, now_ns))
-    station, answer, lease = judge_setpoint(update.station, lease, now_ns, judge)
+    stream = replace(stream, steered=halted(stream.steered, height_m, now_ns))
+    station, answer, stream = judge_setpoint(update.station, stream, now_ns, judge)
     update = replace(update, station=station)
     if isinstance(answer, Refusal):
         return order_hold(update, serial)
-    due_ns = now_ns + seconds_to_ns(station.settings.streams.zero_to_hold_s)
-    closing = replace(lease, closing=why, next_due_ns=due_ns)
-    station = with_lease(station, serial, closing)
+    due_ns = now_ns + seconds_to_ns(station.settings.streams.neutral_to_hold_s)
+    closing = replace(stream, closing=why, next_due_ns=due_ns)
+    station = with_stream(station, serial, closing)
     return replace(update, station=station, outputs=(*update.outputs, SendCommand(answer)))
 
 
-def _alarm(station: Station, lease: SetpointLease, why: str, now_ns: int) -> Station:
+def _alarm(station: Station, stream: SetpointStream, why: str, now_ns: int) -> Station:
     """Raise an alarm about the end of a stream; it stays until acknowledged."""
-    record = station.orders.records.get(lease.command.id)
-    serial = lease.command.serial
+    record = station.orders.records.get(stream.command.id)
+    serial = stream.command.serial
     name = serial or "" if record is None else record.vehicle_name
     condition = Condition(
-        key=f"{RULE}:{lease.command.id}",
-        severity=Severity.ERROR if lease.arrived_at_ns is None else Severity.WARNING,
+        key=f"{RULE}:{stream.command.id}",
+        severity=Severity.ERROR if stream.arrived_at_ns is None else Severity.WARNING,
         rule=RULE,
         vehicle_name=name,
-        text=f"{name}: {lease.command.name.replace('_', ' ')}: {why}",
+        text=f"{name}: {stream.command.name.replace('_', ' ')}: {why}",
         serial=serial,
     )
     book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)

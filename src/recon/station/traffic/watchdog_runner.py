@@ -102,10 +102,10 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
 
 def _with_stick_counts(station: Station, now_ns: int) -> Station:
     """Note for each setpoint stream when its last setpoint was sent."""
-    if not station.leased and not station.watchdog_state.sticks:
+    if not station.streaming and not station.watchdog_state.sticks:
         return station
     counts: dict[str, StickCount] = {}
-    for serial, stream in station.leases():
+    for serial, stream in station.streams():
         if stream.closing is not None:
             continue
         before = station.watchdog_state.sticks.get(serial)

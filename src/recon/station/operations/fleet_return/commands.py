@@ -29,7 +29,7 @@ def call_home(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepp
         order = OperatorOrder(command_id, Hover(), f"{event.by}: fleet return", serial=serial)
         why = refusal(station, serial)
         if why is not None:
-            station = order_gateway.refuse(station, order, why, now_ns)
+            station = order_gateway.record_refusal(station, order, why, now_ns)
             continue
         station, sent = join(station, order, event.by, now_ns)
         outputs += sent
@@ -41,7 +41,7 @@ def join(station: Station, hold: OperatorOrder, by: str, now_ns: int) -> Stepped
 
     The mission that follows is ordered under the same authority as the hold.
     """
-    station, sent = order_gateway.place(station, hold, now_ns)
+    station, sent = order_gateway.submit(station, hold, now_ns)
     if station.orders.records[hold.command_id].phase is not Phase.REFUSED_BY_STATION:
         station = _joined(station, hold, by, now_ns)
     return station, sent

@@ -102,7 +102,7 @@ def _stop_what_may_begin_late(station: Station, running: FleetReturn, now_ns: in
         station, number = take_id(station)
         by = f"station: fleet return: the mission of order {record.command.id} was ignored"
         hold = OperatorOrder(number, Hover(), by, serial=member.serial)
-        station, sent = order_gateway.place(station, hold, now_ns)
+        station, sent = order_gateway.submit(station, hold, now_ns)
         outputs += sent
     return station, tuple(outputs)
 
@@ -258,7 +258,7 @@ def _order_mission(
     station, number = take_id(station)
     given = replace(member.at(Stage.ORDERED, now_ns), flight=flight, mission_id=number)
     station = replace(station, fleet_return=running.put(given))
-    return order_gateway.place(station, replace(order, command_id=number), now_ns)
+    return order_gateway.submit(station, replace(order, command_id=number), now_ns)
 
 
 def _may_end(

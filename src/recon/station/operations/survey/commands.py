@@ -121,12 +121,12 @@ def _hold(station: Station, member: SurveyMember, by: str, now_ns: int) -> Stepp
         return station, ()
     station, number = take_id(station)
     hold = OperatorOrder(number, Hover(), by, serial=member.serial)
-    station, sent = order_gateway.place(station, hold, now_ns)
+    station, sent = order_gateway.submit(station, hold, now_ns)
     if station.orders.records[number].phase is not Phase.REFUSED_BY_STATION or not may_set_out:
         return station, sent
     station, number = take_id(station)
     land = OperatorOrder(number, LandNow(), by, serial=member.serial)
-    station, landing = order_gateway.place(station, land, now_ns)
+    station, landing = order_gateway.submit(station, land, now_ns)
     return station, (*sent, *landing)
 
 

@@ -146,7 +146,7 @@ def _read_missions(station: Station, record: SurveyRecord, now_ns: int) -> Stepp
             hold = OperatorOrder(
                 number, Hover(), by, serial=member.serial, asked_as=AuthorityHolder.GUIDANCE
             )
-            station, sent = order_gateway.place(station, hold, now_ns)
+            station, sent = order_gateway.submit(station, hold, now_ns)
             outputs += sent
     return replace(station, surveys=station.surveys.put(record)), outputs
 
@@ -174,7 +174,7 @@ def _order_mission(station: Station, survey_id: int, given: MissionFor, now_ns: 
         return station, ()
     station, number = take_id(station)
     order, tried = order_of(station, record, given, vehicle, now_ns)
-    station, sent = order_gateway.place(station, replace(order, command_id=number), now_ns)
+    station, sent = order_gateway.submit(station, replace(order, command_id=number), now_ns)
     refusal = station.orders.records[number].refusal
     if refusal is None:
         used = replace(member, number=given.number, command_id=number, may_take_off=False)

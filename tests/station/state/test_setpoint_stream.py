@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.station.state.setpoint_lease import StreamSettings, first_due_ns, following_due_ns
+from recon.station.state.setpoint_stream import StreamSettings, first_due_ns, following_due_ns
 
 MS = 1_000_000
 SETTINGS = StreamSettings()

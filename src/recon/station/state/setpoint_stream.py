@@ -1,4 +1,4 @@
-"""The lease of a vehicle to one steered order: who holds it, where it leads, how far it came."""
+"""The stream of a vehicle to one steered order: who holds it, where it leads, how far it came."""
 
 from dataclasses import dataclass
 
@@ -26,14 +26,14 @@ class StreamSettings:
     stick_timeout_s: float = 1.0
     """An app that hears no more sticks stops after this; the station sends the zero itself."""
 
-    sight_s: float = 1.0
+    max_telemetry_age_s: float = 1.0
     """On telemetry older than this nobody is steered: zero is sent. As the gate's own limit."""
 
     resumes_s: float = 3.0
-    """Telemetry that comes back within this goes on with the lease. Later the vehicle may be
+    """Telemetry that comes back within this goes on with the stream. Later the vehicle may be
     anywhere, and whoever gave the order looks elsewhere."""
 
-    zero_to_hold_s: float = 0.15
+    neutral_to_hold_s: float = 0.15
     """Between the zero at a stream's end and the hold that follows: the zero may have to wait 75 ms
     for the gap after the stick before it and for the next tick, and an app that reads two packets
     at once loses the second."""
@@ -50,11 +50,11 @@ class StreamSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class SetpointLease:
+class SetpointStream:
     """One steered order being carried out. Times are station time.
 
     `owner` names the connection whose end ends it. `link_id` is the vehicle's link at its start:
-    no lease outlives that. `seen_at_ns` is when the telemetry last steered by was received.
+    no stream outlives that. `seen_at_ns` is when the telemetry last steered by was received.
     `mode_before` is the flight mode at its start. `closing` is why it ends, once zero has been
     sent and hold is to follow.
     """
