@@ -1,4 +1,4 @@
-"""Recon as a process of its own: started, read, told to stop."""
+"""Recon as a process of its own: started, read, stopped by a signal."""
 
 import os
 import signal
@@ -36,7 +36,7 @@ class Started:
         while (line := self._next()) is not None:
             if words in line:
                 return line
-        raise AssertionError(f"it ended without saying {words!r}: {self.text}")
+        raise AssertionError(f"it ended without printing {words!r}: {self.text}")
 
     def end(self, signal_number: int) -> int:
         """Send a signal and wait; return the exit code."""

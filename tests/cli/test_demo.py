@@ -55,7 +55,7 @@ def test_vehicles_fly_and_the_simulator_ends_with_the_demo(number: int, tmp_path
         assert not any(Path(f"/proc/{pid}").exists() for pid in children)
 
 
-def test_a_bad_scenario_is_told_and_nothing_is_started(tmp_path: Path) -> None:
+def test_a_bad_scenario_is_an_error_and_nothing_is_started(tmp_path: Path) -> None:
     scenario = tmp_path / "few.toml"
     scenario.write_text(FEW.replace("survey_drones = 2", "survey_drones = 0"), encoding="utf-8")
     with started("demo", "--scenario", str(scenario)) as demo:

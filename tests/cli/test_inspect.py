@@ -117,7 +117,7 @@ def test_a_truncated_last_record_is_tolerated(cut: int) -> None:
     assert len(shown) == 2
 
 
-def test_a_damaged_capture_says_where() -> None:
+def test_a_damaged_capture_is_located() -> None:
     shown = lines(MAGIC + record(0, 1, HOVER) + record(0, 7, ACK))
     assert shown[0].endswith("EmergencyCommand action=0")
     assert shown[-1] == (
@@ -129,9 +129,9 @@ def test_a_missing_file_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFi
     with pytest.raises(typer.Exit) as left:
         inspect_command([str(tmp_path / "none")])
     assert left.value.exit_code == 2
-    told = capsys.readouterr().err
-    assert told.startswith("recon inspect: cannot read ")
-    assert told.endswith("none: No such file or directory\n")
+    output = capsys.readouterr().err
+    assert output.startswith("recon inspect: cannot read ")
+    assert output.endswith("none: No such file or directory\n")
 
 
 def test_a_file_and_a_pipe_show_the_same(
@@ -154,6 +154,6 @@ def test_several_files_follow_each_other_by_name(
     for name, data in (("a.bin", ACK), ("b.bin", HOVER)):
         (tmp_path / name).write_bytes(data)
     inspect_command([str(tmp_path / "a.bin"), str(tmp_path / "b.bin")])
-    told = capsys.readouterr().out
-    assert told.index("a.bin") < told.index("Acknowledgment") < told.index("b.bin")
-    assert told.index("b.bin") < told.index("EmergencyCommand")
+    output = capsys.readouterr().out
+    assert output.index("a.bin") < output.index("Acknowledgment") < output.index("b.bin")
+    assert output.index("b.bin") < output.index("EmergencyCommand")

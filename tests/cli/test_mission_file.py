@@ -62,7 +62,7 @@ def test_heights_of_a_line_are_above_takeoff(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "says"),
+    ("value", "sentence"),
     [
         ("", "expected JSON"),
         ("{", "expected JSON"),
@@ -86,11 +86,11 @@ def test_heights_of_a_line_are_above_takeoff(tmp_path: Path) -> None:
         ({"type": "LineString", "coordinates": 5}, "coordinates: expected a list"),
     ],
 )
-def test_what_is_no_mission_is_one_sentence(tmp_path: Path, value: Any, says: str) -> None:
+def test_an_invalid_file_is_one_sentence(tmp_path: Path, value: Any, sentence: str) -> None:
     path = written(tmp_path, value)
     with pytest.raises(MissionFileError) as caught:
         read_mission(path, 30.0, 4.0)
-    assert says in str(caught.value)
+    assert sentence in str(caught.value)
     assert str(path) in str(caught.value)
 
 

@@ -23,7 +23,7 @@ def go(
     typer.echo(f"{latitude!r} {longitude!r} {height!r} {is_json}")
 
 
-def said(*words: str) -> tuple[int, str]:
+def run(*words: str) -> tuple[int, str]:
     result = CliRunner().invoke(app, words)
     return result.exit_code, result.output
 
@@ -38,17 +38,17 @@ def said(*words: str) -> tuple[int, str]:
     ],
 )
 def test_they_stand_anywhere_and_need_nothing_before_them(words: tuple[str, ...]) -> None:
-    assert said(*words) == (0, "41.9 -93.6 -5.0 False\n")
+    assert run(*words) == (0, "41.9 -93.6 -5.0 False\n")
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False), st.floats(-180.0, 180.0))
 def test_every_number_comes_as_it_was_written(latitude: float, longitude: float) -> None:
-    code, output = said(repr(latitude), repr(longitude), "--json")
+    code, output = run(repr(latitude), repr(longitude), "--json")
     assert (code, output) == (0, f"{latitude!r} {longitude!r} 0.0 True\n")
 
 
 @pytest.mark.parametrize("odd", ["--heigth", "-h", "-9x", "--9", "-", "-inf"])
 def test_what_is_no_number_is_refused_as_ever(odd: str) -> None:
-    code, output = said("41.9", "-93.6", odd)
+    code, output = run("41.9", "-93.6", odd)
     assert code == 2
     assert "Usage" in output

@@ -25,7 +25,7 @@ def link_port(line: str) -> int:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -> None:
-    """Also with an app connected: what it said is in the capture."""
+    """Also with an app connected: what it sent is in the capture."""
     with started("run", *FREE, "--capture", str(tmp_path / "raw")) as recon:
         port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
         console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
@@ -68,17 +68,17 @@ def refused(*options: str) -> str:
 def test_a_link_port_in_use_is_one_sentence() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        said = refused("--link-port", str(port), "--http-port", "0")
-    assert f"port {port} of 127.0.0.1 is in use" in said
-    assert "--link-port" in said
+        error = refused("--link-port", str(port), "--http-port", "0")
+    assert f"port {port} of 127.0.0.1 is in use" in error
+    assert "--link-port" in error
 
 
 def test_an_http_port_in_use_is_one_sentence() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        said = refused("--link-port", "0", "--http-port", str(port))
-    assert f"port {port} of 127.0.0.1 is in use" in said
-    assert "--http-port" in said
+        error = refused("--link-port", "0", "--http-port", str(port))
+    assert f"port {port} of 127.0.0.1 is in use" in error
+    assert "--http-port" in error
 
 
 def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
@@ -94,7 +94,7 @@ def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
+    ("options", "text"),
     [
         (("--site", "/nowhere/at/all"), "/nowhere/at/all"),
         (("--http-host", "0.0.0.0"), "--token-file"),
@@ -107,10 +107,10 @@ def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
         (("--nonsense",), "nonsense"),
     ],
 )
-def test_what_cannot_work_is_one_sentence(options: tuple[str, ...], says: str) -> None:
+def test_wrong_options_are_one_sentence(options: tuple[str, ...], text: str) -> None:
     given = dict.fromkeys(options)
     free = FREE if "--link-port" not in given else FREE[2:]
-    assert says in refused(*free, *options)
+    assert text in refused(*free, *options)
 
 
 def test_beyond_loopback_with_a_token_it_runs(tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_beyond_loopback_with_a_token_it_runs(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "says"),
+    ("content", "text"),
     [
         (b"short", "16 characters"),
         (b"", "16 characters"),
@@ -132,10 +132,10 @@ def test_beyond_loopback_with_a_token_it_runs(tmp_path: Path) -> None:
     ],
 )
 def test_a_secret_that_browsers_cannot_send_is_refused(
-    tmp_path: Path, content: bytes, says: str
+    tmp_path: Path, content: bytes, text: str
 ) -> None:
     path = tmp_path / "token"
     path.write_bytes(content)
     path.chmod(stat.S_IRUSR | stat.S_IWUSR)
-    with pytest.raises(StartError, match=says):
+    with pytest.raises(StartError, match=text):
         read_token(path)

@@ -78,7 +78,7 @@ def test_sizes_and_homes() -> None:
 
 
 async def _listen_until_spoken_to(options: list[str]) -> tuple[list[wire.Packet], str, int]:
-    """Run the command against a server; interrupt it once four serials and an image were heard."""
+    """Run the command against a server; interrupt it after four serials and an image."""
     packets: list[wire.Packet] = []
     is_enough = asyncio.Event()
 

@@ -32,7 +32,7 @@ def test_bad_options_get_one_sentence_and_exit_code_2(options: list[str], words:
     assert len(result.stderr.splitlines()) == 1
 
 
-def test_a_bad_fault_file_is_told_by_line_and_nothing_is_started(tmp_path: Path) -> None:
+def test_a_bad_fault_file_is_located_and_nothing_is_started(tmp_path: Path) -> None:
     file = tmp_path / "storm.toml"
     file.write_text("[[fault]]\nname = 'no-ack'\n\n[[chance]]\nname = 'gremlins'\n")
     result = CliRunner().invoke(app, ["sim", "--faults", str(file)])
@@ -43,10 +43,10 @@ def test_a_bad_fault_file_is_told_by_line_and_nothing_is_started(tmp_path: Path)
 
 def test_a_proxy_passes_on_and_ends_politely() -> None:
     async def scenario() -> tuple[bytes, str, int | None]:
-        heard = asyncio.get_running_loop().create_future()
+        received = asyncio.get_running_loop().create_future()
 
         async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-            heard.set_result(await reader.readexactly(5))
+            received.set_result(await reader.readexactly(5))
             writer.close()
 
         async with asyncio.timeout(LIMIT_S):
@@ -68,7 +68,7 @@ def test_a_proxy_passes_on_and_ends_politely() -> None:
                 place = first.split()[2].rpartition(":")
                 _, writer = await asyncio.open_connection(place[0], int(place[2]))
                 writer.write(b"hello")
-                said = await heard
+                data = await received
                 process.send_signal(signal.SIGINT)
                 rest, _ = await process.communicate()
                 writer.close()
@@ -77,10 +77,10 @@ def test_a_proxy_passes_on_and_ends_politely() -> None:
                     process.kill()
                     await process.wait()
             station.close()
-        return said, first + rest.decode(), process.returncode
+        return data, first + rest.decode(), process.returncode
 
-    said, output, code = asyncio.run(scenario())
-    assert said == b"hello"
+    data, output, code = asyncio.run(scenario())
+    assert data == b"hello"
     assert output.startswith("listening on 127.0.0.1:")
     assert output.endswith("proxy ended\n")
     assert code == 0

@@ -51,10 +51,10 @@ def test_the_table_of_limits_tells_every_default_and_range() -> None:
         GUIDE.read_text(encoding="utf-8"),
         re.MULTILINE,
     )
-    told = {key: tuple(float(n.replace(",", "")) for n in numbers) for key, *numbers in rows}
+    stated = {key: tuple(float(n.replace(",", "")) for n in numbers) for key, *numbers in rows}
     defaults = asdict(FlightLimits())
-    assert list(told) == list(defaults)
+    assert list(stated) == list(defaults)
     bounds = LimitsTable.__annotations__
-    for key, (default, lowest, highest) in told.items():
+    for key, (default, lowest, highest) in stated.items():
         meta = bounds[key].__args__[0].__metadata__[0]
         assert (default, lowest, highest) == (defaults[key], meta.ge, meta.le)

@@ -90,7 +90,7 @@ def written(bands: npt.NDArray[Any], **profile: Any) -> bytes:
     profile = {key: value for key, value in profile.items() if value is not None}
     unit = profile.pop("unit", None)
     with warnings.catch_warnings(), MemoryFile() as memory:
-        # A file that says no place is wanted, here and there.
+        # Some tests need a file without georeferencing.
         warnings.simplefilter("ignore", NotGeoreferencedWarning)
         count, height, width = stack.shape
         with memory.open(count=count, height=height, width=width, **profile) as dataset:

@@ -145,7 +145,7 @@ class TestWhatItBecomes:
             ("EPSG:26915+5703", GEOID),
         ],
     )
-    def test_a_file_may_say_its_datum_itself_if_it_is_the_one_told(
+    def test_a_file_may_say_its_datum_itself_if_it_is_the_one_in_site_toml(
         self, tmp_path: Path, crs: str, table: str
     ) -> None:
         raised_m = 31.5 if table == GEOID else 0.0
@@ -243,16 +243,16 @@ PICTURE = np.zeros((3, 160, 160), np.uint8)
         ),
     ],
 )
-def test_what_is_wrong_is_said_in_one_sentence_that_names_the_file(
+def test_an_error_is_one_sentence_with_the_file(
     tmp_path: Path, tiff: bytes, message: str, caplog: pytest.LogCaptureFixture
 ) -> None:
-    said = refusal(tmp_path, tiff)
-    assert said.startswith(FILE)
-    assert message in said
+    result = refusal(tmp_path, tiff)
+    assert result.startswith(FILE)
+    assert message in result
     assert caplog.records == []
 
 
-def test_a_file_that_says_metres_and_feet_is_refused(tmp_path: Path) -> None:
+def test_a_file_with_metres_and_feet_is_refused(tmp_path: Path) -> None:
     assert "expected heights in metres, got 'US survey foot'" in refusal(
         tmp_path, flat(crs="EPSG:26915+6360", unit="m"), GEOID
     )
@@ -341,9 +341,9 @@ WHOLE = geotiff(plane, pixel=20.0, dtype="float32", compress="deflate")
 def test_no_bytes_raise_anything_but_a_site_error(
     tmp_path: Path, at: int, noise: bytes, is_cut: bool
 ) -> None:
-    said = outcome(tmp_path, WHOLE[:at] + noise + (b"" if is_cut else WHOLE[at + len(noise) :]))
-    assert said.isprintable()
-    assert said == "read" or said.startswith(str(tmp_path / "ground.tif"))
+    result = outcome(tmp_path, WHOLE[:at] + noise + (b"" if is_cut else WHOLE[at + len(noise) :]))
+    assert result.isprintable()
+    assert result == "read" or result.startswith(str(tmp_path / "ground.tif"))
 
 
 def outcome(folder: Path, tiff: bytes) -> str:

@@ -295,13 +295,13 @@ ONE = FILE + "feature 1: "
         ),
     ],
 )
-def test_what_is_wrong_is_said_in_one_sentence_that_names_file_and_feature(
+def test_an_error_is_one_sentence_with_file_and_feature(
     tmp_path: Path, layer: str, text: str | bytes, message: str
 ) -> None:
     assert message in refusal(tmp_path, layer, text, '[[vehicles]]\nserial = "A"\n')
 
 
-def test_a_pad_told_twice_is_refused(tmp_path: Path) -> None:
+def test_a_pad_given_twice_is_refused(tmp_path: Path) -> None:
     text = collection(pad(0, 0, altitude_m=275, serial="A"))
     more = (
         '[[vehicles]]\nserial = "A"\n'
@@ -311,7 +311,7 @@ def test_a_pad_told_twice_is_refused(tmp_path: Path) -> None:
 
 
 def fenced(folder: Path, *pads: dict[str, Any], more: str = "") -> str:
-    """Return what a site with a square boundary, a keep-out yard and these pads is told."""
+    """Return the result for a site with a square boundary, a keep-out yard and these pads."""
     (folder / "fence.geojson").write_text(collection(polygon(ring(SQUARE))))
     yard = polygon(ring([(40, 40), (60, 40), (60, 60), (40, 60)]), name="yard")
     loft = polygon(ring(HOLE), name="loft", floor_m=30, datum="ground")
@@ -352,8 +352,8 @@ def test_the_airspace_holds_what_the_layers_do_and_the_pads_of_profiles(tmp_path
         '[[vehicles]]\nserial = "A"\n[[vehicles]]\nserial = "B"\nname = "Bea"\n'
         "pad = { latitude_deg = 41.9012, longitude_deg = -93.6034, altitude_m = 274 }\n"
     )
-    said = fenced(tmp_path, pad(9, 9, serial="A", altitude_m=275), more=vehicles)
-    assert said == "read"
+    result = fenced(tmp_path, pad(9, 9, serial="A", altitude_m=275), more=vehicles)
+    assert result == "read"
     site = load_site(tmp_path)
     airspace = site.airspace
     assert (airspace.frame, airspace.elevation) == (FRAME, None)
@@ -441,9 +441,9 @@ def test_no_layer_raises_anything_but_a_site_error(
     text = collection(*drawn).encode()
     middle = len(text) // 2
     for data in (text, text[:middle] + noise + text[middle:], noise):
-        said = outcome(tmp_path, layer, data)
-        assert said.isprintable()
-        assert said == "read" or str(tmp_path) in said
+        result = outcome(tmp_path, layer, data)
+        assert result.isprintable()
+        assert result == "read" or str(tmp_path) in result
 
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -52,7 +52,7 @@ def test_name_and_origin_are_enough(folder: Path) -> None:
     assert dict(site.profiles) == {}
 
 
-def test_the_imager_uses_the_usual_file_names_and_says_what_stands_for_the_marked_frame(
+def test_the_imager_uses_the_usual_file_names_and_reports_a_missing_marked_frame(
     folder: Path,
 ) -> None:
     site = load_site(write(folder, MINIMAL + IMAGER))
@@ -112,7 +112,7 @@ priority = 7
     )
 
 
-def test_the_legacy_preset_limits_missions_unless_the_file_says_otherwise(folder: Path) -> None:
+def test_the_legacy_preset_limits_missions_unless_the_file_overrides_it(folder: Path) -> None:
     table = '[[vehicles]]\nserial = "A"\napp = "legacy"\n'
     assert load_site(write(folder, MINIMAL + table)).profiles["A"].max_waypoints == 25
     table += "max_waypoints = 30\n"
@@ -121,8 +121,8 @@ def test_the_legacy_preset_limits_missions_unless_the_file_says_otherwise(folder
 
 def test_limits_that_are_not_given_keep_their_defaults(folder: Path) -> None:
     assert load_site(write(folder, MINIMAL)).airspace.limits == FlightLimits()
-    told = "[limits]\nmax_height_above_ground_m = 90\nbattery_reserve_fraction = 0.4\n"
-    assert load_site(write(folder, MINIMAL + told)).airspace.limits == FlightLimits(
+    limits = "[limits]\nmax_height_above_ground_m = 90\nbattery_reserve_fraction = 0.4\n"
+    assert load_site(write(folder, MINIMAL + limits)).airspace.limits == FlightLimits(
         max_height_above_ground_m=90.0, battery_reserve_fraction=0.4
     )
 
@@ -244,9 +244,7 @@ def vehicle(line: str) -> str:
         ),
     ],
 )
-def test_what_is_wrong_is_said_in_one_sentence_that_names_the_key(
-    folder: Path, text: str, message: str
-) -> None:
+def test_an_error_is_one_sentence_with_the_key(folder: Path, text: str, message: str) -> None:
     assert message in refusal(folder, text)
 
 
@@ -328,15 +326,15 @@ scalars = st.one_of(
 )
 LIMITS = [field.name for field in dataclasses.fields(FlightLimits)]
 KEYS = ["name", "failsafe", "endurance_min", "go_home_height_m", "camera_interval_s", "priority"]
-told_limits = st.dictionaries(st.sampled_from(LIMITS), scalars, max_size=3)
-told_vehicle = st.dictionaries(st.sampled_from([*KEYS, "pad", "mount"]), scalars, max_size=3)
-told_elevation = st.dictionaries(
+any_limits = st.dictionaries(st.sampled_from(LIMITS), scalars, max_size=3)
+any_vehicle = st.dictionaries(st.sampled_from([*KEYS, "pad", "mount"]), scalars, max_size=3)
+any_elevation = st.dictionaries(
     st.sampled_from(["file", "datum", "geoid_height_m"]), scalars, max_size=3
 )
 
 
 @settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(told_limits, told_vehicle, st.none() | told_elevation)
+@given(any_limits, any_vehicle, st.none() | any_elevation)
 def test_whatever_keys_say_a_site_is_read_or_refused_in_a_sentence(
     tmp_path: Path,
     limits: dict[str, str],
@@ -345,9 +343,9 @@ def test_whatever_keys_say_a_site_is_read_or_refused_in_a_sentence(
 ) -> None:
     text = MINIMAL + table("[limits]", limits) + table('[[vehicles]]\nserial = "A"', vehicle)
     text += "" if elevation is None else table("[elevation]", elevation)
-    said = outcome(write(tmp_path, text))
-    assert said.isprintable()
-    assert said == "read" or said.startswith(f"{tmp_path}/site.toml: ")
+    result = outcome(write(tmp_path, text))
+    assert result.isprintable()
+    assert result == "read" or result.startswith(f"{tmp_path}/site.toml: ")
 
 
 def table(head: str, items: dict[str, str]) -> str:

@@ -1,4 +1,4 @@
-"""What the operator is told of a site."""
+"""The report and the warnings of a site."""
 
 from dataclasses import replace
 from typing import Any

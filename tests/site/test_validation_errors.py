@@ -65,7 +65,7 @@ anything = st.recursive(
 )
 
 
-def said(data: object, kind: Any, key: str) -> str | None:
+def error_text(data: object, kind: Any, key: str) -> str | None:
     try:
         convert("site.toml", data, kind, key)
     except SiteError as problem:
@@ -80,7 +80,7 @@ def test_a_wrong_value_of_any_key_names_the_key_what_was_meant_and_what_came(
 ) -> None:
     table, key, kind = field
     others = {f.encode_name for f in msgspec.inspect.type_info(table).fields if f.required} - {key}  # type: ignore[attr-defined]
-    text = said({key: value} | dict.fromkeys(others), table, "t")
+    text = error_text({key: value} | dict.fromkeys(others), table, "t")
     if text is None or f"t.{key}" not in text:
         return  # It was right, or another key's fault was found first.
     assert text.isprintable()
@@ -93,11 +93,11 @@ def test_a_wrong_value_of_any_key_names_the_key_what_was_meant_and_what_came(
 
 
 @pytest.mark.parametrize("field", fields(), ids=lambda field: f"{field[0].__name__}.{field[1]}")
-def test_every_key_has_words_and_a_value_that_no_key_allows_is_told_in_them(
+def test_an_invalid_value_of_every_key_has_a_description(
     field: tuple[Any, str, inspect.Type],
 ) -> None:
     table, key, kind = field
-    text = said({key: True}, table, "")
+    text = error_text({key: True}, table, "")
     words = in_words(kind)
     assert text == f"site.toml: {key}: expected {words}, got true"
     assert not MSGSPECS_OWN.search(words)
@@ -108,11 +108,11 @@ def test_every_key_has_words_and_a_value_that_no_key_allows_is_told_in_them(
 @example(unknown="x` - at `$.name")
 @example(unknown="x - at `$[0][...]")
 @example(unknown="\u001b[2J")
-def test_an_unknown_key_is_told_with_the_known_ones(table: Any, unknown: str) -> None:
+def test_an_unknown_key_lists_the_known_ones(table: Any, unknown: str) -> None:
     known = [field.encode_name for field in msgspec.inspect.type_info(table).fields]  # type: ignore[attr-defined]
     if unknown in known:
         return
-    text = said({unknown: 1}, table, "t")
+    text = error_text({unknown: 1}, table, "t")
     assert text is not None
     assert text.isprintable()
     lead = f"site.toml: t: expected only the keys {', '.join(known)}, got {shown_value(unknown)}"
@@ -120,8 +120,8 @@ def test_an_unknown_key_is_told_with_the_known_ones(table: Any, unknown: str) ->
 
 
 @given(st.sampled_from([Rings, Polygons]), anything)
-def test_coordinates_are_told_in_positions_and_rings(kind: Any, value: object) -> None:
-    text = said(value, kind, "coordinates")
+def test_coordinates_are_described_as_positions_and_rings(kind: Any, value: object) -> None:
+    text = error_text(value, kind, "coordinates")
     if text is not None:
         assert re.match(r"site\.toml: coordinates(\[\d+\])*: expected a", text)
         assert text.isprintable()
@@ -131,9 +131,9 @@ def test_coordinates_are_told_in_positions_and_rings(kind: Any, value: object) -
     ("latitude", "longitude", "is_hinted"),
     [(-93.6, 41.9, True), (-93.6, 100.0, False), (181.0, 41.9, False), (-93.6, "41", False)],
 )
-def test_swapped_degrees_are_said_so(latitude: float, longitude: object, is_hinted: bool) -> None:
+def test_swapped_degrees_get_a_hint(latitude: float, longitude: object, is_hinted: bool) -> None:
     pad = {"latitude_deg": latitude, "longitude_deg": longitude, "altitude_m": 1.0}
-    text = said({"serial": "A", "pad": pad}, VehicleTable, "vehicles (entry 1)")
+    text = error_text({"serial": "A", "pad": pad}, VehicleTable, "vehicles (entry 1)")
     assert text is not None
     assert text.startswith("site.toml: vehicles (entry 1).pad.latitude_deg: expected a number of")
     assert text.endswith("; latitude and longitude look swapped") == is_hinted

@@ -45,9 +45,9 @@ def zone(outline: list[tuple[float, float]] = HOLE, **heights: object) -> str:
 def test_heights_under_the_ground_are_refused(
     tmp_path: Path, layer: str, heights: dict[str, object], message: str
 ) -> None:
-    said = refusal(tmp_path, layer, zone(**heights))
-    assert said.startswith(PLACE)
-    assert message in said
+    result = refusal(tmp_path, layer, zone(**heights))
+    assert result.startswith(PLACE)
+    assert message in result
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_heights_that_bind_somewhere_are_read(
 
 
 def over(folder: Path, outline: list[tuple[float, float]], ceiling_m: float) -> str:
-    """Return what a keep-out zone over hilly ground is told; the ridge is 305 m high."""
+    """Return the result for a keep-out zone over hilly ground; the ridge is 305 m high."""
     (folder / "layer.geojson").write_text(zone(outline, ceiling_m=ceiling_m, datum="wgs84"))
     try:
         load(folder, geotiff(ridge), more='[layers]\nkeep_out = "layer.geojson"\n')
