@@ -125,7 +125,7 @@ describe("the facts of a vehicle", () => {
     expect(of("Height above takeoff")?.text).toBe("45.0\u00a0m");
     expect(of("Altitude (WGS84, as reported)")?.text).toBe("331.4\u00a0m");
     expect(of("Wind level")).toMatchObject({ text: "—", why: "no valid value in telemetry" });
-    expect(of("Mission")).toMatchObject({ text: "—", why: "not received yet" });
+    expect(of("Mission id")).toMatchObject({ text: "—", why: "not received yet" });
     expect(of("Waypoint altitude")?.why).toContain("missions are refused");
   });
 });
@@ -138,8 +138,8 @@ describe("alarms", () => {
     ];
     const root = show(AlarmList, station([vehicle(1)], { alarms }));
     const rows = [...root.querySelectorAll("li")].map((row) => row.textContent);
-    expect(rows[0]).toContain("Cedar Lost.");
-    find(root, "button[aria-label='Acknowledge: Cedar Lost.']").click();
+    expect(rows[0]).toContain("Cedar: Lost.");
+    find(root, "button[aria-label='Acknowledge Cedar: Lost.']").click();
     expect(page.acknowledged).toEqual([7]);
   });
 });
@@ -193,7 +193,9 @@ describe("commands", () => {
     const note = "by telemetry: on the ground";
     const landed = command(3, { kind: "land", age_s: 40, history: [...history], note });
     const root = show(CommandList, station([], { commands: [landed] }));
-    const phases = [...root.querySelectorAll(".command-history li")].map((item) => item.textContent);
+    const phases = [...root.querySelectorAll(".command-history li")].map(
+      (item) => item.textContent,
+    );
     expect(phases).toEqual([
       "sent +0.0 s",
       "confirmed +0.4 s (by telemetry: descending)",

@@ -42,7 +42,7 @@ function AlarmRow(props: { alarm: AlarmView }) {
       </span>
       <div class="alarm-text wire-text">
         <p>
-          <strong>{subject()}</strong> {text()}
+          <strong>{subject()}:</strong> {text()}
         </p>
         <p class="muted" aria-live="off">
           {formatAge(props.alarm.raised_age_s + behindS())} ago
@@ -55,7 +55,7 @@ function AlarmRow(props: { alarm: AlarmView }) {
         <button
           type="button"
           class="button"
-          aria-label={`Acknowledge: ${subject()} ${text()}`}
+          aria-label={`Acknowledge ${subject()}: ${text()}`}
           onClick={() => void acknowledge()}
         >
           Ack

@@ -25,7 +25,7 @@ export function TopBar(props: { onHelp: () => void }) {
           title="High contrast for bright sun (T)"
           onClick={() => theme.toggle()}
         >
-          ☀ Sun
+          ☀ Contrast
         </button>
         <button type="button" class="button" onClick={() => props.onHelp()} aria-label="Help">
           ?

@@ -48,7 +48,7 @@ function CommandRow(props: { command: CommandView }) {
         {formatAge(props.command.age_s + behindS())} ago
         <Show when={props.command.times_sent > 1}>, sent {props.command.times_sent} times</Show>
         <Show when={props.command.takeoff}>; takeoff allowed</Show>
-        <Show when={props.command.sent_altitudes}>{(text) => <>; altitudes {text()}</>}</Show>
+        <Show when={props.command.sent_altitudes}>{(text) => <>; waypoints {text()}</>}</Show>
       </p>
       <Show when={props.command.part}>
         {(part) => (

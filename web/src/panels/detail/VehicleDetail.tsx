@@ -76,11 +76,15 @@ function ControlSections(props: { serial: string; vehicle: VehicleView }) {
 
 function Identity(props: { vehicle: VehicleView }) {
   const conflicts = () => props.vehicle.conflict_link_ids;
+  // A simulated vehicle without a model is called "simulated", which stands at the end anyway.
+  const isSimulatedModel = () => props.vehicle.is_simulated && props.vehicle.model === "simulated";
   return (
     <div class="detail-identity">
       <p class="wire-text">
-        {props.vehicle.model}
-        {" · "}
+        <Show when={!isSimulatedModel()}>
+          {props.vehicle.model}
+          {" · "}
+        </Show>
         {props.vehicle.serial === null
           ? "waiting for serial number: only ALL STOP reaches this vehicle"
           : `serial ${props.vehicle.serial}`}

@@ -39,9 +39,9 @@ export function factsOf(vehicle: VehicleView): Fact[] {
     aged("Flight mode", vehicle.flight_mode, plainWords),
     aged("Flying", vehicle.is_flying, (isFlying) => (isFlying ? "yes" : "no")),
     aged("Satellites", vehicle.gnss_satellite_count, String),
-    aged("GNSS signal, 0 to 10", vehicle.gnss_signal_level, String),
+    aged("GNSS signal (0 to 10)", vehicle.gnss_signal_level, String),
     aged("Wind level", vehicle.wind_level, String),
-    aged("Mission", vehicle.mission_id, (id) => (id === 0 ? "none" : String(id))),
+    aged("Mission id", vehicle.mission_id, (id) => (id === 0 ? "none" : String(id))),
     aged("Camera", vehicle.camera_state, plainWords),
     waypointAltitude(vehicle),
   ];

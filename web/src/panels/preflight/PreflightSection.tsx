@@ -95,7 +95,9 @@ function Checklist(props: { list: PreflightView }) {
       </ul>
       <Show when={passed().length > 0}>
         <details>
-          <summary class="check-fine">{passed().length} OK</summary>
+          <summary class="check-fine">
+            {passed().length} {passed().length === 1 ? "item" : "items"} OK
+          </summary>
           <ul>
             <For each={passed()}>{(point) => <ChecklistItem point={point} />}</For>
           </ul>
