@@ -60,7 +60,7 @@ class TestAsked:
             ({"polygon": [ring((0, 0), (50, 50), (50, 0), (0, 50))]}, "polygon"),
             ({"polygon": [[[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]]}, "origin"),
             ({"polygon": [[[-93.6, 41.9]]]}, "polygon"),
-            ({"polygon": None, "region": "north"}, "no survey region 'north'"),
+            ({"polygon": None, "region": "north"}, "Survey region 'north' not found"),
             ({"polygon": None}, "either a region of the site or a polygon"),
             ({"region": "north"}, "either a region of the site or a polygon"),
             ({"speed_mps": 14.0}, "fly at"),

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from tests.station.station_world import World
 
 from recon.model.event import Event
-from recon.record.audit import AuditEntry, AuditLine, Stamped, decode_line, encode_line
+from recon.record.audit import AuditEntry, AuditLine, NumberedEntry, decode_line, encode_line
 from recon.station.audit.entries import Auditing, audit
 from recon.station.state.station import Station
 
@@ -38,6 +38,6 @@ class Audited:
     def lines(self) -> list[AuditLine]:
         """The entries as they are read back from a file."""
         return [
-            decode_line(encode_line(Stamped(n, UTC_NS, at_ns, entry), "0" * 64))
+            decode_line(encode_line(NumberedEntry(n, UTC_NS, at_ns, entry), "0" * 64))
             for n, (at_ns, entry) in enumerate(self.entries, start=1)
         ]

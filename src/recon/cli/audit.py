@@ -13,7 +13,7 @@ from recon.cli.commands import new_app
 from recon.cli.connection import WRONG_USE
 from recon.cli.output import print_json, print_line, printable
 from recon.record.audit import AuditLine, decode_line
-from recon.record.audit_check import Verdict, check_audit
+from recon.record.audit_check import AuditCheck, check_audit
 from recon.record.audit_files import audit_files, raw_lines
 from recon.record.errors import RecordError
 
@@ -114,7 +114,7 @@ def _decoded(data: bytes) -> Iterator[AuditLine]:
         return
 
 
-def _values(verdict: Verdict) -> dict[str, object]:
+def _values(verdict: AuditCheck) -> dict[str, object]:
     return {
         "file": str(verdict.path),
         "is_whole": verdict.is_whole,
@@ -129,7 +129,7 @@ def _values(verdict: Verdict) -> dict[str, object]:
     }
 
 
-def _sentences(verdict: Verdict) -> Iterator[str]:
+def _sentences(verdict: AuditCheck) -> Iterator[str]:
     state = "intact" if verdict.is_whole else "DAMAGED"
     yield f"{verdict.path}: {state}, {verdict.lines} lines, last hash {verdict.last_hash}"
     for fault in verdict.faults:

@@ -1,4 +1,7 @@
-"""What is kept of a flight: ground images as GeoTIFF."""
+"""Files that outlive the process: the audit, the recovery snapshot, ground images as GeoTIFF.
+
+Formats, atomic writes and checks are here; what is written, and when, is decided by the station.
+"""
 
 from recon.record.errors import RecordError
 from recon.record.geotiff import geotiff_bytes, write_ground_image

@@ -5,9 +5,9 @@
      "text": "Anna: hover: sent", "details": {...}, "before": "<SHA-256 of the line before>"}
 
 `n` grows by one from line to line. `before` chains them: it is the hash of the bytes of the line
-before without its line break, over the end of a run into the file of the next, so that a line that
-was changed, taken out or put in is found. The chain is no signature: who rewrites everything after
-a change too is found only by a hash noted elsewhere.
+before without its line break, and continues from the last line of a run into the file of the next,
+so that a changed, removed or inserted line is found. The chain is no signature: a rewrite of
+everything after a change is found only by a hash noted elsewhere.
 """
 
 import json
@@ -46,7 +46,7 @@ _DEEPEST = 8
 
 @dataclass(frozen=True, slots=True)
 class AuditEntry:
-    """Something that happened. `by` is who asked; `details` are JSON values, units in the names."""
+    """An event. `by` is the client that caused it; `details` are JSON values, units in names."""
 
     kind: str
     text: str
@@ -73,8 +73,8 @@ class AuditLine(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @dataclass(frozen=True, slots=True)
-class Stamped:
-    """An entry with its number and the moment it happened: UTC and station time."""
+class NumberedEntry:
+    """An entry with its number, UTC and station time."""
 
     n: int
     utc_ns: int
@@ -83,11 +83,11 @@ class Stamped:
 
     @property
     def utc(self) -> str:
-        """UTC in words, microseconds."""
+        """UTC as ISO 8601 with microseconds."""
         return utc_text(self.utc_ns)
 
 
-def encode_line(stamped: Stamped, before: str) -> bytes:
+def encode_line(stamped: NumberedEntry, before: str) -> bytes:
     """Return the bytes of a line, without its line break."""
     entry = stamped.entry
     head = {
@@ -107,13 +107,13 @@ def encode_line(stamped: Stamped, before: str) -> bytes:
 
 
 def decode_line(line: bytes) -> AuditLine:
-    """Return a line's values; raises ValueError for anything that is no line of an audit."""
+    """Return a line's values; raises ValueError for anything that is not an audit line."""
     if len(line) > LONGEST_LINE_BYTES:
         raise ValueError(f"expected a line of up to {LONGEST_LINE_BYTES} bytes, got {len(line)}")
     try:
         return msgspec.json.decode(line, type=AuditLine)
     except (msgspec.DecodeError, UnicodeError, RecursionError, OverflowError) as problem:
-        raise ValueError(f"expected a line of an audit, got something else: {problem}") from problem
+        raise ValueError(f"expected an audit line, got: {problem}") from problem
 
 
 def line_hash(line: bytes) -> str:
@@ -129,7 +129,7 @@ def utc_text(utc_ns: int) -> str:
 
 
 def harmless(value: Any, depth: int = 0) -> Any:
-    """Return a JSON value of bounded size; what JSON cannot carry is told in words."""
+    """Return a JSON value of bounded size; values without a JSON form become text."""
     if isinstance(value, str):
         return value if len(value) <= _LONGEST_TEXT else value[:_LONGEST_TEXT] + "..."
     if value is None or isinstance(value, bool | int):
@@ -152,7 +152,7 @@ def shown(text: str) -> str:
 
 
 def _json(values: dict[str, Any]) -> bytes:
-    # ASCII alone: whatever a wire or a program said, a terminal that shows the file stays itself.
+    # ASCII only: text from the wire or a client cannot control a terminal that shows the file.
     # DEL is ASCII and the one control character that JSON does not escape.
     text = json.dumps(values, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return text.replace("\x7f", "\\u007f").encode("ascii")

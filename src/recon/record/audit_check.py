@@ -1,4 +1,4 @@
-"""Whether an audit file is whole: every line there, in order, as it was written."""
+"""Check that an audit file is complete: every line present, in order, unchanged."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,17 +16,17 @@ from recon.record.audit import (
 from recon.record.audit_files import RawLine, audit_files, raw_lines
 from recon.record.errors import RecordError
 
-MOST_FAULTS_TOLD = 20
+MAX_FAULTS = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
-    """What a check of one file found. `faults` are sentences; without any the file is whole."""
+class AuditCheck:
+    """The result of checking one file. `faults` are sentences; without any the file is whole."""
 
     path: Path
     lines: int
     lost: int
-    """Entries that the station itself says it could not write."""
+    """Entries that the station reported as not written."""
     torn_bytes: int
     """Of a last line cut short, as a power failure leaves it."""
     is_closed: bool
@@ -40,13 +40,13 @@ class Verdict:
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing speaks against the file."""
+        """Whether the file has no fault."""
         return not self.faults
 
 
 @dataclass(frozen=True, slots=True)
 class _Noted:
-    """What the next run's file says of this one: the number and hash of a line it had."""
+    """A line of this file as noted by the next run: its number and hash."""
 
     by: str
     n: int
@@ -93,7 +93,7 @@ class _Check:
             at = "the line before" if number > 1 else "the run before"
             self.fault(
                 f"line {number}: expected it to carry the hash of {at}, got another: a line was "
-                "changed, taken out or put in here"
+                "changed, removed or inserted here"
             )
         if number == 1 and line.kind != OPENED_KIND:
             self.fault(f"line 1: expected {OPENED_KIND}, got {line.kind}: the beginning is cut")
@@ -108,12 +108,12 @@ class _Check:
             self.fault(f"line {number}: expected number {self.before.n + 1}, got {line.n}")
 
     def fault(self, sentence: str) -> None:
-        """Note what is wrong; the first few are enough."""
-        if len(self.faults) < MOST_FAULTS_TOLD:
+        """Add a fault, up to a limit."""
+        if len(self.faults) < MAX_FAULTS:
             self.faults.append(sentence)
 
 
-def check_audit(path: Path) -> Verdict:
+def check_audit(path: Path) -> AuditCheck:
     """Check one file, and that it fits the runs before and after it in its folder.
 
     Raises `RecordError` when it cannot be read.
@@ -133,7 +133,7 @@ def check_audit(path: Path) -> Verdict:
             f"{check.noted.by} notes line {check.noted.n} of this file, which is not here as it "
             "was then: the end is cut, or a line was changed"
         )
-    return Verdict(
+    return AuditCheck(
         path=path,
         lines=check.lines,
         lost=check.lost,
@@ -147,7 +147,7 @@ def check_audit(path: Path) -> Verdict:
 
 
 def _noted_of(path: Path, siblings: list[Path]) -> _Noted | None:
-    """What a later run in the folder noted of this file; the first that names it counts."""
+    """Return what a later run noted about this file; the first that names it counts."""
     later = [sibling for sibling in siblings if sibling.name > path.name]
     for sibling in later:
         first = _first_line(sibling)
@@ -160,7 +160,7 @@ def _noted_of(path: Path, siblings: list[Path]) -> _Noted | None:
 
 
 def _hash_wanted(path: Path, siblings: list[Path]) -> str | None:
-    """What the first line must carry: what it says itself that the run before ended with."""
+    """Return the hash that the first line must carry: the one it notes of the run before."""
     first = _first_line(path)
     if first is None:
         return None
@@ -176,7 +176,7 @@ def _missing_before(path: Path, siblings: list[Path]) -> str | None:
 
 
 def _previous(first: AuditLine) -> dict[str, Any]:
-    """What the first line of a run says of the run before."""
+    """Return what the first line of a run notes about the run before."""
     previous = first.details.get("previous")
     return previous if isinstance(previous, dict) else {}
 

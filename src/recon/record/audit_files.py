@@ -1,4 +1,4 @@
-"""An audit's folder: one file a run, numbered, read in bounded pieces."""
+"""An audit's folder: one numbered file for each run, read in bounded pieces."""
 
 import re
 from collections.abc import Iterator
@@ -28,8 +28,8 @@ class RawLine:
 
 @dataclass(frozen=True, slots=True)
 class RunEnd:
-    """How a run's file ends: its last good line and that line's hash, which the next run's file
-    carries on; and how much could not be read on the way there."""
+    """How a run's file ends: its last good line and the hash that the next run's file continues;
+    and how much before it could not be read."""
 
     path: Path
     last: AuditLine | None
@@ -65,7 +65,7 @@ def next_file_name(files: list[Path], utc_ns: int) -> str:
 
 
 def raw_lines(file: BinaryIO) -> Iterator[RawLine]:
-    """Yield the lines from where the file stands on; never holds more than the longest line."""
+    """Yield the lines from the file's position on; holds one line at most."""
     while data := file.readline(LONGEST_LINE_BYTES + 1):
         if data.endswith(b"\n"):
             yield RawLine(data[:-1])

@@ -1,11 +1,16 @@
-"""The audit as it is written: entries in at once, lines on the disk a moment later.
+"""Writing the audit: entries are queued at once and written by a thread.
 
-`put` only appends to a queue, so nothing on the event loop, an emergency order least of all, ever
-waits for a disk. A thread of its own writes each line to the file as soon as it comes (it survives
-the end of the process from then on) and asks for it to be on the disk at least five times a second
-(it survives a power failure from then on). A disk that is full or gone is told as trouble and tried
-again; what is put meanwhile waits in the queue, and when that is full the oldest entries are lost,
-which the file says in their place.
+Theory of operation. `put` only appends to a queue, so nothing on the event loop, an emergency order
+least of all, ever waits for a disk. The thread writes each line as soon as it comes: then it
+survives the end of the process. It syncs the file at least five times a second: then it survives a
+power failure.
+
+    open --disk full or gone--> failing --written again--> open
+    open --file deleted by another program--> failing --new file--> open
+
+While writing fails, `problem` has the reason, an alarm is active, entries wait in the queue and the
+write is tried again every second. When the queue is full the oldest entries are lost, and a line in
+their place states how many. A line written in part is completed, never started anew.
 """
 
 import contextlib
@@ -25,7 +30,7 @@ from recon.record.audit import (
     NO_LINE_BEFORE,
     OPENED_KIND,
     AuditEntry,
-    Stamped,
+    NumberedEntry,
     encode_line,
     line_hash,
 )
@@ -62,8 +67,8 @@ class AuditLog:
         self.problem: str | None = None
         """Why nothing can be written, while that is so."""
         self._utc_ns = utc_ns
-        self._waiting: queue.SimpleQueue[Stamped | None] = queue.SimpleQueue()
-        self._kept: deque[Stamped] = deque(maxlen=KEPT_ENTRIES)
+        self._waiting: queue.SimpleQueue[NumberedEntry | None] = queue.SimpleQueue()
+        self._kept: deque[NumberedEntry] = deque(maxlen=KEPT_ENTRIES)
         self._next_n = 1
         self._run_before: dict[str, Any] | None = None
         self._file: int | None = None
@@ -89,12 +94,12 @@ class AuditLog:
         }
 
     def start(self) -> None:
-        """Begin to write. A folder that cannot be written is trouble, no reason not to fly."""
+        """Start the thread. A folder that cannot be written raises an alarm; flying continues."""
         self._thread.start()
 
-    def put(self, entry: AuditEntry, t_ns: int) -> Stamped:
+    def put(self, entry: AuditEntry, t_ns: int) -> NumberedEntry:
         """Take an entry; never waits."""
-        stamped = Stamped(self._next_n, self._utc_ns(), t_ns, entry)
+        stamped = NumberedEntry(self._next_n, self._utc_ns(), t_ns, entry)
         self._next_n += 1
         self._kept.append(stamped)
         if self._waiting.qsize() >= WAITING_ENTRIES:
@@ -103,7 +108,7 @@ class AuditLog:
         self._waiting.put(stamped)
         return stamped
 
-    def after(self, n: int, at_most: int) -> list[Stamped]:
+    def after(self, n: int, at_most: int) -> list[NumberedEntry]:
         """Return the entries after a number, the oldest first, as far as they are kept."""
         if not self._kept or n >= self._kept[-1].n:
             return []
@@ -142,10 +147,10 @@ class AuditLog:
                 os.fsync(self._file)
                 os.close(self._file)
 
-    def _next_batch(self) -> tuple[list[Stamped], bool]:
+    def _next_batch(self) -> tuple[list[NumberedEntry], bool]:
         """Wait for entries, no longer than until the disk is to be asked; return all there are."""
         wait_s = None if self._is_synced else max(0.0, self._sync_due_s() - time.monotonic())
-        batch: list[Stamped] = []
+        batch: list[NumberedEntry] = []
         try:
             item = self._waiting.get(timeout=wait_s)
             while item is not None:
@@ -157,7 +162,7 @@ class AuditLog:
             return batch, False
         return batch, True
 
-    def _try_to_write(self, batch: list[Stamped]) -> bool:
+    def _try_to_write(self, batch: list[NumberedEntry]) -> bool:
         """Write a batch's lines; on a second call with the same one, only what is still missing."""
         try:
             self._be_open()
@@ -173,7 +178,7 @@ class AuditLog:
         self.problem = None
         return True
 
-    def _encode(self, batch: list[Stamped]) -> None:
+    def _encode(self, batch: list[NumberedEntry]) -> None:
         lines = [self._unwritten]
         for stamped in batch:
             missing = stamped.n - self._encoded_n - 1
@@ -182,12 +187,12 @@ class AuditLog:
             lines.append(self._line(stamped))
         self._unwritten = b"".join(lines)
 
-    def _lost(self, following: Stamped, count: int) -> Stamped:
+    def _lost(self, following: NumberedEntry, count: int) -> NumberedEntry:
         text = f"{count} entries before this one could not be written and are lost"
         entry = AuditEntry(LOST_KIND, text, details={"count": count})
-        return Stamped(following.n - 1, following.utc_ns, following.t_ns, entry)
+        return NumberedEntry(following.n - 1, following.utc_ns, following.t_ns, entry)
 
-    def _line(self, stamped: Stamped) -> bytes:
+    def _line(self, stamped: NumberedEntry) -> bytes:
         line = encode_line(stamped, self._hash)
         self._hash, self._encoded_n = line_hash(line), stamped.n
         return line + b"\n"
@@ -210,11 +215,11 @@ class AuditLog:
         return self._synced_at_s + SYNC_EVERY_S
 
     def _be_open(self) -> None:
-        """Have this run's file. One that somebody deletes is told, and another one begun."""
+        """Ensure an open file; a deleted one is reported, and a new one begun."""
         if self._file is not None and os.fstat(self._file).st_nlink == 0:
             os.close(self._file)
             self._file, self._unwritten = None, b""
-            raise RecordError("somebody has deleted its file; another one is begun")
+            raise RecordError("its file was deleted; a new one is begun")
         if self._file is None:
             self._open()
 
@@ -229,7 +234,7 @@ class AuditLog:
         self.path = path
         entry = AuditEntry(OPENED_KIND, "the audit begins", details={"previous": previous})
         now_ns = self._utc_ns()
-        self._unwritten = self._line(Stamped(self._encoded_n, now_ns, now_ns, entry))
+        self._unwritten = self._line(NumberedEntry(self._encoded_n, now_ns, now_ns, entry))
 
     def _file_before(self, path: Path) -> dict[str, Any]:
         return {"file": path.name, "n": self._encoded_n, "hash": self._hash}
@@ -246,7 +251,7 @@ def refuse_other_writer(folder: Path) -> None:
             _lock(file)
         except OSError as problem:
             raise RecordError(
-                f"another station that runs writes its audit to {folder}: give each station a "
+                f"another running station writes its audit to {folder}: give each station a "
                 "folder of its own with --audit"
             ) from problem
         finally:

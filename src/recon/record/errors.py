@@ -1,7 +1,7 @@
-"""What can go wrong when something is written for keeps."""
+"""Errors of this room."""
 
 from recon.model.errors import ReconError
 
 
 class RecordError(ReconError):
-    """A record could not be written; the message says where and why."""
+    """A file could not be read or written; the message names the file and the reason."""

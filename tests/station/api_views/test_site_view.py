@@ -13,7 +13,7 @@ from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.zone import Region, Zone, ZoneKind
 from recon.site import Layers, Site, default_site, demo_site_folder, load_site
-from recon.station.api_views.site_view import MOST_CORNERS, MOST_RINGS, site_view
+from recon.station.api_views.site_view import MAX_CORNERS, MAX_RINGS, site_view
 
 FRAME = LocalFrame(GeoPoint(45.0, -93.0, 280.0))
 
@@ -84,7 +84,7 @@ def test_it_is_made_once_for_each_site() -> None:
 def test_outlines_of_many_corners_are_thinned_by_as_much_as_is_stated() -> None:
     region = Region(star(6_000), (star(2_000, teeth_m=1.0) / 4.0,))
     view = site_view(site_of(region))
-    assert corner_count(view) <= MOST_CORNERS
+    assert corner_count(view) <= MAX_CORNERS
     assert 0.0 < view.areas_drawn_within_m <= 8.0
     drawn_m = local_m(view.areas[0].rings, FRAME)
     off_m = np.abs(Polygon(Region(drawn_m[0])).distance_to_edge_m(region.outline_m))
@@ -98,8 +98,8 @@ def test_too_many_areas_are_counted_and_what_is_wished_for_goes_first() -> None:
     view = site_view(replace(site, layers=layers))
     assert view.areas[0].kind == "boundary"
     assert {area.kind for area in view.areas[1:]} == {"keep_out"}
-    assert len(view.areas) == MOST_RINGS
-    assert view.areas_left_out == 302 - MOST_RINGS
+    assert len(view.areas) == MAX_RINGS
+    assert view.areas_left_out == 302 - MAX_RINGS
 
 
 def comb(teeth: int) -> np.ndarray:
@@ -113,7 +113,7 @@ def comb(teeth: int) -> np.ndarray:
 def test_what_cannot_be_thinned_is_left_out() -> None:
     site = site_of(*[Region(comb(2_500)) for _ in range(8)])
     view = site_view(site)
-    assert corner_count(view) <= MOST_CORNERS
+    assert corner_count(view) <= MAX_CORNERS
     assert len(view.areas) + view.areas_left_out == 8
 
 
@@ -134,7 +134,7 @@ def test_it_is_never_too_much(counts: list[int], teeth_m: float, holes: int) -> 
         for number, count in enumerate(counts)
     ]
     view = site_view(site_of(*regions))
-    assert corner_count(view) <= MOST_CORNERS
+    assert corner_count(view) <= MAX_CORNERS
     assert len(view.areas) + view.areas_left_out == len(counts)
     assert len(view.model_dump_json()) < 40_000
 

@@ -97,7 +97,7 @@ class TestBegin:
         running.start()
         running.put(entry(), 1)
         until(lambda: running.path is not None)
-        with pytest.raises(RecordError, match="another station"):
+        with pytest.raises(RecordError, match="another running station"):
             begin_audit(AuditPlace(tmp_path))
         running.close()
 

@@ -13,7 +13,7 @@ from recon.model.imagery import CameraPose, GroundImage
 from recon.model.units import NS_PER_S
 from recon.site import Site
 from recon.station.alarms.conditions import conditions
-from recon.station.api_views.shade_view import shade_view
+from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.imaging.shade import READ_SHADE, ReadShade
 from recon.station.kernel.step import step

@@ -14,7 +14,7 @@ from tests.station.station_world import square_mission
 from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
 from recon.model.event import AuthorityTaken, SeparationHoldSwitched
-from recon.station.api_views.fleet_return_view import fleet_return_view
+from recon.station.api_views.operation_views import fleet_return_view
 from recon.station.state.fleet_return_record import Stage
 
 FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]

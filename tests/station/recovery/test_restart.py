@@ -20,7 +20,7 @@ from recon.model.command import FlyMission, Hover, LandNow, Phase
 from recon.model.event import AuthorityTaken, HazardDismissed, OperatorOrder
 from recon.model.units import NS_PER_S
 from recon.sim.fleet import Airborne
-from recon.station.api_views.hazard_view import hazard_view
+from recon.station.api_views.vehicle_views import hazard_view
 from recon.station.recovery.restart import INTERRUPTED, LastRun, restart_entries, restored
 from recon.station.recovery.snapshot import (
     MAX_ID,

@@ -3,7 +3,7 @@
 from tests.station.steered_world import SERIAL, steered
 
 from recon.model.command import Hover
-from recon.station.api_views.steering_view import steering_view
+from recon.station.api_views.vehicle_views import steering_view
 
 
 class TestSteeringView:

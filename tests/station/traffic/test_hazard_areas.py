@@ -10,7 +10,7 @@ from recon.fleet.settings import FleetSettings
 from recon.geo.distance import moved_m
 from recon.model.command import GoTo, Hover, Phase
 from recon.model.event import AlarmAcknowledged, HazardDismissed
-from recon.station.api_views.hazard_view import hazard_view
+from recon.station.api_views.vehicle_views import hazard_view
 from recon.station.traffic.known_traffic import hazard, in_the_air, is_dismissible
 
 NORTH_100 = moved_m(PLACE, 100.0, 0.0)

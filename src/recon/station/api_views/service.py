@@ -1,4 +1,4 @@
-"""The running station as the API sees it."""
+"""The API's port on a running station: requests become events, states become views."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,15 +25,15 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
+from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.alarms.station_faults import TO_DO
-from recon.station.api_views.audit_view import audit_page
-from recon.station.api_views.readiness_view import preflight_view
 from recon.station.api_views.running_station import RunningStation
 from recon.station.api_views.site_view import site_view
-from recon.station.api_views.state_view import Surroundings, state_view
+from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
+from recon.station.api_views.vehicle_views import preflight_view
 from recon.station.control import authority, preflight
 from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
 from recon.station.state.orders import OrderRecord
@@ -61,15 +61,15 @@ class Service:
         audit_log: AuditLog | None = None,
         first_id: int = 1,
     ) -> "Service":
-        """Return the service of a driver that is about to run; orders are numbered from a first."""
-        # Thinning outlines of very many corners takes a moment: now, not while somebody flies.
+        """Return the service of a driver that is about to run; order ids start at `first_id`."""
+        # Simplifying outlines with very many corners takes a moment: now, not in flight.
         site_view(site)
         return cls(driver, site, [], capture_folder, audit_log, count(first_id).__next__)
 
     def state(self) -> schema.StationState:
         """Return everything a console shows, as of now."""
         now_ns = self.driver.now_ns()
-        return state_view(self.driver.station, self._surroundings(now_ns), now_ns)
+        return state_view(self.driver.station, self._driver_state(now_ns), now_ns)
 
     def order(
         self,
@@ -108,18 +108,18 @@ class Service:
         )
 
     def owner_connected(self, owner: str) -> None:
-        """Let a stream hold steered orders from now on."""
+        """Add an owner."""
         self.driver.handle(OwnerConnected(owner))
 
     def owner_disconnected(self, owner: str) -> None:
-        """End what a stream held."""
+        """Remove an owner; its steered orders end."""
         self.driver.handle(OwnerDisconnected(owner))
 
     def all_stop(self, issued_by: str) -> schema.OrderResponse:
         """Hold every link whose telemetry shows flight, identified or not.
 
-        What is on the ground or has no connection is in the results with the gate's refusal: nobody
-        that may be in the air is left out in silence.
+        Vehicles on the ground or without a connection are in the results with the gate's refusal:
+        no vehicle that may be in flight is omitted.
         """
         fleet = self.driver.station.fleet
         serials = self._within_reach()
@@ -135,39 +135,39 @@ class Service:
         return self._give(orders)
 
     def fleet_return(self, serials: list[str] | None, issued_by: str) -> schema.OrderResponse:
-        """Call vehicles home in layers; None calls every one that flies or may."""
+        """Return vehicles home in layers; None: every vehicle that is or may be in flight."""
         called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
         return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
 
     def dismiss_hazard(self, name: str, by: str) -> bool:
-        """Take a vehicle that is not heard out of the air."""
+        """Dismiss the hazard area of a lost vehicle."""
         if not is_dismissible(self.driver.station, name, self.driver.now_ns()):
             return False
         self.driver.handle(HazardDismissed(name, by))
         return True
 
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
-        """Switch on or off that the watchdogs hold vehicles."""
+        """Switch the separation holds of the watchdogs on or off."""
         self.driver.handle(SeparationHoldSwitched(is_on, by))
 
     def take_authority(
         self, serial: str, holder: AuthorityHolder, by: str
     ) -> schema.CommandResponse:
-        """Let somebody else lead a vehicle."""
+        """Transfer control authority."""
         event = AuthorityTaken(serial, holder, by)
-        return self._say(event, authority.refusal(self.driver.station, event))
+        return self._command(event, authority.refusal(self.driver.station, event))
 
     def preflight(self, serial: str) -> schema.PreflightView | None:
         """Return a vehicle's checklist as of now."""
         return preflight_view(self.driver.station, serial, self.driver.now_ns())
 
     def override_preflight(self, serial: str, reason: str, by: str) -> schema.CommandResponse:
-        """Let a vehicle fly missions although its checklist is not passed."""
+        """Allow missions although the checklist is not passed."""
         event = PreflightOverridden(serial, by, reason)
-        return self._say(event, preflight.refusal(self.driver.station, event))
+        return self._command(event, preflight.refusal(self.driver.station, event))
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:
-        """Mark an alarm as seen."""
+        """Acknowledge an alarm."""
         if alarm_id not in self.driver.station.alarms.alarms:
             return False
         self.driver.handle(AlarmAcknowledged(alarm_id, by))
@@ -175,7 +175,7 @@ class Service:
 
     def audit(self, after: int, at_most: int) -> schema.AuditPage:
         """Return the audit's entries after a number, as far as they are in memory."""
-        return audit_page(self.audit_log, after, at_most)
+        return _audit_page(self.audit_log, after, at_most)
 
     def frame(self, serial: str) -> Frame | None:
         """Return a vehicle's newest frame."""
@@ -196,7 +196,7 @@ class Service:
         return None if line.sun is None else (line.number, line.sun)
 
     def ask_survey(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
-        """Ask for a survey."""
+        """Request a survey."""
         return self._surveys.ask(asked, by)
 
     def survey(self, survey_id: int) -> schema.SurveyView | None:
@@ -206,19 +206,19 @@ class Service:
     def start_survey(
         self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
     ) -> schema.SurveyResponse:
-        """Start a survey with these vehicles, or let them join."""
+        """Start a survey with these vehicles, or add them."""
         return self._surveys.start(survey_id, serials, takeoff=takeoff, by=by)
 
     def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> schema.SurveyResponse:
-        """Pause a survey, or abort it for good."""
+        """Pause or abort a survey."""
         return self._surveys.stop(survey_id, is_aborted=is_aborted, by=by)
 
     def survey_ways(self, survey_id: int) -> schema.SurveyWays | None:
-        """Return a survey's planned and flown ways."""
+        """Return a survey's planned rows and flown paths."""
         return self._surveys.ways(survey_id)
 
     def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
-        """Return a survey's cells as they stand."""
+        """Return the states of a survey's cells."""
         return self._surveys.cells(survey_id)
 
     @property
@@ -231,10 +231,10 @@ class Service:
         captured = datetime.fromtimestamp(ns_to_seconds(image.captured_at_ns), UTC)
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
 
-    def _say(
+    def _command(
         self, event: AuthorityTaken | PreflightOverridden, refusal: Refusal | None
     ) -> schema.CommandResponse:
-        """Pass a word on, unless it is refused."""
+        """Handle an operator command, unless it is refused."""
         if refusal is not None:
             return schema.CommandResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
         self.driver.handle(event)
@@ -244,12 +244,12 @@ class Service:
         return schema.OrderResponse(results=[self._give_one(order) for order in orders])
 
     def _give_one(self, order: OperatorOrder) -> schema.OrderResult:
-        """Give an order and read its record at once: of many, the first are soon forgotten."""
+        """Handle an order and read its record at once: the order book keeps a limited number."""
         self.driver.handle(order)
         return self._outcome(order.command_id, order.serial)
 
     def _call_one(self, serial: str, issued_by: str) -> schema.OrderResult:
-        """Let one more vehicle join the return; it is planned with the next tick."""
+        """Add one vehicle to the return; it is planned at the next tick."""
         command_id = self._ids()
         self.driver.handle(FleetReturnOrdered(command_id, (serial,), issued_by))
         return self._outcome(command_id, serial)
@@ -262,7 +262,7 @@ class Service:
         return _result(record, _is_simulated(station, record))
 
     def _within_reach(self) -> list[str]:
-        """Every vehicle that has a connection, or flies or may."""
+        """Return every vehicle with a connection, or that is or may be in flight."""
         fleet = self.driver.station.fleet
         return [
             serial
@@ -270,10 +270,10 @@ class Service:
             if fleet.link_ids_claiming(serial) or vehicle.is_flying.value is not False
         ]
 
-    def _surroundings(self, now_ns: int) -> Surroundings:
+    def _driver_state(self, now_ns: int) -> DriverState:
         links = self.driver.links
         sessions = {} if links is None else links.sessions()
-        return Surroundings(sessions, self._station_view(now_ns), site_view(self.site))
+        return DriverState(sessions, self._station_view(now_ns), site_view(self.site))
 
     def _station_view(self, now_ns: int) -> schema.StationView:
         links = self.driver.links
@@ -291,7 +291,7 @@ class Service:
 
 
 def _not_taken(command_id: int, serial: str | None) -> schema.OrderResult:
-    """The answer to an order that a fault of the station kept from being judged."""
+    """Return the result of an order that was lost by a fault in the station's own code."""
     return schema.OrderResult(
         serial=serial,
         link_id=None,
@@ -327,4 +327,31 @@ def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
         parameters={} if refusal is None else dict(refusal.parameters),
         repairs=[] if record.plan is None else list(record.plan.repairs),
         parts=0 if record.plan is None else len(record.plan.parts),
+    )
+
+
+def _audit_page(log: AuditLog | None, after: int, at_most: int) -> schema.AuditPage:
+    """Return entries after a number; an empty page without an audit."""
+    if log is None:
+        return schema.AuditPage(entries=[], first_n=0, last_n=0, file=None, problem=None)
+    return schema.AuditPage(
+        entries=[_audit_entry(stamped) for stamped in log.after(after, at_most)],
+        first_n=log.first_n,
+        last_n=log.last_n,
+        file=None if log.path is None else log.path.name,
+        problem=log.problem,
+    )
+
+
+def _audit_entry(stamped: NumberedEntry) -> schema.AuditEntryView:
+    entry = stamped.entry
+    return schema.AuditEntryView(
+        n=stamped.n,
+        utc=stamped.utc,
+        kind=entry.kind,
+        by=entry.by,
+        serial=entry.serial,
+        vehicle=entry.vehicle,
+        text=harmless(entry.text),
+        details=harmless(dict(entry.details)),
     )

@@ -1,7 +1,7 @@
-"""The site as the API says it: facts, limits, and outlines to draw, bounded in number.
+"""The site, as the API sends it: facts, limits, and outlines to draw, bounded in number.
 
-The view goes out with every state, so outlines of many corners are thinned; the view says how far
-off they are drawn, and how many areas are left out. Rules use the site's own outlines.
+The view is part of every state, so outlines of many corners are simplified; the view has the
+largest error and the number of areas left out. Rules use the site's own outlines.
 """
 
 from collections.abc import Iterator
@@ -22,9 +22,9 @@ from recon.site import Site
 FloatArray = npt.NDArray[np.float64]
 AreaKind = Literal["boundary", "keep_out", "height", "survey"]
 
-MOST_CORNERS = 500
+MAX_CORNERS = 500
 """20 kB of each state: about what the trails of five vehicles take."""
-MOST_RINGS = 100
+MAX_RINGS = 100
 FIRST_THINNING_M = 0.25
 COARSEST_THINNING_M = 1_000.0
 DECIMALS = 7
@@ -79,7 +79,7 @@ def _layers(site: Site) -> list[schema.LayerView]:
 
 
 def _areas(site: Site) -> Iterator[_Area]:
-    """Return the areas, what forbids before what is only wished for."""
+    """Yield the areas, restrictions before survey regions."""
     layers = site.layers
     if layers.boundary is not None:
         yield _Area("boundary", "boundary", _rings_m(layers.boundary))
@@ -96,7 +96,7 @@ def _rings_m(region: Region) -> tuple[FloatArray, ...]:
 def _few(areas: list[_Area]) -> list[_Area]:
     """Return the first areas, as many as have few enough rings together."""
     ring_counts = accumulate(len(area.rings_m) for area in areas)
-    return [area for area, rings in zip(areas, ring_counts, strict=True) if rings <= MOST_RINGS]
+    return [area for area, rings in zip(areas, ring_counts, strict=True) if rings <= MAX_RINGS]
 
 
 def _thinned(areas: list[_Area]) -> tuple[list[_Area], float]:
@@ -105,7 +105,7 @@ def _thinned(areas: list[_Area]) -> tuple[list[_Area], float]:
     The tolerance is doubled until it does. What cannot be thinned so far is left out, last first.
     """
     thin, within_m = areas, 0.0
-    while sum(area.corner_count for area in thin) > MOST_CORNERS:
+    while sum(area.corner_count for area in thin) > MAX_CORNERS:
         if within_m < COARSEST_THINNING_M:
             within_m = max(FIRST_THINNING_M, 2.0 * within_m)
         else:

@@ -1,4 +1,4 @@
-"""The station's state as the API says it."""
+"""The station's state, as the API sends it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -8,17 +8,18 @@ from typing import Any
 from recon.api import schema
 from recon.fleet.state import Fleet, LinkRecord, staleness
 from recon.link.session import Session
-from recon.model.imagery import Frame, GroundImage
+from recon.model.imagery import Frame
 from recon.model.stamped import Stamped
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
-from recon.station.api_views.corners import corners_lon_lat
-from recon.station.api_views.fleet_return_view import fleet_return_view
-from recon.station.api_views.hazard_view import hazard_view
-from recon.station.api_views.readiness_view import authority_view, override_view
-from recon.station.api_views.shade_view import shade_view
-from recon.station.api_views.steering_view import steering_view
-from recon.station.api_views.survey_view import survey_views
+from recon.station.api_views.imaging_views import ground_image_view, shade_view
+from recon.station.api_views.operation_views import fleet_return_view, survey_views
+from recon.station.api_views.vehicle_views import (
+    authority_view,
+    hazard_view,
+    override_view,
+    steering_view,
+)
 from recon.station.state.alarm_book import Alarm
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
@@ -28,15 +29,15 @@ TRACK_POINTS_SHOWN = 120
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
-    """What the view needs beside the station's state: things that live in the driver."""
+class DriverState:
+    """What the view needs besides the station's state: sessions and facts of the driver."""
 
     sessions: dict[int, Session]
     station: schema.StationView
     site: schema.SiteView | None
 
 
-def state_view(station: Station, around: Surroundings, now_ns: int) -> schema.StationState:
+def state_view(station: Station, around: DriverState, now_ns: int) -> schema.StationState:
     """Return everything a console shows, with ages as of `now_ns`."""
     return schema.StationState(
         time_ns=now_ns,
@@ -46,7 +47,7 @@ def state_view(station: Station, around: Surroundings, now_ns: int) -> schema.St
         links=[_link(station.fleet, r, around, now_ns) for r in station.fleet.links.values()],
         commands=_commands(station, now_ns),
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
-        ground_image=_ground_image(station, now_ns),
+        ground_image=ground_image_view(station, now_ns),
         fleet_return=fleet_return_view(station, now_ns),
         shade=shade_view(station, now_ns),
         surveys=survey_views(station, now_ns),
@@ -71,7 +72,7 @@ def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
 
 
 def _numbers(fleet: Fleet) -> dict[str, int]:
-    """Return each serial's number: first the site's vehicles in its order, then as they came."""
+    """Return each serial's number: the site's vehicles first, then others by first contact."""
     serials = dict.fromkeys((*fleet.profiles, *fleet.vehicles))
     return {serial: number for number, serial in enumerate(serials, start=1)}
 
@@ -156,7 +157,7 @@ def _frame(frame: Frame | None, now_ns: int) -> schema.FrameView | None:
     )
 
 
-def _link(fleet: Fleet, record: LinkRecord, around: Surroundings, now_ns: int) -> schema.LinkView:
+def _link(fleet: Fleet, record: LinkRecord, around: DriverState, now_ns: int) -> schema.LinkView:
     session = around.sessions.get(record.id)
     counters = None if session is None else session.counters
     return schema.LinkView(
@@ -192,7 +193,7 @@ def _link_status(fleet: Fleet, record: LinkRecord) -> Any:
 
 def _commands(station: Station, now_ns: int) -> list[schema.CommandView]:
     newest = sorted(station.orders.records.values(), key=_issued, reverse=True)
-    # A stream of sticks is one order: how many have gone is counted in its stream.
+    # A stick stream is one order; its packets are counted in the stream.
     sticks = {stream.command.id: stream.packets_sent for _, stream in station.streams()}
     return [
         _command(record, sticks.get(record.command.id, record.times_sent), now_ns)
@@ -249,32 +250,6 @@ def _alarm(alarm: Alarm, now_ns: int) -> schema.AlarmView:
         is_active=alarm.is_active,
         is_acknowledged=alarm.acknowledged_by is not None,
     )
-
-
-def _ground_image(station: Station, now_ns: int) -> schema.GroundImageView | None:
-    imaging = station.imaging
-    image: GroundImage | None = imaging.ground_image
-    if image is None or imaging.imager_serial is None:
-        return None
-    profile = station.fleet.profiles.get(imaging.imager_serial)
-    return schema.GroundImageView(
-        frame_id=image.frame_id,
-        serial=imaging.imager_serial,
-        captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
-        captured_sigma_s=0.25 if profile is None else profile.video_latency_sigma_s,
-        registration=image.registration.value,
-        reference=_reference_text(imaging.is_reference_assumed),
-        corners=corners_lon_lat(image.grid),
-        cell_m=image.grid.cell_m,
-        rows=image.grid.rows,
-        cols=image.grid.cols,
-    )
-
-
-def _reference_text(is_assumed: bool) -> str:
-    if is_assumed:
-        return "the first frame received in flight stands for the marked one"
-    return "telemetry of the marked frame, from the site's file"
 
 
 def _age_s(at_ns: int | None, now_ns: int) -> float | None:

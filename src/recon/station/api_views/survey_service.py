@@ -1,4 +1,4 @@
-"""Surveys as the API asks for them: words made events, the state made answers."""
+"""The survey part of the API's port: requests become events, states become views."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,22 +13,22 @@ from recon.model.zone import Region
 from recon.site import Site
 from recon.site.errors import SiteError
 from recon.site.geojson import Feature, regions_of
+from recon.station.api_views.operation_views import cells_number, survey_view, survey_ways
 from recon.station.api_views.running_station import RunningStation
-from recon.station.api_views.survey_view import cells_number, survey_view, survey_ways
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
 
 
 @dataclass(frozen=True, slots=True)
 class SurveyService:
-    """Speaks of surveys to a driver's station."""
+    """Surveys of a running station."""
 
     driver: RunningStation
     site: Site
     ids: Callable[[], int]
 
     def ask(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
-        """Ask for a survey; a region that is none is refused before anything begins."""
+        """Request a survey; an invalid region is refused at once."""
         region = self._region(asked)
         if isinstance(region, Refusal):
             return _refused(region)
@@ -39,7 +39,7 @@ class SurveyService:
     def start(
         self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
     ) -> schema.SurveyResponse:
-        """Start a survey, unless that is refused; the refused word is on record too."""
+        """Start a survey, unless that is refused; the audit has the refusal too."""
         event = SurveyStarted(survey_id, tuple(dict.fromkeys(serials)), by, takeoff)
         refusal = start_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
@@ -59,7 +59,7 @@ class SurveyService:
         return None if record is None else survey_view(station, record, self.driver.now_ns())
 
     def ways(self, survey_id: int) -> schema.SurveyWays | None:
-        """Return a survey's planned and flown ways, None without rows."""
+        """Return a survey's planned rows and flown paths; None without rows."""
         record = self.driver.station.surveys.records.get(survey_id)
         return None if record is None else survey_ways(record)
 
@@ -79,9 +79,9 @@ class SurveyService:
         )
 
     def _region(self, asked: schema.SurveyRequest) -> Region | Refusal:
-        """The site's region of that name, or the polygon; one of them must be said."""
+        """Return the site's region of that name, or the polygon; exactly one must be given."""
         if (asked.region is None) == (asked.polygon is None):
-            return Refusal(RULE, "say either a region of the site or a polygon")
+            return Refusal(RULE, "Give either a region of the site or a polygon")
         if self.site.frame is None:
             return Refusal(RULE, NO_SITE)
         if asked.region is not None:
@@ -97,8 +97,8 @@ class SurveyService:
         regions = self.site.layers.survey_regions
         if name in regions:
             return regions[name]
-        known = ", ".join(regions) or "none: its site.toml names no survey_regions layer"
-        return Refusal(RULE, f"the site has no survey region {name!a}; it has {known}")
+        known = ", ".join(regions) or "none, site.toml has no survey_regions layer"
+        return Refusal(RULE, f"Survey region {name!a} not found; available: {known}")
 
 
 def _survey(number: int, asked: schema.SurveyRequest, region: Region) -> Survey:

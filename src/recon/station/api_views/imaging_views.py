@@ -1,12 +1,41 @@
-"""The state of shade detection and sun forecast, as the API sends it."""
+"""Ground images, shade and the forecast of sun, as the API sends them."""
 
 import numpy as np
 
 from recon.api import schema
+from recon.geo import geo_from_enu
+from recon.model.geo import GroundGrid
+from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
-from recon.station.api_views.corners import corners_lon_lat
 from recon.station.state.station import Station
+
+
+def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView | None:
+    """Return the newest ground image's place and time; None before the first."""
+    imaging = station.imaging
+    image: GroundImage | None = imaging.ground_image
+    if image is None or imaging.imager_serial is None:
+        return None
+    profile = station.fleet.profiles.get(imaging.imager_serial)
+    return schema.GroundImageView(
+        frame_id=image.frame_id,
+        serial=imaging.imager_serial,
+        captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
+        captured_sigma_s=0.25 if profile is None else profile.video_latency_sigma_s,
+        registration=image.registration.value,
+        reference=_reference_text(imaging.is_reference_assumed),
+        corners=corners_lon_lat(image.grid),
+        cell_m=image.grid.cell_m,
+        rows=image.grid.rows,
+        cols=image.grid.cols,
+    )
+
+
+def _reference_text(is_assumed: bool) -> str:
+    if is_assumed:
+        return "first frame received in flight, used for the marked one"
+    return "telemetry of the marked frame, from the site's folder"
 
 
 def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
@@ -57,3 +86,17 @@ def _forecast(sun: SunForecast, number: int, now_ns: int) -> schema.ForecastView
         rows=sun.grid.rows,
         cols=sun.grid.cols,
     )
+
+
+def corners_lon_lat(grid: GroundGrid) -> list[tuple[float, float]]:
+    """Return (longitude, latitude) of the outer corners NW, NE, SE, SW."""
+    corners_enu_m = np.array(
+        [
+            (grid.west_m, grid.north_m, 0.0),
+            (grid.east_m, grid.north_m, 0.0),
+            (grid.east_m, grid.south_m, 0.0),
+            (grid.west_m, grid.south_m, 0.0),
+        ]
+    )
+    latitude_deg, longitude_deg, _height_m = geo_from_enu(grid.frame, corners_enu_m)
+    return [(float(lon), float(lat)) for lon, lat in zip(longitude_deg, latitude_deg, strict=True)]

@@ -1,4 +1,4 @@
-"""Surveys as the API sends them."""
+"""Surveys and the fleet return, as the API sends them."""
 
 from collections.abc import Iterable
 from functools import lru_cache
@@ -10,9 +10,11 @@ from recon.geo import geo_from_enu
 from recon.guidance.survey import SurveyState, figures
 from recon.model.geo import LocalFrame
 from recon.model.units import ns_to_seconds
-from recon.station.api_views.corners import corners_lon_lat
+from recon.station.api_views.imaging_views import corners_lon_lat
+from recon.station.operations.fleet_return.conditions import in_turn
 from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
 from recon.station.operations.survey.return_to_home import is_under_way
+from recon.station.state.fleet_return_record import ReturningVehicle
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SURVEYS_KEPT, EastNorth, SurveyMember, SurveyRecord
 
@@ -21,13 +23,13 @@ DECIMALS = 7
 
 
 def survey_views(station: Station, now_ns: int) -> list[schema.SurveyView]:
-    """Return every survey of this run that is remembered, the newest first."""
+    """Return the kept surveys of this run, the newest first."""
     records = reversed(tuple(station.surveys.records.values()))
     return [survey_view(station, record, now_ns) for record in records]
 
 
 def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.SurveyView:
-    """Return one survey as the API says it."""
+    """Return one survey."""
     state, survey = record.state, record.survey
     phase, reason = record.phase
     return schema.SurveyView(
@@ -54,7 +56,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
 
 
 def survey_ways(record: SurveyRecord) -> schema.SurveyWays | None:
-    """Return the planned rows, what is flown now, and what has been flown; None without rows."""
+    """Return the planned rows, the missions in flight and the flown paths; None without rows."""
     state = record.state
     if state is None:
         return None
@@ -81,8 +83,8 @@ def _member(
     state = record.state
     assert state is not None  # members come with the start
     vehicle = station.fleet.vehicles.get(member.serial)
-    is_told = record.is_running or is_under_way(station, member)
-    waits = hindrance(station, member, now_ns) if is_told else None
+    is_active = record.is_running or is_under_way(station, member)
+    waits = hindrance(station, member, now_ns) if is_active else None
     refused = None if record.is_over else state.refusals.get(member.serial)
     return schema.SurveyingView(
         serial=member.serial,
@@ -97,7 +99,7 @@ def _member(
 
 @lru_cache(maxsize=SURVEYS_KEPT)
 def _figures(state: SurveyState) -> schema.SurveyFiguresView:
-    """A survey changes once a second, and is told ten times."""
+    """Cached: a survey changes once a second and is sent ten times."""
     seen = figures(state)
     return schema.SurveyFiguresView(
         region_m2=seen.region_m2,
@@ -135,3 +137,35 @@ def _lon_lat(frame: LocalFrame, places_m: Iterable[EastNorth]) -> list[tuple[flo
         (round(float(lon), DECIMALS), round(float(lat), DECIMALS))
         for lon, lat in zip(longitude_deg, latitude_deg, strict=True)
     ]
+
+
+def fleet_return_view(station: Station, now_ns: int) -> schema.FleetReturnView | None:
+    """Return the newest fleet return; None before the first."""
+    running = station.fleet_return
+    if running is None:
+        return None
+    return schema.FleetReturnView(
+        called_by=running.by,
+        age_s=ns_to_seconds(now_ns - running.called_at_ns),
+        is_over=running.is_over,
+        vehicles=[_returning(member, now_ns) for member in in_turn(running)],
+    )
+
+
+def _returning(member: ReturningVehicle, now_ns: int) -> schema.ReturningView:
+    flight = member.flight
+    return schema.ReturningView(
+        serial=member.serial,
+        vehicle_name=member.name,
+        stage=member.stage.value,
+        since_age_s=ns_to_seconds(now_ns - member.since_ns),
+        reason=member.reason or None,
+        wave=None if flight is None else flight.wave,
+        layer_height_m=None if flight is None else flight.layer_up_m,
+        layer_height_above_takeoff_m=None
+        if flight is None
+        else flight.layer_up_m - flight.takeoff_up_m,
+        pad=None if flight is None else flight.pad.name,
+        hold_command_id=member.hold_id,
+        mission_command_id=member.mission_id,
+    )
