@@ -77,7 +77,7 @@ class Started:
     console_url: str
     audit_folder: str = ""
     taken_up: str = ""
-    """What the last run left that this one goes on with, in words; empty for nothing."""
+    """What this run continues from the last one, in words; empty if nothing."""
 
 
 Observe = Callable[[Station, Station, Event], None]
@@ -135,7 +135,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         audit_folder = str(begun.log.folder)
         await on_start(replace(started, audit_folder=audit_folder, taken_up=taken_up))
         done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
-        # A loop that died must not leave a station that looks alive.
+        # If one of the two has ended, the station must not seem to run.
         server.should_exit = True
         await serving
         for task in done:
@@ -199,7 +199,7 @@ def _start_auditor(
 
 
 def _taken_up(station: Station, troubles: tuple[str, ...]) -> str:
-    """What the operator must know who starts a station after one that ended in flight."""
+    """Return what an operator must know after a run that ended in flight."""
     names = [
         station.fleet.vehicles[serial].display_name
         for serial, control in station.controls.items()
@@ -218,8 +218,8 @@ def _listen(host: str, port: int, option: str) -> socket.socket:
     try:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         sock.bind((host, port))
-        # Listening at once, so that the address is open when it is printed, and so that a second
-        # station started in the same moment finds the port in use.
+        # Listen at once: the address must be open when it is printed, and a second station started
+        # at the same moment must find the port in use.
         sock.listen(HTTP_BACKLOG)
     except (OSError, OverflowError) as problem:
         sock.close()
@@ -230,7 +230,7 @@ def _listen(host: str, port: int, option: str) -> socket.socket:
 def _cannot_listen(host: str, port: int, option: str, problem: Exception) -> StartError:
     if isinstance(problem, OSError) and problem.errno == errno.EADDRINUSE:
         return StartError(
-            f"port {port} of {host} is in use, perhaps by another station: stop that one, or "
+            f"port {port} of {host} is in use, perhaps by another station; stop that one, or "
             f"choose another port with {option}"
         )
     reason = problem.strerror if isinstance(problem, OSError) else problem

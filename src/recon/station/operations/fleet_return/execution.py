@@ -61,14 +61,14 @@ MOVED = "it moved while it waited: its pilot flies it, or it drifts"
 
 def advance(station: Station, now_ns: int, settings: ReturnSettings = RETURN_SETTINGS) -> Stepped:
     """Advance the fleet return as far as it can go now."""
-    station = _handed_back(station, now_ns)
+    station = _hand_back_ended(station, now_ns)
     running = station.fleet_return
     if running is None or running.is_over or now_ns < running.step_due_ns:
         return station, ()
     running = replace(running, step_due_ns=now_ns + seconds_to_ns(settings.step_every_s))
     for member in running.members.values():
         running = running.put(updated(station, member, settings, now_ns))
-    station, stops = _stop_what_may_begin_late(station, running, now_ns)
+    station, stops = _hold_late_starters(station, running, now_ns)
     if running.at(Stage.STOPPING):
         return replace(station, fleet_return=running), stops
     if any(member.flight is None for member in running.at(Stage.WAITING)):
@@ -78,7 +78,7 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = RETURN_SET
     return station, (*stops, *begun)
 
 
-def _handed_back(station: Station, now_ns: int) -> Station:
+def _hand_back_ended(station: Station, now_ns: int) -> Station:
     """Give vehicles that guidance called home back to the operator at their end.
 
     Those given to guidance again since then stay with it.
@@ -87,12 +87,12 @@ def _handed_back(station: Station, now_ns: int) -> Station:
     for member in () if running is None else running.at(*ENDED):
         controlled_since_ns = station.control(member.serial).authority.since_ns
         if member.asked_as is AuthorityHolder.GUIDANCE and controlled_since_ns <= member.since_ns:
-            why = f"its flight home has ended: {member.reason or 'it has landed'}"
+            why = f"fleet return: {member.reason or 'landed'}"
             station = authority.hand_back(station, member.serial, member.by, why, now_ns)
     return station
 
 
-def _stop_what_may_begin_late(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
+def _hold_late_starters(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
     """Hold vehicles whose mission was ignored: begun now, it would cross the paths of others."""
     outputs: list[Output] = []
     for member in running.at(Stage.LEFT_OUT):

@@ -84,7 +84,7 @@ def after_mission(
     if order.phase is Phase.DONE:
         return member, None
     words = order.phase.value.replace("_", " ")
-    why = f"its mission ended unfinished: {words}: {order.note}"
+    why = f"mission {words}: {order.note}"
     return replace(member, stop_reason=why), order
 
 
