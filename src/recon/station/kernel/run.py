@@ -86,7 +86,7 @@ OnStart = Callable[[Started], Awaitable[None]]
 
 async def run(config: RunConfig, on_start: OnStart) -> None:
     """Run a station until SIGINT or SIGTERM. Raises `StartError` when it cannot start."""
-    _refuse_open_door(config)
+    _require_token(config)
     place = config.audit or default_place(config.link_port)
     begun = _begin_audit(place)
     last_run, is_snapshot_good = _last_run(place, begun)
@@ -100,53 +100,70 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         driver = AsyncioDriver(station, clock, auditor.observe)
         auditor.handle = driver.handle
         if not place.is_shared:
+            last_id = last_run.first_ids[0] - 1
             snapshots = SnapshotWriter(
-                place.folder,
-                clock,
-                last_order_id=last_run.first_ids[0] - 1,
-                keep_current=is_snapshot_good,
+                place.folder, clock, last_order_id=last_id, keep_current=is_snapshot_good
             )
             auditor.snapshot_problem = lambda: snapshots.problem
             driver.observe = _both(snapshots.observe, auditor.observe)
             snapshots.start(station)
             stack.callback(snapshots.close)
-        capture = _start_capture(config, driver)
-        if capture is not None:
-            stack.callback(capture.close)
-        worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
-        driver.worker = worker
-        links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
-        driver.links = links
         service = Service.around(
             driver, config.site, _text(config.capture_folder), begun.log, last_run.first_ids[0]
         )
-        service.link_addresses = await _start_links(links, config)
-        stack.push_async_callback(links.stop)
-        ticking = asyncio.create_task(driver.run())
-        stack.callback(ticking.cancel)
-        worker.start()
-        stack.callback(worker.stop)
-        server = _http_server(config, service)
-        freeze_loaded_objects()
-        stack.enter_context(_stopped_by_signals(server))
-        serving = asyncio.create_task(server.serve(sockets=[http_socket]))
-        started = _started(config, service, links, http_socket)
-        taken_up = _taken_up(station, (*begun.troubles, *last_run.troubles))
-        audit_folder = str(begun.log.folder)
-        await on_start(replace(started, audit_folder=audit_folder, taken_up=taken_up))
-        done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
-        # If one of the two has ended, the station must not seem to run.
-        server.should_exit = True
-        await serving
-        for task in done:
-            task.result()
+        links = await _start_links_and_worker(config, driver, service, stack)
+        started = replace(
+            _started(config, service, links, http_socket),
+            audit_folder=str(begun.log.folder),
+            taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
+        )
+        await _serve(config, driver, service, http_socket, lambda: on_start(started), stack)
 
 
-def _refuse_open_door(config: RunConfig) -> None:
+async def _start_links_and_worker(
+    config: RunConfig, driver: AsyncioDriver, service: Service, stack: AsyncExitStack
+) -> LinkServer:
+    capture = _start_capture(config, driver)
+    if capture is not None:
+        stack.callback(capture.close)
+    driver.worker = worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
+    driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
+    service.link_addresses = await _listen_for_links(links, config)
+    stack.push_async_callback(links.stop)
+    worker.start()
+    stack.callback(worker.stop)
+    return links
+
+
+async def _serve(
+    config: RunConfig,
+    driver: AsyncioDriver,
+    service: Service,
+    http_socket: socket.socket,
+    on_start: Callable[[], Awaitable[None]],
+    stack: AsyncExitStack,
+) -> None:
+    """Run the driver's timers and the HTTP server until one of the two ends."""
+    ticking = asyncio.create_task(driver.run())
+    stack.callback(ticking.cancel)
+    server = _http_server(config, service)
+    freeze_loaded_objects()
+    stack.enter_context(_stopped_by_signals(server))
+    serving = asyncio.create_task(server.serve(sockets=[http_socket]))
+    await on_start()
+    done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
+    # If the timers have ended, the station must not seem to run.
+    server.should_exit = True
+    await serving
+    for task in done:
+        task.result()
+
+
+def _require_token(config: RunConfig) -> None:
     if config.http_host not in LOOPBACK_NAMES and config.token is None:
         raise StartError(
-            f"the console would be open to everyone who reaches {config.http_host}: give "
-            "--token-file FILE with a secret of 16 characters or more, or leave it on 127.0.0.1"
+            f"host {config.http_host} opens the console to the network without a token; give "
+            "--token-file FILE with a secret of at least 16 characters, or use 127.0.0.1"
         )
 
 
@@ -237,7 +254,7 @@ def _cannot_listen(host: str, port: int, option: str, problem: Exception) -> Sta
     return StartError(f"cannot listen on {host} port {port}: {reason}; see {option}")
 
 
-async def _start_links(links: LinkServer, config: RunConfig) -> list[str]:
+async def _listen_for_links(links: LinkServer, config: RunConfig) -> list[str]:
     try:
         return await links.start(config.link_host, config.link_port)
     except (OSError, OverflowError) as problem:
