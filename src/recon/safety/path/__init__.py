@@ -1,7 +1,7 @@
 """What an order makes its vehicle fly: interpreted once, for every question safety asks.
 
 `order_path` turns an order into one of five motions (`Mission`, `StraightFlight`, `StickFlight`,
-`Hold`, `TakeoffClimb`). Three kinds of question use them, each in the form it needs:
+`HoldPath`, `TakeoffClimb`). Three kinds of question use them, each in the form it needs:
 
 - fences, heights and keep-out zones: volumes without times (`volumes.py`), everything the vehicle
   may touch, the way home by its own failsafe included;

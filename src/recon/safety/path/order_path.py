@@ -78,7 +78,7 @@ class StickFlight:
 
 
 @dataclass(frozen=True, slots=True)
-class Hold:
+class HoldPath:
     """The vehicle stays where it is."""
 
 
@@ -87,13 +87,13 @@ class TakeoffClimb:
     """A hover that takes off: straight up."""
 
 
-OrderPath = Mission | StraightFlight | StickFlight | Hold | TakeoffClimb
+OrderPath = Mission | StraightFlight | StickFlight | HoldPath | TakeoffClimb
 
 
 def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
     """Return the motion that an order to move asks of a vehicle.
 
-    A nudge of a vehicle without a position, and a mission without waypoints, move nothing: `Hold`.
+    A nudge of a vehicle without a position, or a mission without waypoints, is a `HoldPath`.
     """
     match body:
         case FlyMission(mission) if mission.waypoints:
@@ -112,7 +112,7 @@ def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
         case Hover():
             return TakeoffClimb()
         case _:
-            return Hold()
+            return HoldPath()
 
 
 def _stick(body: VirtualStick, vehicle: VehicleState) -> StickFlight:

@@ -17,7 +17,7 @@ from recon.model.mission import Mission
 from recon.model.vehicle import Failsafe
 from recon.safety.datum import places_m
 from recon.safety.path.order_path import (
-    Hold,
+    HoldPath,
     OrderPath,
     StickFlight,
     StraightFlight,
@@ -81,7 +81,7 @@ def _pieces(path: OrderPath, begin: Departure, limits: SafetySettings) -> Pieces
             return stick_pieces(path, begin, settings)
         case TakeoffClimb():
             return takeoff_pieces(begin, limits.prediction.takeoff_height_m, settings)
-        case Hold():
+        case HoldPath():
             return hold_pieces(begin, settings)
 
 

@@ -8,8 +8,8 @@ from recon.safety.watchdogs import CommandedHold, Finding, PreviousPosition
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
-    """A finding, since when it has been made, and when last."""
+class ActiveFinding:
+    """A finding, and the times of its first and last occurrence."""
 
     finding: Finding
     since_ns: int
@@ -43,7 +43,7 @@ class WatchdogState:
     """
 
     run_at_ns: int | None = None
-    findings: Mapping[str, Kept] = field(default_factory=dict)
+    findings: Mapping[str, ActiveFinding] = field(default_factory=dict)
     held: Mapping[str, CommandedHold] = field(default_factory=dict)
     holds_refused: Mapping[str, HoldRefused] = field(default_factory=dict)
     before: Mapping[str, PreviousPosition] = field(default_factory=dict)

@@ -24,7 +24,7 @@ from recon.safety.watchdogs import (
     hold_outcome,
 )
 from recon.station.state.station import Station
-from recon.station.state.watchdog_state import HoldRefused, Kept, StickCount
+from recon.station.state.watchdog_state import ActiveFinding, HoldRefused, StickCount
 from recon.station.traffic import identity_grace
 from recon.station.traffic.known_traffic import in_the_air
 
@@ -116,14 +116,14 @@ def _with_stick_counts(station: Station, now_ns: int) -> Station:
 
 
 def _kept(
-    kept: Mapping[str, Kept], findings: Iterable[Finding], now_ns: int, lingers_ns: int
-) -> dict[str, Kept]:
+    kept: Mapping[str, ActiveFinding], findings: Iterable[Finding], now_ns: int, lingers_ns: int
+) -> dict[str, ActiveFinding]:
     """Findings of now and of a moment ago: alarms must not flicker."""
     still = {key: one for key, one in kept.items() if now_ns - one.seen_ns <= lingers_ns}
     for finding in findings:
         before = still.get(finding.key)
         since_ns = now_ns if before is None else before.since_ns
-        still[finding.key] = Kept(finding, since_ns, now_ns)
+        still[finding.key] = ActiveFinding(finding, since_ns, now_ns)
     return still
 
 
