@@ -19,7 +19,7 @@ from recon.score.true_paths import TruePath, encounters, times_begun
 from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.flight.aircraft import Aircraft
-from recon.sim.flight.flight_modes import Hold
+from recon.sim.flight.flight_modes import PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
 
 TINY = SMALL.replace("[200.0, 0.0],", "[90.0, 0.0],").replace(
@@ -214,7 +214,7 @@ def flying(east_m: list[float], height_m: float, is_up: bool = True) -> TruePath
     """A path eastwards, one position per second."""
     app = SimulatedApp(
         AppSettings(serial="SIM-1", home=GeoPoint(41.9, -93.6, 280.0)),
-        Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=Hold()),
+        Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=PositionHold()),
     )
     at_s = [float(second) for second in range(len(east_m))]
     places = [(east, 0.0, height_m) for east in east_m]

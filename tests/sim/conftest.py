@@ -13,7 +13,7 @@ from recon.sim.app.commands import AppBehaviour, HoverOnGround
 from recon.sim.app.faults import InjectedFault
 from recon.sim.app.telemetry import position_deg
 from recon.sim.flight.aircraft import TICK_NS, Aircraft
-from recon.sim.flight.flight_modes import Grounded, Hold
+from recon.sim.flight.flight_modes import Grounded, PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
@@ -28,7 +28,7 @@ class Flights:
     def hovering(height_m: float = 30.0, yaw_deg: float = 0.0, now_ns: int = 0) -> Aircraft:
         """Return an aircraft in hover above its home."""
         motion = AircraftMotion(height_m=height_m, yaw_deg=yaw_deg)
-        return Aircraft(now_ns, motion=motion, active_mode=Hold())
+        return Aircraft(now_ns, motion=motion, active_mode=PositionHold())
 
     @staticmethod
     def fly(aircraft: Aircraft, seconds: float) -> Iterator[AircraftMotion]:
@@ -113,7 +113,7 @@ def app_bench() -> Callable[..., AppBench]:
         faults: tuple[InjectedFault, ...] = (),
         bias_m: float = -23.0,
     ) -> AppBench:
-        active_mode = Grounded() if height_m == 0.0 else Hold()
+        active_mode = Grounded() if height_m == 0.0 else PositionHold()
         aircraft = Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=active_mode)
         behaviour = AppBehaviour(reference, hover_on_ground, bias_m)
         settings = AppSettings("SIM-7", HOME, seed=4, behaviour=behaviour, faults=faults)

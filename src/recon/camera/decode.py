@@ -32,6 +32,7 @@ def decode_frame(frame: Frame, most_pixels: int = MOST_PIXELS) -> RgbImage:
 
 def decode_jpeg(data: bytes, most_pixels: int = MOST_PIXELS) -> RgbImage:
     """Return a JPEG file's pixels (rows, cols, 3) uint8 RGB; raises `FrameDecodeError`."""
+    # Header first: nothing is allocated for a size that is refused.
     rows, cols = jpeg_size(data)
     _refuse_size(rows, cols, most_pixels)
     if _END not in data[-_TRAILER_BYTES:]:

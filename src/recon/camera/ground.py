@@ -91,6 +91,7 @@ class GroundProjector:
         )
         seen = cv2.remap(source.mask, *maps, cv2.INTER_NEAREST)
         self._laid = cv2.remap(rgb, self._whole, self._fraction, cv2.INTER_LINEAR, dst=self._laid)
+        # remap samples meaningless pixels beyond the lens: blacken them.
         shown = cv2.bitwise_and(self._laid, self._laid, mask=seen)
         return shown.astype(np.uint8, copy=False), seen > 0
 
@@ -100,6 +101,8 @@ class GroundProjector:
         if source is None or source.searches_left > 0:
             searches = MOST_CIRCLE_SEARCHES if source is None else source.searches_left
             source = self._sources[size] = self._searched_source(rgb, searches)
+            # The oldest size goes: an app may change its resolution, but hardly ever back and
+            # forth.
             if len(self._sources) > MOST_SIZES_KEPT:
                 self._sources.popitem(last=False)
         return source

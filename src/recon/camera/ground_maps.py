@@ -59,6 +59,7 @@ def ground_maps(
     that is not above the ground.
     """
     height_m = float(pose.position_enu_m[2])
+    # NaN compares as false everywhere below: refuse it here with a message.
     numbers = (*pose.rotation_enu_camera.ravel(), *pose.position_enu_m)
     if not np.isfinite(numbers).all() or not height_m >= LEAST_HEIGHT_M:
         raise PoseError(

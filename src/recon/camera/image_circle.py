@@ -72,6 +72,7 @@ def find_image_circle(rgb: RgbImage, camera: OmnidirectionalCamera) -> ImageCirc
 
 def _outermost_lit(is_lit: npt.NDArray[np.bool_], camera: OmnidirectionalCamera) -> FloatArray:
     """Return (N, 2) col, row of the outermost lit pixel in each direction with a dark rim."""
+    # From outside inwards: dark scenery inside the circle must not count as its edge.
     angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
     radii = np.arange(1.0, np.hypot(camera.rows, camera.cols))
     cols = camera.centre_col_px + np.outer(np.cos(angles), radii)
@@ -83,6 +84,7 @@ def _outermost_lit(is_lit: npt.NDArray[np.bool_], camera: OmnidirectionalCamera)
     lit &= is_inside
     last_lit = lit.shape[1] - 1 - np.argmax(lit[:, ::-1], axis=1)
     last_inside = is_inside.sum(axis=1) - 1
+    # A direction that is lit up to the frame's edge shows no rim: the frame cuts the circle.
     has_rim = lit.any(axis=1) & (last_lit < last_inside - 2)
     chosen = np.flatnonzero(has_rim)
     return np.stack([cols[chosen, last_lit[chosen]], rows[chosen, last_lit[chosen]]], axis=1)

@@ -68,6 +68,7 @@ def displaced_pose(
     pitch and roll (a gimbal compensates them). The lever arm between aircraft and camera is
     neglected.
     """
+    # Relative rotation in the local frame: constant errors of the compass cancel.
     turn = _body_rotation(now, mount) @ _body_rotation(marked, mount).T
     climb_m = now.height_above_takeoff_m - marked.height_above_takeoff_m
     return CameraPose(
@@ -90,6 +91,7 @@ def _body_rotation(telemetry: TelemetryReference, mount: Mount) -> FloatArray:
     about_down = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
     about_right = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
     about_forward = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    # Telemetry angles are in north-east-down, poses in east-north-up.
     enu_from_ned = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
     rotation: FloatArray = enu_from_ned @ about_down @ about_right @ about_forward
     return rotation

@@ -50,6 +50,7 @@ class OmnidirectionalCamera:
 
     def __post_init__(self) -> None:
         _refuse_bad_geometry(self)
+        # The profile must reach the farthest corner of the frame, edges of pixels included.
         corner = max(
             float(np.hypot(*self._sensor_offsets(np.array([[col, row]]))).max())
             for col in (-0.5, self.cols - 0.5)
@@ -74,6 +75,7 @@ class OmnidirectionalCamera:
         directions = np.where(is_seen[:, np.newaxis], directions, (0.0, 0.0, 1.0))
         pixels = self.project_beyond_range(directions)
         angle = np.arctan2(np.hypot(directions[:, 0], directions[:, 1]), directions[:, 2])
+        # A tolerance of rounding, so that the outermost valid ray is kept.
         is_seen &= angle <= self.largest_angle_rad + 1e-12
         pixels[~is_seen] = np.nan
         return pixels
@@ -88,6 +90,7 @@ class OmnidirectionalCamera:
         across = np.hypot(right, down)
         angle = np.arctan2(across, forward)
         radius = self.profile.table_radius_px(angle) if fast else self.profile.radius_px(angle)
+        # On the axis the direction is undefined and the radius is 0: any divisor will do.
         divisor = np.where(across > 0.0, across, 1.0)
         sensor_row, sensor_col = radius * (down / divisor), radius * (right / divisor)
         pixels = np.empty((*across.shape, 2))
@@ -148,6 +151,7 @@ class OmnidirectionalCamera:
 def _scaled(camera: OmnidirectionalCamera, rows: int, cols: int) -> OmnidirectionalCamera:
     scale = scale_between((camera.cols, camera.rows), (cols, rows))
     return OmnidirectionalCamera(
+        # f(r) has the unit of r: coefficient k scales with scale^(1 - k).
         direct=tuple(a * scale ** (1 - power) for power, a in enumerate(camera.direct)),
         inverse=tuple(a * scale for a in camera.inverse),
         centre_row_px=(camera.centre_row_px + 0.5) * scale - 0.5,

@@ -38,12 +38,14 @@ def _distances(rays: FloatArray, points_m: FloatArray) -> list[FloatArray]:
     if min(a2, b2, c2) <= 0.0:
         return []
     quartic = _quartic(a2 / b2, c2 / b2, cos_a, cos_b, cos_c)
+    # A vanishing leading coefficient makes roots run off to infinity.
     if not np.isfinite(quartic).all() or abs(quartic[0]) < 1e-14:
         return []
     difference = (a2 - c2) / b2
     found = []
     for root in np.roots(quartic):
         v = float(root.real)
+        # u and v are the distances to points 2 and 3 over that to point 1.
         denominator = 2.0 * (cos_c - v * cos_a)
         if abs(root.imag) > LARGEST_IMAGINARY_PART * max(1.0, abs(v)) or v <= 0.0:
             continue

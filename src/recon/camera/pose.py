@@ -126,6 +126,7 @@ def _report(
     )
     rms_px = float(np.sqrt(np.mean(np.sum(errors_px**2, axis=1))))
     height_m = float(fit.position[2] - points_enu[:, 2].mean())
+    # Index 5 is up: the covariance is over rotation (3) then position (3).
     height_sigma_m = float(np.sqrt(fit.covariance[5, 5]))
     _refuse_bad_fit(camera, residuals, rms_px, height_m, fit.covariance)
     tilt_deg, tilt_sigma_deg = _tilt(fit)
@@ -185,6 +186,8 @@ def _tilt(fit: PoseFit) -> tuple[float, float]:
     tilt = float(np.arctan2(across, -axis[2]))
     if across > 0.0:
         gradient = np.array([axis[1], -axis[0]]) / across
+        # Error propagation: the tilt changes only with rotation about the horizontal axis across
+        # it.
         variance = float(gradient @ fit.covariance[:2, :2] @ gradient)
     else:
         variance = float(np.trace(fit.covariance[:2, :2])) / 2.0

@@ -72,6 +72,7 @@ def _count_places(points_enu: FloatArray, least_separation_m: float) -> int:
 
 
 def _triples(count: int) -> Iterator[tuple[int, int, int]]:
+    # Every n-th triple in lexicographic order covers all points evenly, without random numbers.
     stride = -(-comb(count, 3) // MOST_TRIPLES)
     return islice(combinations(range(count), 3), 0, None, stride)
 
@@ -86,6 +87,7 @@ def _best_start(
     for triple in _triples(len(points_enu)):
         chosen = list(triple)
         for rotation, position in solve_p3p(rays[chosen], points_enu[chosen]):
+            # P3P has mirrored solutions below the ground.
             if position[2] <= ground_m:
                 continue
             cost = float(np.sum(residuals_px(camera, pixels, points_enu, rotation, position) ** 2))
@@ -167,6 +169,7 @@ def _covariance(jacobian: FloatArray, sum_of_squares: float, step_sizes: FloatAr
             "expected control points that fix the camera's position and direction, got points that "
             "leave a motion undetermined; mark points that are spread out further"
         )
+    # 2 N residuals less 6 parameters; at least 2 for 4 points.
     freedom = jacobian.shape[0] - jacobian.shape[1]
     information = np.linalg.inv(scaled.T @ scaled)
     covariance: FloatArray = (

@@ -56,6 +56,7 @@ class RadialProfile:
         radii = np.linspace(0.0, corner_radius_px, TABLE_ROWS)
         with np.errstate(over="ignore", invalid="ignore"):
             angles = np.arctan2(radii, -np.polynomial.polynomial.polyval(radii, polynomial))
+        # Valid as long as the angle grows with the radius, and not much slower than at the centre.
         steps = np.diff(angles)
         is_sound = np.append(True, steps > LEAST_SLOPE_SHARE * max(steps[0], 0.0))
         is_sound &= angles <= LARGEST_ANGLE_RAD
@@ -90,6 +91,7 @@ class RadialProfile:
         slope = np.polynomial.polynomial.polyder(self.polynomial)
         sine, cosine = np.sin(inside), np.cos(inside)
         for _ in range(NEWTON_STEPS):
+            # Newton on g(r) = r cos(a) - depth(r) sin(a), which has no singularity at 90 degrees.
             miss = radius * cosine - self.depth_px(radius) * sine
             rate = cosine + np.polynomial.polynomial.polyval(radius, slope) * sine
             radius = radius - miss / rate

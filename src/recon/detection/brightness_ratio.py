@@ -37,11 +37,13 @@ def brightness_ratio(
     state, grid, cells = taken
     at_ns = image.captured_at_ns
     exposure, gain = gain_now(state.exposure, cells, at_ns, settings)
+    # Light at the exposure of the first frame, so that samples of all frames are comparable.
     light: FloatMap = cells.light / np.float32(gain)
     history = LightHistory.with_sample(state.history, at_ns, light, settings)
     state = replace(state, exposure=exposure, history=history)
     valid = cells.seen & (history.count >= settings.least_samples)
     ratio = light / history.sunlit
+    # In full shade only the diffuse share is left: ratio = diffuse + (1 - diffuse) x transmittance.
     transmittance = (ratio - settings.diffuse_share) / (1.0 - settings.diffuse_share)
     found = (transmittance, valid, _confidence(light, history, settings))
     return state, shade_map(image, grid, found, settings)
@@ -53,6 +55,7 @@ def _confidence(light: FloatMap, history: LightHistory, settings: DetectionSetti
     Contrast counts in full once the cell was (or is) as dark as the edge of shade.
     """
     filled = np.minimum(history.count / settings.samples, 1.0)
+    # fmin ignores NaN of cells without history.
     darkest = np.fmin(history.dark, light) / history.sunlit
     edge = (1.0 - settings.diffuse_share) * (1.0 - SUNLIT_TRANSMITTANCE)
     noise = settings.unshaded_contrast

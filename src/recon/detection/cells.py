@@ -29,8 +29,10 @@ def field_grid(image_grid: GroundGrid, settings: DetectionSettings) -> GroundGri
     """Return the grid of all shade maps of a flight."""
     if settings.grid is not None:
         return settings.grid
+    # Never finer than the image: interpolated cells would pretend to a resolution.
     cell_m = max(settings.cell_m, image_grid.cell_m)
     rows, cols = (
+        # Less a rounding error, so that an exact multiple does not get one more cell.
         ceil(cells * image_grid.cell_m / cell_m - 1e-6)
         for cells in (image_grid.rows, image_grid.cols)
     )
@@ -43,11 +45,13 @@ def cell_light(image: GroundImage, grid: GroundGrid, settings: DetectionSettings
     Both grids are of one local frame and may be offset by any amount. Light is linear (gamma
     removed); invalid pixels do not count.
     """
+    # LUT before averaging: the mean of levels is not the level of the mean light.
     levels = np.ascontiguousarray(image.rgb[..., GREEN])
     shown = image.valid.astype(np.float32)
     light = cv2.LUT(levels, _light_of_levels(settings.gamma)) * shown
     both = _box_means(np.dstack([light, shown]), image.grid, grid)
     seen = both[..., 1] >= settings.least_seen
+    # Divide by the visible share: cells cut by the edge of the frame keep their brightness.
     mean = np.where(seen, both[..., 0] / np.maximum(both[..., 1], 1e-6), np.nan)
     return CellLight(mean.astype(np.float32), seen)
 

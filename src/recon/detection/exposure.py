@@ -61,6 +61,7 @@ def common_change(before: CellLight, now: CellLight, spread: float) -> float:
     if np.count_nonzero(both) < LEAST_CELLS:
         return 0.0
     changes = np.zeros(both.shape, dtype=np.float32)
+    # In logarithms the exposure is a common offset, whatever the brightness of a cell.
     changes[both] = np.log(now.light[both] / before.light[both])
     middle, width = _mode(_smoothed(changes, both)[both])
     return middle if width <= spread else 0.0
@@ -77,6 +78,7 @@ def _smoothed(changes: FloatMap, known: MaskMap) -> FloatMap:
 def _mode(values: npt.NDArray[np.float32]) -> tuple[float, float]:
     """Return the mean and the width of the shortest interval that holds a third of the values."""
     ordered = np.sort(values)
+    # Shortest interval in sorted values: a sliding window of fixed count.
     held = int(len(ordered) * MODE_SHARE)
     widths = ordered[held:] - ordered[: len(ordered) - held]
     first = int(np.argmin(widths))

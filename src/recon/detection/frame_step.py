@@ -68,6 +68,7 @@ def cells_fault(
             f"{seen_share:.1%}"
         )
         return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
+    # Sensor noise makes two real frames differ: equality means a frozen or repeated frame.
     if latest is not None and np.array_equal(cells.light, latest.light, equal_nan=True):
         text = "expected a new frame, got a copy of the last one; check whether the camera froze"
         return RejectedFrame(image.frame_id, FrameFault.REPEATED, text)
@@ -82,6 +83,7 @@ def _level_fault(image: GroundImage, settings: DetectionSettings) -> RejectedFra
         text = "expected a frame that shows part of the field, got one without any valid pixel"
         return RejectedFrame(image.frame_id, FrameFault.OTHER_PLACE, text)
     shares = counted / counted.sum()
+    # The 90th percentile: a few lit pixels do not make a black frame valid.
     bright = int(np.searchsorted(np.cumsum(shares), 0.9))
     if bright < settings.black_level:
         text = f"expected an image, got black: 90 % of it is at level {bright} of 255 or less"

@@ -40,8 +40,10 @@ def _two_classes(levels: FloatMap, seen: npt.NDArray[np.float32]) -> tuple[Float
     is_bright = whole > threshold
     if is_bright.all() or not is_bright.any():
         return np.ones_like(levels), 0.0
+    # Levels are whole numbers: the threshold lies between two of them.
     edge = threshold + 0.5
     dark, bright = float(seen[~is_bright].mean()), float(seen[is_bright].mean())
+    # np.interp needs rising points even when a class is empty or at the threshold.
     places = (min(dark, edge - 0.1), edge, max(bright, edge + 0.1))
     transmittance: FloatMap = np.interp(levels, places, (0.0, SUNLIT_TRANSMITTANCE, 1.0)).astype(
         np.float32

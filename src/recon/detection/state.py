@@ -43,6 +43,7 @@ class LightHistory:
         if history is not None and at_ns // spacing_ns == kept[-1][0] // spacing_ns:
             return history
         oldest_ns = at_ns - seconds_to_ns(settings.window_s)
+        # Old samples go by age, then by number: memory is bounded at any frame rate.
         recent = tuple(sample for sample in kept if sample[0] > oldest_ns)
         return cls._of((*recent, (at_ns, light))[-settings.samples :], settings)
 
@@ -59,6 +60,7 @@ class LightHistory:
 
 def _quantile(ordered: FloatMap, count: npt.NDArray[np.int64], share: float) -> FloatMap:
     """Return (R, C): the quantile of the first `count` of (N, R, C), with linear interpolation."""
+    # Cells have different numbers of samples: the index of the quantile differs per cell.
     place = np.maximum(count - 1, 0) * share
     below = np.floor(place).astype(np.int64)
     above = np.minimum(below + 1, np.maximum(count - 1, 0))

@@ -50,6 +50,7 @@ def _moving_on(
         known = shade.valid & (horizon_s >= lead)
         if known.any():
             later = _after(now, shade.grid, motion, lead)
+            # Shapes decorrelate: fade to the prior even where the motion is known.
             later = prior + np.exp(-lead / settings.shape_memory_s) * (later - prior)
             probability[i][known] = np.rint(later[known] * SURE).astype(np.uint8)
     return SunForecast(
@@ -76,6 +77,7 @@ def visible_upwind_s(
     lead_s = 0.0
     while lead_s < settings.lead_s[-1] and alive.any():
         lead_s = min(lead_s + settings.horizon_step_s, settings.lead_s[-1])
+        # A gap ends the horizon for good: what comes after it was not observed continuously.
         alive &= _is_visible_upwind(seen, grid, motion, lead_s)
         horizon_s[alive] = lead_s
     return horizon_s
@@ -83,6 +85,7 @@ def visible_upwind_s(
 
 def _after(now: FloatMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> FloatMap:
     """Return (R, C): the current map moved to a lead, blurred by the position error then."""
+    # An odd number of cells, so that blurring does not shift the map.
     box = round(BOX_OVER_SIGMA * motion.spread_mps * lead_s / grid.cell_m) // 2 * 2 + 1
     blurred = cv2.blur(now, (box, box), borderType=cv2.BORDER_REPLICATE) if box > 1 else now
     to_now = _upwind(grid, motion, lead_s)
@@ -104,6 +107,7 @@ def _is_visible_upwind(
 
 def _upwind(grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> npt.NDArray[np.float64]:
     """Return the affine map (2, 3) from a cell's column and row to those of its upwind place."""
+    # Rows count from the north: north is negative.
     right = motion.east_mps * lead_s / grid.cell_m
     down = -motion.north_mps * lead_s / grid.cell_m
     return np.array([[1.0, 0.0, -right], [0.0, 1.0, -down]])

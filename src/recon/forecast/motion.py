@@ -34,6 +34,7 @@ def with_pairs(state: ForecastState, shade: ShadeMap, settings: ForecastSettings
     found = (_velocity(before, now, settings) for before in _partners(state, at_ns, settings))
     recent_ns = at_ns - seconds_to_ns(settings.motion_window_s)
     velocities = (*state.velocities, *(one for one in found if one is not None))
+    # Spectra older than the longest pair are never compared again.
     oldest_ns = at_ns - seconds_to_ns(max(settings.pair_s))
     return replace(
         state,
@@ -47,6 +48,7 @@ def motion_of(state: ForecastState, settings: ForecastSettings) -> ShadowMotion 
     if len(state.velocities) < settings.least_pairs:
         return None
     all_mps = np.array([(one.east_mps, one.north_mps) for one in state.velocities])
+    # Median per component: up to half of the pairs may be wrong.
     middle_mps = np.median(all_mps, axis=0)
     spread_mps = NORMAL_MAD * float(np.median(np.hypot(*(all_mps - middle_mps).T)))
     if spread_mps > settings.most_spread_mps:
@@ -72,6 +74,7 @@ def _velocity(
     before: ShadeSpectrum, now: ShadeSpectrum, settings: ForecastSettings
 ) -> PairVelocity | None:
     shift = shift_between(before, now, settings)
+    # Unclear pairs are dropped rather than weighted: a wrong velocity is worse than persistence.
     if shift is None or not shift.is_clear(settings):
         return None
     gap_s = ns_to_seconds(now.at_ns - before.at_ns)

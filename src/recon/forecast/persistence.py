@@ -25,6 +25,7 @@ def persisting(shade: ShadeMap, prior: float, settings: ForecastSettings) -> Sun
     kept = np.exp(-lead_s / settings.persistence_memory_s)
     kept[lead_s > settings.persistence_horizon_s] = 0.0
     now = sunlit_now(shade, prior, settings)
+    # Relaxation of a two-state process towards its mean.
     probability = prior + kept[:, np.newaxis, np.newaxis] * (now - prior)
     return SunForecast(
         grid=shade.grid,

@@ -80,6 +80,7 @@ def shift_between(
     grid = now.grid
     agreement = _agreement(before.waves, now.waves, now.shape, settings.smooth_cells)
     reach_m = settings.fastest_mps * ns_to_seconds(now.at_ns - before.at_ns)
+    # Within the grid and the fastest motion: peaks beyond are chance.
     reach = int(min(reach_m / grid.cell_m, min(grid.rows, grid.cols) - 1))
     return _best(agreement, max(reach, 1), grid.cell_m)
 
@@ -93,6 +94,7 @@ def _details(shade: ShadeMap, blur_cells: float) -> FloatMap:
     seen = shade.valid.astype(np.float32)
     direct = np.where(shade.valid, shade.transmittance, np.float32(0.0))
     means, shares = (cv2.GaussianBlur(a, (0, 0), blur_cells) for a in (direct, seen))
+    # Means over visible cells only (normalised convolution): outside counts as unknown, not shade.
     details = (direct - means / np.maximum(shares, 1e-3)) * _inwards(shade.valid)
     return details.astype(np.float32)
 
@@ -110,10 +112,12 @@ def _agreement(
 ) -> FloatMap:
     """Return (rows, cols) of `shape`, zero shift in the middle: share of phases that agree."""
     both = np.conj(earlier) * later
+    # Gaussian low-pass: details below `smooth_cells` are noise.
     by_row, by_col = (
         np.exp(-2.0 * (np.pi * smooth_cells * np.fft.fftfreq(size)) ** 2) for size in shape
     )
     weight = np.outer(by_row, by_col[: both.shape[1]]).astype(np.float32)
+    # Only phases count: strong shadows must not outweigh weak ones.
     phases = both / np.maximum(np.abs(both), np.float32(1e-12))
     found = fft.fftshift(fft.irfft2(weight * phases, shape))
     # Normalised by the value of a perfect match, in which all weights are in phase.

@@ -61,6 +61,7 @@ def prior_sunlit(state: ForecastState, settings: ForecastSettings) -> float:
     """Return the prior: the probability of sun where nothing is known."""
     if state.sunlit_share is None:
         return NO_KNOWLEDGE
+    # Bayesian mean with one pseudo-observation of 0.5.
     views = state.seen_s / settings.cover_view_s
     return (views * state.sunlit_share + NO_KNOWLEDGE) / (views + 1.0)
 
@@ -86,5 +87,6 @@ def _with_share(
     before = share if state.sunlit_share is None else state.sunlit_share
     # A plain mean until the averaging time is reached, then an exponential one.
     seen_s = min(state.seen_s + passed_s, memory_s)
+    # Weight by time, not by map: the frame rate must not change the prior.
     weight = min(passed_s / seen_s, 1.0) if seen_s > 0.0 else 1.0
     return replace(state, sunlit_share=before + weight * (share - before), seen_s=seen_s)

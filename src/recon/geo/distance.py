@@ -21,6 +21,7 @@ LATITUDES_KEPT = 256
 def offset_north_east_m(origin: OnGlobe, point: OnGlobe) -> tuple[float, float]:
     """Return the offset north and east, in metres, of a point from `origin`."""
     north_m, east_m = _metres_per_radian(origin.latitude_deg)
+    # Wrap around the antimeridian.
     east_deg = (point.longitude_deg - origin.longitude_deg + 180.0) % 360.0 - 180.0
     return (
         radians(point.latitude_deg - origin.latitude_deg) * north_m,

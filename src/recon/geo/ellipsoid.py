@@ -57,6 +57,7 @@ def geodetic_from_ecef(ecef_m: FloatArray) -> tuple[FloatArray, FloatArray, Floa
         run = across - ECCENTRICITY_SQUARED * SEMI_MAJOR_AXIS_M * cosine**3
         sine, cosine = _unit((1.0 - FLATTENING) * rise, run)
     latitude = np.arctan2(rise, run)
+    # Height along the normal: no division by cos(latitude), so it works at the poles.
     foot_across = across - SEMI_MAJOR_AXIS_M * cosine
     foot_z = z - SEMI_MINOR_AXIS_M * sine
     height = foot_across * np.cos(latitude) + foot_z * np.sin(latitude)

@@ -74,6 +74,7 @@ def rounded_path(
         raise ValueError(f"expected a chord error above 0 m, got {chord_error_m}")
     if radii.shape != (len(points),):
         raise ValueError(f"expected {len(points)} corner radii, got an array of {radii.shape}")
+    # NaN compares as false, so that it is caught here as well.
     if not (np.abs(points).max() <= FARTHEST_M and np.abs(radii).max() <= FARTHEST_M):
         return straight_path(points)
     return _rounded(points, corner_reaches_m(points, radii), chord_error_m)
@@ -86,6 +87,7 @@ def corner_reaches_m(waypoints_m: FloatArray, corner_radii_m: FloatArray) -> Flo
         radii[[0, -1]] = 0.0
     lengths = np.linalg.norm(np.diff(waypoints_m, axis=0), axis=1)
     wanted = radii[:-1] + radii[1:]
+    # Where two corners overlap, both shrink by the same factor.
     share = np.divide(lengths, wanted, out=np.ones_like(lengths), where=wanted > lengths)
     reaches = radii.copy()
     reaches[:-1] = np.minimum(reaches[:-1], radii[:-1] * share)
@@ -128,6 +130,7 @@ def _rounded(points: FloatArray, reaches: FloatArray, chord_error_m: float) -> P
     for index in range(1, len(points) - 1):
         corner = _corner(points[index - 1 : index + 2], float(reaches[index]), chord_error_m)
         pieces.append(corner)
+        # The segments after the middle of the corner belong to the next leg.
         of_corner = np.arange(len(corner) - 1) >= (len(corner) - 1) / 2
         legs.append(np.concatenate([[index - 1], index - 1 + of_corner]))
     if len(points) > 1:

@@ -51,6 +51,7 @@ class Polygon:
     def _take(self, area: shapely.Polygon) -> None:
         self._area = area
         self._edge = shapely.boundary(area)
+        # Prepared geometries answer repeated queries many times faster.
         shapely.prepare(self._area)
         shapely.prepare(self._edge)
         west, south, east, north = shapely.bounds(self._area)
@@ -111,6 +112,7 @@ class Polygon:
         Every point of one is then inside and more than `inset_m` from the edge; with none, on the
         edge is inside. With a negative inset every point is inside, or outside by that at most.
         """
+        # A negative inset grows the region: GEOS has no such query, so make the larger polygon.
         if inset_m < -LEAST_RESIZE_M:
             return self._resized(-inset_m).holds(footprints)
         inside = self._is_in_the_middle(footprints, inset_m)
@@ -194,6 +196,7 @@ def region_fault(region: Region) -> str | None:
     if not all(is_on_earth(ring).all() for ring in rings):
         return "it has a corner that is not finite or not on the earth"
     shape = _shape(region)
+    # GEOS appends the position in brackets.
     reason, _, place = str(shapely.is_valid_reason(shape)).partition("[")
     if reason == "Valid Geometry":
         return None if shapely.area(shape) > 0.0 else "it has no area"

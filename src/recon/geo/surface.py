@@ -46,6 +46,7 @@ class Surface:
     def heights_m(self, points_m: npt.ArrayLike) -> FloatArray:
         """Return the heights (N,) at (N, 2) east-north points."""
         nodes = self._nodes(points_m)
+        # Points outside get index 0 for the lookup, and NaN afterwards.
         known = self._covers(nodes)
         places = np.where(known[:, np.newaxis], nodes, 0.0)
         return np.where(known, self._bilinear(places, self._cells(places)), np.nan)
@@ -138,6 +139,7 @@ class _Highest:
 
     def _along_known(self, starts: FloatArray, ends: FloatArray) -> FloatArray:
         leg, share = _lattice_crossings(starts, ends)
+        # Neighbouring crossings of one leg bound a piece inside one lattice cell.
         is_piece = leg[1:] == leg[:-1]
         leg, begin, end = leg[:-1][is_piece], share[:-1][is_piece], share[1:][is_piece]
         step = ends[leg] - starts[leg]
@@ -208,6 +210,7 @@ class _Highest:
             least, most = _sides_of_tiles(tiles, level, normals[which], offsets[which])
             is_inside, meets = (least >= 0.0).all(axis=1), (most >= 0.0).all(axis=1)
             np.maximum.at(highest, which[is_inside], top[is_inside])
+            # Branch and bound: descend only into tiles that may raise the maximum.
             goes_on = meets & ~is_inside & (top > highest[which])
             which = np.repeat(which[goes_on], 4)
             tiles = (2 * tiles[goes_on][:, np.newaxis] + _CHILDREN).reshape(-1, 2)

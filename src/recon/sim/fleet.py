@@ -19,7 +19,7 @@ from recon.sim.errors import FaultError
 from recon.sim.flight.air import Air
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery
-from recon.sim.flight.flight_modes import ActiveMode, BackAndForth, Grounded, Hold, TakeOff
+from recon.sim.flight.flight_modes import ActiveMode, BackAndForth, Grounded, PositionHold, TakeOff
 from recon.sim.flight.kinematics import AircraftMotion
 from recon.sim.world import Wind, WindSettings
 
@@ -112,6 +112,7 @@ def _build_app(
     config: SimulationConfig, serial: str, number: int, start_ns: int, renders_inline: bool
 ) -> SimulatedApp:
     random = Random(f"{config.seed}/{serial}/setup")
+    # Drawn even when configured, so that later draws do not depend on the configuration.
     drawn_bias_m = random.uniform(-LARGEST_BIAS_M, LARGEST_BIAS_M)
     endurance_s = config.endurances_s.get(serial, config.endurance_s)
     battery = Battery(random.uniform(0.9, 1.0), endurance_s)
@@ -140,7 +141,7 @@ def _build_app(
         battery_swap_s=config.battery_swap_s,
     )
     motion = _imager_start(config) if is_imager else _survey_start(config, number)
-    active_mode: ActiveMode = Grounded() if motion.height_m == 0.0 else Hold()
+    active_mode: ActiveMode = Grounded() if motion.height_m == 0.0 else PositionHold()
     east_m, north_m = (float(v) for v in enu_from_point(LocalFrame(config.home), home)[:2])
     if config.wanders and not is_imager:
         active_mode = _wandering(settings, motion, number, random, (north_m, east_m))
@@ -149,6 +150,7 @@ def _build_app(
     aircraft = Aircraft(start_ns, settings, motion, active_mode, battery=battery, air=air)
     if not is_imager or config.imager is None:
         return SimulatedApp(app, aircraft)
+    # A generator of its own: adding a camera must not change the aircraft.
     feed_random = Random(f"{config.seed}/{serial}/feed")
     feed = CameraFeed(config.imager.source, config.imager.feed, feed_random, start_ns)
     return SimulatedApp(app, aircraft, feed, config.imager.rig)

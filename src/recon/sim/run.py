@@ -83,6 +83,7 @@ class _AppShell:
             order = await self._serve(reader, writer, MAIN_LINK)
         finally:
             self.app.disconnected(MAIN_LINK)
+            # Kept open by a task of its own, so that the app reconnects at once.
             if order is not None and order.kind is LinkOrderKind.ABANDON:
                 self._start(_hold_open(writer, order.seconds))
             else:
@@ -99,6 +100,7 @@ class _AppShell:
         """Read and write until the connection ends (None) or a fault requires an action on it."""
         writer.transport.set_write_buffer_limits(high=WRITE_BUFFER_BYTES)
         self.app.connected(time.monotonic_ns(), link)
+        # One pending read is kept across loops: cancelling a StreamReader.read may lose bytes.
         receiving: asyncio.Future[bytes] | None = None
         try:
             while True:
@@ -136,6 +138,7 @@ class _AppShell:
         One packet per send, because some stations take a read for a packet.
         """
         packets = self.app.advance(time.monotonic_ns(), link)
+        # `advance` was called all the same: time goes on for an app whose packets are dropped.
         if writer.transport.get_write_buffer_size() < WRITE_BUFFER_BYTES:
             for packet in packets:
                 writer.write(packet)

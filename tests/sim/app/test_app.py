@@ -17,7 +17,7 @@ from recon.sim.app.commands import AppBehaviour, HoverOnGround
 from recon.sim.app.telemetry import FIELD_SENSORS, HomeAltitude, TelemetrySensors
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
-from recon.sim.flight.flight_modes import Hold
+from recon.sim.flight.flight_modes import PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
@@ -336,7 +336,7 @@ def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> N
 
 def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:
     altitude = HomeAltitude(275.0)
-    aircraft = Aircraft(0, motion=AircraftMotion(height_m=50.0), active_mode=Hold())
+    aircraft = Aircraft(0, motion=AircraftMotion(height_m=50.0), active_mode=PositionHold())
     ends = []
     for seed in range(200):
         sensors = TelemetrySensors(

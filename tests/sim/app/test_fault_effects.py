@@ -15,7 +15,7 @@ from recon.sim.app.camera_feed import CameraFeed, FeedSettings
 from recon.sim.app.faults import FaultKind, InjectedFault
 from recon.sim.camera.frames import CameraView
 from recon.sim.flight.aircraft import Aircraft
-from recon.sim.flight.flight_modes import Hold
+from recon.sim.flight.flight_modes import PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
 
 LAND = wire.EmergencyCommand(action=1)
@@ -204,7 +204,7 @@ def pictures(app_bench, flights):
     kind_of_bench = type(app_bench())
 
     def make(kind: FaultKind, duration_s: float = 3.0) -> list[np.ndarray]:
-        aircraft = Aircraft(0, motion=AircraftMotion(height_m=100.0), active_mode=Hold())
+        aircraft = Aircraft(0, motion=AircraftMotion(height_m=100.0), active_mode=PositionHold())
         feed = CameraFeed(Numbered(), FeedSettings(2.0, latency_s=0.3), Random(5), 0)
         fault = InjectedFault(kind, "*", 3.0, duration_s)
         settings = AppSettings("SIM-IMAGER", flights.home, seed=4, faults=(fault,))

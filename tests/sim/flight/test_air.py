@@ -15,7 +15,7 @@ from recon.safety.settings import EnergySettings
 from recon.sim.flight.air import Air, Squall
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery, flying_load
-from recon.sim.flight.flight_modes import Hold, Stick
+from recon.sim.flight.flight_modes import PositionHold, Stick
 from recon.sim.flight.kinematics import AircraftMotion, Limits, VelocityDemand, step
 from recon.sim.flight.mission import MissionPoint
 from recon.sim.world import Wind, WindSettings
@@ -36,7 +36,7 @@ def in_wind(settings: WindSettings, north_m: float = 0.0, height_m: float = 40.0
     return Aircraft(
         0,
         motion=AircraftMotion(north_m=north_m, height_m=height_m),
-        active_mode=Hold(),
+        active_mode=PositionHold(),
         battery=Battery(1.0, ENDURANCE_S),
         air=Air(Wind(settings)),
     )

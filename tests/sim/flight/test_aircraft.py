@@ -5,7 +5,7 @@ import pytest
 from recon.model.vehicle import BatteryWarning, FlightMode
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery
-from recon.sim.flight.flight_modes import CONFIRM_HEIGHT_M, Hold, Stick
+from recon.sim.flight.flight_modes import CONFIRM_HEIGHT_M, PositionHold, Stick
 from recon.sim.flight.kinematics import AircraftMotion, Limits
 
 
@@ -91,7 +91,7 @@ def test_return_climbs_flies_home_and_lands(flights) -> None:
         0,
         AircraftSettings(go_home_height_m=40.0),
         AircraftMotion(north_m=150.0, east_m=-80.0, height_m=15.0),
-        Hold(),
+        PositionHold(),
     )
     aircraft.go_home()
     assert aircraft.flight_mode is FlightMode.GO_HOME
@@ -102,7 +102,9 @@ def test_return_climbs_flies_home_and_lands(flights) -> None:
 
 
 def test_return_from_above_the_go_home_height_does_not_descend_first(flights) -> None:
-    aircraft = Aircraft(0, motion=AircraftMotion(north_m=100.0, height_m=90.0), active_mode=Hold())
+    aircraft = Aircraft(
+        0, motion=AircraftMotion(north_m=100.0, height_m=90.0), active_mode=PositionHold()
+    )
     aircraft.go_home()
     flights.fly_until(aircraft, lambda a: a.motion.north_m < 5.0, 60.0)
     assert aircraft.motion.height_m == pytest.approx(90.0, abs=0.5)

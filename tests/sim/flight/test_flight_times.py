@@ -4,7 +4,7 @@ import pytest
 
 from recon.model.vehicle import FlightMode
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
-from recon.sim.flight.flight_modes import Hold, Stick
+from recon.sim.flight.flight_modes import PositionHold, Stick
 from recon.sim.flight.kinematics import AircraftMotion, Limits
 from recon.sim.flight.mission import MissionPoint
 
@@ -70,7 +70,7 @@ def test_a_return_takes_its_climb_leg_and_landing(flights) -> None:
         0,
         AircraftSettings(go_home_height_m=62.0),
         AircraftMotion(north_m=-300.0, height_m=30.0),
-        Hold(),
+        PositionHold(),
     )
     aircraft.go_home()
     climb_s = flights.fly_until(aircraft, lambda a: a.motion.height_m >= 61.0)

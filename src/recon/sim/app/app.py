@@ -35,7 +35,7 @@ from recon.model.geo import GeoPoint
 from recon.model.imagery import CameraPose
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.app.camera_feed import CameraFeed, Shot
-from recon.sim.app.commands import AppBehaviour, CommandHandler, CommandResponse
+from recon.sim.app.commands import AppBehaviour, AppResponse, CommandHandler
 from recon.sim.app.fault_effects import AircraftFaults, FaultSchedule
 from recon.sim.app.faults import (
     AIRCRAFT_FAULTS,
@@ -137,7 +137,7 @@ class SimulatedApp:
         )
         self._commands = CommandHandler(home, aircraft, feed, behaviour, self._altitude)
         self._links: dict[int, _Link] = {}
-        self._pending: deque[tuple[int, CommandResponse]] = deque()
+        self._pending: deque[tuple[int, AppResponse]] = deque()
         self._link_orders: deque[LinkOrder] = deque()
         name = f"{settings.seed}/{settings.serial}/faults"
         self._plan = FaultSchedule(settings.faults, name, self._start_ns)
@@ -281,6 +281,7 @@ class SimulatedApp:
         if response is None:
             self._log.append(f"ignored a {type(packet).__name__}")
             return
+        # Refusal and acknowledgment are separate faults: each may be active without the other.
         refuses = self._has(FaultKind.NEGATIVE_ACK, now_ns)
         if not self._has(FaultKind.NO_ACK, now_ns):
             positive = response.is_positive and not refuses
@@ -335,6 +336,7 @@ class SimulatedApp:
         return None if self.rig is None else self.rig.pose_at(self.true_reference())
 
     def _send_images(self, feed: CameraFeed, now_ns: int) -> None:
+        # Taken from the feed even when not sent: frames of a dropout are lost, not delayed.
         packets = feed.due(now_ns)
         if MAIN_LINK in self._links and not self._has(FaultKind.TELEMETRY_DROPOUT, now_ns):
             for packet in packets:
@@ -364,6 +366,7 @@ class SimulatedApp:
     def _begin_link_fault(self, fault: InjectedFault) -> None:
         self._log.append(f"fault {fault.kind.value}")
         self._link_orders.append(LinkOrder(_LINK_ORDERS[fault.kind], fault.duration_s))
+        # The first link stays open: both report the same serial.
         if fault.kind is FaultKind.SECOND_LINK:
             return
         self.disconnected()

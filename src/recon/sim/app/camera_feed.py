@@ -114,6 +114,7 @@ class CameraFeed:
             raise FrameSourceError(f"expected a positive frame rate, got {fps_hz}")
         self.target_fps_hz = min(fps_hz, self.settings.largest_fps_hz)
         self.next_shot_ns = (
+            # A new rate must not delay the next frame, nor send one early.
             now_ns if not self.is_on else min(self.next_shot_ns, self._after(now_ns))
         )
         self.is_on = True
@@ -121,6 +122,7 @@ class CameraFeed:
     def switch_off(self) -> None:
         """Send no more frames; those taken and not yet sent are lost."""
         self.is_on = False
+        # Shots being rendered come back later by `add`, which then drops them.
         self._in_hand -= len(self._taken)
         self._taken.clear()
         self._ready.clear()
@@ -174,6 +176,7 @@ class CameraFeed:
         self._in_hand -= 1
         if self.is_on:
             self._ready.append((shot.send_at_ns, shot.view.number, packet))
+            # Rendering threads finish in any order.
             self._ready.sort()
 
     def lose(self) -> None:

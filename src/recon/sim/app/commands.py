@@ -43,7 +43,7 @@ class AppBehaviour:
 
 
 @dataclass(frozen=True, slots=True)
-class CommandResponse:
+class AppResponse:
     """The acknowledgment of one command packet, and the action (returning a log line)."""
 
     source_pid: int
@@ -70,7 +70,7 @@ class CommandHandler:
         self._feed = feed
         self._behaviour = behaviour
 
-    def response(self, packet: wire.Packet) -> CommandResponse | None:
+    def response(self, packet: wire.Packet) -> AppResponse | None:
         """Return the response, or None for a packet that is not a command."""
         match packet:
             case wire.EmergencyCommand():
@@ -78,18 +78,18 @@ class CommandHandler:
             case wire.CameraControl():
                 return self._camera(packet)
             case wire.ExecuteWaypointMission():
-                return CommandResponse(packet.PID, True, lambda now_ns: self._fly(packet))
+                return AppResponse(packet.PID, True, lambda now_ns: self._fly(packet))
             case wire.VirtualStickCommand():
-                return CommandResponse(packet.PID, True, lambda now_ns: self._stick(packet))
+                return AppResponse(packet.PID, True, lambda now_ns: self._stick(packet))
             case _:
                 return None
 
-    def _emergency(self, packet: wire.EmergencyCommand) -> CommandResponse:
+    def _emergency(self, packet: wire.EmergencyCommand) -> AppResponse:
         acts: dict[int, Callable[[], str]] = {0: self._hover, 1: self._land, 2: self._go_home}
         act = acts.get(packet.action)
         if act is None:
             return _refusal(packet.PID, f"emergency action {packet.action} unknown")
-        return CommandResponse(packet.PID, True, lambda now_ns: act())
+        return AppResponse(packet.PID, True, lambda now_ns: act())
 
     def _hover(self) -> str:
         if self._aircraft.is_on_ground and self._takes_off_on_hover:
@@ -112,16 +112,17 @@ class CommandHandler:
     def _takes_off_on_hover(self) -> bool:
         return self._behaviour.hover_on_ground is HoverOnGround.TAKEOFF
 
-    def _camera(self, packet: wire.CameraControl) -> CommandResponse:
+    def _camera(self, packet: wire.CameraControl) -> AppResponse:
         feed = self._feed
         if feed is None:
             return _refusal(packet.PID, "camera control: no camera")
         if packet.action == 0:
-            return CommandResponse(packet.PID, True, lambda now_ns: _switch_off(feed))
+            return AppResponse(packet.PID, True, lambda now_ns: _switch_off(feed))
         fps_hz = packet.target_fps_hz
+        # NaN and infinity come from the wire too.
         if packet.action != 1 or not (isfinite(fps_hz) and fps_hz > 0.0):
             return _refusal(packet.PID, f"camera control: action {packet.action}, {fps_hz:g} fps")
-        return CommandResponse(packet.PID, True, lambda now_ns: _switch_on(feed, fps_hz, now_ns))
+        return AppResponse(packet.PID, True, lambda now_ns: _switch_on(feed, fps_hz, now_ns))
 
     def _fly(self, packet: wire.ExecuteWaypointMission) -> str:
         points = self.mission_points(packet)
@@ -199,8 +200,8 @@ class CommandHandler:
         return float(north), float(east)
 
 
-def _refusal(pid: int, why: str) -> CommandResponse:
-    return CommandResponse(pid, False, lambda now_ns: f"{why}: refused")
+def _refusal(pid: int, why: str) -> AppResponse:
+    return AppResponse(pid, False, lambda now_ns: f"{why}: refused")
 
 
 def _switch_on(feed: CameraFeed, fps_hz: float, now_ns: int) -> str:

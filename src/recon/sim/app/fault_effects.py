@@ -52,6 +52,7 @@ class FaultSchedule:
         begin_ns = self._start_ns + seconds_to_ns(fault.start_s)
         whole = (now_ns - begin_ns) // burst_ns + 1
         ends_ns = fault.end_ns(self._start_ns)
+        # A burst never waits beyond the end of the fault.
         due_ns = begin_ns + whole * burst_ns
         return due_ns if ends_ns is None else min(due_ns, ends_ns)
 
@@ -69,6 +70,7 @@ class FaultSchedule:
             return packet
         changed = bytearray(packet)
         for _ in range(self._changes.randint(1, MOST_CHANGED_BYTES)):
+            # Never XOR with 0: a chosen byte really changes.
             changed[self._changes.randrange(len(changed))] ^= self._changes.randint(1, 255)
         return bytes(changed)
 

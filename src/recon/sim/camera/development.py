@@ -47,7 +47,9 @@ def develop(lens: Lens, imager: CameraSettings, scene: Scene) -> RgbImage:
     air = (1.0 - clear_share) * lens.vignette
     clear_share *= lens.vignette
     far_light = scene.light.at(np.array(_mean_beam(scene), dtype=np.float32))
+    # All three channels in one draw: the noise of a frame is a function of its number.
     noise = noise_of(imager.seed, scene.number, (3, *beam.shape))
+    # Channel by channel: planes of float32 stay in the cache, (rows, cols, 3) would not.
     channels = []
     for number in range(3):
         light = beam * np.float32(scene.light.beam[number])
@@ -168,6 +170,7 @@ def read_out(
 
     `noise` has mean 0 and standard deviation 1; 0 outside the image circle.
     """
+    # Shot noise grows with the root of the light, read noise is constant.
     noise *= np.sqrt(
         np.float32(settings.read_noise**2) + light * np.float32(1.0 / settings.full_well)
     )

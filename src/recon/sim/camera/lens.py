@@ -125,6 +125,7 @@ def ground_rays(lens: Lens, pose: CameraPose, relief: Relief | None) -> GroundRa
     is_ground = tangent < STEEPEST_TANGENT
     tangent = np.minimum(tangent, STEEPEST_TANGENT).astype(np.float32)
     towards = (rays[:, :, :2] / np.maximum(across, 1e-9)[:, :, np.newaxis]).astype(np.float32)
+    # Directions and tangents are computed once; relief only changes the height above ground.
     height_m = _heights_m(pose, tangent, towards, relief)
     level_m = height_m * tangent
     east, north = _places(pose, level_m, towards)
@@ -154,6 +155,7 @@ def _heights_m(
     if relief is None:
         return above_m
     height_m = above_m
+    # Fixed-point iteration: height above the ground point found with the last height.
     for _ in range(RELIEF_STEPS):
         ground_m = relief.height_m(*_places(pose, height_m * tangent, towards))
         height_m = np.maximum(above_m - ground_m, LEAST_HEIGHT_M).astype(np.float32)

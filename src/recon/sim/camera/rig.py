@@ -52,6 +52,7 @@ def true_pose(pose: CameraPose, settings: HoverSettings, seed: int, time_s: floa
     )
     drift = [_value((seed, DRIFT + axis), time_s, settings.drift_s) for axis in range(3)]
     shift_m = np.array(drift) * (settings.drift_m, settings.drift_m, settings.drift_up_m)
+    # The lean is about the camera's own axes, so it is applied first (from the right).
     return CameraPose(pose.rotation_enu_camera @ _rotation(lean_rad), pose.position_enu_m + shift_m)
 
 

@@ -46,6 +46,7 @@ class IntervalTimer:
 
     def capture_ns(self, number: int) -> int:
         """Return when photo `number` is taken, in ns since the simulation's start."""
+        # Seeded per photo: the delay does not depend on which photos were asked for.
         late_s = Random(f"{self.seed}/{self.serial}/photo {number}").uniform(0.0, LATEST_S)
         return seconds_to_ns(self.phase_s + number * self.interval_s + late_s)
 

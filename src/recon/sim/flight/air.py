@@ -85,6 +85,7 @@ class Air:
 
     def step(self, motion: AircraftMotion, now_ns: int, seconds: float) -> None:
         """Advance by `seconds`: wind at the aircraft, estimate, and velocity error."""
+        # Fast path for calm air: nearly all tests and many flights.
         if self.wind is None and self._squall is None and self.push == self._known == STILL:
             self.felt = STILL
             return
@@ -93,6 +94,7 @@ class Air:
         self._look(motion, now_ns)
         if is_first:
             self._known, self._steady_mps = self.felt, hypot(*self.horizontal)
+        # Vertical gusts cannot pass through the ground.
         low = min(1.0, max(0.0, motion.height_m) / GROUND_EFFECT_M)
         self.push = (
             self._pushed(0, seconds, 1.0),
@@ -100,6 +102,7 @@ class Air:
             self._pushed(2, seconds, low),
         )
         learnt = seconds / LEARNS_WITHIN_S
+        # Explicit Euler is stable here: the tick of 50 ms is far below both time constants.
         known, felt = self._known, self.felt
         self._known = (
             known[0] + learnt * (felt[0] - known[0]),

@@ -4,12 +4,12 @@ Theory of operation
 -------------------
 The aircraft is always in one `ActiveMode` (`flight_modes`, `mission`). Every 50 ms the mode gives a
 velocity demand, wind and limits are applied, kinematics move the aircraft, and the mode may name
-its successor: TakeOff -> what follows it, MissionFlight -> Hold or Land, GoHome -> Land,
+its successor: TakeOff -> what follows it, MissionFlight -> PositionHold or Land, GoHome -> Land,
 Land -> Grounded. Everything else changes the mode from outside:
 
 - commands of the app (`hover`, `land`, `go_home`, `fly_mission`, `stick`), which are ignored on the
   ground, while the pilot has control, or without GNSS, as each method states;
-- the pilot (`pilot_takes`), loss of GNSS (Hold in ATTI, drifting with the wind), a crash;
+- the pilot (`pilot_takes`), loss of GNSS (PositionHold in ATTI, drifting with the wind), a crash;
 - the battery: below `FORCED_LANDING_FRACTION` the aircraft lands where it is, whatever it flies.
 
 Home is set at each takeoff. `MissionID` counts missions started, and is 0 while none is flown.
@@ -22,7 +22,15 @@ from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import FlightMode
 from recon.sim.flight.air import Air
 from recon.sim.flight.battery import FORCED_LANDING_FRACTION, GROUND_LOAD, Battery, flying_load
-from recon.sim.flight.flight_modes import ActiveMode, GoHome, Grounded, Hold, Land, Stick, TakeOff
+from recon.sim.flight.flight_modes import (
+    ActiveMode,
+    GoHome,
+    Grounded,
+    Land,
+    PositionHold,
+    Stick,
+    TakeOff,
+)
 from recon.sim.flight.kinematics import (
     AircraftMotion,
     Limits,
@@ -131,13 +139,13 @@ class Aircraft:
     def hover(self) -> None:
         """Stop and hold; ignored on the ground."""
         if not self.is_on_ground:
-            self.active_mode = Hold()
+            self.active_mode = PositionHold()
 
     def take_off(self, then: ActiveMode | None = None) -> None:
         """Take off from the ground, which becomes home, and continue with `then`."""
         if self.is_on_ground:
             self._set_home()
-            self.active_mode = TakeOff(self.settings.limits, then or Hold())
+            self.active_mode = TakeOff(self.settings.limits, then or PositionHold())
         elif then is not None:
             self.active_mode = then
 
@@ -168,6 +176,7 @@ class Aircraft:
         """
         if not self.accepts_app_control:
             return
+        # 16 bits on the wire; 0 means no mission, so 65535 is followed by 1.
         self._mission_count = self._mission_count % 0xFFFF + 1
         settings = self.settings
         flight = MissionFlight(
@@ -193,25 +202,26 @@ class Aircraft:
         """The pilot takes control by the mode switch, and holds."""
         self.has_pilot_control = True
         if not self.is_on_ground:
-            self.active_mode = Hold(mode)
+            self.active_mode = PositionHold(mode)
 
     def pilot_releases(self) -> None:
         """The pilot switches back; the aircraft holds until commanded."""
         self.has_pilot_control = False
-        if isinstance(self.active_mode, Hold):
-            self.active_mode = Hold()
+        if isinstance(self.active_mode, PositionHold):
+            self.active_mode = PositionHold()
 
     def lose_gnss(self) -> None:
         """Lose the position: the current mode ends and the aircraft drifts with the wind."""
         self.has_gnss = False
+        # Takeoff and landing are vertical and continue on the barometer.
         if not self.is_on_ground and not isinstance(self.active_mode, Land | TakeOff):
-            self.active_mode = Hold(FlightMode.ATTI)
+            self.active_mode = PositionHold(FlightMode.ATTI)
 
     def find_gnss(self) -> None:
         """Regain the position, and hold there."""
         self.has_gnss = True
         if self.flight_mode is FlightMode.ATTI:
-            self.active_mode = Hold()
+            self.active_mode = PositionHold()
 
     def crash(self) -> None:
         """Fall to the ground at once, and stay there."""
@@ -232,6 +242,7 @@ class Aircraft:
         )
 
     def _tick(self, seconds: float) -> None:
+        # Wind first: demand, drag and load of this tick all use the same wind.
         self.air.step(self.motion, self.now_ns, seconds)
         if not self.is_on_ground:
             demand = self._disturbed(self.active_mode.demand(self.motion, seconds))
@@ -243,8 +254,10 @@ class Aircraft:
         else:
             self._change_battery()
         self.gimbal.step(seconds)
+        # The load is that of the motion just flown; on the ground only electronics draw power.
         load = flying_load(self.motion, self.air.horizontal) if self.is_flying else GROUND_LOAD
         self.battery.drain(seconds, load)
+        # Checked every tick, so that no command can override it for longer than one tick.
         if self.battery.fraction < FORCED_LANDING_FRACTION:
             self.land()
 
@@ -252,6 +265,7 @@ class Aircraft:
         """Return a demand with the wind's drift added and the height limit applied."""
         north, east, up = self._drift() if self.is_flying else (0.0, 0.0, 0.0)
         limits = self.settings.limits
+        # The height limit is a speed limit towards it, so that the aircraft slows down before it.
         highest = hold_height_mps(self.motion.height_m, self.settings.max_height_m, limits)
         return VelocityDemand(
             demand.velocity_north_mps + north,
@@ -275,6 +289,7 @@ class Aircraft:
         if following is None:
             return
         self.active_mode = following
+        # Touchdown: without this a residual velocity would move the aircraft along the ground.
         if isinstance(following, Grounded):
             self._come_to_rest()
             self._landed_at_ns = self.now_ns

@@ -5,10 +5,10 @@ Theory of operation
 A mode object lives while the mode is flown, and may keep timers. Each tick the aircraft calls
 `demand`, moves, and then calls `successor`: None keeps the mode, anything else replaces it.
 
-    Grounded --(command)--> TakeOff --(1.1 m reached)--> Hold | MissionFlight | GoHome
-    Hold, Stick, BackAndForth: stay until commanded otherwise
+    Grounded --(command)--> TakeOff --(1.1 m reached)--> PositionHold | MissionFlight | GoHome
+    PositionHold, Stick, BackAndForth: stay until commanded otherwise
     GoHome --(above home and at rest, 2 s at least)--> Land
-    MissionFlight --(last waypoint)--> Hold | Land
+    MissionFlight --(last waypoint)--> PositionHold | Land
     Land --(0.3 m, confirmed, touchdown)--> Grounded
 
 Land reports AUTO_LANDING, and CONFIRM_LANDING while it waits at 0.3 m: DJI's firmware stops there
@@ -77,7 +77,7 @@ class Grounded:
 
 
 @dataclass(slots=True)
-class Hold:
+class PositionHold:
     """Brake, then hover (DJI's position mode)."""
 
     mode: FlightMode = FlightMode.GPS_ATTI
@@ -96,7 +96,7 @@ class TakeOff:
     """Start the motors, climb to takeoff height, continue with `then`."""
 
     limits: Limits
-    then: ActiveMode = field(default_factory=Hold)
+    then: ActiveMode = field(default_factory=PositionHold)
     mode: FlightMode = FlightMode.AUTO_TAKEOFF
     _elapsed_s: float = 0.0
 
@@ -129,6 +129,7 @@ class Land:
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
         """Stop horizontally, then descend straight down."""
+        # Descend only at rest, so that it lands where the command found it.
         if motion.ground_speed_mps > 0.5:
             return VelocityDemand()
         if self._waited_s >= self.confirmation_s:
@@ -164,6 +165,7 @@ class GoHome:
         """Climb first, then fly home."""
         self._elapsed_s += seconds
         if self._height_m is None:
+            # Decided once: a descent later must not restart the climb.
             self._height_m = max(self.go_home_height_m, motion.height_m)
         up = hold_height_mps(motion.height_m, self._height_m, self.limits)
         if motion.height_m < self._height_m - 1.0:
@@ -260,5 +262,6 @@ def _towards(
     if distance < 1e-6:
         return VelocityDemand(velocity_up_mps=up_mps)
     share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
+    # Near the target the bearing is noise: keep the heading.
     yaw = heading_deg(north, east) if distance > 3.0 else None
     return VelocityDemand(north * share, east * share, up_mps, yaw)

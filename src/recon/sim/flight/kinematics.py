@@ -100,6 +100,7 @@ def braking_speed_mps(distance_m: float, deceleration_mps2: float) -> float:
     Near the target the square root is replaced by its tangent: its slope grows without bound at 0,
     and with a finite time step the approach would oscillate about the target.
     """
+    # There the tangent of slope 1/s meets the square root: v = d at d = a.
     settling_m = deceleration_mps2
     if distance_m < settling_m:
         return distance_m
@@ -109,6 +110,7 @@ def braking_speed_mps(distance_m: float, deceleration_mps2: float) -> float:
 def hold_height_mps(height_m: float, target_m: float, limits: Limits) -> float:
     """Return the vertical velocity that brings the aircraft to a height and holds it."""
     error_m = target_m - height_m
+    # With 0.4 of the acceleration the approach to a height does not overshoot.
     speed = braking_speed_mps(abs(error_m), 0.4 * limits.vertical_acceleration_mps2)
     return min(speed, limits.climb_mps) if error_m > 0.0 else -min(speed, limits.descent_mps)
 
@@ -117,6 +119,7 @@ def _follow_horizontally(
     motion: AircraftMotion, demand: VelocityDemand, seconds: float, limits: Limits, wind: Wind
 ) -> tuple[float, float]:
     asked = _clip(demand.velocity_north_mps, demand.velocity_east_mps, limits.speed_mps)
+    # Airspeed limit before the acceleration limit: the demand itself must be reachable.
     wanted_north, wanted_east = _against(asked, wind, limits.airspeed_mps)
     change_north, change_east = _clip(
         wanted_north - motion.velocity_north_mps,
@@ -168,6 +171,7 @@ def _tilt(
 ) -> tuple[float, float]:
     """Return pitch (nose up) and roll (right down) that give this acceleration against drag."""
     north, east = velocity
+    # Thrust per mass: acceleration plus drag of the motion through the air.
     push_north = (north - motion.velocity_north_mps) / seconds + DRAG_PER_S * (north - wind[0])
     push_east = (east - motion.velocity_east_mps) / seconds + DRAG_PER_S * (east - wind[1])
     heading = radians(yaw_deg)

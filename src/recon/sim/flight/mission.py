@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import hypot, sqrt
 
 from recon.model.vehicle import FlightMode
-from recon.sim.flight.flight_modes import ActiveMode, Hold, Land, heading_deg
+from recon.sim.flight.flight_modes import ActiveMode, Land, PositionHold, heading_deg
 from recon.sim.flight.kinematics import (
     BRAKING_MPS2,
     AircraftMotion,
@@ -101,7 +101,7 @@ class MissionFlight:
             flown = self._curve.is_flown and motion.ground_speed_mps < ARRIVED_BELOW_MPS
         if not flown:
             return None
-        return Land(self.confirmation_s) if self.lands_at_end else Hold()
+        return Land(self.confirmation_s) if self.lands_at_end else PositionHold()
 
     def _rise(self, motion: AircraftMotion, target: MissionPoint) -> VelocityDemand:
         """Climb to the first waypoint's height before flying there (DJI's safe start)."""
@@ -154,6 +154,7 @@ class CurveFollower:
             )
         ]
         lag_m = sqrt(sum(part * part for part in behind))
+        # The target point waits for a lagging aircraft, else corners would be cut short.
         pace = max(0.0, 1.0 - lag_m / LONGEST_LAG_M)
         speed = 0.0 if self.is_flown else pace * max(LEAST_PATH_SPEED_MPS, place.speed_mps)
         self._along_m += speed * seconds
@@ -161,6 +162,7 @@ class CurveFollower:
             speed * along + PATH_GAIN_PER_S * back
             for along, back in zip(place.direction, behind, strict=True)
         )
+        # On a vertical piece of the path the heading is undefined: keep it.
         yaw = heading_deg(*place.direction[:2]) if hypot(*place.direction[:2]) > 1e-3 else None
         return VelocityDemand(north, east, up, yaw)
 
@@ -188,5 +190,6 @@ def _pursue(
     steepest = limits.climb_mps if up > 0.0 else limits.descent_mps
     if abs(up) * share > steepest:
         share = steepest / abs(up)
+    # Near the waypoint the bearing is noise: keep the heading.
     yaw = heading_deg(north, east) if hypot(north, east) > 3.0 else None
     return VelocityDemand(north * share, east * share, up * share, yaw)

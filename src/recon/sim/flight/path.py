@@ -116,6 +116,7 @@ def _curve(waypoints: FloatArray, reach_m: float, limits: Limits) -> list[tuple[
     """Return points of the curve that cuts a corner, each with its speed limit."""
     corner = waypoints[1]
     back, ahead = _unit(waypoints[0] - corner), _unit(waypoints[2] - corner)
+    # A sharp corner: one point, with the least speed the turn allows.
     if reach_m < 1e-6:
         return [(corner, _speed_round(back, ahead, 0.5, 1e-6, limits))]
     start, end = corner + reach_m * back, corner + reach_m * ahead
@@ -160,6 +161,7 @@ def _within_limits(points: FloatArray, wanted_mps: FloatArray, limits: Limits) -
     speeds[:-1] = np.minimum(speeds[:-1], steepest / np.maximum(slopes, 1e-9))
     # v^2 = v0^2 + 2 a s with half the acceleration: the rest is for turning and path correction.
     speeds[0] = speeds[-1] = 0.0
+    # Backward pass: never faster than braking allows. Forward pass: the same for acceleration.
     for i in range(len(speeds) - 2, -1, -1):
         braked = sqrt(speeds[i + 1] ** 2 + limits.acceleration_mps2 * lengths[i])
         speeds[i] = min(speeds[i], braked)

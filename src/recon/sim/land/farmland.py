@@ -149,6 +149,7 @@ class Farmland:
 @lru_cache(maxsize=4)
 def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
     """Return the land of a seed."""
+    # Order of drawing is part of the seed's meaning: adding a draw in between changes all land.
     random = np.random.default_rng(seed)
     roads_east = _road_lines(ROAD_EAST_M, half_width_m)
     roads_north = _road_lines(ROAD_NORTH_M, half_width_m)
@@ -224,6 +225,7 @@ def _divide(
     """Split a rectangle until it has a plot's size; some of the splits become dirt tracks."""
     west, south, east, north = box
     width, height = east - west, north - south
+    # Cut across the longer side, so that plots stay compact.
     is_wide = width >= height
     longest = max(width, height)
     small_enough = longest < LARGEST_PLOT_M or (longest < 340.0 and random.random() < 0.25)

@@ -67,6 +67,7 @@ def draw(land: Farmland, part: LandPart, seed: int) -> RgbImage:
         canvas.draw_plot(plot)
     for track in index.tracks.within(box):
         canvas.fill(track, DIRT)
+    # Later objects cover earlier ones: plots, tracks, water, roads, yards, then what is high.
     canvas.draw_creek(land)
     for pond in index.ponds.within(box):
         canvas.draw_pond(pond)
@@ -161,6 +162,7 @@ class _Canvas:
         self, spacing_m: float, u: FloatImage, v: FloatImage, is_headland: npt.NDArray[np.bool_]
     ) -> FloatImage:
         """Return waves of a spacing; they fade out as pixels become too coarse (no aliasing)."""
+        # Half a wavelength per pixel is the limit; fade out before it is reached.
         visible = max(0.0, 1.0 - 2.0 * self.cell_m / spacing_m)
         if visible == 0.0:
             return np.zeros((1, 1), dtype=np.float32)

@@ -71,6 +71,7 @@ class LandTiles:
         tile_m = CELLS_M[level] * TILE_PX
         col, row = floor(east_m / tile_m + 0.5), floor(-north_m / tile_m + 0.5)
         key = (level, row, col, _sun_step(sun))
+        # One lock for all: threads that need the same tiles must not draw them twice.
         with self._drawing:
             return _kept(
                 self._squares, key, len(CELLS_M), lambda: self._draw_square(level, row, col, sun)

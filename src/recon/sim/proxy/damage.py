@@ -80,6 +80,7 @@ class Flips:
         changed = bytearray(data)
         while self._untouched < len(data):
             at = int(self._untouched)
+            # XOR with 1 to 255: the byte always changes.
             changed[at] ^= self._random.randint(1, 255)
             self._untouched = at + 1 + self._gap()
         self._untouched -= len(data)
@@ -151,6 +152,7 @@ class Channel:
         late_s = self._damage.delay_s + self._jitter.uniform(0.0, self._damage.jitter_s)
         for piece in self._pieces(self._flips.through(data)):
             sent_ns = self._sent_ns(len(piece), now_ns)
+            # Jitter must not reorder bytes: no piece is due before the one in front of it.
             due_ns = max(self._last_due_ns, sent_ns + seconds_to_ns(late_s))
             self._last_due_ns = int(self._stalls.passes_ns(due_ns))
             self._under_way.append((self._last_due_ns, piece))

@@ -100,6 +100,7 @@ class _Relay:
         """Serve one app until its connection ends, either way."""
         self._count += 1
         number = self._count
+        # Bounded: each connection may hold up to 8 MiB.
         if len(self._tasks) >= MOST_CONNECTIONS:
             self.say(f"connection {number}: refused, {MOST_CONNECTIONS} are open")
             _reset(writer)
@@ -199,6 +200,7 @@ class _Pump:
                 await self._write_due()
         finally:
             await _end_reading(reading)
+        # Half close: the other direction may still carry bytes.
         if self.writer.can_write_eof():
             self.writer.write_eof()
 
@@ -224,6 +226,7 @@ class _Pump:
         for piece in self.channel.pop_due(time.monotonic_ns()):
             self.writer.write(piece)
             self.passed_bytes += len(piece)
+            # Without drain a slow receiver would fill memory instead of the channel.
             await self.writer.drain()
 
 

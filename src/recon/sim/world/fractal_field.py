@@ -51,12 +51,14 @@ def tile(band: Band, number: int) -> FloatImage:
     """Return one keyframe of a band: value, slope along x, along y, and a zero, as float32."""
     shape = (TILE_CELLS, TILE_CELLS // 2 + 1, 2)
     drawn = generator(band.stream, number).standard_normal(shape, dtype=np.float32)
+    # Noise is drawn in the frequency domain: real and imaginary parts are one complex wave.
     waves = drawn.view(np.complex64)[:, :COLUMNS, 0] * _amplitude(band.slope, band.outer_share)
     per_m = np.complex64(2j * np.pi * CELLS_PER_WAVE / band.scale_m)
     found = np.zeros((TILE_CELLS + PADDING, TILE_CELLS + PADDING, 4), dtype=np.float32)
     whole = found[:TILE_CELLS, :TILE_CELLS]
     for channel, part in enumerate((waves, *(waves * (per_m * c) for c in _float32_cycles()))):
         whole[:, :, channel] = irfft(ifft(part, axis=0), TILE_CELLS, axis=1)
+    # Wrap around: interpolation at the end of the tile reads its start.
     found[TILE_CELLS:, :TILE_CELLS] = whole[:PADDING]
     found[:, TILE_CELLS:] = found[:, :PADDING]
     return found
@@ -237,6 +239,7 @@ def disk_weight(wave_m: float | FloatArray, blur_m2: FloatArray) -> FloatArray:
     That is 2 J1(x) / x of x = pi diameter / wave, by its series up to its first zero, then nothing.
     Waves and blurs are broadcast together.
     """
+    # y = x squared. Beyond the first zero the weight is set to 0: the lobes after it are small.
     y = np.minimum(np.pi * np.pi * blur_m2 / (wave_m * wave_m), FIRST_ZERO_SQUARED)
     series = 1.0 - y * (1.0 / 8.0 - y * (1.0 / 192.0 - y * (1.0 / 9216.0 - y / 737280.0)))
     return np.where(y < FIRST_ZERO_SQUARED, series, 0.0)
@@ -244,6 +247,7 @@ def disk_weight(wave_m: float | FloatArray, blur_m2: FloatArray) -> FloatArray:
 
 def _remap_at(band: Band, number: IndexArray, places: _Places, moment: IndexArray) -> FloatImage:
     """Sample each point from the keyframe of its moment's number (K,)."""
+    # Fast path: all points share one keyframe.
     if number.size == 1 or number.min() == number.max():
         return _remap(band, int(number[0]), places.cols, places.rows)
     flat_cols, flat_rows = places.cols.ravel(), places.rows.ravel()

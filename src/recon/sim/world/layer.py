@@ -50,8 +50,10 @@ class CloudLayer:
         Times and penumbrae (those of this layer's height at these times) are (K,); `moment` (N,) is
         the number of each point's, or (1,) if that is one for all.
         """
+        # A threshold at infinity would make NaN.
         if self.settings.cover in (0.0, 1.0):
             return np.full(east_m.size, self._even_share, dtype=np.float32)
+        # Frozen drift: sample the field where the cloud was at time 0.
         off_east_m, off_north_m = self._offset_m(time_s, edge)
         x_m, y_m = self._field_place(east_m + off_east_m[moment], north_m + off_north_m[moment])
         found = self.field.sample(x_m, y_m, time_s, edge.across_m * edge.along_m, moment)
@@ -83,6 +85,7 @@ class CloudLayer:
     def _threshold(self, time_s: FloatArray) -> FloatArray:
         """Return the field's value at cloud edges; it varies slowly, so that the cover does."""
         at = self.settings
+        # The modulated threshold widens the distribution: scale it, so that the mean cover is kept.
         middle = NormalDist().inv_cdf(1.0 - at.cover) * (1.0 + at.modulation**2) ** 0.5
         wandering = gaussian((*self.stream, MODULATION), time_s, at.modulation_s)
         threshold: FloatArray = middle - at.modulation * wandering

@@ -121,6 +121,7 @@ def ground_light(
     """
     clear = clear_sky_light(sun, settings)
     strength = clear.global_w_m2 / reference_w_m2
+    # Beam and sky are complementary: white in full sun, whatever the diffuse share.
     blue_sky = clear.diffuse_share * np.array(SKY_COLOUR)
     beam = np.maximum(1.0 - blue_sky, 0.0) if clear.direct_w_m2 > 0.0 else np.zeros(3)
     from_clouds = (settings.cloud_brightening - 1.0) * clear.diffuse_share
@@ -169,6 +170,7 @@ def beam_share(
     rise_east, rise_north = relief.slope(east_m, north_m)
     sun_east, sun_north, sun_up = (float(part) for part in light.toward_sun)
     sun_up = max(sun_up, LEAST_SUN_HEIGHT)
+    # Cosine of the angle between sun and surface normal, over that on level ground.
     facing = sun_up - rise_east * sun_east - rise_north * sun_north
     facing /= sun_up * np.sqrt(1.0 + rise_east**2 + rise_north**2)
     tilted: FloatImage = (share * np.maximum(facing, 0.0)).astype(np.float32)

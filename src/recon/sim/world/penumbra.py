@@ -85,6 +85,7 @@ def extinction(excess: FloatArray, largest_depth: float) -> FloatArray:
     of the beam passes; if the layer never dims so much, half of its depth stands there.
     """
     half = log(2.0)
+    # Chosen such that the transmittance at the threshold (excess 0) is one half.
     start = half * largest_depth / (largest_depth - half) if largest_depth > half else largest_depth
     free = start * np.exp(excess)
     share: FloatArray = np.exp(-free * largest_depth / (free + largest_depth))
@@ -99,6 +100,7 @@ def extinction_table(largest_depth: float) -> FloatImage:
     """
     rows = round(2.0 * MOST_EXCESS / EXCESS_STEP) + 1
     cols = round(MOST_SPREAD / SPREAD_STEP) + 1
+    # Gauss-Chebyshev quadrature of the second kind: exact weights for a half circle.
     angles = np.arange(1, DISK_POINTS + 1) * np.pi / (DISK_POINTS + 1)
     weights = np.sin(angles) ** 2 / np.sum(np.sin(angles) ** 2)
     excess = np.linspace(-MOST_EXCESS, MOST_EXCESS, rows)[:, np.newaxis, np.newaxis]

@@ -48,6 +48,7 @@ class Wind:
         """Return the wind with its gusts at a place of the site's frame."""
         speed_mps = self._speed_mps(height_m)
         heading = radians(self._heading_deg(height_m))
+        # Gusts travel with the wind at 10 m at all heights: a column of air gusts together.
         passing_mps = max(self._speed_mps(REFERENCE_M), SLOWEST_MPS)
         downwind_m = self._downwind_m(east_m, north_m)
         along, across, up = self._gust(time_s - downwind_m / passing_mps, passing_mps)
