@@ -1,4 +1,4 @@
-"""Draws what the simulated eye sees, for docs/world.md.
+"""Draws frames of the simulated imaging drone, for docs/world.md.
 
     python -m studies.imager_pictures docs/images/imager.jpg
 
@@ -36,15 +36,15 @@ def shot(height_m: float, east_m: float, north_m: float, cover: float, time_s: f
     frames = FieldRenderer(
         imager.camera, imager.image_circle, SEED, Sky(SkySettings(SEED, layers=(clouds,)))
     )
-    said = TelemetryReference(0.0, 0.0, height_m, 15.0)
-    pose = level_pose(said, np.array([east_m, north_m, height_m]))
+    reference = TelemetryReference(0.0, 0.0, height_m, 15.0)
+    pose = level_pose(reference, np.array([east_m, north_m, height_m]))
     picture = frames.render(CameraView(time_s, 0, pose))[frames.lens.window]
     return cv2.resize(picture, (SIDE_PX, SIDE_PX), interpolation=cv2.INTER_AREA)
 
 
 def main() -> None:
     """Write the picture."""
-    parser = argparse.ArgumentParser(description="Draw what the simulated eye sees.")
+    parser = argparse.ArgumentParser(description="Draw frames of the simulated imaging drone.")
     parser.add_argument("file", type=Path)
     whole = np.hstack([shot(*at) for at in SHOTS])
     is_written, data = cv2.imencode(".jpg", whole[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, QUALITY])

@@ -7,7 +7,7 @@ one of them has no written reason in studies/survivors.toml, or a reason stands 
 A reason is found again by the function and the changed lines, not by mutmut's numbering.
 
 A mutant whose tests run out of time is not counted as noticed: on a busy machine any of them does,
-an unnoticed one too. It is run once more, by itself; what runs out of time again loops for ever, or
+an unnoticed one too. It is run once more, by itself; what runs out of time again loops forever, or
 the machine is too busy to tell, and stands among the survivors until a reason is written.
 """
 

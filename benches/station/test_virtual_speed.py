@@ -41,7 +41,7 @@ def test_eight_vehicles_without_vision(steers: bool, name: str) -> None:
 
 
 def test_eight_vehicles_with_rendered_pictures() -> None:
-    """The eye's pictures are rendered, sent, laid on the ground and read for shade and forecast."""
+    """The imaging drone's frames are rendered, sent, aligned with the ground and read."""
     scene = eight_vehicles(sees=True)
     source = scene.apps[0].feed.source if scene.apps[0].feed is not None else None
     assert source is not None

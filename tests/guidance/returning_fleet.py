@@ -1,6 +1,6 @@
 """Flies a planned fleet return in 10 Hz steps, with motion and distances of its own.
 
-Knows only what the plan says of heights, ways and pads; asks `hindrance` for leave to begin. Every
+Uses only the heights, paths and pads of the plan, and asks `hindrance` before each start. Every
 vehicle has its own speeds, hovers with a drift of its own and waits before it touches down.
 """
 
@@ -89,7 +89,7 @@ class Flown:
     fliers: dict[str, Flier]
     nearest_m: float = inf
     """Level distance of the worst pair in the air whose heights were nearer than is allowed."""
-    nearest_pair: str = "nobody"
+    nearest_pair: str = "no pair"
     most_at_once: int = 0
     most_at_a_pad: int = 0
     lasted_s: float = 0.0

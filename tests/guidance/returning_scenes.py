@@ -85,7 +85,7 @@ def drawn_scene(
     is_fenced: bool = False,
     hovers_apart: bool = True,
 ) -> Scene:
-    """Return a scene; vehicles hover as far apart as a flight is planned, unless told otherwise."""
+    """Return a scene; vehicles hover as far apart as a flight is planned, by default."""
     rng = Random(seed)
     row = row_of_pads(pads, rng.uniform(8.0, 30.0))
     zones = tuple(_zone(rng, number) for number in range(zone_count))

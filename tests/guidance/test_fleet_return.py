@@ -239,7 +239,7 @@ class TestWays:
         (left,) = scene.plan().left_out
         assert "no path to its pad" in left.reason
 
-    def test_a_pad_in_a_zone_and_a_vehicle_over_one_are_told_apart(self) -> None:
+    def test_a_pad_in_a_zone_and_a_vehicle_over_one_have_different_reasons(self) -> None:
         zone = keep_out("house", box(0.0, 200.0, 20.0))
         over = scene_of([lone(0.0, 200.0)], zones=(zone,)).plan().left_out
         assert "it is over the keep-out zone house" in over[0].reason
@@ -248,16 +248,16 @@ class TestWays:
         (left,) = scene_of([inside], zones=(zone,)).plan().left_out
         assert "its pad p is in the keep-out zone house" in left.reason
 
-    def test_a_pad_outside_the_fence_is_told(self) -> None:
+    def test_a_pad_outside_the_fence_is_left_out_with_the_reason(self) -> None:
         vehicle = CalledVehicle("A", "A", (0.0, 100.0, 30.0), 0.0, Pad("p", 0.0, -600.0, 0.0), 0.5)
         (left,) = scene_of([vehicle], boundary=box(0.0, 100.0, 420.0)).plan().left_out
         assert "its pad p is outside the site" in left.reason
 
-    def test_a_vehicle_outside_the_fence_is_told(self) -> None:
+    def test_a_vehicle_outside_the_fence_is_left_out_with_the_reason(self) -> None:
         (left,) = scene_of([lone(0.0, 900.0)], boundary=box(0.0, 100.0, 420.0)).plan().left_out
         assert left.reason.startswith("it is outside the site")
 
-    def test_no_room_under_the_ceiling_is_told(self) -> None:
+    def test_no_room_under_the_ceiling_is_the_reason(self) -> None:
         (left,) = scene_of([lone(0.0, 200.0)], ceiling_m=20.0).plan().left_out
         assert "above the ceiling" in left.reason
 

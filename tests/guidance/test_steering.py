@@ -150,7 +150,7 @@ class TestParts:
             2 * S,
         )
 
-    def test_a_halt_in_a_climb_asks_for_the_height_last_heard(self) -> None:
+    def test_a_halt_in_a_climb_demands_the_height_last_reported(self) -> None:
         climbing = begin(KinematicState(START, 0.0, 0.0, 25.0, 80.0, 0.2), S)
         assert halted(climbing, 23.5, 2 * S).height_above_takeoff_m == 23.5
 
@@ -200,7 +200,7 @@ class TestParts:
         assert north_m == pytest.approx(6.0 * 0.5 + 12.0)
         assert east_m == pytest.approx(0.0)
 
-    def test_old_telemetry_is_foreseen_no_farther_than_a_bound(self) -> None:
+    def test_prediction_from_old_telemetry_is_bounded(self) -> None:
         near = stopping_place(seen(velocity_north_mps=3.0, age_s=1.0), SETTINGS)
         assert stopping_place(seen(velocity_north_mps=3.0, age_s=inf), SETTINGS) == near
 

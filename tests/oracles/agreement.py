@@ -23,12 +23,12 @@ class Agreement:
     disagreements: list[str] = field(default_factory=list)
 
     def compare(self, scene: str, name: str, margin_m: float, refusal: Refusal | None) -> None:
-        """Count a sure margin, and a disagreement when the rule says something else."""
+        """Count a sure margin, and a disagreement when the rule disagrees."""
         is_kept = bool(margin_m > 0.0)
         (self.kept if is_kept else self.broken)[name] += 1
         if (refusal is None) is not is_kept:
-            said = "approves" if refusal is None else f"refuses ({refusal.reason})"
-            self.disagreements.append(f"{scene}: {name} {said}; the margin is {margin_m:.1f} m")
+            verdict = "approves" if refusal is None else f"refuses ({refusal.reason})"
+            self.disagreements.append(f"{scene}: {name} {verdict}; the margin is {margin_m:.1f} m")
 
 
 def over(seeds: range, compare: Callable[[int, Agreement], None], progress: bool) -> Agreement:
@@ -51,10 +51,10 @@ def run(about: str | None, names: Sequence[str], compare: Callable[[range], Agre
     began_s = time.perf_counter()
     found = compare(range(asked.scenes))
     print(f"{asked.scenes} scenes in {time.perf_counter() - began_s:.0f} s")
-    print(f"{'':<16}{'kept':>8}{'broken':>8}{'too close to tell':>20}")
+    print(f"{'':<16}{'kept':>8}{'broken':>8}{'too close to decide':>20}")
     for name in names:
         print(f"{name:<16}{found.kept[name]:>8}{found.broken[name]:>8}{found.unsure[name]:>20}")
     print(f"disagreements: {len(found.disagreements)}")
-    for said in found.disagreements[:SHOWN]:
-        print(f"  {said}")
+    for line in found.disagreements[:SHOWN]:
+        print(f"  {line}")
     return 1 if found.disagreements else 0

@@ -1,4 +1,4 @@
-"""A companion app that counts what it carries out, so that twice and never can be told apart.
+"""A companion app that counts what it carries out, so that repeated and missing commands show.
 
 Its aircraft is a point that flies straight; what matters here is the session, not the flight.
 """
@@ -77,8 +77,8 @@ class CountingApp:
             self._fly(CORE_EVERY_NS / 1e9, now_ns)
             if now_ns >= self.silent_until_ns:
                 self._report()
-        said, self._outgoing = self._outgoing, []
-        return said
+        sent, self._outgoing = self._outgoing, []
+        return sent
 
     @property
     def next_due_ns(self) -> int:

@@ -35,8 +35,8 @@ TRAFFIC = ("mission", "set out", "goto", "stick", "hover", "return", "landing", 
 TRAFFIC_SHARES = (0.16, 0.12, 0.13, 0.12, 0.12, 0.12, 0.09, 0.09, 0.05)
 ORDERS = ("mission", "goto", "nudge", "stick", "hold")
 IN_THE_WAY = ("stick", "hover", "landing", "free")
-GHOSTS_SPREAD_M = 400.0
-"""What is not heard fills the air for 150 m: nearer, it alone would decide every scene."""
+HAZARD_SPREAD_M = 400.0
+"""A hazard area is 150 m wide: nearer, it alone would decide every scene."""
 ORDER_SHARES = (0.45, 0.2, 0.08, 0.2, 0.07)
 
 
@@ -116,20 +116,20 @@ def _order(rng: np.random.Generator, order: str, spread_m: float) -> tuple[Aircr
 def _traffic(
     rng: np.random.Generator, kind: str, spread_m: float, ordered: Flight
 ) -> tuple[Aircraft, Intent, list[Course]]:
-    """A vehicle, what it was told, and what the sampling makes of it; often in the order's way."""
-    aircraft = _aircraft(rng, GHOSTS_SPREAD_M if kind == "hazard" else spread_m)
+    """A vehicle, its command, and its sampled courses; often in the order's way."""
+    aircraft = _aircraft(rng, HAZARD_SPREAD_M if kind == "hazard" else spread_m)
     if kind in IN_THE_WAY and rng.random() < 0.4:
         aircraft = replace(aircraft, here_m=_beside(rng, ordered))
     if kind in ("mission", "set out", "hazard"):
         return _flying_a_mission(rng, kind, aircraft, spread_m)
-    intent, flight = _simply_told(rng, kind, aircraft, spread_m)
+    intent, flight = _commanded(rng, kind, aircraft, spread_m)
     return aircraft, intent, [Course.of(kind, flight)]
 
 
 def _flying_a_mission(
     rng: np.random.Generator, kind: str, aircraft: Aircraft, spread_m: float
 ) -> tuple[Aircraft, Intent, list[Course]]:
-    """Under way, about to take off for it, or unheard: then it may fly on, or be anywhere near."""
+    """A mission under way, about to take off for it, or with telemetry lost."""
     route, passed = _route(rng, aircraft, spread_m), 0
     if kind == "set out":
         aircraft = _on_ground(aircraft)
@@ -138,17 +138,17 @@ def _flying_a_mission(
         aircraft = _on_route(rng, aircraft, route, passed)
     if kind == "hazard":
         aircraft = replace(aircraft, age_s=float(rng.uniform(3.2, 60.0)))
-    is_told = kind != "hazard" or bool(rng.random() < 0.5)
-    courses = [Course.of(kind, sampled.on_mission(aircraft, route, passed))] if is_told else []
+    is_known = kind != "hazard" or bool(rng.random() < 0.5)
+    courses = [Course.of(kind, sampled.on_mission(aircraft, route, passed))] if is_known else []
     if kind == "hazard":
-        told_mps = float(route.speeds_mps.max()) if is_told else 0.0
-        courses += [Course.around(kind, volume) for volume in sampled.hidden(aircraft, told_mps)]
+        known_mps = float(route.speeds_mps.max()) if is_known else 0.0
+        courses += [Course.around(kind, volume) for volume in sampled.hidden(aircraft, known_mps)]
     mission = _mission(route, aircraft.takeoff_m)
-    told = Intent(Commanded.MISSION, mission=mission, passed=passed) if is_told else Intent()
-    return aircraft, told, courses
+    intent = Intent(Commanded.MISSION, mission=mission, passed=passed) if is_known else Intent()
+    return aircraft, intent, courses
 
 
-def _simply_told(
+def _commanded(
     rng: np.random.Generator, kind: str, aircraft: Aircraft, spread_m: float
 ) -> tuple[Intent, Flight]:
     if kind == "goto":
@@ -165,7 +165,7 @@ def _simply_told(
         "hover": (Commanded.HOLD, sampled.on_hold),
         "return": (Commanded.RETURN, sampled.on_return),
         "landing": (Commanded.LAND, sampled.on_landing),
-        "free": (Commanded.NOTHING, sampled.told_nothing),
+        "free": (Commanded.NOTHING, sampled.without_command),
     }[kind]
     return Intent(commanded), flies(aircraft)
 

@@ -1,7 +1,7 @@
 """Eight vehicles over the demonstration's field in virtual time, flown by orders through the gate.
 
 The scene for measuring how fast virtual time runs and for showing that it runs the same again:
-seven survey drones and the eye, with a station, its sessions and every byte between them.
+seven survey drones and the imaging drone, with a station, its sessions and every byte between them.
 """
 
 from collections.abc import Callable, Sequence
@@ -78,7 +78,7 @@ class EightVehicles:
 
     @property
     def apps(self) -> Sequence[SimulatedApp]:
-        """All apps, the eye's first."""
+        """All apps, the imaging drone's first."""
         return self.connected.apps
 
     def run_for(self, seconds: float) -> None:
@@ -157,7 +157,7 @@ def eight_vehicles(
     keeps_log: bool = False,
 ) -> EightVehicles:
     """Return the scene: with `steers` each drone is also led by sticks for a fifth of the time;
-    with `sees` the eye sends rendered pictures, which the station reads."""
+    with `sees` the imaging drone sends rendered frames, which the station reads."""
     site = load_site(demo_site_folder())
     driver = VirtualDriver(first_state(site), jobs=JobRunner(site), keeps_log=keeps_log)
     fleet = build_fleet(_config(site, seed, sees, faults), driver.now_ns)

@@ -1,9 +1,9 @@
-"""What the fence rules should say, worked out slowly: points everywhere, and geometry of its own.
+"""An independent, slow model of the fence rules: dense points, with geometry of its own.
 
-Nothing of `recon.safety` or `recon.geo` is asked here. A path is strewn with points at most
-`STEP_M` apart; each point's distance to every edge is measured, each way home is walked from each
-of them. The result is a margin in metres for each rule: positive, the rule is kept; negative, it is
-broken; nearer to zero than the sampling can tell, nobody knows (`is_sure`).
+Uses nothing of `recon.safety` or `recon.geo`. A path is sampled at most every `STEP_M`; from each
+point the distance to every edge is measured, and every return path is followed. The result is a
+margin in metres for each rule: positive, kept; negative, broken; nearer to zero than the sampling
+resolves, undecided (`is_sure`).
 """
 
 from dataclasses import dataclass, field
@@ -235,7 +235,7 @@ def _height_zones_margin(
                 best = min(best, max(beside_m, under_m))
                 here_m = aircraft.here_m[np.newaxis, :2]
                 if float(_room_m(zone.ring, here_m)[0]) >= -place.margin_m - 0.5:
-                    found.unsure.add("height_zones")  # who is in it already may be brought down
+                    found.unsure.add("height_zones")  # a vehicle inside already may descend
     return best
 
 

@@ -1,16 +1,15 @@
-"""What the rule of separation should say, worked out slowly: every instant against every other.
+"""An independent, slow model of the separation rule: every instant against every other.
 
-The meaning, as SAFETY.md and the prediction's settings state it. An order to move is foreseen to
-its end, and so is everything that flies, from its state and what it was last told. Both may be
-anywhere on their ways a tenth of the time earlier or later, and some seconds (`sampled_flights`); a
-mission that is not under way yet may also start 8 s late. At all times that two may be there
-together they must be apart by the one distance horizontally or the other vertically. Two that are
-too near already may be led apart: for 20 s only what is nearer than now counts (or than it was when
-last heard), half a metre of noise and what the present velocity carries aside. One that is not
-heard is as near as where it may be comes at its widest.
+The rule as SAFETY.md and the prediction's settings state it. An order to move is predicted to its
+end, and so is everything that flies, from its state and its last command. Both may be anywhere on
+their paths a tenth of the time earlier or later, and some seconds (`sampled_flights`); a mission
+that has not started may also start 8 s late. Whenever both may be there together they must be apart
+by the horizontal or by the vertical distance. Two that are too near already may separate: for 20 s
+only what is nearer than now counts (or than at the last telemetry), half a metre of noise and what
+the present velocity carries aside. A vehicle with lost telemetry is as near as its widest volume.
 
 The margin is the larger of both distances' room, at the worst pair of instants: positive, kept;
-negative, broken. Nothing of `recon.safety` or `recon.geo` is asked here.
+negative, broken. Uses nothing of `recon.safety` or `recon.geo`.
 """
 
 from dataclasses import dataclass
@@ -51,10 +50,10 @@ class Need:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Course:
-    """One vehicle's way, or a volume of one that is not heard, in both readings.
+    """One vehicle's path, or the volume of one with lost telemetry, in both readings.
 
     `now` is (N, 9) samples of where it is now; for a volume, where its middle may be. `lately` is
-    its way from where it was last heard to there.
+    its way from its last telemetry to there.
     """
 
     kind: str
@@ -89,7 +88,7 @@ class Margin:
 
     @property
     def is_broken(self) -> bool:
-        """Whether a vehicle that flies as told comes too near, for sure."""
+        """Whether a vehicle that flies as commanded certainly comes too near."""
         return self.certain_m < -BETWEEN_SAMPLES_M
 
     @property

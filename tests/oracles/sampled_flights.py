@@ -1,12 +1,12 @@
-"""Where vehicles will be, worked out slowly: instants everywhere, and kinematics of its own.
+"""An independent, slow prediction of flights: dense samples, with kinematics of its own.
 
-Nothing of `recon.safety` or `recon.geo` is asked here. What a vehicle was told is flown with the
+Uses nothing of `recon.safety` or `recon.geo`. A vehicle's command is flown with the
 figures of SAFETY.md (2.5 m/s2, a second to react, climbs of 3 m/s and sinks of 4 m/s at most), and
-strewn with samples at most `STEP_M` and `STEP_S` apart. Each sample says within which times the
-vehicle may be where, in two readings:
+sampled at most `STEP_M` and `STEP_S` apart. Each sample has the times within which the vehicle
+may be there, in two readings:
 
-- `certain`: what a vehicle that flies as told does at that instant. Its time is uncertain by 10 %
-  of the time gone by, and by 3 s (0.5 s now, growing by half a second for each).
+- `certain`: what a vehicle that flies as commanded does at that instant. Its time is uncertain by
+  10 % of the elapsed time, and by 3 s (0.5 s now, growing by half a second for each).
 - `possible`: all that may be counted besides. Paths are compared in pieces of 3 s, or of 10 % of
   the time when that is more: so any instant of a piece, any of its heights, and for a rounded
   corner half its reach times its sine beside the leg.
@@ -60,7 +60,7 @@ class Aircraft:
 
 
 class Flight:
-    """What a vehicle flies, written sample after sample from where and when it was last heard."""
+    """What a vehicle flies, sample after sample from its last telemetry."""
 
     def __init__(self, aircraft: Aircraft) -> None:
         self.aircraft = aircraft
@@ -189,7 +189,7 @@ class Flight:
         self.stays(above_m / 1.0 + 30.0)
 
     def towards_mps(self, place_m: FloatArray) -> float:
-        """How fast it was flying towards a place when last heard."""
+        """How fast it flew towards a place at its last telemetry."""
         ahead_m = place_m - self.place_m
         far_m = max(float(np.hypot(*ahead_m)), 1e-9)
         return max(0.0, float(ahead_m @ self.aircraft.velocity_mps[:2]) / far_m)

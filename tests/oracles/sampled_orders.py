@@ -20,7 +20,7 @@ from tests.oracles.sampled_flights import (
 HOLDS_S = 30.0
 FREE_S = 5.0
 STICK_S = 5.0
-HOMEWARDS_MPS = 10.0
+RETURN_MPS = 10.0
 UNDER_WAY_MPS = 2.0
 UNKNOWN_CLIMB_M = 500.0
 CORRIDOR_M = 10.0
@@ -65,7 +65,7 @@ def ordered_goto(aircraft: Aircraft, target_m: FloatArray, speed_mps: float) -> 
 
 
 def on_goto(aircraft: Aircraft, target_m: FloatArray, speed_mps: float) -> Flight:
-    """Straight to a place, and there for ever."""
+    """Straight to a place, and there forever."""
     flight = _go(Flight(aircraft), target_m, speed_mps)
     flight.stays()
     return flight
@@ -137,7 +137,7 @@ def on_return(aircraft: Aircraft) -> Flight:
         flight.goes(flight.place_m, climb_s, (low_m, top_m))
         if aircraft.go_home_m is not None:
             flight.low_m = top_m
-    speeds_mps = (towards_mps, max(HOMEWARDS_MPS, towards_mps), 0.0)
+    speeds_mps = (towards_mps, max(RETURN_MPS, towards_mps), 0.0)
     band_m = (flight.low_m, flight.high_m)
     seconds = flight.flies_to(aircraft.home_m, band_m, speeds_mps)
     flight.goes(aircraft.home_m, seconds, band_m)
@@ -145,7 +145,7 @@ def on_return(aircraft: Aircraft) -> Flight:
     return flight
 
 
-def told_nothing(aircraft: Aircraft) -> Flight:
+def without_command(aircraft: Aircraft) -> Flight:
     """Standing it stays; else it uses its speed in any direction for 5 s, and stops."""
     flight = Flight(aircraft)
     speed_mps, up_mps = hypot(*aircraft.velocity_mps[:2]), float(aircraft.velocity_mps[2])
@@ -158,8 +158,8 @@ def told_nothing(aircraft: Aircraft) -> Flight:
     return flight
 
 
-def hidden(aircraft: Aircraft, told_mps: float) -> list[FloatArray]:
-    """Where a vehicle may be that is not heard, at all times: volumes as (N, 9) samples.
+def hidden(aircraft: Aircraft, known_mps: float) -> list[FloatArray]:
+    """Where a vehicle with lost telemetry may be, at all times: volumes as (N, 9) samples.
 
     Its circle at the largest, its way home, and the column of its landing there.
     """
@@ -167,7 +167,7 @@ def hidden(aircraft: Aircraft, told_mps: float) -> list[FloatArray]:
     top_m = float(aircraft.here_m[2]) + rise_m
     if aircraft.goes_home:
         top_m = max(top_m, go_home_top_m(aircraft))
-    mps = max(hypot(*aircraft.velocity_mps[:2]), told_mps, 2.0)
+    mps = max(hypot(*aircraft.velocity_mps[:2]), known_mps, 2.0)
     largest_m = max(150.0, mps * REACTION_S + mps**2 / (2.0 * BRAKING_MPS2))
     here_m = aircraft.here_m[np.newaxis, :2]
     volumes = [_always(here_m, -ALL_HEIGHTS_M, top_m, largest_m)]

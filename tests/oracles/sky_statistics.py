@@ -151,6 +151,8 @@ def table(found: dict[str, np.ndarray]) -> str:
         at = COLUMNS if len(measured) == 3 else tuple(f"{lead} min" for lead in LEADS_MIN)
         for column, truth, value in zip(at, measured, found[name], strict=True):
             digits = ".2f" if truth < 1.0 else ".1f" if truth < 100.0 else ".0f"
-            said = f"{truth:.2f}" if truth < 1.0 else f"{truth:.0f}"
-            lines.append(f"| {name} | {column} | {said} | {value:{digits}} | {value / truth:.2f} |")
+            shown = f"{truth:.2f}" if truth < 1.0 else f"{truth:.0f}"
+            lines.append(
+                f"| {name} | {column} | {shown} | {value:{digits}} | {value / truth:.2f} |"
+            )
     return "\n".join(lines)

@@ -31,10 +31,10 @@ def forecast(levels: object, horizon_s: object) -> SunForecast:
 
 
 def test_brier_and_iou_of_seen_unseen_and_all() -> None:
-    foretold = forecast([255, 0, 51, 204], [60.0, 60.0, 0.0, 30.0])
+    predicted = forecast([255, 0, 51, 204], [60.0, 60.0, 0.0, 30.0])
     is_sunlit = np.array([[True, True], [False, False]])
-    found = score_lead(foretold, 60.0, is_sunlit, ALL)
-    # Seen: right and in sun; and wrong, told in shade. Unseen: 0.2 and 0.8 of sun, both in shade.
+    found = score_lead(predicted, 60.0, is_sunlit, ALL)
+    # Within: right and in sun; and wrong, in shade. Beyond: 0.2 and 0.8 of sun, both in shade.
     assert found[HorizonCells.WITHIN] == LeadScore(1.0, 2, Overlap(0, 1))
     assert found[HorizonCells.BEYOND].squares == pytest.approx(0.2**2 + 0.8**2)
     assert found[HorizonCells.BEYOND].shade == Overlap(1, 2)

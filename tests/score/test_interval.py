@@ -31,7 +31,7 @@ def test_one_run_has_no_bounds_and_none_no_figure() -> None:
     assert ratio([(0.0, 0.0)]) is None
 
 
-def test_the_interval_holds_the_mean_as_often_as_it_says() -> None:
+def test_the_interval_holds_the_mean_at_its_confidence() -> None:
     rng = np.random.default_rng(1)
     held = 0
     for _ in range(2_000):
@@ -48,7 +48,7 @@ def test_a_ratio_is_of_the_sums() -> None:
     assert (found.low, found.high, found.count) == (0.5, 0.9, 2)
 
 
-def test_cut_off_times_count_as_the_limit_and_are_told() -> None:
+def test_cut_off_times_count_as_the_limit_and_are_counted() -> None:
     found = times([100.0, None, 300.0, None, 900.0], 600.0)
     assert found is not None
     assert (found.reached, found.count) == (2, 5)

@@ -53,10 +53,10 @@ def test_no_shade_at_all_has_no_iou() -> None:
 def test_what_is_unknown_counts_as_wrong_in_sun_and_in_shade() -> None:
     truth, valid = strip(0, 4), ALL.copy()
     valid[:, 3:5] = False
-    told = shade_or_wrong(shade_map(truth, valid), truth)
-    assert (told != truth).tolist() == (~valid).tolist()
-    # Three columns are told in shade and are so; one is missed, and one in sun counts as shade.
-    assert overlap(told, truth, ALL) == Overlap(both=18, either=30)
+    detected = shade_or_wrong(shade_map(truth, valid), truth)
+    assert (detected != truth).tolist() == (~valid).tolist()
+    # Three columns are detected in shade and are; one is missed, and one in sun counts as shade.
+    assert overlap(detected, truth, ALL) == Overlap(both=18, either=30)
 
 
 def test_an_edge_two_cells_off_is_so_many_metres_off() -> None:
@@ -76,25 +76,25 @@ def test_edges_at_the_footprints_end_are_none() -> None:
     assert boundary_error_m(strip(0, 3), strip(0, 3), strip(0, 3), 4.0) is None
 
 
-@given(told=masks, truth=masks, counted=masks)
-def test_ranges_and_sameness(told: np.ndarray, truth: np.ndarray, counted: np.ndarray) -> None:
-    found = overlap(told, truth, counted)
+@given(detected=masks, truth=masks, counted=masks)
+def test_ranges_and_sameness(detected: np.ndarray, truth: np.ndarray, counted: np.ndarray) -> None:
+    found = overlap(detected, truth, counted)
     assert 0 <= found.both <= found.either <= counted.sum()
-    assert found == overlap(truth, told, counted)
-    error_m = boundary_error_m(told, truth, counted, 4.0)
+    assert found == overlap(truth, detected, counted)
+    error_m = boundary_error_m(detected, truth, counted, 4.0)
     assert error_m is None or 0.0 <= error_m <= FARTHEST_EDGE_M
-    back_m = boundary_error_m(truth, told, counted, 4.0)
+    back_m = boundary_error_m(truth, detected, counted, 4.0)
     assert (error_m is None) == (back_m is None)
     assert error_m is None or error_m == pytest.approx(back_m, rel=1e-5)
     assert overlap(truth, truth, counted).iou in (1.0, None)
 
 
-@given(truth=masks, valid=masks, said=masks)
+@given(truth=masks, valid=masks, mapped=masks)
 def test_more_unknown_cells_never_help(
-    truth: np.ndarray, valid: np.ndarray, said: np.ndarray
+    truth: np.ndarray, valid: np.ndarray, mapped: np.ndarray
 ) -> None:
-    known = shade_or_wrong(shade_map(said, ALL), truth)
-    less = shade_or_wrong(shade_map(said, valid), truth)
+    known = shade_or_wrong(shade_map(mapped, ALL), truth)
+    less = shade_or_wrong(shade_map(mapped, valid), truth)
     assert ((less != truth) >= (known != truth)).all()
 
 

@@ -1,6 +1,6 @@
 """Fields to survey: known shapes and drawn ones, and points in them found without polygons' code.
 
-Whether a point is inside is told by counting the edges that a ray from it crosses.
+Whether a point is inside is found by counting the edges that a ray from it crosses.
 """
 
 from collections.abc import Sequence

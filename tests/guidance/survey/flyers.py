@@ -1,4 +1,4 @@
-"""Vehicles that fly a survey's missions, with cameras whose moments nobody is told.
+"""Vehicles that fly a survey's missions, with camera timers of unknown phase.
 
 The motion is a trapezium of speed on each leg, standing at its ends; positions come at some hertz,
 late and a little off. What photos truly show is kept beside, for the tests alone.
@@ -57,7 +57,7 @@ class Flyer:
     late_s: float = 0.3
     off_m: float = 0.3
     every: int = 2
-    """Positions are told at every so many steps."""
+    """Positions are reported every so many steps."""
     home_m: Place | None = None
     ended_mission: int = 0
     flown_s: float = 0.0
@@ -113,7 +113,7 @@ class Flyer:
             self.ended_mission, self.number = self.number, None
 
     def surveyor(self) -> Surveyor:
-        """What the planner is told."""
+        """Return what the planner gets."""
         left_s = None if self.endurance_s is None else self.endurance_s - self.flown_s
         return Surveyor(
             self.serial, self.place_m, self.is_able, self.ended_mission, left_s, self.home_m
@@ -169,7 +169,7 @@ class Flights:
         return self.state.plan
 
     def shade_map(self) -> ShadeMap:
-        """The sky as an eye would see it now, on a grid of its own around the field."""
+        """Return the shade map of an ideal imaging drone, on a grid around the field."""
         cells = self.plan.cells.grid
         grid = GroundGrid(
             cells.frame,

@@ -1,4 +1,4 @@
-"""How a survey that wants sun ends where there is none, and what it says then."""
+"""The end of a survey without sun, and its reason."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_its_metres_end_it() -> None:
     assert end.round == 1
 
 
-def test_where_nobody_sees_the_light_nothing_is_flown_again_for_it() -> None:
+def test_without_shade_maps_nothing_is_flown_again_for_sun() -> None:
     end = flown(tells_shade=False).state
     assert (end.phase, end.round) == (SurveyPhase.DONE, 1)
     assert "light unknown" in end.reason

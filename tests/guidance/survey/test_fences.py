@@ -1,4 +1,4 @@
-"""Missions of surveys that were told the site's fences, before the gate's own rules."""
+"""Missions of surveys planned with the site's fences, before the gate's own rules."""
 
 import numpy as np
 import pytest
@@ -34,8 +34,8 @@ def refusals(field: Region, fence: Region, shut: tuple[Region, ...], count: int)
 
     It would hover without its link: the way to the field and home is not the survey's.
     """
-    told = SurveySurroundings(fence, shut, LIMITS.boundary_margin_m)
-    plan = plan_survey(survey_of(field), FRAME, told)
+    around = SurveySurroundings(fence, shut, LIMITS.boundary_margin_m)
+    plan = plan_survey(survey_of(field), FRAME, around)
     if not isinstance(plan, SurveyPlan):
         return []
     created = create(plan)
@@ -45,14 +45,14 @@ def refusals(field: Region, fence: Region, shut: tuple[Region, ...], count: int)
     assert isinstance(begun, SurveyState)
     state, missions = step(begun, surveyors, 10**10)
     air = airspace(*map(keep_out_zone, shut), boundary=fence, limits=LIMITS)
-    said: list[Refusal] = []
+    refusals: list[Refusal] = []
     for each in missions:
         east_m, north_m = state.flights[each.serial].corners_m[0]
         hovering = flier(east_m, north_m, 60.0, failsafe=Failsafe.HOVER)
         for rule in (boundary, keep_out):
             refusal = asked(rule, FlyMission(each.mission), air, hovering)
-            said += [refusal] if refusal else []
-    return said
+            refusals += [refusal] if refusal else []
+    return refusals
 
 
 @settings(max_examples=30, deadline=None)

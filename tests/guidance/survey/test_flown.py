@@ -1,4 +1,4 @@
-"""Surveys flown to their ends by vehicles whose cameras fire at moments nobody is told."""
+"""Surveys flown to their ends by vehicles with camera timers of unknown phase."""
 
 from dataclasses import replace
 
@@ -63,7 +63,7 @@ class TestOnce:
         assert figures(end).not_yet_m2 <= 0.01 * figures(end).region_m2
         assert len(flights.given) <= count
 
-    def test_what_is_said_to_be_imaged_is_on_a_photo(self) -> None:
+    def test_cells_counted_as_imaged_are_on_a_photo(self) -> None:
         for seed in range(6):
             flyers = fleet(2, seed)
             flights = Flights(begun(survey_of(holed()), flyers), flyers, half_shaded)
@@ -74,8 +74,8 @@ class TestOnce:
             assert imaged.sum() > 5000
             assert not (imaged & ~flights.shown).any()
 
-    def test_what_is_said_to_be_imaged_in_sun_is_so_on_a_photo(self) -> None:
-        wrong = said = 0
+    def test_cells_counted_in_sun_are_on_a_photo_in_sun(self) -> None:
+        wrong = counted = 0
         for seed in range(6):
             flyers = fleet(2, seed)
             flights = Flights(begun(survey_of(holed()), flyers), flyers, half_shaded)
@@ -83,9 +83,9 @@ class TestOnce:
             assert flights.shown_in_sun is not None
             in_sun = end.progress.state == CellState.IN_SUN
             wrong += int((in_sun & ~flights.shown_in_sun).sum())
-            said += int(in_sun.sum())
-        assert said > 10_000
-        assert wrong < 0.002 * said
+            counted += int(in_sun.sum())
+        assert counted > 10_000
+        assert wrong < 0.002 * counted
 
     def test_three_take_about_a_third_of_the_time(self) -> None:
         times_s = []
@@ -97,7 +97,7 @@ class TestOnce:
             times_s.append(time_s)
         assert times_s[1] < 0.45 * times_s[0]
 
-    def test_without_shade_maps_nothing_is_in_sun_and_that_is_said(self) -> None:
+    def test_without_shade_maps_nothing_is_in_sun_and_the_light_is_unknown(self) -> None:
         flyers = fleet(1)
         end = Flights(begun(survey_of(rectangle()), flyers), flyers, tells_shade=False).run()
         found = figures(end)
@@ -228,12 +228,12 @@ class TestTroubles:
         assert "no battery lasts" in waiting.reason
         assert not flights.given
 
-    def test_nobody_able_waits(self) -> None:
+    def test_without_an_able_vehicle_it_waits(self) -> None:
         flyers = fleet(1, is_able=False)
         waiting = Flights(begun(survey_of(rectangle()), flyers), flyers).run(most_s=20.0)
         assert "no vehicle can fly now" in waiting.reason
 
-    def test_when_all_are_refused_it_pauses_and_says_why(self) -> None:
+    def test_when_all_missions_are_refused_it_pauses_with_the_reason(self) -> None:
         flyers = fleet(2)
 
         def refuse(flights: Flights) -> None:

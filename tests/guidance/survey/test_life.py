@@ -30,7 +30,7 @@ OTHER = "X"
 
 @dataclass(slots=True)
 class Seat:
-    """What is told of one vehicle."""
+    """The state of one vehicle."""
 
     is_able: bool = True
     ended: int = 0
@@ -38,7 +38,7 @@ class Seat:
 
 
 class SurveyLife(RuleBasedStateMachine):
-    """Vehicles come and go, missions end or are refused, people start, pause and abort."""
+    """Vehicles come and go, missions end or are refused, operators start, pause and abort."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -147,7 +147,7 @@ class SurveyLife(RuleBasedStateMachine):
         assert (self.state.ended_at_ns is not None) == self.state.phase.is_final
 
     @invariant()
-    def it_keeps_to_its_rounds_and_says_why_it_is_as_it_is(self) -> None:
+    def rounds_stay_in_the_budget_and_there_is_a_reason(self) -> None:
         assert 0 <= self.state.round <= 4
         assert self.state.reason
 

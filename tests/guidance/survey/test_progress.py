@@ -93,7 +93,7 @@ class TestImaged:
         assert (cells[inner] == near_row(half_m)[inner]).all()
 
     @pytest.mark.parametrize("hz", [0.5, 1.0, 2.0, 5.0, 10.0])
-    def test_however_often_it_is_told(self, hz: float) -> None:
+    def test_at_any_telemetry_rate(self, hz: float) -> None:
         east_m = PLAN.cells.along_m
         inner = (east_m > 20.0) & (east_m < 270.0) & near_row(15.0)
         assert imaged(counted(row_flown(hz=hz)))[inner].all()
@@ -143,7 +143,7 @@ class TestImaged:
         assert not (broken & ~whole).any()
 
     def test_positions_that_were_dropped_break_what_was_in_view(self) -> None:
-        """So many wait that the oldest are forgotten: nobody knows the way there any more."""
+        """When the buffer overflows the oldest are dropped, and the path to the next is unknown."""
         plan = replace(PLAN, settings=replace(PLAN.settings, positions_kept=4))
         seen = row_flown()
         progress = with_seen(no_progress(plan.cells), "A", seen[:15], plan)

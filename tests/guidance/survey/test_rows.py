@@ -145,7 +145,7 @@ class TestCoverage:
 class TestStraying:
     @settings(max_examples=60, deadline=None)
     @given(st.integers(0, 10**9), OVERLAPS)
-    def test_no_place_of_a_row_is_farther_out_than_said(
+    def test_no_place_of_a_row_is_farther_out_than_documented(
         self, seed: int, overlaps: tuple[float, float]
     ) -> None:
         plan = planned(drawn(seed, overlaps))
@@ -252,7 +252,7 @@ class TestSurroundings:
             assert is_inside(field, places).all()
             assert distance_m(shut, places).min() >= 5.0
 
-    def test_what_is_not_reached_is_said(self) -> None:
+    def test_unreached_area_is_reported(self) -> None:
         shut = Region(np.array([(100.0, 60.0), (180.0, 60.0), (180.0, 140.0), (100.0, 140.0)]))
         plan = plan_survey(survey_of(rectangle()), FRAME, SurveySurroundings(keep_out=(shut,)))
         assert isinstance(plan, SurveyPlan)
@@ -267,7 +267,7 @@ class TestSurroundings:
 
     @settings(max_examples=25, deadline=None)
     @given(st.integers(0, 10**9))
-    def test_every_cell_said_to_be_reached_is_in_a_photo(self, seed: int) -> None:
+    def test_every_cell_counted_as_reached_is_in_a_photo(self, seed: int) -> None:
         rng = np.random.default_rng(seed)
         survey = drawn(seed, (0.7, 0.6))
         zone = star(rng, 40.0, has_hole=False)
@@ -302,7 +302,9 @@ class TestRefusals:
             ({"region": rectangle(90_000.0, 9_000.0)}, "90.0 x 9.0 km"),
         ],
     )
-    def test_what_cannot_be_flown_is_said(self, change: dict[str, object], words: str) -> None:
+    def test_infeasible_surveys_are_refused_with_a_reason(
+        self, change: dict[str, object], words: str
+    ) -> None:
         refusal = plan_survey(replace(survey_of(rectangle()), **change), FRAME)
         assert isinstance(refusal, Refusal)
         assert words in refusal.reason

@@ -1,4 +1,4 @@
-"""Whose battery lasts for no row: who comes home instead of waiting in the air."""
+"""Vehicles whose battery lasts for no row return to home instead of waiting in the air."""
 
 from dataclasses import replace
 
@@ -28,7 +28,7 @@ def stepped(state: SurveyState, positions: list[Surveyor], at_s: float = 10.0) -
 
 
 @given(st.none() | LASTS_S, st.none() | LASTS_S, PLACE_M)
-def test_nobody_is_given_rows_and_called_home_at_once(
+def test_no_vehicle_gets_rows_and_is_called_home_at_once(
     one_s: float | None, other_s: float | None, place_m: tuple[float, float]
 ) -> None:
     positions = with_time(one_s, other_s)
