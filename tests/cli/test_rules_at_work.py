@@ -47,15 +47,15 @@ def lost_telemetry(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Flights
 def test_a_stream_outlives_two_seconds_without_telemetry(beside_a_pilot: Flights) -> None:
     _station, (first, _second) = beside_a_pilot
     assert first.code == 0
-    assert "it is there, and is held there" in first.out
+    assert "arrived; position held" in first.out
 
 
 def test_it_ends_after_three_with_an_alarm(lost_telemetry: Flights) -> None:
     station, (only,) = lost_telemetry
     assert only.code == 1
-    assert "Drone 1: failed (its telemetry was incomplete or missing for 3 s)" in only.out
+    assert "Drone 1: failed (telemetry incomplete or missing for 3 s)" in only.out
     alarms = station.recon("alarms").out
-    assert "Drone 1: nudge: its telemetry was incomplete or missing for 3 s" in alarms
+    assert "Drone 1: nudge: telemetry incomplete or missing for 3 s" in alarms
 
 
 def test_nothing_is_sent_after_the_pilot_takes_the_sticks(
@@ -63,6 +63,6 @@ def test_nothing_is_sent_after_the_pilot_takes_the_sticks(
 ) -> None:
     station, (_first, second) = beside_a_pilot
     assert second.code == 1
-    assert "Drone 2: superseded (the pilot has taken the sticks" in second.out
+    assert "Drone 2: superseded (the pilot has taken over" in second.out
     orders = [line for line in station.recon("commands").out.splitlines() if "Drone 2" in line]
     assert [line.split()[3] for line in orders] == ["nudge"]

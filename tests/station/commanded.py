@@ -1,4 +1,4 @@
-"""A station, and what apps, links and operators do to it, told in seconds; no link room needed."""
+"""A station with events from apps, links and operators, timed in seconds, without sockets."""
 
 from collections.abc import Iterable
 
@@ -46,7 +46,7 @@ class CommandedStation:
         """When, on which link, which order."""
         self.handed: list[ApprovedCommand] = []
         self.talk: dict[int, tuple[Report, ...]] = {}
-        """What each link says every 0.1 s."""
+        """Reports of each link, every 0.1 s."""
         self._next_order = 1
 
     def happens(self, event: Event) -> "CommandedStation":
@@ -133,6 +133,6 @@ class CommandedStation:
 
 
 def flying(serial: str = "A") -> CommandedStation:
-    """One vehicle on link 1 that flies a mission and goes on doing so whatever it is told."""
+    """One vehicle on link 1 that flies a mission and goes on doing so whatever is ordered."""
     reports = (core(velocity=(5.0, 0.0, 0.0)), extended(serial, mode=FlightMode.GPS_WAYPOINT))
     return CommandedStation().opens(1, *reports).keeps_receiving(1, *reports).passes(0.5)

@@ -1,4 +1,4 @@
-"""A vehicle that flies north in a straight line, told by its reports."""
+"""Reports of a vehicle that flies north in a straight line."""
 
 from dataclasses import replace
 
@@ -25,16 +25,16 @@ def at(
     height_m: float = 40.0,
     gnss_level: int | None = 4,
 ) -> tuple[Report, ...]:
-    """What its app says when it is this far north of the first waypoint."""
+    """Reports of its app when it is this far north of the first waypoint."""
     place = LatLon(PLACE.latitude_deg + north_m / METRES_PER_DEG, PLACE.longitude_deg)
-    said = core(flying=flying, position=place, velocity=velocity, height_m=height_m)
-    return said, extended(mode=mode, gnss_level=gnss_level)
+    reports = core(flying=flying, position=place, velocity=velocity, height_m=height_m)
+    return reports, extended(mode=mode, gnss_level=gnss_level)
 
 
 def hovering() -> CommandedStation:
     """A vehicle that hovers at the first waypoint."""
-    said = at(0.0, GPS)
-    return CommandedStation().opens(1, *said).keeps_receiving(1, *said).passes(0.5)
+    reports = at(0.0, GPS)
+    return CommandedStation().opens(1, *reports).keeps_receiving(1, *reports).passes(0.5)
 
 
 def ordered(body: Body) -> tuple[CommandedStation, int]:

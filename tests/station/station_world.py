@@ -73,8 +73,8 @@ def world(
 ) -> World:
     """Return a station with connected simulated vehicles SIM-1, SIM-2, ...
 
-    `reference` is what the apps take altitudes for; what the site says of them is the same, unless
-    `profile_reference` says otherwise.
+    `reference` is what the apps take altitudes for; the site states the same, unless
+    `profile_reference` differs.
     """
     believed = profile_reference or reference
     config = SimulationConfig(

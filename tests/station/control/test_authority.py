@@ -1,4 +1,4 @@
-"""Who leads a vehicle: taken by word, lost by a stop, and always the pilot's for the taking."""
+"""Authority over a vehicle: transferred explicitly, taken by a stop, always the pilot's."""
 
 import pytest
 from tests.fleet.reports import core, extended
@@ -27,7 +27,7 @@ def takes(
     return scene.happens(AuthorityTaken(serial, holder, by))
 
 
-def led_by(scene: CommandedStation) -> AuthorityHolder:
+def holder_of(scene: CommandedStation) -> AuthorityHolder:
     return scene.station.control("A").authority.holder
 
 
@@ -36,61 +36,65 @@ def guidance_orders(scene: CommandedStation, body: Body, number: int = 90) -> Ph
     return scene.phase(number)
 
 
-def says(scene: CommandedStation, north_mps: float, *, flying: bool = True) -> CommandedStation:
+def reports(scene: CommandedStation, north_mps: float, *, flying: bool = True) -> CommandedStation:
     where = core(flying=flying, velocity=(north_mps, 0.0, 0.0))
     return scene.keeps_receiving(1, where, HOVERING[1]).passes(0.5)
 
 
 class TestByHand:
-    def test_who_flies_about_with_nothing_ordered_is_its_pilots_until_taken(self) -> None:
-        scene = says(CommandedStation().opens(1), 6.0)
-        assert led_by(scene) is AuthorityHolder.PILOT
+    def test_motion_without_an_order_gives_authority_to_the_pilot(self) -> None:
+        scene = reports(CommandedStation().opens(1), 6.0)
+        assert holder_of(scene) is AuthorityHolder.PILOT
         refused = scene.record(scene.order(mission()))
         assert refused.refusal is not None
         assert refused.refusal.rule == "authority"
-        assert refused.note.startswith("A is controlled by pilot (it moves, and nothing has been")
+        assert refused.note.startswith("A is controlled by pilot (in motion without an order")
         assert scene.alarms() == set()
-        takes(says(scene, 6.0), AuthorityHolder.OPERATOR)
-        assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR
+        takes(reports(scene, 6.0), AuthorityHolder.OPERATOR)
+        assert holder_of(reports(scene, 6.0)) is AuthorityHolder.OPERATOR
 
-    def test_stops_need_no_leader(self) -> None:
+    def test_stops_need_no_authority(self) -> None:
         for body in (Hover(), LandNow(), ReturnHome()):
-            scene = says(CommandedStation().opens(1), 6.0)
+            scene = reports(CommandedStation().opens(1), 6.0)
             assert scene.phase(scene.order(body)) is Phase.SENT
 
     def test_one_that_hovers_is_the_operators_until_it_moves(self, scene: CommandedStation) -> None:
-        assert led_by(says(scene, 1.9)) is AuthorityHolder.OPERATOR
-        assert led_by(says(scene, 2.0)) is AuthorityHolder.PILOT
+        assert holder_of(reports(scene, 1.9)) is AuthorityHolder.OPERATOR
+        assert holder_of(reports(scene, 2.0)) is AuthorityHolder.PILOT
 
     def test_on_the_ground_it_is_the_operators_and_in_the_air_whose_hand_took_it_there(
         self,
     ) -> None:
-        scene = says(CommandedStation().opens(1), 3.0, flying=False)
-        assert led_by(scene) is AuthorityHolder.OPERATOR
-        assert led_by(says(scene, 3.0)) is AuthorityHolder.PILOT
+        scene = reports(CommandedStation().opens(1), 3.0, flying=False)
+        assert holder_of(scene) is AuthorityHolder.OPERATOR
+        assert holder_of(reports(scene, 3.0)) is AuthorityHolder.PILOT
 
-    def test_whom_somebody_took_before_stays_taken(self) -> None:
-        scene = says(CommandedStation().opens(1), 0.0, flying=False)
+    def test_authority_that_was_taken_before_stays(self) -> None:
+        scene = reports(CommandedStation().opens(1), 0.0, flying=False)
         takes(scene, AuthorityHolder.OPERATOR)
-        assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR
+        assert holder_of(reports(scene, 6.0)) is AuthorityHolder.OPERATOR
 
     def test_after_an_order_of_ours_motion_alone_tells_nothing(
         self, scene: CommandedStation
     ) -> None:
         scene.order(mission())
         scene.passes(10.0)  # it comes to nothing
-        assert led_by(says(scene, 6.0)) is AuthorityHolder.OPERATOR
+        assert holder_of(reports(scene, 6.0)) is AuthorityHolder.OPERATOR
 
-    def test_without_velocity_or_mode_nobody_can_say(self) -> None:
+    def test_without_velocity_or_mode_it_does_not_change(self) -> None:
         nothing = core(velocity=None), HOVERING[1]
-        assert led_by(CommandedStation().opens(1, *nothing).passes(0.5)) is AuthorityHolder.OPERATOR
+        assert (
+            holder_of(CommandedStation().opens(1, *nothing).passes(0.5)) is AuthorityHolder.OPERATOR
+        )
         moving = core(velocity=(6.0, 0.0, 0.0)), extended(mode=None)
-        assert led_by(CommandedStation().opens(1, *moving).passes(0.5)) is AuthorityHolder.OPERATOR
+        assert (
+            holder_of(CommandedStation().opens(1, *moving).passes(0.5)) is AuthorityHolder.OPERATOR
+        )
 
 
 class TestByWord:
-    def test_the_operator_leads_until_somebody_takes_it(self, scene: CommandedStation) -> None:
-        assert led_by(scene) is AuthorityHolder.OPERATOR
+    def test_the_operator_has_it_until_it_is_taken(self, scene: CommandedStation) -> None:
+        assert holder_of(scene) is AuthorityHolder.OPERATOR
         assert scene.station.control("A").authority.reason == "not yet transferred"
 
     def test_guidance_flies_what_was_given_to_it_and_nothing_else(
@@ -120,7 +124,7 @@ class TestByWord:
         assert refusal is not None
         assert refusal.rule == "authority"
         assert "take control first" in refusal.reason
-        assert led_by(takes(scene, AuthorityHolder.GUIDANCE)) is AuthorityHolder.PILOT
+        assert holder_of(takes(scene, AuthorityHolder.GUIDANCE)) is AuthorityHolder.PILOT
 
     def test_the_operator_takes_it_from_a_pilot_by_explicit_word(
         self, scene: CommandedStation
@@ -131,12 +135,12 @@ class TestByWord:
         takes(scene, AuthorityHolder.OPERATOR)
         assert scene.phase(scene.order(mission())) is Phase.SENT
 
-    def test_a_vehicle_nobody_knows_is_taken_by_nobody(self, scene: CommandedStation) -> None:
+    def test_an_unknown_vehicle_cannot_be_taken(self, scene: CommandedStation) -> None:
         refusal = authority.refusal(
             scene.station, AuthorityTaken("X", AuthorityHolder.OPERATOR, "Ann")
         )
         assert refusal is not None
-        assert "X is not known" in refusal.reason
+        assert "X is unknown" in refusal.reason
         assert "X" not in takes(scene, AuthorityHolder.OPERATOR, serial="X").station.controls
 
 
@@ -152,33 +156,33 @@ class TestAStop:
         assert held.reason.endswith(", ordered by test")
         assert guidance_orders(scene, mission()) is Phase.REFUSED_BY_STATION
 
-    def test_a_stop_that_waits_to_be_heard_takes_it_too(self, scene: CommandedStation) -> None:
+    def test_a_stop_that_waits_for_telemetry_takes_it_too(self, scene: CommandedStation) -> None:
         takes(scene, AuthorityHolder.GUIDANCE)
         scene.closes(1)
         assert scene.phase(scene.order(Hover())) is Phase.QUEUED
-        assert led_by(scene) is AuthorityHolder.OPERATOR
+        assert holder_of(scene) is AuthorityHolder.OPERATOR
 
     def test_its_own_stop_leaves_it_to_guidance(self, scene: CommandedStation) -> None:
         takes(scene, AuthorityHolder.GUIDANCE)
         assert guidance_orders(scene, Hover()) is Phase.SENT
-        assert led_by(scene) is AuthorityHolder.GUIDANCE
+        assert holder_of(scene) is AuthorityHolder.GUIDANCE
 
     def test_a_stop_takes_nothing_from_a_pilot(self, scene: CommandedStation) -> None:
         takes(scene, AuthorityHolder.PILOT)
         scene.order(Hover())
-        assert led_by(scene) is AuthorityHolder.PILOT
+        assert holder_of(scene) is AuthorityHolder.PILOT
 
     def test_an_order_that_moves_or_looks_takes_nothing(self, scene: CommandedStation) -> None:
         takes(scene, AuthorityHolder.GUIDANCE)
         scene.order(mission())
-        assert led_by(scene) is AuthorityHolder.GUIDANCE
+        assert holder_of(scene) is AuthorityHolder.GUIDANCE
 
-    def test_a_stop_of_a_link_that_has_since_said_its_serial_counts(
+    def test_a_stop_of_a_link_that_has_since_reported_its_serial_counts(
         self, scene: CommandedStation
     ) -> None:
         takes(scene, AuthorityHolder.GUIDANCE)
         scene.order(Hover(), None, link=1)
-        assert led_by(scene) is AuthorityHolder.OPERATOR
+        assert holder_of(scene) is AuthorityHolder.OPERATOR
 
     def test_a_stop_of_a_link_without_a_serial_is_nobodys(self, scene: CommandedStation) -> None:
         scene.opens(2, core()).order(Hover(), None, link=2)
@@ -234,9 +238,7 @@ class TestThePilot:
         assert alarm.condition.rule == "pilot_took_over"
         assert alarm.condition.text.startswith("A: the pilot has taken the sticks")
 
-    def test_the_station_foresees_nothing_of_its_own_any_more(
-        self, scene: CommandedStation
-    ) -> None:
+    def test_the_vehicle_is_commanded_nothing(self, scene: CommandedStation) -> None:
         self.pilot(scene)
         assert scene.station.control("A").intent == Intent(Commanded.NOTHING, scene.now_ns)
 
@@ -247,7 +249,7 @@ class TestThePilot:
         assert self.pilot(scene) == ()
         assert scene.station.control("A").authority == before.control("A").authority
 
-    def test_of_an_unknown_vehicle_is_nobody(self, scene: CommandedStation) -> None:
+    def test_of_an_unknown_vehicle_changes_nothing(self, scene: CommandedStation) -> None:
         before = scene.station
         assert self.pilot(scene, "X") == ()
         assert scene.station is before

@@ -14,7 +14,7 @@ def intent(scene: CommandedStation) -> Intent:
     return scene.station.control("A").intent
 
 
-def test_nothing_was_told_before_the_first_order() -> None:
+def test_nothing_is_commanded_before_the_first_order() -> None:
     assert intent(hovering()).commanded is Commanded.NOTHING
 
 
@@ -29,7 +29,7 @@ def test_nothing_was_told_before_the_first_order() -> None:
         (StartCamera(1.0), Commanded.NOTHING),
     ],
 )
-def test_what_was_sent_is_what_it_was_told(body: Body, commanded: Commanded) -> None:
+def test_the_intent_is_the_order_that_was_sent(body: Body, commanded: Commanded) -> None:
     scene, order = ordered(body)
     assert intent(scene).commanded is commanded
     assert intent(scene).command_id == (None if commanded is Commanded.NOTHING else order)
@@ -37,14 +37,14 @@ def test_what_was_sent_is_what_it_was_told(body: Body, commanded: Commanded) -> 
         assert intent(scene).mission == body.mission
 
 
-def test_what_has_not_left_is_not_told() -> None:
+def test_an_unsent_order_is_no_intent() -> None:
     scene = hovering()
     scene.is_stuck = True
     scene.order(mission())
     assert intent(scene).commanded is Commanded.NOTHING
 
 
-def test_what_the_gate_refuses_is_not_told() -> None:
+def test_a_refused_order_is_no_intent() -> None:
     scene = hovering()
     scene.order(mission(*mission().mission.waypoints[:1]))
     assert intent(scene).commanded is Commanded.NOTHING
@@ -66,10 +66,10 @@ def test_before_it_has_started_nothing_is_passed() -> None:
 
 
 @pytest.mark.parametrize("body", [mission(), STICK, Hover()])
-def test_what_came_to_nothing_is_not_told_any_more(body: Body) -> None:
+def test_a_failed_order_is_no_longer_the_intent(body: Body) -> None:
     scene, order = ordered(body)
-    said = at(0.0, FlightMode.GO_HOME, velocity=(5.0, 0.0, 0.0))
-    scene.keeps_receiving(1, *said).passes(12.0)
+    reports = at(0.0, FlightMode.GO_HOME, velocity=(5.0, 0.0, 0.0))
+    scene.keeps_receiving(1, *reports).passes(12.0)
     assert scene.phase(order) in (Phase.TIMED_OUT, Phase.FAILED)
     assert intent(scene).commanded is Commanded.NOTHING
 
@@ -83,15 +83,15 @@ def test_after_a_mission_it_holds_where_it_ended() -> None:
 
 
 @pytest.mark.parametrize("body", [Hover(), LandNow(), ReturnHome()])
-def test_after_a_landing_it_was_told_nothing(body: Body) -> None:
+def test_after_a_landing_nothing_is_commanded(body: Body) -> None:
     scene, _ = ordered(body)
     scene.passes(1.0).keeps_receiving(1, *at(0.0, GPS, flying=False)).passes(1.5)
     assert intent(scene).commanded is Commanded.NOTHING
 
 
-def test_a_mission_from_the_ground_is_told_while_it_takes_off() -> None:
-    said = at(0.0, GPS, flying=False, height_m=0.0)
-    scene = CommandedStation().opens(1, *said).keeps_receiving(1, *said).passes(0.5)
+def test_a_mission_from_the_ground_is_the_intent_during_takeoff() -> None:
+    reports = at(0.0, GPS, flying=False, height_m=0.0)
+    scene = CommandedStation().opens(1, *reports).keeps_receiving(1, *reports).passes(0.5)
     order = scene.order(mission(), takeoff=True)
     scene.passes(1.0)
     assert intent(scene).commanded is Commanded.MISSION

@@ -64,7 +64,7 @@ class TestParts:
         assert scene.phase(order) is Phase.DONE
         assert scene.alarms() == set()
 
-    def test_their_life_is_told_part_by_part_and_ends_once(self) -> None:
+    def test_phases_name_the_part_and_the_order_ends_once(self) -> None:
         scene, order = in_parts(5)
         flown_to(scene, 0.0, 10.0, 20.0)
         scene.answered(order, True)
@@ -139,8 +139,8 @@ class TestBrokenOff:
         scene, order = in_parts()
         flies(scene, 0.0, 10.0)
         scene.closes(1).passes(0.5)
-        said = at(15.0, WAYPOINT, velocity=NORTHWARD)
-        scene.opens(2, *said).keeps_receiving(2, *said).passes(1.0)
+        reports = at(15.0, WAYPOINT, velocity=NORTHWARD)
+        scene.opens(2, *reports).keeps_receiving(2, *reports).passes(1.0)
         assert scene.phase(order) is Phase.STARTED
         assert "no part will follow" in scene.record(order).note
         scene.keeps_receiving(2, *at(20.0, GPS)).passes(0.3)
@@ -155,21 +155,21 @@ class TestBrokenOff:
         scene.passes(silent_s)
         flown_to(scene, 18.0, 20.0)
         if is_broken:
-            self.ended(scene, order, "not heard for more than 3 s")
+            self.ended(scene, order, "no telemetry for more than 3 s")
         else:
             assert len(missions_sent(scene)) == 2
 
-    def test_somebody_who_takes_the_vehicle_over_ends_it(self) -> None:
+    def test_a_change_of_authority_ends_it(self) -> None:
         scene, order = in_parts()
         flies(scene, 0.0, 10.0).happens(AuthorityTaken("A", AuthorityHolder.OPERATOR, "another"))
         flown_to(scene, 15.0, 20.0)
-        self.ended(scene, order, "it was taken over since the order")
+        self.ended(scene, order, "authority changed since the order")
 
     def test_what_the_gate_refuses_then_is_not_flown(self) -> None:
         scene, order = in_parts()
         flies(scene, 0.0, 10.0, 20.0)
-        said = (at(20.0, GPS)[0], replace(at(20.0, GPS)[1], gnss_signal_level=0))
-        scene.keeps_receiving(1, *said).passes(0.5)
+        reports = (at(20.0, GPS)[0], replace(at(20.0, GPS)[1], gnss_signal_level=0))
+        scene.keeps_receiving(1, *reports).passes(0.5)
         self.ended(scene, order, "GNSS signal level")
         assert scene.refusal_rule(order) == "gnss"
 

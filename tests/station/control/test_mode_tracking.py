@@ -1,4 +1,4 @@
-"""Started, finished, taken over, failsafe: told apart by telemetry, and the order ends once."""
+"""Started, finished, pilot takeover, failsafe: distinguished by telemetry; one end per order."""
 
 import pytest
 from tests.safety.cases import STICK, mission, waypoint
@@ -78,7 +78,7 @@ class TestAMission:
 
     @pytest.mark.parametrize("mode", [LANDING, FlightMode.CONFIRM_LANDING, HOME])
     @pytest.mark.parametrize("north_m", [25.0, 50.0])
-    def test_a_landing_or_return_that_nobody_ordered_is_a_failsafe(
+    def test_a_landing_or_return_without_an_order_is_a_failsafe(
         self, mode: FlightMode, north_m: float
     ) -> None:
         scene, order = at_the_end()
@@ -136,7 +136,7 @@ class TestAMission:
         assert scene.phase(order) is Phase.SUPERSEDED
         assert scene.phase(newer) is Phase.STARTED
 
-    def test_one_that_is_not_heard_any_more_has_an_end_after_all(self) -> None:
+    def test_without_telemetry_its_outcome_is_unknown_in_the_end(self) -> None:
         scene, order = under_way()
         scene.talk.clear()
         scene.passes(590.0)
@@ -157,7 +157,7 @@ class TestAMission:
         assert scene.phase(order) is Phase.STARTED
 
     def test_a_round_trip_that_is_left_at_its_beginning_was_not_finished(self) -> None:
-        """The end lies 3 m from the beginning: only who has flown the rest is at it."""
+        """The end lies 3 m from the beginning and counts only after the other waypoints."""
         scene, order = ordered(
             mission(waypoint(0.0), waypoint(50.0), waypoint(100.0), waypoint(3.0))
         )
@@ -232,7 +232,7 @@ class TestOtherOrders:
         ("mode", "north_m"),
         [(FlightMode.JOYSTICK, 0.0), (WAYPOINT, 0.0), (GPS, 8.0), (SPORT, 0.0)],
     )
-    def test_what_holds_and_is_flown_by_somebody_else_is_the_pilots(
+    def test_a_holding_vehicle_flown_by_hand_is_the_pilots(
         self, mode: FlightMode, north_m: float
     ) -> None:
         scene = hovering()
@@ -271,8 +271,8 @@ class TestToldNothing:
         assert holder(scene) is AuthorityHolder.PILOT
 
     def test_what_was_so_from_the_beginning_is_no_takeover(self) -> None:
-        said = at(0.0, SPORT)
-        scene = CommandedStation().opens(1, *said).keeps_receiving(1, *said).passes(10.0)
+        reports = at(0.0, SPORT)
+        scene = CommandedStation().opens(1, *reports).keeps_receiving(1, *reports).passes(10.0)
         assert holder(scene) is AuthorityHolder.OPERATOR
 
     @pytest.mark.parametrize("mode", [HOME, LANDING, WAYPOINT, GPS])
@@ -287,16 +287,16 @@ class TestReconnecting:
     def test_one_that_comes_back_flying_on_is_followed_on(self) -> None:
         scene, order = under_way()
         scene.closes(1).passes(1.0)
-        said = at(30.0, WAYPOINT, velocity=NORTHWARD)
-        scene.opens(2, *said).keeps_receiving(2, *said).passes(1.0)
+        reports = at(30.0, WAYPOINT, velocity=NORTHWARD)
+        scene.opens(2, *reports).keeps_receiving(2, *reports).passes(1.0)
         assert scene.phase(order) is Phase.STARTED
         assert commanded(scene) is Commanded.MISSION
 
-    def test_one_that_comes_back_in_a_mode_that_tells_nothing_is_told_nothing(self) -> None:
+    def test_reconnecting_in_an_ambiguous_mode_leaves_nothing_commanded(self) -> None:
         scene, order = under_way()
         scene.closes(1).passes(1.0)
-        said = at(30.0, FlightMode.OTHER)
-        scene.opens(2, *said).keeps_receiving(2, *said).passes(1.0)
+        reports = at(30.0, FlightMode.OTHER)
+        scene.opens(2, *reports).keeps_receiving(2, *reports).passes(1.0)
         ended_as(scene, order, Phase.FAILED)
         assert commanded(scene) is Commanded.NOTHING
 

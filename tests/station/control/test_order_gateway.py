@@ -105,7 +105,7 @@ class TestMission:
         assert scene.phase(order) is Phase.EXPIRED
         assert not scene.record(order).is_tracked
 
-    def test_the_audit_says_which_altitudes_were_sent(self) -> None:
+    def test_the_audit_has_the_altitudes_sent(self) -> None:
         scene = hovering()
         assert scene.record(scene.order(mission())).altitudes == (
             "sent as 40.0 to 40.0 m above takeoff"
@@ -162,14 +162,14 @@ class TestCameraAndStick:
             assert scene.refusal_rule(scene.order(body)) == "identified"
 
 
-def test_an_order_to_nobody_is_refused() -> None:
+def test_an_order_to_an_unknown_vehicle_is_refused() -> None:
     scene = CommandedStation()
-    assert scene.phase(scene.order(Hover(), "nobody")) is Phase.REFUSED_BY_STATION
+    assert scene.phase(scene.order(Hover(), "X")) is Phase.REFUSED_BY_STATION
     assert scene.phase(scene.order(Hover(), None, link=9)) is Phase.REFUSED_BY_STATION
     assert scene.phase(scene.order(Hover(), None)) is Phase.REFUSED_BY_STATION
 
 
-def test_what_a_link_says_of_an_unknown_order_is_ignored() -> None:
+def test_a_link_event_of_an_unknown_order_is_ignored() -> None:
     scene = hovering()
     before = scene.station
     scene.answered(77, True).dropped(77, Phase.FAILED)

@@ -82,7 +82,9 @@ class TestRepeats:
         assert "order_not_confirmed" in scene.alarms()
 
     @pytest.mark.parametrize("body", [Hover(), ReturnHome()])
-    def test_hover_and_return_are_not_repeated_when_telemetry_says_landed(self, body: Body) -> None:
+    def test_hover_and_return_are_not_repeated_when_telemetry_shows_landed(
+        self, body: Body
+    ) -> None:
         scene = flying()
         order = scene.order(body)
         scene.keeps_receiving(1, core(flying=False), extended(mode=None)).passes(DEAF)
@@ -97,7 +99,7 @@ class TestRepeats:
         scene.passes(DEAF)
         assert len(scene.times_s(order)) == 1
 
-    def test_land_is_repeated_whatever_telemetry_says(self) -> None:
+    def test_land_is_repeated_whatever_telemetry_shows(self) -> None:
         scene = flying()
         scene.talk.clear()
         scene.passes(30.0)
@@ -286,7 +288,7 @@ class TestUnidentified:
         scene.keeps_receiving(1, core(), extended(None)).passes(0.2)
         assert scene.phase(order) is Phase.DONE
 
-    def test_the_order_follows_the_link_when_it_says_its_serial(self) -> None:
+    def test_the_order_follows_the_link_when_it_reports_its_serial(self) -> None:
         scene = self.unidentified()
         order = scene.order(Hover(), None, link=1)
         scene.keeps_receiving(1, core(velocity=(5.0, 0.0, 0.0)), extended("A")).passes(1.0)

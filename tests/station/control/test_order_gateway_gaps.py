@@ -16,14 +16,14 @@ HELD = replace(STICK, velocity_x_mps=5.0, velocity_y_mps=0.0, timeout_s=1.0)
 
 
 def silent() -> CommandedStation:
-    """A vehicle in a mission that has not been heard for five seconds."""
+    """A vehicle in a mission, without telemetry for five seconds."""
     scene = flying()
     scene.talk.clear()
     return scene.passes(5.0)
 
 
 class TestAStopInAGap:
-    def test_it_goes_out_as_soon_as_the_vehicle_is_heard_flying(self) -> None:
+    def test_it_is_sent_as_soon_as_telemetry_shows_the_vehicle_in_flight(self) -> None:
         scene = silent()
         order = scene.order(Hover())
         assert scene.phase(order) is Phase.QUEUED

@@ -49,7 +49,7 @@ MODES = [
     FlightMode.GPS_SPORT,
     FlightMode.OTHER,
 ]
-SAYS = st.builds(
+REPORTS = st.builds(
     at,
     st.sampled_from([0.0, 10.0, 20.0, 30.0, 40.0, 60.0]),
     st.sampled_from(MODES),
@@ -70,9 +70,9 @@ BODIES = st.sampled_from(
     ]
 )
 DOES = st.one_of(
-    st.tuples(st.just("receives"), SAYS),
-    st.tuples(st.just("receives"), SAYS),
-    st.tuples(st.just("receives"), SAYS),
+    st.tuples(st.just("receives"), REPORTS),
+    st.tuples(st.just("receives"), REPORTS),
+    st.tuples(st.just("receives"), REPORTS),
     st.tuples(st.just("order"), BODIES),
     st.tuples(st.just("order"), BODIES),
     st.tuples(st.just("sends"), st.booleans()),
@@ -194,7 +194,7 @@ def test_every_order_has_one_end_and_no_motion_goes_by_itself(
     for name, what in does:
         life.now_ns += S // 10
         getattr(life, name)(what)
-    for _ in range(80):  # nothing is heard any more
+    for _ in range(80):  # no telemetry
         life.now_ns += 10 * S
         life.happens(Tick())
     assert all(record.phase.is_final for record in life.station.orders.records.values())

@@ -60,10 +60,10 @@ class TestOverride:
         assert refusal.rule == "preflight_override"
         assert overrides(scene, reason).station.control("A").preflight_override is None
 
-    def test_a_vehicle_nobody_knows_has_no_list(self, scene: CommandedStation) -> None:
+    def test_an_unknown_vehicle_has_no_checklist(self, scene: CommandedStation) -> None:
         refusal = preflight.refusal(scene.station, PreflightOverridden("X", "Ann", "why not"))
         assert refusal is not None
-        assert "X is not known" in refusal.reason
+        assert "X is unknown" in refusal.reason
         assert "X" not in overrides(scene, serial="X").station.controls
 
     def test_a_reason_of_500_characters_is_one(self, scene: CommandedStation) -> None:
@@ -87,7 +87,7 @@ class TestItsEnd:
         scene.keeps_receiving(1, *ON_GROUND).passes(0.1)
         assert not is_overridden(scene)
 
-    def test_a_landing_that_nobody_heard_ends_it_too(self, scene: CommandedStation) -> None:
+    def test_a_landing_without_telemetry_ends_it_too(self, scene: CommandedStation) -> None:
         overrides(scene).keeps_receiving(1, *HOVERING).passes(1.0)
         scene.closes(1).passes(30.0).opens(2, *ON_GROUND)
         assert not is_overridden(scene)
@@ -107,7 +107,7 @@ class TestItsEnd:
 
 
 class TestClock:
-    def test_what_was_set_since_the_start_is_told(self, scene: CommandedStation) -> None:
+    def test_a_clock_change_since_the_start_is_a_fact(self, scene: CommandedStation) -> None:
         scene.station = replace(scene.station, clock=None)
         assert preflight.facts(scene.station, None).clock is None
         scene.happens(ClockRead(EPOCH_NS + scene.now_ns))
@@ -129,18 +129,16 @@ class TestFacts:
         vehicle = scene.station.fleet.vehicles["A"]
         others = preflight.facts(scene.station, vehicle).others
         assert [other.serial for other in others] == ["B", "C", "E"]
-        everybody = preflight.facts(scene.station, None).others
-        assert [other.serial for other in everybody] == ["A", "B", "C", "E"]
+        others = preflight.facts(scene.station, None).others
+        assert [other.serial for other in others] == ["A", "B", "C", "E"]
 
-    def test_what_its_app_said_is_told_until_somebody_has_seen_it(
-        self, scene: CommandedStation
-    ) -> None:
+    def test_its_apps_warnings_are_facts_until_acknowledged(self, scene: CommandedStation) -> None:
         scene.opens(2, core(), extended("B"))
         scene.receives(2, MessageReport(MessageSeverity.ERROR, "not mine"))
         scene.receives(1, MessageReport(MessageSeverity.WARNING, "compass error"))
         vehicle = scene.station.fleet.vehicles["A"]
-        said = preflight.facts(scene.station, vehicle).app_warnings
-        assert said == ("A: message from its app: compass error",)
+        warnings = preflight.facts(scene.station, vehicle).app_warnings
+        assert warnings == ("A: message from its app: compass error",)
         (alarm,) = [a for a in scene.station.alarms.alarms.values() if a.condition.serial == "A"]
         scene.happens(AlarmAcknowledged(alarm.id, "Ann"))
         assert preflight.facts(scene.station, vehicle).app_warnings == ()

@@ -213,7 +213,7 @@ class TestEnds:
         assert s.moving_sticks(gone_s + 0.03) == []
         assert zero_s < s.hovers(gone_s)[0] <= gone_s + 0.2
         assert s.phase(order) is Phase.FAILED
-        assert any("connection that held" in text for text in s.alarm_texts())
+        assert any("connection that owns the order closed" in text for text in s.alarm_texts())
         s.run_for(5.0)
         assert s.aircraft.flight_mode is FlightMode.GPS_ATTI
 
@@ -228,7 +228,7 @@ class TestEnds:
         assert s.stream is not None
         assert s.stream.command == stream.command
 
-    def test_an_order_held_by_nobody_that_is_open_is_refused(self) -> None:
+    def test_an_order_without_an_open_owner_is_refused(self) -> None:
         s = steered()
         order = s.order(GoTo(s.there(50.0), HEIGHT_M, 5.0), OWNER)
         assert s.phase(order) is Phase.REFUSED_BY_STATION
@@ -321,11 +321,11 @@ class TestEnds:
         assert s.aircraft.flight_mode is FlightMode.GO_HOME
 
     @pytest.mark.parametrize("holder", [AuthorityHolder.GUIDANCE, AuthorityHolder.PILOT])
-    def test_another_leader_ends_it_with_a_stop(self, holder: AuthorityHolder) -> None:
+    def test_another_holder_of_authority_ends_it_with_a_stop(self, holder: AuthorityHolder) -> None:
         s = steered()
         order = s.goto(200.0)
         s.run_for(6.0)
-        s.w.driver.handle(AuthorityTaken(SERIAL, holder, "somebody"))
+        s.w.driver.handle(AuthorityTaken(SERIAL, holder, "another"))
         taken_s = s.now_s
         s.run_for(8.0)
         assert s.phase(order) in (Phase.FAILED, Phase.SUPERSEDED)
@@ -369,7 +369,7 @@ class TestEnds:
         order = s.goto(200.0)
         s.run_for(4.0)
         assert s.phase(order) is Phase.FAILED
-        assert "not gone over to sticks" in s.note(order)
+        assert "did not enter stick mode" in s.note(order)
         ended_s = s.now_s
         s.run_for(5.0)
         assert s.sticks(ended_s) == []
@@ -409,9 +409,9 @@ class TestEnds:
         s.aircraft.pilot_takes()
         s.holder_goes()
         s.run_until(lambda: s.w.vehicle(SERIAL).flight_mode.value is FlightMode.GPS_SPORT, 1.0)
-        told_s = s.now_s
+        replaced_s = s.now_s
         s.run_for(5.0)
-        assert s.sticks(told_s + 0.05) == []
+        assert s.sticks(replaced_s + 0.05) == []
         assert s.aircraft.flight_mode is not FlightMode.JOYSTICK
 
     def test_a_landing_refused_for_want_of_a_link_ends_it_as_well(self) -> None:
@@ -444,7 +444,7 @@ class TestEnds:
         assert s.phase(order) is Phase.REFUSED_BY_STATION
         assert s.sticks() == []
 
-    def test_a_stop_that_waits_to_be_heard_ends_it_too(self) -> None:
+    def test_a_stop_that_waits_for_telemetry_ends_it_too(self) -> None:
         s = steered(faults=(f"telemetry-dropout:{SERIAL}:8:30",))
         s.goto(200.0)
         s.run_for(7.95)

@@ -1,4 +1,4 @@
-"""Where a vehicle is steered, as consoles are told."""
+"""The goal of a steered vehicle in the API."""
 
 from tests.station.steered_world import SERIAL, steered
 

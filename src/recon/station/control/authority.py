@@ -25,10 +25,10 @@ PILOT = "pilot"
 
 
 def refusal(station: Station, event: AuthorityTaken) -> Refusal | None:
-    """Return why somebody cannot take a vehicle over, or give it away, else None."""
+    """Return why authority over a vehicle cannot change like this, else None."""
     vehicle = station.fleet.vehicles.get(event.serial)
     if vehicle is None:
-        return Refusal(RULE, f"{event.serial} is not known: no app has said this serial")
+        return Refusal(RULE, f"{event.serial} is unknown: no app has reported this serial")
     authority = station.control(event.serial).authority
     if event.holder is AuthorityHolder.GUIDANCE and authority.holder is AuthorityHolder.PILOT:
         return Refusal(
@@ -40,7 +40,7 @@ def refusal(station: Station, event: AuthorityTaken) -> Refusal | None:
 
 
 def take(station: Station, event: AuthorityTaken, now_ns: int) -> Station:
-    """Return the station after somebody took a vehicle over, or gave it away; or as it was."""
+    """Return the station with authority over a vehicle transferred, unless that is refused."""
     if refusal(station, event) is not None:
         return station
     given = "taken over by" if event.holder is AuthorityHolder.OPERATOR else "given to it by"
@@ -49,9 +49,9 @@ def take(station: Station, event: AuthorityTaken, now_ns: int) -> Station:
 
 
 def after_stop(station: Station, command: Command, now_ns: int) -> Station:
-    """Return the station after hold, land or return was ordered: guidance must not fly on at once.
+    """Return the station after hold, land or return was ordered: guidance must not resume.
 
-    Whoever stops a vehicle that guidance leads takes it from guidance, heard or not.
+    The operator that stops a vehicle of guidance gets authority, also without telemetry.
     """
     target = station.target(command.serial, command.link_id)
     serial = None if target is None else target.serial
@@ -85,7 +85,7 @@ def give_to_pilot(
         severity=Severity.WARNING,
         rule="pilot_took_over",
         vehicle_name=vehicle.display_name,
-        text=f"{vehicle.display_name}: {why}; the station lets go until somebody takes it over",
+        text=f"{vehicle.display_name}: {why}; nothing is sent until an operator takes control",
         serial=serial,
         link_id=vehicle.link_id,
     )
@@ -95,7 +95,7 @@ def give_to_pilot(
 
 
 def hand_back(station: Station, serial: str, to: str, why: str, now_ns: int) -> Station:
-    """Return the station with a vehicle led by the operator that guidance leads no longer."""
+    """Return the station with authority passed from guidance to the operator."""
     if station.control(serial).authority.holder is not AuthorityHolder.GUIDANCE:
         return station
     authority = ControlAuthority(AuthorityHolder.OPERATOR, to, now_ns, why)
@@ -105,12 +105,12 @@ def hand_back(station: Station, serial: str, to: str, why: str, now_ns: int) -> 
 def on_manual_flight(station: Station, serial: str, now_ns: int) -> Station:
     """Return the station after a vehicle moved in the air with nothing ordered.
 
-    Its pilot has authority until somebody takes it. Where somebody has, authority stays: there the
-    flight table shows the pilot.
+    Its pilot has authority until it is taken. Authority that was taken stays: there the flight
+    table shows the pilot.
     """
     if station.control(serial).is_taken:
         return station
-    why = "it moves, and nothing has been ordered here: its pilot flies it"
+    why = "in motion without an order: flown by its pilot"
     authority = ControlAuthority(AuthorityHolder.PILOT, PILOT, now_ns, why)
     return _with_authority(station, serial, authority)
 
@@ -141,7 +141,7 @@ def _without_setpoints(station: Station, serial: str, why: str, now_ns: int) -> 
 
 
 def _superseded(station: Station, serial: str, why: str, now_ns: int) -> Station:
-    """End the lives of the orders to move it that are not over."""
+    """End the open orders to move a vehicle."""
     book = station.orders
     for record in book.tracked:
         if record.command.serial == serial and lane_of(record.command) is Lane.MOTION:

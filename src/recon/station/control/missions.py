@@ -1,9 +1,9 @@
 """Missions in parts: each part goes through the gate, and the next one only over a whole chain.
 
 A mission longer than an app takes is flown in parts that hover at their ends. The next part is sent
-when the one before was flown to its end, if since the order the vehicle has stayed on the same
-link, was heard without a gap, and was led by the same holder. Else it holds, the order has failed,
-and an alarm says why. Nothing else is ever sent by itself.
+when the one before is finished, if since the order the vehicle has stayed on the same link, without
+a gap of telemetry and under the same holder of authority. Else it holds, the order fails, and an
+alarm gives the reason. Nothing else is ever sent without an order.
 """
 
 from dataclasses import replace
@@ -33,7 +33,7 @@ def plan(station: Station, command: Command) -> FlightPlan | None:
         repairs=repaired.repairs,
         link_id=None if vehicle is None else vehicle.link_id,
         authority=station.control(command.serial).authority,
-        heard_at_ns=None if vehicle is None else vehicle.core_received_at_ns,
+        telemetry_at_ns=None if vehicle is None else vehicle.core_received_at_ns,
     )
 
 
@@ -53,18 +53,18 @@ def refusal_of_whole(
     return judge_parts(command, flight_plan.parts, situation)
 
 
-def watch_chain(
+def check_chain(
     station: Station, record: OrderRecord, vehicle: VehicleState, now_ns: int
 ) -> Station:
-    """Return the station with a mission's chain judged: once broken it stays so, and it is said."""
+    """Return the station with a mission's chain checked; once broken it stays broken."""
     chain = record.plan
     if chain is None or chain.is_last or chain.broken is not None:
         return station
     broken = _break(station, chain, vehicle, now_ns)
-    heard = replace(chain, heard_at_ns=vehicle.core_received_at_ns, broken=broken)
-    if heard == chain:
+    checked = replace(chain, telemetry_at_ns=vehicle.core_received_at_ns, broken=broken)
+    if checked == chain:
         return station
-    record = replace(record, plan=heard)
+    record = replace(record, plan=checked)
     if broken is not None:
         note = f"no part will follow the present one: {broken}"
         record = orders.noted(record, now_ns, note)
@@ -75,7 +75,7 @@ def part_flown(station: Station, record: OrderRecord, now_ns: int, ask: Judge) -
     """Return the station after a vehicle flew a mission's present part to its end."""
     flown = record.plan
     if flown is None or flown.is_last:
-        note = "by telemetry: flown to its end, and it hovers there"
+        note = "by telemetry: flown to its end; hovering"
         return _put(station, orders.ended(record, Phase.DONE, now_ns, note)), ()
     if flown.broken is not None:
         return _broken_off(station, record, flown.broken, now_ns), ()
@@ -119,16 +119,16 @@ def _break(station: Station, chain: FlightPlan, vehicle: VehicleState, now_ns: i
     """Return what broke the chain since the order, else None."""
     if vehicle.link_id != chain.link_id:
         return "its connection ended or was renewed since the order"
-    heard_ns, before_ns = vehicle.core_received_at_ns, chain.heard_at_ns
+    latest_ns, before_ns = vehicle.core_received_at_ns, chain.telemetry_at_ns
     gap_s = station.settings.parts_gap_s
-    if heard_ns is None or before_ns is None:
-        return "it was not heard when the order was given"
-    silent_s = ns_to_seconds(max(now_ns - heard_ns, heard_ns - before_ns))
+    if latest_ns is None or before_ns is None:
+        return "no telemetry when the order was given"
+    silent_s = ns_to_seconds(max(now_ns - latest_ns, latest_ns - before_ns))
     if silent_s > gap_s:
-        return f"it was not heard for more than {gap_s:g} s since the order"
+        return f"no telemetry for more than {gap_s:g} s since the order"
     authority = station.control(vehicle.serial).authority
     if authority != chain.authority:
-        return f"it was taken over since the order ({authority.reason})"
+        return f"authority changed since the order ({authority.reason})"
     return None
 
 

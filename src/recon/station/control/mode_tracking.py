@@ -1,8 +1,23 @@
-"""Telemetry compared with what each vehicle was commanded to do, by the flight table.
+"""Telemetry compared with what each vehicle was commanded to do. Writes `VehicleControl.tracking`.
 
-The only writer of `VehicleControl.tracking`. An order that telemetry has shown begun is tracked to
-its end here: finished, taken over by the pilot, or ended by the aircraft's own failsafe. So is a
-vehicle that holds, or that has been commanded nothing.
+Theory of operation. A vehicle's intent (`intents`) and whether telemetry has shown it begun choose
+a row of the flight table (`fleet.flight_table`). Each new flight mode, with a position at least as
+new, is read once by that row. The verdicts:
+
+- *carried out*: the mode becomes the known one; for a setpoint stream the intent has begun.
+- *finished*: on the ground the order is done and the intent ends. In the air the vehicle holds
+  where it is, and `missions` sends the next part of a mission.
+- *pilot*, *failsafe*: count at once if only they explain the mode, else after `mode_lasts_s`,
+  because apps show such modes in passing. A pilot gets authority, the order is superseded and
+  nothing more is sent. A failsafe fails the order and raises an alarm until landing.
+- *undecided*: after `undecided_s`, or when the vehicle reconnects in such a mode, the order fails:
+  its outcome is unknown.
+
+Transitions without a verdict: an intent changes when an order leaves (`on_order_sent`), telemetry
+shows its beginning (`on_order_begun`) or a stream replaces it. An order that fails before it began,
+and the landing of a vehicle that holds, leave nothing commanded. Hold, land and return that
+telemetry has not shown yet are not read: `order_timeouts` repeats them and ends them. A vehicle
+that was never commanded and moves in position mode is flown by its pilot.
 """
 
 from recon.fleet.confirmation import SentContext
@@ -22,10 +37,10 @@ from recon.station.state.stepped import Judge, Stepped
 from recon.station.state.vehicle_control import NO_INTENT, Tracking
 
 _RECENT_S = 0.5
-"""A vehicle heard within this is tracked at each of its packets, and not at ticks as well."""
+"""A vehicle with newer telemetry is tracked at each of its packets, and not at ticks as well."""
 
 FLOWN_BY_HAND_MPS = 2.0
-"""In position mode an aircraft that nobody steers stands: gusts and GNSS noise stay under this."""
+"""An aircraft in position mode without stick input stands: gusts and GNSS noise stay below."""
 
 _LASTING = (Verdict.PILOT, Verdict.FAILSAFE)
 _UNCONFIRMED_EMERGENCY = (Instruction.HOLD_SENT, Instruction.RETURN_SENT, Instruction.LAND_SENT)
@@ -45,7 +60,7 @@ def track(station: Station, serials: tuple[str, ...], now_ns: int, judge: Judge)
     return station, outputs
 
 
-def not_recently_heard(station: Station, now_ns: int) -> tuple[str, ...]:
+def without_recent_telemetry(station: Station, now_ns: int) -> tuple[str, ...]:
     """Return the vehicles that have not just been tracked at a packet of their own."""
     limit_ns = seconds_to_ns(_RECENT_S)
     return tuple(
@@ -124,7 +139,7 @@ def _track(station: Station, serial: str, now_ns: int, judge: Judge) -> Stepped:
     station = intents.with_held_place(_count_passed(station, serial, vehicle), serial)
     record = _active_order(station, serial)
     if record is not None:
-        station = missions.watch_chain(station, record, vehicle, now_ns)
+        station = missions.check_chain(station, record, vehicle, now_ns)
     reading = _reading(station, serial, vehicle)
     if reading is None:
         return station, ()
@@ -140,7 +155,7 @@ def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | 
     if instruction in _UNCONFIRMED_EMERGENCY or mode.value is None or mode.received_at_ns is None:
         return None
     core_ns = vehicle.core_received_at_ns
-    is_new = mode.received_at_ns > tracking.told_at_ns and mode != tracking.read
+    is_new = mode.received_at_ns > tracking.since_ns and mode != tracking.read
     if not is_new or core_ns is None or core_ns < mode.received_at_ns:
         return None
     level = vehicle.gnss_signal_level.value
@@ -240,9 +255,9 @@ def _on_undecided(
     record = _active_order(station, serial)
     if record is not None:
         text = (
-            f"it came back otherwise than it was left ({reading.why})"
+            f"reconnected in another flight mode ({reading.why})"
             if came_back
-            else (f"it is not seen to carry it out any more ({reading.why})")
+            else f"telemetry no longer shows it carried out ({reading.why})"
         )
         station = _put(station, orders.ended(record, Phase.FAILED, now_ns, text))
     return _command_nothing(station, serial, now_ns)
@@ -273,7 +288,7 @@ def _detect_manual_flight(
 ) -> Station:
     """A vehicle that moves in position mode with nothing ordered is flown by its pilot.
 
-    Other modes show by the flight table who flies it; a hover shows nothing.
+    In other modes the flight table shows its pilot; a hover shows nothing.
     """
     intent, tracking = station.control(serial).intent, tracking_of(station, serial)
     if intent.commanded is not Commanded.NOTHING or vehicle.is_flying.value is None:
@@ -318,7 +333,7 @@ def _is_steered(station: Station, serial: str) -> bool:
 def _start(station: Station, serial: str, intent: Intent, mode: FlightMode | None) -> Station:
     """Return the station with a vehicle's intent, tracked anew; `mode` is no news of it."""
     station = intents.with_intent(station, serial, intent)
-    tracking = Tracking(told_at_ns=intent.since_ns, command_id=intent.command_id, mode_before=mode)
+    tracking = Tracking(since_ns=intent.since_ns, command_id=intent.command_id, mode_before=mode)
     return _with_tracking(station, serial, tracking)
 
 
@@ -329,7 +344,7 @@ def _command_nothing(
     vehicle = station.fleet.vehicles.get(serial)
     mode = None if vehicle is None else vehicle.flight_mode.value
     station = intents.with_intent(station, serial, NO_INTENT)
-    tracking = Tracking(told_at_ns=now_ns, mode_before=mode, failsafe=failsafe)
+    tracking = Tracking(since_ns=now_ns, mode_before=mode, failsafe=failsafe)
     return _with_tracking(station, serial, tracking)
 
 

@@ -136,7 +136,7 @@ def on_owner_disconnected(station: Station, owner: str, now_ns: int) -> Stepped:
     """End the streams that depended on a connection."""
     station = replace(station, owners=station.owners - {owner})
     serials = setpoint_streams.owned_by(station, owner)
-    return end_streams(station, serials, "the connection that held the order has gone", now_ns)
+    return end_streams(station, serials, "the connection that owns the order closed", now_ns)
 
 
 def _judge_at(now_ns: int) -> Judge:
@@ -207,7 +207,9 @@ def update_orders(station: Station, now_ns: int, serials: tuple[str, ...] | None
         if not isinstance(record.command.body, STEERED_BODIES):  # its stream reports its phases
             station, sent = _update_order(station, record, now_ns)
             outputs += sent
-    tracked = mode_tracking.not_recently_heard(station, now_ns) if serials is None else serials
+    tracked = (
+        mode_tracking.without_recent_telemetry(station, now_ns) if serials is None else serials
+    )
     station, sent = mode_tracking.track(station, tracked, now_ns, _judge_at(now_ns))
     outputs += sent
     station, neutrals = neutral_setpoint.due(station, now_ns)

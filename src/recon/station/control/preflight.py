@@ -1,4 +1,7 @@
-"""The preflight checklist in the station: what it needs beside the vehicle, and its overrides."""
+"""Facts for the preflight checklist, and overrides of it.
+
+The only writer of `VehicleControl.preflight_override`.
+"""
 
 from dataclasses import replace
 
@@ -14,14 +17,14 @@ LONGEST_REASON = 500
 
 
 def read_clock(station: Station, event: ClockRead, now_ns: int) -> Station:
-    """Return the station after the computer's clock was looked at."""
+    """Return the station after the computer's clock was read."""
     ahead_ns = event.wall_ns - now_ns
     at_start_ns = ahead_ns if station.clock is None else station.clock.ahead_at_start_ns
     return replace(station, clock=Clock(event.wall_ns, ahead_ns, at_start_ns))
 
 
 def facts(station: Station, vehicle: VehicleState | None) -> StationFacts:
-    """Return what the checklist of one vehicle needs to know of the rest."""
+    """Return what a vehicle's checklist needs beside its own state."""
     clock = station.clock
     return StationFacts(
         clock=None if clock is None else ClockReading(clock.wall_ns, clock.set_by_ns),
@@ -38,16 +41,19 @@ def facts(station: Station, vehicle: VehicleState | None) -> StationFacts:
 def refusal(station: Station, event: PreflightOverridden) -> Refusal | None:
     """Return why a checklist cannot be overridden like this, else None."""
     if event.serial not in station.fleet.vehicles:
-        return Refusal(RULE, f"{event.serial} is not known: no app has said this serial")
+        return Refusal(RULE, f"{event.serial} is unknown: no app has reported this serial")
     if not event.reason.strip():
-        return Refusal(RULE, "an override needs a reason in words: it is logged")
+        return Refusal(RULE, "an override needs a reason: it is logged")
     if len(event.reason) > LONGEST_REASON:
-        return Refusal(RULE, f"a reason of {LONGEST_REASON} characters at most is kept")
+        return Refusal(
+            RULE,
+            f"the reason must have at most {LONGEST_REASON} characters; got {len(event.reason)}",
+        )
     return None
 
 
 def override(station: Station, event: PreflightOverridden, now_ns: int) -> Station:
-    """Return the station after somebody overrode a vehicle's checklist; or as it was."""
+    """Return the station with a vehicle's checklist overridden, unless that is refused."""
     if refusal(station, event) is not None:
         return station
     given = Override(event.by, event.reason.strip(), now_ns)
@@ -55,7 +61,7 @@ def override(station: Station, event: PreflightOverridden, now_ns: int) -> Stati
 
 
 def after_packet(before: Station, after: Station, link_id: int) -> Station:
-    """Return the station after a packet: with the landing its vehicle's override ends."""
+    """Return the station after a packet: a landing ends the vehicle's override."""
     vehicle = after.fleet.vehicle_of_link(link_id)
     if vehicle is None or vehicle.serial is None:
         return after
@@ -69,7 +75,7 @@ def after_packet(before: Station, after: Station, link_id: int) -> Station:
 
 
 def _app_warnings(station: Station, vehicle: VehicleState) -> tuple[str, ...]:
-    """What its app has said, of warnings and errors, that nobody has seen."""
+    """Warnings and errors of its app that are not acknowledged."""
     return tuple(
         alarm.condition.text
         for alarm in station.alarms.alarms.values()

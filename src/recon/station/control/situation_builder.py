@@ -1,4 +1,4 @@
-"""What the gate judges: an order as a command, and the snapshot of the state to judge it by."""
+"""What the gate judges: an order as a command, and the situation it is judged in."""
 
 from recon.model.command import Command, FlyMission
 from recon.model.event import OperatorOrder
@@ -29,8 +29,8 @@ def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
 def situation(station: Station, command: Command, now_ns: int) -> Situation:
     """Return the snapshot the gate judges a command by.
 
-    The others in the air matter to what sets a vehicle in motion alone: a stop waits for no look
-    at all of them.
+    Other traffic matters only to commands that set a vehicle in motion: a stop must not wait for
+    it.
     """
     target = station.target(command.serial, command.link_id)
     serial = "" if target is None or target.serial is None else target.serial
@@ -61,7 +61,7 @@ def _stick_height_m(control: VehicleControl) -> float | None:
 
 
 def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tuple[Traffic, ...]:
-    """Every other vehicle that flies or was last known to, heard or not, or is about to fly."""
+    """Every other vehicle in flight by its last telemetry, or about to take off."""
     about_to = tuple(
         Traffic(state, intent)
         for state, intent in about_to_fly(station, now_ns)

@@ -1,6 +1,6 @@
 """Numbers for the commands the station gives by itself: below zero, each used once.
 
-Orders of people and programs are numbered from 1 up, so the two never meet.
+Orders of operators and programs are numbered from 1 up, so the two never meet.
 """
 
 from recon.model.replacing import replace

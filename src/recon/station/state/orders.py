@@ -1,7 +1,7 @@
-"""The life of every order: queued, sent, answered, carried out by telemetry's word, and its end.
+"""The record of every order and the transitions of its phase (theory: `control/order_timeouts`).
 
-A life ends in exactly one final phase. What is heard of it later is written down beside that phase
-and changes nothing but the alarm.
+An order ends in exactly one final phase. Later telemetry adds a note and may end the alarm; it
+never changes that phase.
 """
 
 from collections.abc import Mapping
@@ -33,7 +33,7 @@ LANDING_STOPPED = "landing_stopped"
 
 @dataclass(frozen=True, slots=True)
 class PhaseChange:
-    """One step of a life."""
+    """One change of phase, or a note within a phase."""
 
     phase: Phase
     at_ns: int
@@ -45,8 +45,8 @@ class FlightPlan:
     """A mission as it is sent: one part, or several flown one after the other.
 
     A next part is only sent while the chain is whole: `link_id` is the link the order went to,
-    `lead` who led the vehicle then, and `heard_at_ns` when telemetry came last. `broken` says why
-    no further part will be flown.
+    `authority` the vehicle's authority then, and `telemetry_at_ns` the time of its last telemetry.
+    `broken` is why no further part will be flown.
     """
 
     parts: tuple[Mission, ...]
@@ -55,7 +55,7 @@ class FlightPlan:
     """Of the part sent last."""
     link_id: int | None = None
     authority: ControlAuthority | None = None
-    heard_at_ns: int | None = None
+    telemetry_at_ns: int | None = None
     broken: str | None = None
 
     @property
@@ -70,13 +70,13 @@ class FlightPlan:
 
     @property
     def label(self) -> str:
-        """The present part as people name it; nothing for a mission of one."""
+        """The present part as in `part 2 of 3`; "" for a mission of one."""
         return "" if len(self.parts) == 1 else f"part {self.index + 1} of {len(self.parts)}"
 
 
 @dataclass(frozen=True, slots=True)
 class OrderRecord:
-    """One order and what has become of it.
+    """One order and its phases so far.
 
     `next_repeat_ns`: when an emergency order is sent again if nothing has ended that. `alarm` is
     the rule of the alarm it raises, until telemetry shows it carried out or a newer order comes.
@@ -92,7 +92,7 @@ class OrderRecord:
     next_repeat_ns: int | None = None
     repeats_left: int = 0
     waits_for_telemetry: bool = False
-    """A stop for a vehicle that cannot be heard: judged anew with every word of it."""
+    """A stop refused because telemetry is stale: judged again at each packet of its vehicle."""
     waiting_link_ids: tuple[int, ...] = ()
     """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""
     is_refused_by_app: bool = False
@@ -110,12 +110,12 @@ class OrderRecord:
 
     @property
     def note(self) -> str:
-        """The latest word on it."""
+        """The note of the latest change."""
         return self.history[-1].note
 
     @property
     def is_tracked(self) -> bool:
-        """Whether time and telemetry still change it: it lives, or its alarm does."""
+        """Whether time and telemetry still change it: it is open, or its alarm is."""
         return not self.phase.is_final or self.alarm is not None
 
 
@@ -136,14 +136,14 @@ def changed(record: OrderRecord, phase: Phase, at_ns: int, note: str = "") -> Or
 
 
 def noted(record: OrderRecord, at_ns: int, note: str) -> OrderRecord:
-    """Return the record with a word on it that changes no phase."""
+    """Return the record with a note that changes no phase."""
     return changed(record, record.phase, at_ns, note)
 
 
 def ended(
     record: OrderRecord, phase: Phase, at_ns: int, note: str = "", *, alarm: str | None = None
 ) -> OrderRecord:
-    """Return the record at its end; with an alarm when a person must look."""
+    """Return the record at its end; with an alarm if an operator must act."""
     return replace(changed(record, phase, at_ns, note), alarm=alarm)
 
 
@@ -187,7 +187,7 @@ _BEGINNINGS: dict[type, tuple[Phase, str]] = {
 
 
 def _of_part(record: OrderRecord, text: str) -> str:
-    """A word on a mission in parts says which part it is about."""
+    """Return the text, after the present part of a mission in parts."""
     label = "" if record.plan is None else record.plan.label
     return f"{label}: {text}" if label else text
 
@@ -216,7 +216,7 @@ def stick_over(record: OrderRecord, at_ns: int) -> OrderRecord:
     if not isinstance(body, VirtualStick) or record.phase is not Phase.CONFIRMED or sent is None:
         return record
     is_over = at_ns - sent.sent_at_ns >= seconds_to_ns(body.timeout_s)
-    return ended(record, Phase.DONE, at_ns, "its time is over") if is_over else record
+    return ended(record, Phase.DONE, at_ns, "hold time over") if is_over else record
 
 
 def timed_out(record: OrderRecord, at_ns: int, limit_s: float) -> OrderRecord:

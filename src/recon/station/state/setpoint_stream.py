@@ -27,11 +27,11 @@ class StreamSettings:
     """An app that hears no more sticks stops after this; the station sends the zero itself."""
 
     max_telemetry_age_s: float = 1.0
-    """On telemetry older than this nobody is steered: zero is sent. As the gate's own limit."""
+    """On older telemetry a neutral setpoint is sent. The same limit as the gate's."""
 
     resumes_s: float = 3.0
     """Telemetry that comes back within this goes on with the stream. Later the vehicle may be
-    anywhere, and whoever gave the order looks elsewhere."""
+    anywhere, and its operator may have turned to something else."""
 
     neutral_to_hold_s: float = 0.15
     """Between the zero at a stream's end and the hold that follows: the zero may have to wait 75 ms
@@ -39,11 +39,11 @@ class StreamSettings:
     at once loses the second."""
 
     obeyed_s: float = 3.0
-    """An aircraft goes over to sticks within a second, and its mode is told twice a second."""
+    """An aircraft goes over to sticks within a second, and its mode is reported at 2 Hz."""
 
     hold_at_most_s: float = 900.0
     """After this at its goal the vehicle is left to its own position hold. Longer than a battery's
-    half: who still needs the place held says so again."""
+    half: to hold on, order it again."""
 
     hold_speed_mps: float = 5.0
     """Back to a place to be held: faster than any wind's drift, slower than a flight."""

@@ -22,11 +22,11 @@ class StationSettings:
     forecast: ForecastSettings = field(default_factory=ForecastSettings)
 
     order_expiry_s: float = 5.0
-    """An order not on the wire by then is not what its giver sees any more."""
+    """An order not sent by then may no longer fit what the operator sees."""
 
     stop_waits_s: float = 30.0
-    """A hover that cannot be judged now, for telemetry is old or the connection is gone, waits this
-    long for the vehicle to be heard again: a stop must not be lost in a gap of telemetry."""
+    """A hover refused because telemetry is stale or the connection lost waits this long for
+    telemetry: a stop must not be lost in a gap."""
 
     emergency_repeat_s: float = 0.7
     emergency_repeats: int = 3
@@ -49,13 +49,13 @@ class StationSettings:
     reports of the mode at its usual rate."""
 
     undecided_s: float = 30.0
-    """An order whose vehicle is in a mode that says nothing for this long is not carried out."""
+    """An order whose vehicle stays in an ambiguous mode this long has failed."""
 
     parts_gap_s: float = 3.0
-    """A vehicle not heard for longer may have been flown by anybody: no next part is sent to it."""
+    """After a longer gap of telemetry its pilot may have flown it: no next part is sent."""
 
     telemetry_lost_s: float = 600.0
-    """What has become of an order whose vehicle is not heard for this long, nobody will learn."""
+    """After this long without telemetry the outcome of an order stays unknown."""
 
     camera_confirm_s: float = 8.0
     stick_confirm_s: float = 2.0
@@ -75,21 +75,21 @@ class StationSettings:
     """The newest frame of this many vehicles: 25 MB each at most."""
 
     imaging_trouble_after_s: float = 3.0
-    """A first frame comes before the eye's first telemetry, and one lost frame is no trouble."""
+    """A first frame comes before the first telemetry, and one lost frame is no problem."""
 
     low_battery_fraction: float = 0.25
     serious_battery_fraction: float = 0.10
-    """In flight; the aircraft's own warnings count as well, whichever says it first."""
+    """In flight; the aircraft's own warnings count as well, whichever comes first."""
 
     serial_wait_s: float = 2.0
-    """Extended telemetry, which tells the serial, comes at 1 to 2 Hz: a link that flies longer
-    without one is a vehicle that nobody can name."""
+    """Extended telemetry, with the serial, comes at 1 to 2 Hz: a link in flight without it for
+    longer is an unidentified vehicle."""
 
     first_telemetry_s: float = 3.0
     """A vehicle known by its serial alone, without core telemetry this long, is unseen."""
 
     landing_wait_s: float = 8.0
-    """A landing that waits for confirmation this long waits for somebody (decisions, 17)."""
+    """After this a landing that waits for confirmation needs its pilot (decisions, 17)."""
 
     pose_history_samples: int = 50
-    """Five seconds of the eye's telemetry, to look up what held when a late frame was taken."""
+    """Five seconds of the imaging drone's telemetry, to look up the pose of a late frame."""

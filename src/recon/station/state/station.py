@@ -22,8 +22,8 @@ from recon.station.state.watchdog_state import WatchdogState
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """The computer's clock as it was last read: what it said, and how far ahead of the station's
-    own time it was then, and when the station began."""
+    """The computer's clock when last read, and how far it was ahead of station time then and at
+    the start."""
 
     wall_ns: int
     ahead_ns: int
@@ -81,7 +81,7 @@ class Station:
     fleet_return: FleetReturn | None = None
     """The newest fleet return, until the station is started anew or another one begins."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
-    """What the watchdogs found, held and were told."""
+    """Findings, holds and switches of the watchdogs."""
     faults: Mapping[str, Fault] = field(default_factory=dict)
     """Of the station's own code, lately, by what it was doing."""
 
@@ -122,7 +122,7 @@ class Station:
     def target(self, serial: str | None, link_id: int | None) -> VehicleState | None:
         """Return the state an order's target has now: a vehicle, or a link without identity.
 
-        A link that has since said its serial stands for its vehicle.
+        A link that has since reported its serial stands for its vehicle.
         """
         if serial is not None:
             return self.fleet.vehicles.get(serial)

@@ -32,15 +32,14 @@ class PendingNeutral:
 
 @dataclass(frozen=True)
 class Tracking:
-    """What the flight table is asked with, beside the intent itself.
+    """How far telemetry has confirmed the intent, for the flight table.
 
-    `told_at_ns` is the intent's time: only modes received later count. `mode_before` is the flight
-    mode that is no news. `doubt` is a verdict that counts once it has lasted, since the mode
-    report of `doubt_since_ns`. `failsafe` says what the aircraft does by itself, until it is told
-    something or has landed.
+    Only modes received after `since_ns`, the intent's time, count. `mode_before` is the mode that
+    is no news. `doubt` is a verdict that counts once it has lasted since `doubt_since_ns`.
+    `failsafe` is what the aircraft does by itself, until it is commanded again or has landed.
     """
 
-    told_at_ns: int = 0
+    since_ns: int = 0
     command_id: int | None = None
     has_begun: bool = False
     mode_before: FlightMode | None = None
@@ -53,7 +52,7 @@ class Tracking:
     """When the telemetry came that the mission's passed waypoints were last counted by."""
     failsafe: str | None = None
     is_unbidden: bool = False
-    """New here, or on the ground and told nothing: if it moves, nobody at the station made it."""
+    """New here, or on the ground with nothing commanded: its motion is not the station's."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class VehicleControl:
 
     @property
     def is_taken(self) -> bool:
-        """Whether anybody has taken or been given authority since the station started."""
+        """Whether authority was ever taken or transferred since the station started."""
         return self.authority != NEVER_TAKEN
 
 

@@ -1,4 +1,4 @@
-"""What the station sees of a vehicle to steer it by, and where a steered order leads from there."""
+"""The kinematic state steering needs, and the goal of a steered order from there."""
 
 from dataclasses import replace
 from math import hypot
@@ -13,8 +13,8 @@ from recon.station.state.setpoint_stream import StreamSettings
 SIGHT = "sight"
 
 
-def sight(vehicle: VehicleState, now_ns: int) -> KinematicState | None:
-    """Return what steering needs to see of a vehicle, None while any part of it is unknown.
+def kinematic_state(vehicle: VehicleState, now_ns: int) -> KinematicState | None:
+    """Return a vehicle's kinematic state, None while any part of it is unknown.
 
     Its age is that of the oldest part.
     """
@@ -33,9 +33,11 @@ def sight(vehicle: VehicleState, now_ns: int) -> KinematicState | None:
     )
 
 
-def unseen(vehicle: VehicleState, now_ns: int, settings: StreamSettings) -> Refusal | None:
-    """Refuse to begin steering what cannot be seen."""
-    seen = sight(vehicle, now_ns)
+def refusal_without_telemetry(
+    vehicle: VehicleState, now_ns: int, settings: StreamSettings
+) -> Refusal | None:
+    """Return why steering cannot start: a part of the kinematic state is unknown or old."""
+    seen = kinematic_state(vehicle, now_ns)
     if seen is not None and seen.age_s <= settings.max_telemetry_age_s:
         return None
     return Refusal(
@@ -48,7 +50,7 @@ def unseen(vehicle: VehicleState, now_ns: int, settings: StreamSettings) -> Refu
 def goal_of(
     body: SteeredBody, seen: KinematicState, steering: SteeringSettings, settings: StreamSettings
 ) -> Goal:
-    """Return where an order leads a vehicle that is seen now."""
+    """Return the goal of a steered order from the present kinematic state."""
     match body:
         case GoTo():
             yaw_deg = seen.yaw_deg if body.yaw_deg is None else wrap_degrees(body.yaw_deg)
@@ -66,7 +68,7 @@ def goal_of(
 
 
 def no_faster_than(seen: KinematicState, speed_mps: float) -> KinematicState:
-    """Return the same sight with its horizontal speed cut: no demand begins above a limit."""
+    """Return the state with its horizontal speed limited: no setpoint starts above a limit."""
     speed = hypot(seen.velocity_north_mps, seen.velocity_east_mps)
     share = 1.0 if speed <= speed_mps else speed_mps / speed
     return replace(

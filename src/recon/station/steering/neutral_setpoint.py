@@ -1,10 +1,9 @@
-"""The zero at the end of a stick: sent by the station, for an app's own timeout cannot be trusted.
+"""The neutral setpoint that ends a single stick. Writes `VehicleControl.neutral`.
 
-A virtual stick packet asks the app to hold its velocity for `timeout_s` and then to stop. When that
-time is over, the station sends zero velocity with the same yaw, at the height the vehicle was last
-heard at: a climb ends with its time as a velocity does. While the height is not known, the stick's
-own stays. Nothing is sent when a newer order came or the vehicle is no longer flown by sticks (the
-pilot has it, then, and is not fought).
+A virtual stick packet asks the app to hold a velocity for `timeout_s` and then to stop, but apps do
+not do so reliably. When that time is over the station sends zero velocity with the same yaw, at the
+last reported height: so a climb ends too. Without a known height the stick's own is kept. Nothing
+is sent after a newer order, or when the vehicle is no longer in stick mode: its pilot flies it.
 """
 
 from collections.abc import Iterator
@@ -22,9 +21,9 @@ ISSUER = "station: end of a stick"
 
 
 def begin(station: Station, command: Command, now_ns: int) -> Station:
-    """Return the station after a command was sent: a stick that moves will need its zero.
+    """Return the station after a command was sent: a stick that moves needs a neutral setpoint.
 
-    One without velocity does not when the vehicle was at its height, as far as that is known.
+    Not one without velocity, if the vehicle is at its height or has none reported.
     """
     body = command.body
     if not isinstance(body, VirtualStick) or command.serial is None or command.id < 0:
@@ -51,7 +50,7 @@ def pending(station: Station) -> Iterator[tuple[str, PendingNeutral]]:
 
 
 def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ...]]:
-    """Return the zeros that must go now, as orders for the gate; `cancel` each once placed."""
+    """Return the neutral setpoints due now, as orders; `cancel` each once submitted."""
     orders: list[OperatorOrder] = []
     for serial, neutral in pending(station):
         if now_ns >= neutral.due_at_ns and _is_flown_by_sticks(station, neutral, now_ns):
@@ -63,7 +62,7 @@ def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ..
 
 
 def _zero(body: VirtualStick, vehicle: VehicleState) -> VirtualStick:
-    """The stick that stops it where it is; no stick takes the decimetres below zero of a pad."""
+    """The stick that stops it where it is; barometers show decimetres below zero on the pad."""
     height_m = vehicle.height_above_takeoff_m.value
     kept_m = body.height_above_takeoff_m if height_m is None else max(0.0, height_m)
     return replace(body, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=kept_m)
@@ -88,7 +87,7 @@ def drop_overdue(station: Station, now_ns: int) -> Station:
 
 
 def _is_flown_by_sticks(station: Station, neutral: PendingNeutral, now_ns: int) -> bool:
-    """Whether it is heard, and the newest word on its mode is that sticks fly it (2 Hz)."""
+    """Whether its telemetry is fresh and its last reported mode (2 Hz) is virtual sticks."""
     vehicle = station.fleet.vehicles.get(neutral.command.serial or "")
     if vehicle is None or vehicle.flight_mode.value is not FlightMode.JOYSTICK:
         return False

@@ -1,9 +1,20 @@
-"""Steered orders carried out: a stream of sticks at 10 Hz, each approved by the gate anew.
+"""Steered orders (goto, nudge, hold position) flown by a 10 Hz stream of virtual sticks.
 
-A stream binds one vehicle to one order. It ends at once, and for good, when a newer order to move,
-a stop, the pilot or a failsafe comes: then nothing more is sent for it. When the station itself
-must give up (`stream_ends`), zero is sent at once and hold a beat later, both through the gate.
-Nothing resumes a stream that has ended: no reconnect, no restart.
+Theory of operation. A stream binds one vehicle to one order. At each beat (`advance`):
+
+1. If its pilot or a failsafe flies the vehicle, the stream ends silently: nothing more is sent.
+2. If the stream is closing, its neutral setpoint was sent 0.15 s ago: it ends with a hold.
+3. If it cannot continue, it is aborted: the order fails with an alarm, a neutral setpoint is sent
+   at once and the hold follows. Causes: the link changed, telemetry older than `resumes_s`, another
+   holder of authority, no stick mode within `obeyed_s`, the gate refused a setpoint, the connection
+   that owns the order closed, or a fault in the station.
+4. Else the next velocity is computed from telemetry, judged by the gate and sent. With telemetry
+   older than `max_telemetry_age_s` a neutral setpoint is sent instead; the stream goes on.
+
+The order is *sent* with its first packet, *started* when telemetry shows stick mode, *done* on
+arrival. From then on the stream holds the place, for `hold_at_most_s`. A newer order to move or a
+stop releases the stream without a packet of its own. Nothing resumes a stream that has ended: no
+reconnect, no restart. `stream_ends` has the ends, `order_gateway` applies them.
 """
 
 from collections.abc import Collection
@@ -19,7 +30,12 @@ from recon.station.state.setpoint_stream import SetpointStream, first_due_ns, fo
 from recon.station.state.station import Station
 from recon.station.state.stepped import Judge
 from recon.station.steering import stream_ends
-from recon.station.steering.kinematic_state import goal_of, no_faster_than, sight, unseen
+from recon.station.steering.kinematic_state import (
+    goal_of,
+    kinematic_state,
+    no_faster_than,
+    refusal_without_telemetry,
+)
 from recon.station.steering.stream_ends import (
     StreamUpdate,
     change_phase,
@@ -33,28 +49,28 @@ def refusal_to_start(station: Station, order: OperatorOrder, now_ns: int) -> Ref
     if order.owner is not None and order.owner not in station.owners:
         return Refusal(
             "owner",
-            "the connection that was to hold the order is not open (any more): open the stream of "
-            "states, and name its owner in the order",
+            "the connection that owns the order is not open: open the stream of states and name "
+            "its owner in the order",
         )
     steered = [serial for serial in station.streaming if serial != order.serial]
     most = station.settings.streams.most_at_once
     if len(steered) >= most:
         return Refusal(
             "steered_at_once",
-            f"{len(steered)} vehicles are steered already, {most} at once are possible: hold one "
-            "of them first, or send a mission",
+            f"{len(steered)} vehicles are steered, at most {most} can be: hold one of them first, "
+            "or send a mission",
         )
     vehicle = station.fleet.vehicles[order.serial or ""]
-    return unseen(vehicle, now_ns, station.settings.streams)
+    return refusal_without_telemetry(vehicle, now_ns, station.settings.streams)
 
 
 def start_stream(
     station: Station, command: Command, owner: str | None, now_ns: int
 ) -> tuple[Station, SetpointStream]:
-    """Lease a vehicle to an order just judged; its first setpoint is due at once."""
+    """Start the stream of an order just judged; its first setpoint is due at once."""
     serial, settings = command.serial or "", station.settings
     vehicle = station.fleet.vehicles[serial]
-    seen = sight(vehicle, now_ns)
+    seen = kinematic_state(vehicle, now_ns)
     assert seen is not None, "asked before by `refusal_to_start`"
     assert isinstance(command.body, STEERED_BODIES)
     fastest_mps = station.airspace.airspace.limits.max_speed_mps
@@ -125,7 +141,7 @@ def advance(update: StreamUpdate, serial: str, now_ns: int, judge: Judge) -> Str
         return stream_ends.end_silently(update, serial, stream, lost, now_ns)
     if stream.closing is not None:
         return stream_ends.order_hold(update, serial)
-    seen = sight(vehicle, now_ns)
+    seen = kinematic_state(vehicle, now_ns)
     if seen is not None:
         seen_at_ns = now_ns - seconds_to_ns(seen.age_s)
         stream = replace(stream, seen_at_ns=max(stream.seen_at_ns, seen_at_ns))
@@ -179,21 +195,21 @@ def _with_progress(
     seen: KinematicState | None,
     now_ns: int,
 ) -> tuple[Station, SetpointStream]:
-    """Take what telemetry shows into the order's life: sticks fly the vehicle, it is there."""
+    """Update the order's phase by telemetry: stick mode starts it, arrival ends it."""
     if not stream.is_obeyed and _shows_sticks(stream, vehicle):
         stream = replace(stream, is_obeyed=True)
-        note = "by telemetry: it flies by sticks"
+        note = "by telemetry: in stick mode"
         station = change_phase(station, stream, Phase.STARTED, now_ns, note)
     has_come = seen is not None and has_arrived(stream.goal, seen, station.settings.steering)
     if stream.is_obeyed and stream.arrived_at_ns is None and has_come:
         stream = replace(stream, arrived_at_ns=now_ns)
-        note = "by telemetry: it is there, and is held there"
+        note = "by telemetry: arrived; position held"
         station = change_phase(station, stream, Phase.DONE, now_ns, note)
     return station, stream
 
 
 def _shows_sticks(stream: SetpointStream, vehicle: VehicleState) -> bool:
-    """Whether telemetry newer than the first stick says so; a mode it was in before may linger."""
+    """Whether telemetry newer than the first setpoint shows stick mode; an old one may linger."""
     mode, sent_at_ns = vehicle.flight_mode, stream.first_sent_at_ns
     if mode.value is not FlightMode.JOYSTICK or mode.received_at_ns is None or sent_at_ns is None:
         return False

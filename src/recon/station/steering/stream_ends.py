@@ -136,12 +136,12 @@ def control_lost(
             None if stream.is_obeyed else stream.mode_before,
         )
         if reading.verdict is Verdict.PILOT:
-            return Phase.SUPERSEDED, f"the pilot has taken the sticks: {reading.why}"
+            return Phase.SUPERSEDED, f"the pilot has taken over: {reading.why}"
         if reading.verdict is Verdict.FAILSAFE:
             return Phase.FAILED, reading.why
     authority = station.control(stream.command.serial).authority
     if authority.holder is AuthorityHolder.PILOT and mode.value is not FlightMode.JOYSTICK:
-        return Phase.SUPERSEDED, f"the pilot leads it ({authority.reason})"
+        return Phase.SUPERSEDED, f"the pilot has control ({authority.reason})"
     return None
 
 
@@ -151,15 +151,15 @@ def failure(
     """Return why the station cannot continue a stream, else None."""
     settings = station.settings.streams
     if vehicle.link_id != stream.link_id:
-        return "its connection was lost, and a steered order never goes on after that"
+        return "connection lost: a steered order does not resume"
     if now_ns - stream.seen_at_ns > seconds_to_ns(settings.resumes_s):
-        return f"its telemetry was incomplete or missing for {settings.resumes_s:g} s"
+        return f"telemetry incomplete or missing for {settings.resumes_s:g} s"
     authority = station.control(stream.command.serial).authority
     if authority.holder is not stream.command.asked_as:
-        return f"{authority.holder.value} leads the vehicle now ({authority.reason})"
+        return f"authority passed to {authority.holder.value} ({authority.reason})"
     waited_ns = now_ns - stream.started_at_ns
     if not stream.is_obeyed and waited_ns > seconds_to_ns(settings.obeyed_s):
-        return f"the aircraft has not gone over to sticks within {settings.obeyed_s:g} s"
+        return f"the aircraft did not enter stick mode within {settings.obeyed_s:g} s"
     return None
 
 
@@ -193,7 +193,7 @@ def abort(
     """End a stream that cannot continue: its order fails, with an alarm; the vehicle holds."""
     phase = Phase.FAILED if stream.arrived_at_ns is None else Phase.DONE
     station = change_phase(update.station, stream, phase, now_ns, why)
-    station = _alarm(station, stream, f"{why}; it is stopped and holds", now_ns)
+    station = _alarm(station, stream, f"{why}; stopped and holding", now_ns)
     return _close(replace(update, station=station), serial, stream, why, now_ns, judge)
 
 
@@ -202,7 +202,7 @@ def end_held_place(
 ) -> StreamUpdate:
     """End a stream that has held its place long enough: the aircraft's own hold replaces it."""
     held_s = update.station.settings.streams.hold_at_most_s
-    why = f"held for {held_s:g} s; from now on by the aircraft itself"
+    why = f"position held for {held_s:g} s; the aircraft now holds it itself"
     station = change_phase(update.station, stream, Phase.DONE, now_ns, why)
     return _close(replace(update, station=station), serial, stream, why, now_ns, judge)
 
