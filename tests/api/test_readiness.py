@@ -74,7 +74,7 @@ class TestAuthority:
         assert station.driver.station.control("A").authority.holder is AuthorityHolder.PILOT
 
     def test_an_unknown_vehicle_has_no_authority_to_take(self, client: Client) -> None:
-        assert "X is not known" in self.take(client, "operator", "X")["reason"]
+        assert "X is unknown" in self.take(client, "operator", "X")["reason"]
 
     @pytest.mark.parametrize("body", [{}, {"holder": "cat"}, {"holder": "pilot", "by": "me"}])
     def test_another_form_is_not_taken(self, client: Client, body: dict[str, str]) -> None:

@@ -100,7 +100,7 @@ class TestWords:
     def test_a_stranger_is_refused_and_nothing_starts(self, client: Client, number: int) -> None:
         answer = client.post(f"/api/surveys/{number}/start", json={"serials": ["Z"]}).json()
         assert not answer["accepted"]
-        assert "Z is not known" in answer["reason"]
+        assert "Z is unknown" in answer["reason"]
         assert client.get(f"/api/surveys/{number}").json()["phase"] == "created"
 
     def test_a_start_without_vehicles_is_malformed(self, client: Client, number: int) -> None:

@@ -69,7 +69,7 @@ def test_a_refused_command_is_audited_with_its_reason() -> None:
     (refused,) = [entry for entry in entries if entry.kind == "survey.refused"]
     assert refused.by == "ann"
     assert refused.details["asked"] == "started"
-    assert "SIM-9 is not known" in refused.details["reason"]
+    assert "SIM-9 is unknown" in refused.details["reason"]
 
 
 def test_a_survey_that_cannot_be_flown_is_audited() -> None:

@@ -111,7 +111,7 @@ class TestArrival:
         order = s.goto(5.0)
         s.run_for(25.0)
         assert s.stream is None
-        assert "by the aircraft itself" in s.note(order)
+        assert "the aircraft now holds it itself" in s.note(order)
         assert s.aircraft.flight_mode is FlightMode.GPS_ATTI
         assert s.alarm_texts() == []
 
@@ -162,7 +162,7 @@ class TestTelemetryLost:
         assert s.hovers(cut_s) != []
         assert s.aircraft.motion.ground_speed_mps < 0.1
         assert s.distance_m(200.0) > 100.0
-        assert any("connection was lost" in text for text in s.alarm_texts())
+        assert any("connection lost" in text for text in s.alarm_texts())
 
 
 class TestBlownAway:
