@@ -52,13 +52,15 @@ class ReturningWorld:
         self.world.driver.handle(FleetReturnOrdered(first, serials, "test"))
 
     def called(self, *serials: str) -> list[tuple[Phase, str]]:
-        """Call vehicles one by one; return what each order became at once."""
+        """Call vehicles one by one; return each order's phase, and its refusing rule with its note."""
         answers = []
         for serial in serials:
             self.call(serial)
             newest = list(self.world.driver.station.orders.records.values())[-1]
             assert newest.command.serial == serial
-            answers.append((newest.phase, newest.note))
+            refusal = newest.refusal
+            rule = "" if refusal is None else f"{refusal.rule}: "
+            answers.append((newest.phase, f"{rule}{newest.note}"))
         return answers
 
     def member(self, serial: str) -> ReturningVehicle:
