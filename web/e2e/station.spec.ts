@@ -63,6 +63,8 @@ test("shows four vehicles over their field, and lands one on command", async ({ 
   });
 
   await test.step("a land order is confirmed by a hold, then by telemetry", async () => {
+    const row = page.locator(".vehicle").filter({ hasText: "Drone 1" });
+    await expect(row).toContainText("Flying", { timeout: CONNECT_WITHIN_MS });
     await page
       .getByRole("button", { name: /Drone 1/, pressed: false })
       .first()
@@ -75,7 +77,7 @@ test("shows four vehicles over their field, and lands one on command", async ({ 
     const command = page.getByTestId(/^command-\d+$/).filter({ hasText: "Land Drone 1" });
     await expect(command).toHaveCount(1);
     const phase = command.getByTestId("phase");
-    await expect(phase).toHaveText("Confirmed", { timeout: LANDS_WITHIN_MS });
+    await expect(phase).toHaveText(/Confirmed|Done/, { timeout: LANDS_WITHIN_MS });
     await expect(command.getByLabel("Command history")).toHaveText(
       /queued .*sent .*acknowledged .*confirmed/,
     );

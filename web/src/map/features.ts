@@ -23,3 +23,13 @@ export function addFeatures(map: MapLibre, id: string): void {
 export function setFeatures(map: MapLibre, id: string, features: Feature[]): void {
   map.getSource<GeoJSONSource>(id)?.setData({ type: "FeatureCollection", features });
 }
+
+/** Corners of an image on the map: north-west, north-east, south-east, south-west. */
+export type Corners = [Point, Point, Point, Point];
+
+/** The corners of an image as MapLibre takes them; null unless there are four. */
+export function cornersOf(corners: readonly (readonly [number, number])[]): Corners | null {
+  const [nw, ne, se, sw] = corners.map(([lon, lat]): Point => [lon, lat]);
+  if (nw === undefined || ne === undefined || se === undefined || sw === undefined) return null;
+  return [nw, ne, se, sw];
+}

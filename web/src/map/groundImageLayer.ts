@@ -3,6 +3,7 @@ import { type Accessor, createSignal } from "solid-js";
 import { createDisplayedFrame, type FrameInfo } from "../fleet/displayedFrame";
 import type { GroundImageView, StationState } from "../protocol";
 import type { Outcome, Picture, StationSource } from "../source/stationSource";
+import { type Corners, cornersOf } from "./features";
 import type { Layer, Scene } from "./scene";
 
 const SOURCE = "ground-image";
@@ -23,9 +24,6 @@ interface Place {
   readonly image: GroundImageView;
   readonly corners: Corners;
 }
-
-type Corner = [number, number];
-type Corners = [Corner, Corner, Corner, Corner];
 
 /** The newest frame of the imaging drone, drawn below everything else. */
 export class GroundImageLayer implements Layer {
@@ -90,7 +88,7 @@ export class GroundImageLayer implements Layer {
   }
 
   private remember(image: GroundImageView): void {
-    const corners = cornersOf(image);
+    const corners = cornersOf(image.corners);
     if (corners !== null) this.places.set(image.frame_id, { image, corners });
     for (const known of this.places.keys()) {
       if (this.places.size <= MAX_PLACES) break;
@@ -129,17 +127,6 @@ export class GroundImageLayer implements Layer {
     const paint = { "raster-fade-duration": 0, "raster-resampling": "linear" } as const;
     this.map.addLayer({ id: LAYER, type: "raster", source: SOURCE, paint }, lowest?.id);
   }
-}
-
-function cornersOf(image: GroundImageView): Corners | null {
-  const [nw, ne, se, sw] = image.corners;
-  if (nw === undefined || ne === undefined || se === undefined || sw === undefined) return null;
-  return [
-    [nw[0], nw[1]],
-    [ne[0], ne[1]],
-    [se[0], se[1]],
-    [sw[0], sw[1]],
-  ];
 }
 
 /** The displayed ground image. */

@@ -36,10 +36,10 @@ const MARGIN_PX = 8;
 /** Labels beyond this number stay below their vehicles, which bounds the work per frame. */
 export const MOST_LABELS = 64;
 
-type Corner = readonly [dx_px: number, dy_px: number];
+type LabelOffset = readonly [dx_px: number, dy_px: number];
 
 /** Candidate positions at one distance, best first: below, right, left, above, then the diagonals. */
-function cornersAt(reach: number, width: number, height: number): readonly Corner[] {
+function cornersAt(reach: number, width: number, height: number): readonly LabelOffset[] {
   return [
     [-width / 2, reach],
     [reach, -height / 2],
@@ -53,7 +53,7 @@ function cornersAt(reach: number, width: number, height: number): readonly Corne
 }
 
 /** A rectangle on the screen, pixels. */
-export interface Box {
+export interface ScreenBox {
   readonly left: number;
   readonly top: number;
   readonly right: number;
@@ -65,7 +65,7 @@ export interface LabelView {
   readonly width_px: number;
   readonly height_px: number;
   /** Other elements on the map that would hide a label. */
-  readonly covered: readonly Box[];
+  readonly covered: readonly ScreenBox[];
 }
 
 /**
@@ -78,7 +78,7 @@ export function placeLabels(
   previous: ReadonlyMap<number, LabelPlace>,
   view: LabelView,
 ): Map<number, LabelPlace> {
-  const taken: Box[] = [...view.covered, ...spots.slice(0, MOST_LABELS).map(symbolBox)];
+  const taken: ScreenBox[] = [...view.covered, ...spots.slice(0, MOST_LABELS).map(symbolBox)];
   const places = new Map<number, LabelPlace>();
   spots.forEach((spot, index) => {
     const isArranged = index < MOST_LABELS;
@@ -89,7 +89,12 @@ export function placeLabels(
   return places;
 }
 
-function choose(spot: LabelSpot, kept: number, taken: readonly Box[], view: LabelView): LabelPlace {
+function choose(
+  spot: LabelSpot,
+  kept: number,
+  taken: readonly ScreenBox[],
+  view: LabelView,
+): LabelPlace {
   const slots = slotsOf(spot);
   let best = slots[0] ?? placeAt(spot, 0);
   let least = Number.POSITIVE_INFINITY;
@@ -118,18 +123,18 @@ function placeAt(spot: LabelSpot, slot: number): LabelPlace {
   return slotsOf(spot)[slot] ?? { slot: 0, dx_px: 0, dy_px: REACHES_PX[0] };
 }
 
-function symbolBox({ x_px, y_px }: LabelSpot): Box {
+function symbolBox({ x_px, y_px }: LabelSpot): ScreenBox {
   const half = SYMBOL_HALF_PX;
   return { left: x_px - half, top: y_px - half, right: x_px + half, bottom: y_px + half };
 }
 
-function labelBox(spot: LabelSpot, place: LabelPlace): Box {
+function labelBox(spot: LabelSpot, place: LabelPlace): ScreenBox {
   const left = spot.x_px + place.dx_px;
   const top = spot.y_px + place.dy_px;
   return { left, top, right: left + spot.width_px, bottom: top + spot.height_px };
 }
 
-function grown({ left, top, right, bottom }: Box): Box {
+function grown({ left, top, right, bottom }: ScreenBox): ScreenBox {
   return {
     left: left - MARGIN_PX,
     top: top - MARGIN_PX,
@@ -138,7 +143,7 @@ function grown({ left, top, right, bottom }: Box): Box {
   };
 }
 
-function hiddenArea(box: Box, taken: readonly Box[]): number {
+function hiddenArea(box: ScreenBox, taken: readonly ScreenBox[]): number {
   let area = 0;
   for (const other of taken) {
     const width = Math.min(box.right, other.right) - Math.max(box.left, other.left);
@@ -148,7 +153,7 @@ function hiddenArea(box: Box, taken: readonly Box[]): number {
   return area;
 }
 
-function outsideArea(box: Box, view: LabelView): number {
+function outsideArea(box: ScreenBox, view: LabelView): number {
   const width = Math.min(box.right, view.width_px) - Math.max(box.left, 0);
   const height = Math.min(box.bottom, view.height_px) - Math.max(box.top, 0);
   const inside = Math.max(0, width) * Math.max(0, height);

@@ -2,6 +2,7 @@ import type { ImageSource, Map as MapLibre } from "maplibre-gl";
 import { type Accessor, createSignal } from "solid-js";
 import type { Outcome, Picture, StationSource } from "../source/stationSource";
 import { shownSurvey } from "../text/survey";
+import { type Corners, cornersOf } from "./features";
 import type { Layer, Scene } from "./scene";
 
 /** Overlays on the ground image; one at a time, so that each can be read. */
@@ -39,8 +40,6 @@ export interface OverlayRequest {
   readonly corners: readonly (readonly [number, number])[];
   fetch(): Promise<Outcome<Picture>>;
 }
-
-type Corners = [[number, number], [number, number], [number, number], [number, number]];
 
 /** A picture of grid cells, above the ground image and below everything else. */
 export abstract class PictureOverlay implements Layer {
@@ -111,17 +110,6 @@ export abstract class PictureOverlay implements Layer {
     const paint = { "raster-fade-duration": 0, "raster-resampling": "nearest" } as const;
     this.map.addLayer({ id: this.id, type: "raster", source: this.id, paint }, over?.id);
   }
-}
-
-function cornersOf(corners: OverlayRequest["corners"]): Corners | null {
-  const [nw, ne, se, sw] = corners;
-  if (nw === undefined || ne === undefined || se === undefined || sw === undefined) return null;
-  return [
-    [nw[0], nw[1]],
-    [ne[0], ne[1]],
-    [se[0], se[1]],
-    [sw[0], sw[1]],
-  ];
 }
 
 /** Current shade on the ground. */
