@@ -9,8 +9,8 @@ from fastapi import FastAPI
 from recon.api.app import create_app
 from recon.api.port import SurveyCellStates
 from recon.api.schema import (
+    ActionResponse,
     AuditPage,
-    CommandResponse,
     OrderResponse,
     PreflightView,
     StationState,
@@ -107,13 +107,13 @@ class FakeStation:
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
         self.service.switch_separation_hold(is_on, by)
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> CommandResponse:
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> ActionResponse:
         return self.service.take_authority(serial, holder, by)
 
     def preflight(self, serial: str) -> PreflightView | None:
         return self.service.preflight(serial)
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> CommandResponse:
+    def override_preflight(self, serial: str, reason: str, by: str) -> ActionResponse:
         return self.service.override_preflight(serial, reason, by)
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:

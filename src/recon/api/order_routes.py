@@ -100,7 +100,7 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/vehicles/{serial}/authority")
     async def authority(
         serial: str, asked: schema.AuthorityRequest, request: Request
-    ) -> schema.CommandResponse:
+    ) -> schema.ActionResponse:
         """Transfer control authority: from now on only `holder` may set the vehicle in motion."""
         return port.take_authority(serial, AuthorityHolder(asked.holder), client_name(request))
 
@@ -112,7 +112,7 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/vehicles/{serial}/preflight/override")
     async def override_preflight(
         serial: str, asked: schema.PreflightOverrideRequest, request: Request
-    ) -> schema.CommandResponse:
+    ) -> schema.ActionResponse:
         """Allow missions although the checklist is not passed, until the vehicle has landed.
 
         Reason and client are written to the audit.

@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.api.schema import (
+    ActionResponse,
     AuditPage,
-    CommandResponse,
     OrderResponse,
     PreflightView,
     StationState,
@@ -84,13 +84,13 @@ class StationPort(Protocol):
     def switch_separation_hold(self, is_on: bool, by: str) -> None:
         """Switch the separation holds of the watchdogs on or off."""
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> CommandResponse:
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> ActionResponse:
         """Transfer control authority; refusals are results, not errors."""
 
     def preflight(self, serial: str) -> PreflightView | None:
         """Return a vehicle's checklist as of now; None for an unknown vehicle."""
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> CommandResponse:
+    def override_preflight(self, serial: str, reason: str, by: str) -> ActionResponse:
         """Allow missions although the checklist is not passed."""
 
     def acknowledge(self, alarm_id: int, by: str) -> bool:

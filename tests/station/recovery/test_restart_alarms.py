@@ -60,4 +60,4 @@ def test_one_that_does_not_come_back_is_an_alarm_of_its_own_then_and_a_hazard_at
     here.run_for(4.0)
     active = [alarm.condition for alarm in alarms(here) if alarm.is_active]
     assert {(c.rule, c.serial) for c in active if c.rule == "link_lost"} == {("link_lost", "SIM-3")}
-    assert any("where SIM-3 may be" in c.text for c in active if c.rule == "separation")
+    assert any("the hazard area of SIM-3" in c.text for c in active if c.rule == "separation")

@@ -562,6 +562,18 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
+         * ActionResponse
+         * @description The outcome of an operator command that is no order: accepted, or refused with a reason.
+         */
+        ActionResponse: {
+            /** Accepted */
+            accepted: boolean;
+            /** Reason */
+            reason: string | null;
+            /** Rule */
+            rule: string | null;
+        };
+        /**
          * AgedFlag
          * @description A boolean with its age.
          */
@@ -781,18 +793,6 @@ export interface components {
             text: string;
             /** To Do */
             to_do: string;
-        };
-        /**
-         * CommandResponse
-         * @description The outcome of an operator command that is no order: accepted, or refused with a reason.
-         */
-        CommandResponse: {
-            /** Accepted */
-            accepted: boolean;
-            /** Reason */
-            reason: string | null;
-            /** Rule */
-            rule: string | null;
         };
         /**
          * CommandView
@@ -2821,7 +2821,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CommandResponse"];
+                    "application/json": components["schemas"]["ActionResponse"];
                 };
             };
             /** @description Validation Error */
@@ -2974,7 +2974,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CommandResponse"];
+                    "application/json": components["schemas"]["ActionResponse"];
                 };
             };
             /** @description Validation Error */

@@ -1,7 +1,7 @@
 import createClient from "openapi-fetch";
 import type {
+  ActionResponse,
   AuthorityHolder,
-  CommandResponse,
   OrderResult,
   PreflightView,
   SurveyRequest,
@@ -56,7 +56,7 @@ export class Requests {
     );
   }
 
-  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<CommandResponse>> {
+  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<ActionResponse>> {
     const options = { params: { path: { serial } }, body: { holder }, signal: timeout() };
     return answered(() => this.client.POST("/api/vehicles/{serial}/authority", options), identity);
   }
@@ -66,7 +66,7 @@ export class Requests {
     return answered(() => this.client.GET("/api/vehicles/{serial}/preflight", options), identity);
   }
 
-  overridePreflight(serial: string, reason: string): Promise<Outcome<CommandResponse>> {
+  overridePreflight(serial: string, reason: string): Promise<Outcome<ActionResponse>> {
     const options = { params: { path: { serial } }, body: { reason }, signal: timeout() };
     return answered(
       () => this.client.POST("/api/vehicles/{serial}/preflight/override", options),

@@ -1,7 +1,7 @@
 import type { Accessor } from "solid-js";
 import type {
+  ActionResponse,
   AuthorityHolder,
-  CommandResponse,
   Order,
   OrderResult,
   PreflightView,
@@ -54,9 +54,9 @@ export interface StationSource {
   check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Returns vehicles home with landing missions at separate heights; null means all in reach. */
   fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
-  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<CommandResponse>>;
+  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<ActionResponse>>;
   preflight(serial: string): Promise<Outcome<PreflightView>>;
-  overridePreflight(serial: string, reason: string): Promise<Outcome<CommandResponse>>;
+  overridePreflight(serial: string, reason: string): Promise<Outcome<ActionResponse>>;
   /** Clears a lost vehicle's hazard area. */
   dismissHazard(name: string): Promise<Outcome<null>>;
   setSeparationHold(isOn: boolean): Promise<Outcome<null>>;

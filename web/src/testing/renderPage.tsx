@@ -2,8 +2,8 @@ import { createRoot, createSignal, type JSX } from "solid-js";
 import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
 import type {
+  ActionResponse,
   AuthorityHolder,
-  CommandResponse,
   OrderResult,
   PreflightView,
   StationState,
@@ -33,7 +33,7 @@ export interface RenderedPage {
   /** Sets the answer to every further order. */
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
-  answerRequestsWith(response: CommandResponse): void;
+  answerRequestsWith(response: ActionResponse): void;
   showPreflight(preflight: PreflightView): void;
   failPreflight(problem: string): void;
   /** Sets how vehicle pictures are fetched. */
@@ -66,7 +66,7 @@ interface Recorded {
   checks: NamedOrder[];
   acknowledged: number[];
   requests: PageRequest[];
-  response: CommandResponse;
+  response: ActionResponse;
   preflight: Outcome<PreflightView>;
   allStops: number;
   answer: readonly OrderResult[];

@@ -1,6 +1,6 @@
 import type {
+  ActionResponse,
   AlarmView,
-  CommandResponse,
   CommandView,
   Phase,
   Severity,
@@ -114,7 +114,7 @@ export function refusalText(reason: string | null): string {
 }
 
 /** Why a request failed or was refused; null when the station accepted it. */
-export function responseProblem(outcome: Outcome<CommandResponse | null>): string | null {
+export function responseProblem(outcome: Outcome<ActionResponse | null>): string | null {
   if (outcome.kind === "failed") return outcome.problem;
   const response = outcome.value;
   return response === null || response.accepted ? null : refusalText(response.reason);

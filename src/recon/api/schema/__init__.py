@@ -6,7 +6,7 @@ otherwise.
 """
 
 from recon.api.schema.message import (
-    CommandResponse,
+    ActionResponse,
     Message,
     OrderResponse,
     OrderResult,
@@ -92,6 +92,7 @@ from recon.api.schema.vehicles import (
 )
 
 __all__ = [
+    "ActionResponse",
     "AgedFlag",
     "AgedNumber",
     "AgedText",
@@ -106,7 +107,6 @@ __all__ = [
     "CameraStartOrder",
     "CameraStopOrder",
     "CheckView",
-    "CommandResponse",
     "CommandView",
     "FleetReturnRequest",
     "FleetReturnView",

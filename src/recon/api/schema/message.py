@@ -15,7 +15,7 @@ class StrictMessage(Message):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
-class CommandResponse(Message):
+class ActionResponse(Message):
     """The outcome of an operator command that is no order: accepted, or refused with a reason."""
 
     accepted: bool

@@ -152,7 +152,7 @@ class Service:
 
     def take_authority(
         self, serial: str, holder: AuthorityHolder, by: str
-    ) -> schema.CommandResponse:
+    ) -> schema.ActionResponse:
         """Transfer control authority."""
         event = AuthorityTaken(serial, holder, by)
         return self._command(event, authority.refusal(self.driver.station, event))
@@ -161,7 +161,7 @@ class Service:
         """Return a vehicle's checklist as of now."""
         return preflight_view(self.driver.station, serial, self.driver.now_ns())
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> schema.CommandResponse:
+    def override_preflight(self, serial: str, reason: str, by: str) -> schema.ActionResponse:
         """Allow missions although the checklist is not passed."""
         event = PreflightOverridden(serial, by, reason)
         return self._command(event, preflight.refusal(self.driver.station, event))
@@ -233,12 +233,12 @@ class Service:
 
     def _command(
         self, event: AuthorityTaken | PreflightOverridden, refusal: Refusal | None
-    ) -> schema.CommandResponse:
+    ) -> schema.ActionResponse:
         """Handle an operator command, unless it is refused."""
         if refusal is not None:
-            return schema.CommandResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
+            return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
         self.driver.handle(event)
-        return schema.CommandResponse(accepted=True, rule=None, reason=None)
+        return schema.ActionResponse(accepted=True, rule=None, reason=None)
 
     def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
         return schema.OrderResponse(results=[self._give_one(order) for order in orders])
