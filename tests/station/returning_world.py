@@ -52,7 +52,7 @@ class ReturningWorld:
         self.world.driver.handle(FleetReturnOrdered(first, serials, "test"))
 
     def called(self, *serials: str) -> list[tuple[Phase, str]]:
-        """Call vehicles one by one; return each order's phase, and its refusing rule with its note."""
+        """Call vehicles one by one; return each order's phase, and its note after any rule."""
         answers = []
         for serial in serials:
             self.call(serial)
