@@ -136,7 +136,7 @@ def test_a_station_killed_in_flight_is_restored_and_commands_nothing(field: Fiel
 
     verdict = again.recon("audit", "verify", field.audit)
     assert verdict.code == 0, verdict.out
-    assert verdict.out.count(": whole,") == 2
+    assert verdict.out.count(": intact,") == 2
 
     held = again.recon("hold", "SIM-1", "--json")
     assert held.code == 0, held.out
