@@ -195,9 +195,9 @@ def test_a_token_is_read_from_a_file_and_not_audited(tmp_path: Path) -> None:
     token = tmp_path / "token"
     token.write_text(secret + "\n")
     audit = tmp_path / "audit"
-    with started(*run_options(audit), "--token-file", str(token)) as station:
-        url, link_port = addresses(station)
-        station = StationProcess(station, None, url.partition("/#")[0], link_port, audit)
+    with started(*run_options(audit), "--token-file", str(token)) as process:
+        url, link_port = addresses(process)
+        station = StationProcess(process, None, url.partition("/#")[0], link_port, audit)
         refused = station.recon("status")
         assert refused.code == 2
         assert "token" in refused.err
@@ -205,7 +205,7 @@ def test_a_token_is_read_from_a_file_and_not_audited(tmp_path: Path) -> None:
         assert station.recon("all-stop", "--token-file", token).out == "no vehicles to command\n"
         wrong = station.recon("status", "--token-file", tmp_path / "none")
         assert (wrong.code, "cannot read the token file" in wrong.err) == (2, True)
-        assert station.end(signal.SIGTERM) == 0
+        assert process.end(signal.SIGTERM) == 0
     (path,) = audit.glob("*.jsonl")
     assert secret not in path.read_text()
     assert '"station.stopped"' in path.read_text().splitlines()[-1]

@@ -176,7 +176,7 @@ class TrackPoint:
 class VehicleState:
     """Telemetry of one vehicle, each value with its receive time.
 
-    Heights are above the vehicle's own takeoff point (barometric) unless the name says otherwise;
+    Heights are above the vehicle's own takeoff point (barometric) unless the name states another;
     `reported_altitude_m` is the app's WGS84 altitude, which may be off by tens of metres.
     """
 
