@@ -17,7 +17,6 @@ from recon.model.mission import Mission
 from recon.model.vehicle import Failsafe
 from recon.safety.datum import places_m
 from recon.safety.path.order_path import (
-    HoldPath,
     OrderPath,
     StickFlight,
     StraightFlight,
@@ -81,7 +80,7 @@ def _pieces(path: OrderPath, begin: Departure, limits: SafetySettings) -> Pieces
             return stick_pieces(path, begin, settings)
         case TakeoffClimb():
             return takeoff_pieces(begin, limits.prediction.takeoff_height_m, settings)
-        case HoldPath():
+        case _:  # HoldPath
             return hold_pieces(begin, settings)
 
 
