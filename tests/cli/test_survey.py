@@ -66,7 +66,7 @@ class TestCreate:
         ("change", "words"),
         [
             ("nothing", "no such file"),
-            ("text", "no JSON at line 1"),
+            ("text", "invalid JSON at line 1"),
             ("point", "feature 1 ('bad'): expected a Polygon or MultiPolygon, got 'Point'"),
             ("open", "feature 1 ('bad'): expected each ring to end where it starts"),
             ("far", "feature 1 ('bad'): expected corners within 50 km"),
