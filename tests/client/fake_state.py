@@ -49,7 +49,7 @@ def vehicle(serial: str | None = "SIM-1", age_s: float | None = 0.05) -> schema.
     )
 
 
-def command(number: int = 1, phase: schema.PhaseWord = "sent") -> schema.CommandView:
+def command(number: int = 1, phase: schema.PhaseName = "sent") -> schema.CommandView:
     """A hover in one phase."""
     return schema.CommandView.model_construct(
         id=number,
