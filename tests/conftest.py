@@ -5,10 +5,11 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+from tests.examples import examples
 
-settings.register_profile("unhurried", deadline=None)
-settings.load_profile("unhurried")
-"""How long an example takes is the machine's business; what is measured is in benches/."""
+settings.register_profile("untimed", max_examples=examples(100), deadline=None)
+settings.load_profile("untimed")
+"""The time of an example depends on the machine; what is measured is in benches/."""
 
 settings.register_profile(
     "mutants",

@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.api.client import BASE, Client
 from tests.api.fake_station import TOKEN, FakeStation, application, rgb_frame
+from tests.examples import examples
 
 from recon.api import schema
 from recon.api.app import SECURITY_HEADERS
@@ -175,7 +176,7 @@ class TestOrders:
         assert response.status_code == 422
         assert sentence in response.json()["error"]
 
-    @settings(max_examples=100, deadline=None)
+    @settings(max_examples=examples(100), deadline=None)
     @given(st.text(max_size=60))
     def test_any_serial_is_answered(self, serial: str) -> None:
         station = FakeStation()
@@ -186,7 +187,7 @@ class TestOrders:
         state = client.get("/api/state")
         assert state.status_code == 200
 
-    @settings(max_examples=200, deadline=None)
+    @settings(max_examples=examples(200), deadline=None)
     @given(
         st.recursive(
             st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=8),

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.camera.constructions import FRAME, seen_pixels, solved, tilted_pose
+from tests.examples import examples
 
 from recon.camera import (
     FrameDecodeError,
@@ -51,7 +52,7 @@ def worst_map_error_px(grid: GroundGrid, camera: OmnidirectionalCamera, pose: Ca
     return float(np.hypot(*(maps - exact)[is_shown].T).max(initial=0.0))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     st.floats(5.0, 500.0),
     st.tuples(st.floats(-25, 25), st.floats(-25, 25), st.floats(-180, 180)),

@@ -16,6 +16,7 @@ from tests.camera.constructions import (
     solved,
     tilted_pose,
 )
+from tests.examples import examples
 
 from recon.camera import (
     FrameSizeError,
@@ -36,7 +37,7 @@ def turn_between_rad(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return Rotation.from_matrix(first @ second.T).as_rotvec()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(
     st.integers(0, 10_000),
     st.integers(4, 9),

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.detection.shaded_field import FRAME, HEIGHT_M, LOOKS_DOWN
+from tests.examples import examples
 
 from recon.detection import DetectionSettings
 from recon.detection.cells import cell_light, field_grid
@@ -24,7 +25,7 @@ def laid(seed: int, grid: GroundGrid) -> GroundImage:
     return GroundImage(grid, 1, 0, rgb * valid[..., np.newaxis], valid, POSE)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     st.integers(0, 999),
     st.integers(1, 6),

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.detection.shaded_field import FRAME, DriftingShade, Imager, Land
+from tests.examples import examples
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
 from recon.model.geo import GroundGrid
@@ -48,7 +49,7 @@ def check(found: ShadeMap, image: GroundImage) -> None:
 
 
 @methods
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(seed=st.integers(0, 2**32))
 def test_any_frames_give_sound_and_repeatable_maps(method: str, seed: int) -> None:
     runs: list[list[ShadeMap | RejectedFrame]] = [[], []]

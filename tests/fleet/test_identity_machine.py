@@ -3,6 +3,7 @@
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+from tests.examples import examples
 from tests.fleet.reports import Story, core, extended
 
 SERIALS = st.sampled_from([None, "A", "B", "C"])
@@ -102,4 +103,4 @@ class Links(RuleBasedStateMachine):
 
 
 TestLinks = Links.TestCase
-TestLinks.settings = settings(max_examples=150, stateful_step_count=40, deadline=None)
+TestLinks.settings = settings(max_examples=examples(150), stateful_step_count=40, deadline=None)

@@ -5,6 +5,7 @@ from math import cos, hypot, sin
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 
 from recon.fleet.mission_progress import distance_to_m, waypoints_passed
 from recon.geo.distance import moved_m
@@ -92,7 +93,7 @@ def test_heights_count_when_they_are_known() -> None:
 PLACES = st.tuples(st.floats(-300.0, 300.0), st.floats(-300.0, 300.0))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(st.lists(PLACES, min_size=2, max_size=12), st.lists(PLACES, max_size=20), st.data())
 def test_the_count_only_grows_and_stays_within_the_mission(
     points: list[Place], places: list[Place], data: st.DataObject
@@ -104,7 +105,7 @@ def test_the_count_only_grows_and_stays_within_the_mission(
         passed = newer
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(20.0, 80.0)), min_size=2, max_size=8))
 def test_a_path_without_sharp_turns_is_counted_to_its_end(turns: list[tuple[float, float]]) -> None:
     """By construction: each leg at most a radian off the one before."""

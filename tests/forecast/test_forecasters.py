@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.detection.shaded_field import FIELD, DriftingShade
+from tests.examples import examples
 from tests.forecast.moving_shade import SEEN, forecasts, noisy_map, shade_map
 
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
@@ -50,7 +51,7 @@ def check(forecast: SunForecast, shade: ShadeMap) -> None:
 
 
 @methods
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(seed=st.integers(0, 2**32))
 def test_any_maps_give_sound_and_repeatable_forecasts(method: str, seed: int) -> None:
     one, other = (forecasts(method, drawn_maps(seed), SETTINGS) for _ in range(2))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.detection.shaded_field import FIELD, DriftingShade, centres
+from tests.examples import examples
 from tests.forecast.moving_shade import (
     SEEN,
     drawn_velocity,
@@ -108,7 +109,7 @@ class TestMotion:
 
 
 class TestHorizon:
-    @settings(max_examples=30, deadline=None)
+    @settings(max_examples=examples(30), deadline=None)
     @given(
         st.integers(0, 99),
         st.floats(-9.0, 9.0),

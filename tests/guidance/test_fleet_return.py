@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.returning_fleet import fly
 from tests.guidance.returning_scenes import (
     FRAME,
@@ -66,7 +67,7 @@ def hovering_row(count: int, pads: list[Pad], up_m: float = 30.0) -> list[Called
     ]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(scene=scenes())
 def test_plans_of_drawn_scenes(scene: Scene) -> None:
     """One plan per scene, as planning takes most of the time; the checks follow below."""
@@ -150,7 +151,7 @@ def check_every_flight_is_a_mission_that_dji_accepts(plan: ReturnPlan) -> None:
 
 
 class TestFlown:
-    @settings(max_examples=15, deadline=None)
+    @settings(max_examples=examples(15), deadline=None)
     @given(
         seed=st.integers(0, 10**9),
         count=st.integers(2, 20),

@@ -7,6 +7,7 @@ from math import hypot, inf
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.closed_loop import SETTINGS, START, Loop, Way
 
 from recon.geo.distance import horizontal_distance_m, moved_m, offset_north_east_m
@@ -55,7 +56,7 @@ bearings = st.tuples(st.floats(-150.0, 150.0), st.floats(-150.0, 150.0)).filter(
 
 
 class TestClosedLoop:
-    @settings(max_examples=40, deadline=None)
+    @settings(max_examples=examples(40), deadline=None)
     @given(ways, bearings, st.floats(-15.0, 30.0), st.floats(1.0, 15.0))
     def test_it_arrives_and_does_not_overshoot_in_still_air(
         self, way: Way, to_m: tuple[float, float], up_m: float, speed_mps: float
@@ -66,7 +67,7 @@ class TestClosedLoop:
         assert loop.has_arrived(to)
         assert loop.overshoot_m(to) <= STILL_AIR_OVERSHOOT_M
 
-    @settings(max_examples=40, deadline=None)
+    @settings(max_examples=examples(40), deadline=None)
     @given(ways, bearings, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(0.0, 0.15))
     def test_it_arrives_within_a_metre_in_wind(
         self, way: Way, to_m: tuple[float, float], north: float, east: float, noise: float
@@ -84,7 +85,7 @@ class TestClosedLoop:
         assert loop.overshoot_m(to) <= STILL_AIR_OVERSHOOT_M
         assert loop.distance_m(to) < 0.2
 
-    @settings(max_examples=30, deadline=None)
+    @settings(max_examples=examples(30), deadline=None)
     @given(ways, bearings, st.floats(2.0, 15.0), st.floats(-8.0, 8.0))
     def test_what_is_asked_for_stays_within_its_bounds(
         self, way: Way, to_m: tuple[float, float], speed_mps: float, moving_mps: float

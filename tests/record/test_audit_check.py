@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.record.audits import entry, written
 
 from recon.record.audit import STOPPED_KIND
@@ -96,7 +97,7 @@ class TestDamage:
         with pytest.raises(RecordError, match="cannot read the audit"):
             check_audit(tmp_path / "none.jsonl")
 
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=examples(60), deadline=None)
     @given(data=st.data())
     def test_any_changed_byte_is_found(self, tmp_path_factory: object, data: st.DataObject) -> None:
         """Once a later run has noted the end; torn is what lost its last line break."""
@@ -106,7 +107,7 @@ class TestDamage:
         _FIRST.write_bytes(whole[:at] + bytes([byte]) + whole[at + 1 :])
         assert not check_audit(_FIRST).is_whole
 
-    @settings(max_examples=30, deadline=None)
+    @settings(max_examples=examples(30), deadline=None)
     @given(kept=st.integers(0, 3000))
     def test_any_cut_is_found(self, kept: int) -> None:
         _FIRST.write_bytes(_WHOLE[: min(kept, len(_WHOLE) - 2)])

@@ -2,6 +2,7 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.safety.traffic import SETTINGS
 
 from recon.safety.prediction.conflicts import first_conflict
@@ -36,7 +37,7 @@ def trajectories(draw: st.DrawFn) -> Trajectory:
     return writer.trajectory("SIM-1", "SIM-1")
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(trajectories(), trajectories())
 def test_what_meets_is_never_sorted_out(own: Trajectory, other: Trajectory) -> None:
     if first_conflict(own, [other], NEED, SETTINGS) is not None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.safety.traffic import (
     AIR,
     NOW,
@@ -134,7 +135,7 @@ class TestCurved:
         angle=st.floats(0.05, pi - 0.05),
         radius=st.floats(0.2, 300.0),
     )
-    @settings(max_examples=200, deadline=None)
+    @settings(max_examples=examples(200), deadline=None)
     def test_no_rounded_corner_leaves_its_legs_by_more_than_the_bulge(
         self, back: float, on: float, angle: float, radius: float
     ) -> None:
@@ -407,7 +408,7 @@ class TestAgainstAnIntegrator:
     """What the gate lets pass stays apart, flown by another's arithmetic at another's speed."""
 
     @given(data=st.data())
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=examples(60), deadline=None)
     def test_missions_the_gate_passes_stay_apart(self, data: st.DataObject) -> None:
         coordinate = st.floats(-150.0, 150.0)
         places = st.tuples(coordinate, coordinate, st.sampled_from([36.0, 40.0, 44.0, 48.0]))

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from pyproj.network import is_network_enabled, set_network_enabled
 from rasterio.io import MemoryFile
 from rasterio.transform import Affine
+from tests.examples import examples
 from tests.site.terrain import (
     FRAME,
     HEAD,
@@ -81,7 +82,9 @@ class TestWhatItBecomes:
         assert np.abs(error).max() < 0.5 * (4.0 / 2 + 4.01 / 2)
         assert np.abs(error).mean() < 0.1
 
-    @settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
+    @settings(
+        max_examples=examples(15), suppress_health_check=[HealthCheck.function_scoped_fixture]
+    )
     @given(st.integers(0, 2**32 - 1), st.floats(0.3, 0.95), st.floats(0.0, 90.0))
     def test_with_cells_wider_than_pixels_no_peak_is_lost(
         self, tmp_path: Path, seed: int, pixel_m: float, turned_deg: float
@@ -333,7 +336,7 @@ def test_a_pad_that_lies_in_the_air_or_the_ground_is_refused(tmp_path: Path) -> 
 WHOLE = geotiff(plane, pixel=20.0, dtype="float32", compress="deflate")
 
 
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(300), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, len(WHOLE)), st.binary(max_size=12), st.booleans())
 @example(0, b"", False)
 @example(216, b"\x00\x00\x00\x00\x00\x01", False)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 
 from recon.geo import geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
@@ -432,7 +433,7 @@ def outcome(folder: Path, layer: str, data: bytes) -> str:
     return "read"
 
 
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(300), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(LAYERS, st.lists(st.one_of(features, features, anything), max_size=3), st.binary(max_size=2))
 @example("boundary", [polygon([[0, 0], [0, 5e-324], [5e-324, 0], [0, 0]])], b"")
 def test_no_layer_raises_anything_but_a_site_error(
@@ -446,7 +447,7 @@ def test_no_layer_raises_anything_but_a_site_error(
         assert result == "read" or str(tmp_path) in result
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(LAYERS, st.binary(max_size=60))
 def test_no_bytes_raise_anything_but_a_site_error(tmp_path: Path, layer: str, data: bytes) -> None:
     assert refusal(tmp_path, layer, data).startswith(FILE)

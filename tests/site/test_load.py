@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 
 from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint
@@ -310,7 +311,7 @@ TABLES = ["name", "origin", "limits", "imager", "ground_image", "layers", "eleva
 keys = st.sampled_from([*TABLES, "colour"])
 
 
-@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(150), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.dictionaries(keys, values, max_size=5))
 def test_any_toml_gives_a_refusal_that_names_the_file(
     tmp_path: Path, tables: dict[str, str]
@@ -333,7 +334,7 @@ any_elevation = st.dictionaries(
 )
 
 
-@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(200), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(any_limits, any_vehicle, st.none() | any_elevation)
 def test_whatever_keys_say_a_site_is_read_or_refused_in_a_sentence(
     tmp_path: Path,

@@ -9,6 +9,7 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.safety.cases import TAKEOFF, command, situation, vehicle
 
 from recon.geo.distance import moved_m, offset_north_east_m
@@ -253,7 +254,7 @@ MISSIONS = missions()
 COUNTS = st.sampled_from([2, 3, 7, 25, 99])
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(MISSIONS, COUNTS)
 def test_what_is_repaired_passes_dji_limits(mission: Mission, most: int) -> None:
     result = repair(mission, profile(most))
@@ -263,14 +264,14 @@ def test_what_is_repaired_passes_dji_limits(mission: Mission, most: int) -> None
         assert result.parts == (mission,)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(MISSIONS, COUNTS)
 def test_repairing_again_changes_nothing(mission: Mission, most: int) -> None:
     for part in repair(mission, profile(most)).parts:
         assert repair(part, profile(most)) == Repaired((part,), ())
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(MISSIONS)
 def test_a_mission_that_passes_needs_no_repair_but_for_the_margins(mission: Mission) -> None:
     points = mission.waypoints
@@ -287,7 +288,7 @@ def test_a_mission_that_passes_needs_no_repair_but_for_the_margins(mission: Miss
         assert repair(mission, profile()) == Repaired((mission,), ())
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(MISSIONS, COUNTS)
 def test_the_path_stays_where_it_was_ordered(mission: Mission, most: int) -> None:
     """Each ordered waypoint is within 1 m of the repaired path, and each repaired one within 1 m,
@@ -301,7 +302,7 @@ def test_the_path_stays_where_it_was_ordered(mission: Mission, most: int) -> Non
     assert flown[0].latitude_deg == mission.waypoints[0].latitude_deg
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(MISSIONS, COUNTS)
 def test_waypoints_that_stay_are_the_ordered_ones_to_the_bit(mission: Mission, most: int) -> None:
     result = repair(mission, profile(most))
@@ -318,7 +319,7 @@ def test_waypoints_that_stay_are_the_ordered_ones_to_the_bit(mission: Mission, m
     assert len(flown) - len(kept) == reported_new
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(MISSIONS, COUNTS)
 def test_every_change_is_said(mission: Mission, most: int) -> None:
     result = repair(mission, profile(most))
@@ -328,7 +329,7 @@ def test_every_change_is_said(mission: Mission, most: int) -> None:
     assert {part.curved for part in result.parts} == {mission.curved}
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(
     st.lists(
         st.builds(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.survey.fields import l_shape, rectangle, star, survey_of
 from tests.safety.fenced import FRAME, airspace, asked, flier, keep_out_zone
 
@@ -55,7 +56,7 @@ def refusals(field: Region, fence: Region, shut: tuple[Region, ...], count: int)
     return refusals
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.integers(0, 10**9), st.integers(1, 4))
 def test_the_gate_lets_the_missions_of_drawn_sites_through(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+from tests.examples import examples
 from tests.guidance.survey.fields import planned, rectangle, survey_of
 
 from recon.guidance.survey import (
@@ -157,5 +158,7 @@ class SurveyLife(RuleBasedStateMachine):
         self.imaged = self.state.progress.state
 
 
-SurveyLife.TestCase.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)
+SurveyLife.TestCase.settings = settings(
+    max_examples=examples(60), stateful_step_count=40, deadline=None
+)
 TestSurveyLife = SurveyLife.TestCase

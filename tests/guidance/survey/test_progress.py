@@ -8,6 +8,7 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.survey.fields import FRAME, planned, rectangle, survey_of
 from tests.guidance.survey.flyers import middles_m
 
@@ -252,7 +253,7 @@ class TestLight:
 
 
 class TestCrossing:
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=examples(60), deadline=None)
     @given(
         st.integers(0, 10**6),
         st.floats(0.0, 180.0),

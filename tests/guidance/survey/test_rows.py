@@ -9,6 +9,7 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.survey.fields import (
     FRAME,
     distance_m,
@@ -104,7 +105,7 @@ def are_shown(plan: SurveyPlan, points_m: FloatArray, phase: float) -> BoolArray
 
 
 class TestCoverage:
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=examples(60), deadline=None)
     @given(st.integers(0, 10**9), OVERLAPS, st.floats(0.0, 1.0))
     def test_every_place_of_a_drawn_field_is_in_a_photo(
         self, seed: int, overlaps: tuple[float, float], phase: float
@@ -133,7 +134,7 @@ class TestCoverage:
         points_m = points_in(rectangle(), np.random.default_rng(7), 5000)
         assert not are_shown(replace(plan, pieces=pieces), points_m, 0.5).all()
 
-    @settings(max_examples=40, deadline=None)
+    @settings(max_examples=examples(40), deadline=None)
     @given(st.integers(0, 10**9), OVERLAPS)
     def test_every_cell_of_a_drawn_field_has_a_stretch_that_answers_for_it(
         self, seed: int, overlaps: tuple[float, float]
@@ -143,7 +144,7 @@ class TestCoverage:
 
 
 class TestStraying:
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=examples(60), deadline=None)
     @given(st.integers(0, 10**9), OVERLAPS)
     def test_no_place_of_a_row_is_farther_out_than_documented(
         self, seed: int, overlaps: tuple[float, float]
@@ -168,7 +169,7 @@ class TestStraying:
 
 
 class TestLattice:
-    @settings(max_examples=40, deadline=None)
+    @settings(max_examples=examples(40), deadline=None)
     @given(st.integers(0, 10**9), OVERLAPS)
     def test_rows_are_as_far_apart_as_the_side_overlap_allows(
         self, seed: int, overlaps: tuple[float, float]
@@ -181,7 +182,7 @@ class TestLattice:
         one_less = (plan.lattice.rows - 1) * widest_m
         assert plan.lattice.rows == 1 or plan.lattice.rows * plan.lattice.spacing_m > one_less
 
-    @settings(max_examples=40, deadline=None)
+    @settings(max_examples=examples(40), deadline=None)
     @given(st.integers(0, 10**9), OVERLAPS)
     def test_stretches_join_to_their_pieces_on_marks(
         self, seed: int, overlaps: tuple[float, float]
@@ -265,7 +266,7 @@ class TestSurroundings:
         assert isinstance(refusal, Refusal)
         assert "no row of the region north field" in refusal.reason
 
-    @settings(max_examples=25, deadline=None)
+    @settings(max_examples=examples(25), deadline=None)
     @given(st.integers(0, 10**9))
     def test_every_cell_counted_as_reached_is_in_a_photo(self, seed: int) -> None:
         rng = np.random.default_rng(seed)
@@ -336,7 +337,7 @@ class TestFlyingAgain:
         plan = planned(survey_of(holed()))
         assert plan.pieces_over(np.zeros_like(plan.cells.is_inside)) == ()
 
-    @settings(max_examples=40, deadline=None)
+    @settings(max_examples=examples(40), deadline=None)
     @given(st.integers(0, 10**9), OVERLAPS, st.floats(0.0, 1.0))
     def test_pieces_over_some_cells_show_them_all(
         self, seed: int, overlaps: tuple[float, float], phase: float

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.survey.fields import FRAME, holed, l_shape, planned, rectangle, star, survey_of
 from tests.guidance.survey.flyers import east_north
 
@@ -59,7 +60,7 @@ def covered(pieces: Sequence[Piece]) -> dict[int, list[tuple[float, float]]]:
 
 
 class TestRoute:
-    @settings(max_examples=40, deadline=None)
+    @settings(max_examples=examples(40), deadline=None)
     @given(st.integers(0, 10**9))
     def test_every_piece_is_flown_once(self, seed: int) -> None:
         plan = drawn(seed)
@@ -88,7 +89,7 @@ class TestRoute:
 
 
 class TestShares:
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=examples(60), deadline=None)
     @given(st.integers(0, 10**9), st.integers(1, 9))
     def test_shares_are_the_whole_route_cut_at_marks(self, seed: int, count: int) -> None:
         plan = drawn(seed)
@@ -103,7 +104,7 @@ class TestShares:
                 mark = (end_m - plan.lattice.first_mark_m) / plan.lattice.mark_m
                 assert mark == pytest.approx(round(mark), abs=1e-6)
 
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=examples(60), deadline=None)
     @given(st.integers(0, 10**9), st.integers(2, 9))
     def test_no_share_is_much_longer_than_an_equal_one(self, seed: int, count: int) -> None:
         plan = drawn(seed)

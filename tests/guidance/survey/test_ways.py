@@ -8,6 +8,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.survey.fields import planned, star, survey_of
 
 from recon.guidance.survey.missions import MOST_CORNERS, RegionPaths
@@ -63,7 +64,7 @@ def test_round_things_are_taken_with_few_corners() -> None:
     assert shortest_m <= length_m(way) < 1.03 * shortest_m
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 10**9))
 def test_ways_between_all_rows_of_a_drawn_field_stay_inside(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 
 from recon.geo.path import rounded_path as geo_rounded_path
 from recon.model.vehicle import FlightMode
@@ -64,7 +65,7 @@ def flown(flights, mission: tuple[MissionPoint, ...], curved: bool) -> list[Airc
     return track
 
 
-@settings(max_examples=25, deadline=None, phases=QUICK)
+@settings(max_examples=examples(25), deadline=None, phases=QUICK)
 @given(st.lists(points, min_size=2, max_size=6))
 def test_stopping_missions_reach_every_waypoint_within_the_limits(flights, mission) -> None:
     track = flown(flights, tuple(mission), curved=False)
@@ -74,7 +75,7 @@ def test_stopping_missions_reach_every_waypoint_within_the_limits(flights, missi
     assert track[-1].ground_speed_mps < 0.5
 
 
-@settings(max_examples=25, deadline=None, phases=QUICK)
+@settings(max_examples=examples(25), deadline=None, phases=QUICK)
 @given(st.lists(points, min_size=2, max_size=6))
 def test_curved_missions_stay_near_their_path_and_end_at_the_last_waypoint(
     flights, mission

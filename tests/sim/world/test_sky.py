@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import j0
+from tests.examples import examples
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.sim.errors import SimulationError
@@ -36,7 +37,7 @@ def sky(*layers: LayerSettings, seed: int = 4, sun: SunSettings | None = None) -
     return Sky(SkySettings(seed, sun or SunSettings(), layers))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(st.lists(st.tuples(PLACES, PLACES, TIMES), min_size=1, max_size=400))
 def test_a_point_has_one_value_to_the_bit(points) -> None:
     east, north, time = np.array(points).T

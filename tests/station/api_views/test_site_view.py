@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 
 from recon.api.schema import SiteView
 from recon.geo import Polygon, enu_from_geo, thinned_ring
@@ -117,7 +118,7 @@ def test_what_cannot_be_thinned_is_left_out() -> None:
     assert len(view.areas) + view.areas_left_out == 8
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     st.lists(st.integers(3, 3_000), min_size=1, max_size=130),
     st.floats(0.0, 150.0),

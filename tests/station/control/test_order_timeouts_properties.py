@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.fleet.reports import S
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
@@ -185,7 +186,7 @@ def _has_one_end(record: OrderRecord) -> None:
         assert all(phase is ends[0] for phase in phases[phases.index(ends[0]) :])
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(st.lists(DOES, max_size=40))
 def test_every_order_has_one_end_and_no_motion_goes_by_itself(
     does: list[tuple[str, object]],

@@ -2,6 +2,7 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.fleet.reports import S, core, extended
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
@@ -59,7 +60,7 @@ EVENTS = st.one_of(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(st.lists(st.tuples(st.sampled_from([0, 50, 700, 4000]), EVENTS), max_size=60))
 def test_any_sequence_of_events(events: list[tuple[int, object]]) -> None:
     limits = StationSettings(orders_kept=20, alarms_kept=20)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.guidance.returning_scenes import (
     FRAME,
     SETTINGS,
@@ -73,7 +74,7 @@ def judged(scene: Scene, flight: ReturnFlight) -> Situation:
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(
     seed=st.integers(0, 10**9),
     count=st.integers(2, 20),

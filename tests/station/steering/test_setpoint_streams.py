@@ -8,6 +8,7 @@ import pytest
 from hypothesis import Phase as Phases
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.examples import examples
 from tests.station.steered_world import HEIGHT_M, OWNER, SERIAL, Steered, steered
 
 from recon import wire
@@ -464,7 +465,7 @@ def lived(s: Steered, order: int) -> None:
         assert s.stream is None
 
 
-@settings(max_examples=10, deadline=None, phases=(Phases.explicit, Phases.generate))
+@settings(max_examples=examples(10), deadline=None, phases=(Phases.explicit, Phases.generate))
 @given(
     st.floats(5.0, 12.0),
     st.floats(0.2, 6.0),
