@@ -100,6 +100,11 @@ class TestSticks:
         assert isinstance(path, StickFlight)
         assert path.turn_deg == pytest.approx(10.0)
 
+    def test_numbers_are_the_wires_32_bit_floats(self) -> None:
+        path = stick(1e-50, 0.1, 0.0, StickFrame.GROUND)
+        assert path.north_mps == 0.0
+        assert path.east_mps == 0.10000000149011612
+
     @given(x_mps=SPEEDS, y_mps=SPEEDS)
     def test_energy_counts_least_and_separation_most(self, x_mps: float, y_mps: float) -> None:
         path = stick(x_mps, y_mps, 0.0, StickFrame.GROUND)
