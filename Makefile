@@ -95,6 +95,7 @@ study: setup ## Long runs: the sky against measurements, random fences and fleet
 	$(RUN) python -m studies.fleets --scenes 10000
 	$(RUN) python -m studies.session --seconds 100000
 	$(RUN) python -m studies.same_again --seconds 600
+	RECON_THOROUGH=1 $(PYTEST) -m hypothesis
 	@$(MAKE) mutants
 
 mutants: setup ## Mutate the gate's rules: a test must fail for each mutant
