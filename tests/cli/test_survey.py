@@ -100,9 +100,9 @@ class TestCreate:
     @pytest.mark.parametrize(
         ("words", "reason"),
         [
-            (("no such field", *FLOWN), "the site has no survey region 'no such field'"),
+            (("no such field", *FLOWN), "Survey region 'no such field' not found; available: west field"),
             (("west field", "--height", "40", "--speed", "14"), "fly at"),
-            (("west field", *FLOWN, "--planner", "best"), "no planner best"),
+            (("west field", *FLOWN, "--planner", "best"), "Unknown planner best: choose lawnmower_once"),
         ],
     )
     def test_an_impossible_survey_is_refused(
