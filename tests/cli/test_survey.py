@@ -100,9 +100,15 @@ class TestCreate:
     @pytest.mark.parametrize(
         ("words", "reason"),
         [
-            (("no such field", *FLOWN), "Survey region 'no such field' not found; available: west field"),
+            (
+                ("no such field", *FLOWN),
+                "Survey region 'no such field' not found; available: west field",
+            ),
             (("west field", "--height", "40", "--speed", "14"), "fly at"),
-            (("west field", *FLOWN, "--planner", "best"), "Unknown planner best: choose lawnmower_once"),
+            (
+                ("west field", *FLOWN, "--planner", "best"),
+                "Unknown planner best: choose lawnmower_once",
+            ),
         ],
     )
     def test_an_impossible_survey_is_refused(
