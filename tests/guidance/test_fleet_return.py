@@ -6,7 +6,7 @@ from math import hypot
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from tests.examples import examples
 from tests.guidance.returning_fleet import fly
@@ -69,6 +69,7 @@ def hovering_row(count: int, pads: list[Pad], up_m: float = 30.0) -> list[Called
 
 @settings(max_examples=examples(200), deadline=None)
 @given(scene=scenes())
+@example(scene=drawn_scene(671, 2, 1, 30.0, 4, is_fenced=False, hovers_apart=False))
 def test_plans_of_drawn_scenes(scene: Scene) -> None:
     """One plan per scene, as planning takes most of the time; the checks follow below."""
     plan = scene.plan()
@@ -213,6 +214,15 @@ class TestWays:
         zone = keep_out("mast", box(3_000.0, 0.0, 20.0), ceiling_m=100.0)
         plan = scene_of([lone(0.0, 200.0)], zones=(zone,)).plan()
         assert plan.layers_up_m[0] == pytest.approx(HIGH_GROUND_M + 20.0)
+
+    def test_a_zone_outside_the_hull_is_kept_clear_of_by_a_detour(self) -> None:
+        """The short way around the road leads out of the hull, across the barn's corner."""
+        road = keep_out("road", box(30.0, 100.0, 40.0))
+        barn = keep_out("barn", box(-60.0, 60.0, 43.0))
+        scene = scene_of([lone(0.0, 200.0)], zones=(road, barn))
+        plan = scene.plan()
+        assert len(plan.flights) == 1
+        check_no_flight_enters_a_keep_out_zone_or_leaves_the_site(scene, plan)
 
     def test_a_least_height_raises_the_lowest_layer(self) -> None:
         over = box(0.0, 100.0, 30.0)

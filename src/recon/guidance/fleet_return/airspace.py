@@ -43,7 +43,7 @@ class WayHome:
 
 
 OPEN_WAY_M = 10.0
-"""A zone this near to the hull of all places and pads is taken for one on the ways."""
+"""The layers lie above a zone whose edge is this near to the hull of all vehicles and pads."""
 
 
 def way_home(
@@ -54,8 +54,9 @@ def way_home(
 ) -> WayHome:
     """Return what holds for ways between these places (vehicles' and pads').
 
-    `ground_up_m` is the lowest and the highest ground on the ways. Every zone there is flown over
-    where its top leaves room under the ceiling, and else flown around.
+    `ground_up_m` is the lowest and the highest ground on the ways. A zone near the hull of the
+    places is flown over where its top leaves room under the ceiling. Every other zone is flown
+    around, however far away it is: a detour may leave the hull.
     """
     limits = airspace.limits
     margin_m = limits.boundary_margin_m + settings.detour_slack_m
@@ -68,9 +69,12 @@ def way_home(
         piece
         for zone in airspace.zones
         for piece in _shut_by(zone, origin_m, ground_up_m, settings)
-        if shapely.intersects(piece.area, near)
     )
-    tops_m = [piece.high_up_m for piece in shut if piece.high_up_m <= highest_m]
+    tops_m = [
+        piece.high_up_m
+        for piece in shut
+        if piece.high_up_m <= highest_m and shapely.intersects(piece.area, near)
+    ]
     return WayHome(
         lowest_up_m=max([high_ground_m + least_m, *tops_m]),
         highest_up_m=highest_m,
