@@ -170,7 +170,7 @@ class TestReconnect:
         assert not w.driver.is_connected(old_id)
         (closed,) = [e for e in w.driver.log if isinstance(e, LinkClosed)]
         assert closed.link_id == old_id
-        assert "came back" in closed.reason
+        assert "reconnected on link" in closed.reason
         after = w.vehicle("SIM-1")
         assert after.track[: len(before.track)] == before.track
         w.run_for(1.0)

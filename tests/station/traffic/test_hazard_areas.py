@@ -8,8 +8,9 @@ from tests.station.commanded import CommandedStation
 
 from recon.fleet.settings import FleetSettings
 from recon.geo.distance import moved_m
+from recon.model.authority import AuthorityHolder
 from recon.model.command import GoTo, Hover, Phase
-from recon.model.event import AlarmAcknowledged, HazardDismissed
+from recon.model.event import AlarmAcknowledged, AuthorityTaken, HazardDismissed
 from recon.station.api_views.vehicle_views import hazard_view
 from recon.station.traffic.known_traffic import hazard, in_the_air, is_dismissible
 
@@ -227,3 +228,29 @@ class TestNoRoom:
         assert in_air(scene) == ["X", "Z", "NEW"]
         assert "no_room" not in scene.alarms()
         assert scene.station.watchdog_state.dismissed == {}
+
+    def test_a_vehicle_that_made_room_returns_as_new(self) -> None:
+        """Without its old intent, tracking and authority; the others keep theirs."""
+        scene = self.full()
+        for serial in ("X", "Y"):
+            scene.happens(AuthorityTaken(serial, AuthorityHolder.PILOT, "Ann"))
+        scene.happens(HazardDismissed("Y", "Ann"))
+        assert scene.station.control("X").authority.holder is AuthorityHolder.PILOT
+        assert "Y" not in scene.station.controls
+        scene.opens(10, core(), extended("Y")).passes(0.2)
+        control = scene.station.control("Y")
+        assert control.authority.holder is AuthorityHolder.OPERATOR
+        assert control.tracking is not None
+        assert control.tracking.is_unbidden
+
+    def test_a_vehicle_beyond_the_limit_is_forgotten_with_its_control_state(self) -> None:
+        scene = CommandedStation()
+        settings = FleetSettings(vehicles_kept=1)
+        scene.station = replace(
+            scene.station, fleet=replace(scene.station.fleet, settings=settings)
+        )
+        scene.opens(1, core(flying=False), extended("OLD"))
+        scene.happens(AuthorityTaken("OLD", AuthorityHolder.PILOT, "Ann")).closes(1)
+        scene.opens(2, core(flying=False), extended("NEW"))
+        assert set(scene.station.fleet.vehicles) == {"NEW"}
+        assert "OLD" not in scene.station.controls

@@ -57,7 +57,7 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
 
 def _fleet(station: Station, event: Event, now_ns: int) -> Stepped:
     fleet, closing = fleet_step.step(station.fleet, event, now_ns)
-    return replace(station, fleet=fleet), closing
+    return station.with_fleet(fleet), closing
 
 
 def _link_closed(station: Station, event: LinkClosed, now_ns: int) -> Stepped:

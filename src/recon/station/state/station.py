@@ -105,6 +105,22 @@ class Station:
             neutral_pending=_with_member(self.neutral_pending, serial, control.neutral is not None),
         )
 
+    def with_fleet(self, fleet: Fleet) -> "Station":
+        """Return the station with another fleet; drop the control states of forgotten vehicles.
+
+        A forgotten vehicle that returns is a new one: no old authority, intent or tracking.
+        """
+        gone = self.fleet.vehicles.keys() - fleet.vehicles.keys()
+        if gone.isdisjoint(self.controls):
+            return replace(self, fleet=fleet)
+        return replace(
+            self,
+            fleet=fleet,
+            controls={key: value for key, value in self.controls.items() if key not in gone},
+            streaming=tuple(serial for serial in self.streaming if serial not in gone),
+            neutral_pending=tuple(s for s in self.neutral_pending if s not in gone),
+        )
+
     def streams(self) -> Iterator[tuple[str, SetpointStream]]:
         """Yield the setpoint streams with their vehicles' serials, the oldest first."""
         for serial in self.streaming:

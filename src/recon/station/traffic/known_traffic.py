@@ -120,7 +120,8 @@ def _with_room(station: Station) -> Station:
     }
     dismissed = {key: at for key, at in station.watchdog_state.dismissed.items() if key not in gone}
     watch = replace(station.watchdog_state, dismissed=dismissed)
-    return replace(station, fleet=without(station.fleet, gone), watchdog_state=watch)
+    station = station.with_fleet(without(station.fleet, gone))
+    return replace(station, watchdog_state=watch)
 
 
 def keep_lost(station: Station, link_id: int) -> Station:
