@@ -91,7 +91,7 @@ def test_the_report_names_the_assumptions_without_layers_and_elevation() -> None
 
 
 def test_each_incomplete_vehicle_is_named_with_its_missing_keys() -> None:
-    half = VehicleProfile("B", "Bea", endurance_s=900.0, pad=pad(40.0))
+    half = VehicleProfile("B", "Bea", endurance_s=900.0, pad=pad(45.0))
     site = site_with(VehicleProfile("A"), half, complete("C", 50.0, pad(90.0)))
     effect = "the worst case is assumed, or the order refused"
     keys = "endurance_min, go_home_height_m, failsafe, pad"
@@ -104,10 +104,9 @@ def test_each_incomplete_vehicle_is_named_with_its_missing_keys() -> None:
 def test_go_home_heights_too_close_or_too_low_are_named() -> None:
     high = Zone("mast", ZoneKind.HEIGHT, Region(np.array(TREES)), 317.0, None, HeightDatum.WGS84)
     layers = replace(load_site(demo_site_folder()).layers, zones=(high,), landing_pads=())
-    vehicles = [complete("A", 41.0, pad(0.0)), complete("B", 46.5, pad(40.0))]
+    vehicles = [complete("A", 41.0, pad(0.0)), complete("B", 48.4, pad(40.0))]
     assert warnings_of(site_with(*vehicles, layers=layers)) == [
-        "vehicles A and B have go-home heights of 41 m and 46.5 m, closer than "
-        "limits.min_separation_vertical_m, 6 m",
+        "vehicles A and B have go-home heights of 41 m and 48.4 m; they must be 7.5 m apart",
         "vehicle A has a go-home height of 41 m, below the floor of zone mast",
     ]
     trees = site_with(complete("A", 34.0, pad(150.0)))
@@ -118,11 +117,8 @@ def test_go_home_heights_too_close_or_too_low_are_named() -> None:
 
 def test_pads_too_close_or_off_the_ground_are_named() -> None:
     layers = replace(load_site(demo_site_folder()).layers, landing_pads=())
-    vehicles = [complete("A", 40.0, pad(0.0, -6.0)), complete("B", 50.0, pad(12.0, 7.0))]
-    close = (
-        "pads A and B are 12.0 m apart, closer than limits.min_separation_horizontal_m, 15 m: "
-        "vehicles land one at a time"
-    )
+    vehicles = [complete("A", 40.0, pad(0.0, -6.0)), complete("B", 50.0, pad(17.7, 7.0))]
+    close = "pads A and B are 17.7 m apart, less than 18 m: vehicles land one at a time"
     for elevation, ground in (
         (load_site(demo_site_folder()).elevation, "the model's ground"),
         (None, "the ground, assumed flat"),

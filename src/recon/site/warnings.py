@@ -8,6 +8,8 @@ import numpy as np
 from recon.geo import Polygon, enu_from_points
 from recon.model.vehicle import VehicleProfile
 from recon.model.zone import HeightDatum, Zone, ZoneKind
+from recon.safety import SafetySettings
+from recon.safety.separation_minima import gate_minima
 from recon.site.consistency import highest_ground_m
 from recon.site.elevation import ground_heights_m
 from recon.site.site import Site
@@ -15,6 +17,8 @@ from recon.site.site import Site
 SUNKEN_M = 5.0
 """Between a pad's altitude and the ground there."""
 SHARE_SHOWN = 0.001
+SETTINGS = SafetySettings()
+"""The gate's minima are the site's limits plus the margins of these."""
 
 
 def site_warnings(site: Site) -> tuple[str, ...]:
@@ -79,7 +83,7 @@ def _flight_keys(profile: VehicleProfile) -> dict[str, object]:
 
 
 def _close_go_home_heights(site: Site) -> Iterator[str]:
-    least_m = site.limits.min_separation_vertical_m
+    least_m = gate_minima(site.limits, SETTINGS).vertical_m
     known = [
         (profile.go_home_height_m, profile.display_name)
         for profile in site.profiles.values()
@@ -89,7 +93,7 @@ def _close_go_home_heights(site: Site) -> Iterator[str]:
         if other_m - height_m < least_m:
             yield (
                 f"vehicles {one} and {other} have go-home heights of {height_m:g} m and "
-                f"{other_m:g} m, closer than limits.min_separation_vertical_m, {least_m:g} m"
+                f"{other_m:g} m; they must be {least_m:g} m apart"
             )
 
 
@@ -132,7 +136,7 @@ def _close_pads(site: Site) -> Iterator[str]:
     assert site.frame is not None
     pads = site.airspace.landing_pads
     places_m = enu_from_points(site.frame, [pad.place for pad in pads])[:, :2]
-    least_m = site.limits.min_separation_horizontal_m
+    least_m = gate_minima(site.limits, SETTINGS).horizontal_m
     named: set[frozenset[int]] = set()
     for one, place_m in enumerate(places_m):
         apart_m = np.linalg.norm(places_m - place_m, axis=1)
@@ -142,8 +146,7 @@ def _close_pads(site: Site) -> Iterator[str]:
             named.add(frozenset((one, other)))
             yield (
                 f"pads {pads[one].name} and {pads[other].name} are {apart_m[other]:.1f} m apart, "
-                f"closer than limits.min_separation_horizontal_m, {least_m:g} m: vehicles land "
-                "one at a time"
+                f"less than {least_m:g} m: vehicles land one at a time"
             )
 
 

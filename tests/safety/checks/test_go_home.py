@@ -59,7 +59,7 @@ def test_it_is_under_the_sites_ceiling(height_m: float, state: CheckState) -> No
 
 class TestNeighbours:
     @pytest.mark.parametrize(
-        ("height_m", "state"), [(60.0, FAILS), (65.9, FAILS), (66.0, OK), (54.0, OK), (54.1, FAILS)]
+        ("height_m", "state"), [(60.0, FAILS), (67.4, FAILS), (67.5, OK), (52.5, OK), (52.6, FAILS)]
     )
     def test_no_other_vehicle_goes_home_in_its_layer(
         self, height_m: float, state: CheckState
@@ -69,7 +69,7 @@ class TestNeighbours:
 
     def test_the_neighbour_is_named(self) -> None:
         facts = replace(FACTS, others=(other(90.0), other(62.0, serial="C")))
-        assert at(60.0, facts=facts).text == ("must be 6 m from that of C; got 2.0 m at 60 m")
+        assert at(60.0, facts=facts).text == ("must be 7.5 m from that of C; got 2.0 m at 60 m")
 
     def test_heights_are_compared_in_one_frame(self) -> None:
         """Its pad lies 40 m lower: 100 m above it are 60 m above here."""

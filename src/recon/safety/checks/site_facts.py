@@ -9,6 +9,7 @@ from recon.model.zone import HeightDatum, ZoneKind
 from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.check import Check, Point
 from recon.safety.datum import takeoff_up_m
+from recon.safety.separation_minima import gate_minima
 from recon.safety.situation import Situation
 
 ALTITUDE = Point("altitude_reference", "Altitude reference")
@@ -107,10 +108,11 @@ def _faults(height_m: float, vehicle: VehicleState, situation: Situation) -> Ite
         )
     if height_m > limits.max_height_above_ground_m:
         yield f"must be at most {limits.max_height_above_ground_m:g} m; got {height_m:g} m"
+    least_m = gate_minima(limits, situation.settings).vertical_m
     for other, apart_m in _neighbours(vehicle, situation):
-        if apart_m < limits.min_separation_vertical_m:
+        if apart_m < least_m:
             yield (
-                f"must be {limits.min_separation_vertical_m:g} m from that of "
+                f"must be {least_m:g} m from that of "
                 f"{other.display_name}; got {apart_m:.1f} m at {height_m:g} m"
             )
 
