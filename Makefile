@@ -56,7 +56,7 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
 
-PYTEST := $(RUN) python -m pytest -n 2 --dist loadfile
+PYTEST := $(RUN) python -m pytest -n 4 --dist loadfile
 
 test-safety: setup ## Tests of the gate and the watchdogs, with full branch coverage
 	$(PYTEST) tests/safety tests/architecture --cov=recon.safety --cov-branch \

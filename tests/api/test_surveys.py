@@ -65,7 +65,7 @@ class TestAsked:
             ({"region": "north"}, "either a region of the site or a polygon"),
             ({"speed_mps": 14.0}, "fly at"),
             ({"height_above_takeoff_m": 9_000.0}, "height"),
-            ({"planner": "best"}, "no planner best"),
+            ({"planner": "best"}, "Unknown planner best"),
         ],
     )
     def test_what_cannot_be_flown_is_refused_with_words(

@@ -152,7 +152,7 @@ class TestInFlight:
         assert held.json[0]["serial"] == "SIM-1"
         assert held.json[0]["phase"] == "done"
         nudged = station.recon("nudge", "SIM-1", "--up", "3")
-        assert (nudged.code, "it is there" in nudged.out) == (0, True), nudged.out
+        assert (nudged.code, "arrived" in nudged.out) == (0, True), nudged.out
         home = station.recon("return", "SIM-1")
         assert home.code == 0, home.out
         landing = station.recon("land", "SIM-1")

@@ -94,7 +94,7 @@ def test_examples_run(
         "02": "confirmed",
         "03": "of the grid covered",
         "04": "landing: confirmed",
-        "05": "it is there",
+        "05": "arrived",
         "06": "SIM-6: wave 2, 36 m, landed",
     }
     assert expected[example.name[:2]] in printed
