@@ -120,9 +120,13 @@ async def lands(here: Field, serial: str) -> None:
     while True:
         await here.until(lambda: is_live(here, serial))
         phases = partial(here.phases, here.order(serial, LandNow()))
-        await here.until(lambda: bool({"confirmed", "failed", "timed_out"} & set(phases())))
+        await here.until(partial(is_ended_or_confirmed, phases))
         if "confirmed" in phases():
             return
+
+
+def is_ended_or_confirmed(phases: Callable[[], list[str]]) -> bool:
+    return bool({"confirmed", "failed", "timed_out"} & set(phases()))
 
 
 def connections(here: Field) -> int:
