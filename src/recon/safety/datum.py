@@ -78,9 +78,15 @@ def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | N
     None when the takeoff point is unknown, or outside the elevation model. Without
     a site it is always 0.
     """
+    return takeoff_up_m_at(airspace, vehicle, home(vehicle))
+
+
+def takeoff_up_m_at(
+    airspace: PreparedAirspace, vehicle: VehicleState, point: LatLon | None
+) -> float | None:
+    """Return the same where the vehicle's `home` is known already."""
     if airspace.airspace.frame is None:
         return 0.0
-    point = home(vehicle)
     if point is None:
         return None
     own = None if vehicle.profile is None else vehicle.profile.pad

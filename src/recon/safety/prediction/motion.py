@@ -9,7 +9,7 @@ from recon.model.stamped import Stamped
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.safety.airspace import PreparedAirspace
-from recon.safety.datum import home, takeoff_up_m
+from recon.safety.datum import home, takeoff_up_m_at
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
 from recon.safety.settings import PredictionSettings
 
@@ -81,11 +81,11 @@ def vehicle_motion(
     place, at_ns = last_place(state)
     if place is None:
         return None
-    base_m = takeoff_up_m(airspace, state)
+    profile, home_place = state.profile, home(state)
+    base_m = takeoff_up_m_at(airspace, state, home_place)
     height_m = state.height_above_takeoff_m.value
     known = base_m is not None and height_m is not None
     up_m = base_m + height_m if base_m is not None and height_m is not None else 0.0
-    profile, home_place = state.profile, home(state)
     go_home_m = None if profile is None else profile.go_home_height_m
     velocity_mps, speed_mps = _velocity(state, settings)
     east_m, north_m = plane.east_north_m(place)

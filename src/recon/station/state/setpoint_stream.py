@@ -49,7 +49,7 @@ class StreamSettings:
     """Back to a place to be held: faster than any wind's drift, slower than a flight."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SetpointStream:
     """One steered order being carried out. Times are station time.
 

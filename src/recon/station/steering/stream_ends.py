@@ -36,7 +36,7 @@ class ReleasedStream(NamedTuple):
     commanded: Commanded
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class StreamUpdate:
     """The station after streams were updated, and what `control` must do next.
 
