@@ -1,6 +1,7 @@
 """Missions: WGS84 positions, heights above takeoff."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +17,7 @@ class Waypoint:
     gimbal_pitch_deg: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Mission:
     """A waypoint mission. `curved` rounds the corners and carries no loiter or gimbal action."""
 
@@ -24,3 +25,10 @@ class Mission:
     land_at_end: bool = False
     curved: bool = False
     purpose: str = ""
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float]:
+        """The fastest speed, and the lowest and highest height above takeoff, of all waypoints."""
+        heights_m = [waypoint.height_above_takeoff_m for waypoint in self.waypoints]
+        speeds_mps = (waypoint.speed_mps for waypoint in self.waypoints)
+        return max(speeds_mps), min(heights_m), max(heights_m)

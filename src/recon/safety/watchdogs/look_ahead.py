@@ -61,11 +61,8 @@ class LookAhead:
 def look_ahead(
     rows: Sequence[Sequence[Row]], settings: WatchdogSettings, prediction: PredictionSettings
 ) -> LookAhead:
-    """Return the next seconds of trajectories; of none, arrays without vehicles."""
+    """Return the next seconds of trajectories, of which there must be one."""
     times_s = _moments_s(settings)
-    if not rows:
-        none = Samples(*(np.zeros((0, len(times_s))) for _ in range(5)))
-        return LookAhead(times_s, none, prediction)
     return LookAhead(times_s, sample(rows, times_s), prediction)
 
 

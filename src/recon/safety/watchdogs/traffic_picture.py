@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from recon.model.authority import AuthorityHolder
 from recon.model.geo import LatLon
@@ -23,6 +24,7 @@ from recon.safety.prediction.trajectory import CURVE, RADIUS_0, RADIUS_1, Row
 from recon.safety.separation_minima import SeparationMinima, watchdog_minima
 from recon.safety.settings import EnergySettings, SafetySettings, WatchdogSettings
 from recon.safety.watchdogs.look_ahead import Braking, LookAhead, look_ahead, next_rows
+from recon.safety.watchdogs.reach import Reach, reach_of
 
 _COMING_DOWN_MODES = frozenset(
     {FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING, FlightMode.GO_HOME}
@@ -161,20 +163,18 @@ class WatchedVehicle:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TrafficPicture:
     """Everything that is watched, at one moment.
 
-    `flying` report flight. `lost` have lost telemetry and may continue a mission.
-    `ahead` is of the former and then the latter, in order. `since_ns` is the time of each
-    finding's first occurrence, by its key.
+    `flying` report flight. `lost` have lost telemetry and may continue a mission. `since_ns` is
+    the time of each finding's first occurrence, by its key.
     """
 
     now_ns: int
     watched: tuple[WatchedVehicle, ...]
     flying: tuple[WatchedVehicle, ...]
     lost: tuple[WatchedVehicle, ...]
-    ahead: LookAhead
     airspace: PreparedAirspace
     settings: WatchdogSettings = field(default_factory=WatchdogSettings)
     prediction: PredictionSettings = field(default_factory=PredictionSettings)
@@ -186,6 +186,29 @@ class TrafficPicture:
     def predicted(self) -> tuple[WatchedVehicle, ...]:
         """Those that `ahead` is of."""
         return self.flying + self.lost
+
+    @cached_property
+    def reaches(self) -> tuple[Reach, ...] | None:
+        """The bounds on `flying`; None while one has none or any vehicle is lost."""
+        if any(watched.hazard is not None for watched in self.watched):
+            return None
+        reaches: list[Reach] = []
+        for watched in self.flying:
+            motion = watched.motion
+            assert motion is not None, "a vehicle in contact has a position"
+            horizon_s = self.settings.horizon_s
+            reach = reach_of(motion, watched.intent, horizon_s, self.prediction)
+            if reach is None:
+                return None
+            reaches.append(reach)
+        return tuple(reaches)
+
+    @cached_property
+    def ahead(self) -> LookAhead:
+        """The next seconds of `predicted`, in order; asked only where a reach is not clear."""
+        rows = [_next_rows(one, self) for one in self.flying]
+        rows += [_lost_rows(one, self) for one in self.lost]
+        return look_ahead(rows, self.settings, self.prediction)
 
     @property
     def minima(self) -> SeparationMinima:
@@ -216,14 +239,11 @@ def build_traffic_picture(
     watched = tuple(_placed(one, airspace, settings, plane, now_ns) for one in known)
     flying = tuple(one for one in watched if one.is_flying_in_contact)
     lost = tuple(one for one in watched if one.may_continue_mission)
-    rows = [_next_rows(one, settings, now_ns) for one in flying]
-    rows += [_lost_rows(one, settings) for one in lost]
     return TrafficPicture(
         now_ns=now_ns,
         watched=watched,
         flying=flying,
         lost=lost,
-        ahead=look_ahead(rows, settings.watchdogs, settings.prediction),
         airspace=airspace,
         settings=settings.watchdogs,
         prediction=settings.prediction,
@@ -270,23 +290,23 @@ def _placed(
     )
 
 
-def _next_rows(one: WatchedVehicle, settings: SafetySettings, now_ns: int) -> list[Row]:
+def _next_rows(one: WatchedVehicle, picture: TrafficPicture) -> list[Row]:
     """A hold that the station gave counts from its giving on, until a newer order."""
     assert one.motion is not None, "a vehicle in contact has a position"
     intent, braking, held = one.intent, None, one.held
     if held is not None and held.holds_against(intent):
         if not one.is_coming_down:
             intent = Intent(Commanded.HOLD, held.since_ns)
-        braking = Braking((now_ns - held.since_ns) / NS_PER_S, held.speed_mps)
-    horizon_s = settings.watchdogs.horizon_s
-    return next_rows(one.motion, intent, braking, horizon_s, now_ns, settings.prediction)
+        braking = Braking((picture.now_ns - held.since_ns) / NS_PER_S, held.speed_mps)
+    horizon_s, now_ns = picture.settings.horizon_s, picture.now_ns
+    return next_rows(one.motion, intent, braking, horizon_s, now_ns, picture.prediction)
 
 
-def _lost_rows(one: WatchedVehicle, settings: SafetySettings) -> list[Row]:
+def _lost_rows(one: WatchedVehicle, picture: TrafficPicture) -> list[Row]:
     """The mission it was sent, flown on: anywhere within what time has made of its place."""
-    motion, prediction = one.motion, settings.prediction
+    motion, prediction = one.motion, picture.prediction
     assert motion is not None, "only a vehicle with a position has a hazard area"
-    predictor = Predictor(motion, prediction, until_s=settings.watchdogs.horizon_s)
+    predictor = Predictor(motion, prediction, until_s=picture.settings.horizon_s)
     predictor.follow(one.intent)
     off_m = prediction.time_uncertainty * motion.age_s * motion.speed_mps
     return [
