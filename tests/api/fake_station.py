@@ -131,8 +131,8 @@ class FakeStation:
     def forecast(self) -> tuple[int, SunForecast] | None:
         return self.service.forecast()
 
-    def ask_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
-        return self.service.ask_survey(asked, by)
+    def request_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
+        return self.service.request_survey(asked, by)
 
     def survey(self, survey_id: int) -> SurveyView | None:
         return self.service.survey(survey_id)

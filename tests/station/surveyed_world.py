@@ -9,7 +9,7 @@ from tests.station.returning_world import ReturningWorld, returning_world
 from recon.guidance.survey import CoverageFigures, SurveyState, figures
 from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission
-from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
+from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyPhase
 from recon.model.zone import Region
 from recon.station.state.orders import OrderRecord
@@ -65,7 +65,7 @@ class SurveyedWorld:
         return figures(self.state())
 
     def asks(self, survey: Survey | None = None) -> None:
-        self.driver.handle(SurveyAsked(survey or asked(), "ann"))
+        self.driver.handle(SurveyRequested(survey or asked(), "ann"))
         self.runs(0.5)
 
     def starts(self, *serials: str, takeoff: bool = False, number: int = SURVEY_ID) -> None:

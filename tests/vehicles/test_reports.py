@@ -13,7 +13,7 @@ from recon.model.report import (
     AnsweredKind,
     CoreReport,
     ExtendedReport,
-    MeaninglessReport,
+    IgnoredReport,
     MessageReport,
     MessageSeverity,
 )
@@ -176,7 +176,7 @@ class TestAcknowledgments:
     @pytest.mark.parametrize("pid", range(252))
     def test_source_pid_outside_252_to_255_is_ignored(self, pid: int) -> None:
         report = to_report(wire.Acknowledgment(positive=1, source_pid=pid))
-        assert isinstance(report, MeaninglessReport)
+        assert isinstance(report, IgnoredReport)
 
 
 class TestOthers:
@@ -187,12 +187,12 @@ class TestOthers:
             wire.UnknownPacket(pid=77, payload=b"x"),
         ]
         for packet in packets:
-            assert isinstance(to_report(packet), MeaninglessReport)
+            assert isinstance(to_report(packet), IgnoredReport)
 
     def test_messages(self) -> None:
         report = to_report(wire.MessageString(type=2, text=b"low \x1b[31mbattery"))
         assert report == MessageReport(MessageSeverity.WARNING, "low \\x1b[31mbattery")
-        assert isinstance(to_report(wire.MessageString(type=4, text=b"")), MeaninglessReport)
+        assert isinstance(to_report(wire.MessageString(type=4, text=b"")), IgnoredReport)
 
 
 @given(

@@ -77,7 +77,7 @@ def _add_hazards(app: FastAPI, port: StationPort) -> None:
     async def dismiss_hazard(serial: str, request: Request) -> None:
         """Dismiss the hazard area of a lost vehicle that has been located.
 
-        A vehicle without a serial is named by its hazard area's `dismissed_as`.
+        A vehicle without a serial is named by its hazard area's `dismissal_name`.
         """
         if not port.dismiss_hazard(serial, client_name(request)):
             raise HTTPException(

@@ -111,7 +111,7 @@ class StationPort(Protocol):
     def forecast(self) -> tuple[int, SunForecast] | None:
         """Return the newest forecast and its number."""
 
-    def ask_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
+    def request_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
         """Request a survey; it is planned in the background, see `survey`."""
 
     def survey(self, survey_id: int) -> SurveyView | None:

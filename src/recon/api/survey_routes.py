@@ -9,7 +9,7 @@ from recon.api import pictures, schema
 from recon.api.picture_routes import Form
 from recon.api.port import StationPort
 from recon.api.responses import PNG, PROBLEMS, client_name, found, png
-from recon.model.survey import none_such
+from recon.model.survey import unknown_survey
 
 PLANNED_WITHIN_S = 10.0
 """Planning takes tens of milliseconds, after one or two frames in the worker's queue."""
@@ -26,7 +26,7 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/surveys")
     async def ask(asked: schema.SurveyRequest, request: Request) -> schema.SurveyResponse:
         """Plan a survey of a region. Responds when its rows are planned; nothing flies."""
-        answer = port.ask_survey(asked, client_name(request))
+        answer = port.request_survey(asked, client_name(request))
         if answer.survey is None:
             return answer
         return _planned(await _until_planned(port, answer.survey))
@@ -60,7 +60,7 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
     async def survey(survey_id: int) -> schema.SurveyView:
         """One survey with its figures."""
         known = port.survey(survey_id)
-        return found(known, "" if known is not None else _none_such(port, survey_id))
+        return found(known, "" if known is not None else _unknown_survey(port, survey_id))
 
     @app.get("/api/surveys/{survey_id}/ways", responses=PROBLEMS)
     async def ways(survey_id: int) -> schema.SurveyWays:
@@ -103,9 +103,9 @@ def _planned(survey: schema.SurveyView) -> schema.SurveyResponse:
 def _no_rows(port: StationPort, survey_id: int) -> str:
     survey = port.survey(survey_id)
     if survey is None:
-        return _none_such(port, survey_id)
+        return _unknown_survey(port, survey_id)
     return f"Survey {survey_id} has no rows: {survey.reason}"
 
 
-def _none_such(port: StationPort, survey_id: int) -> str:
-    return none_such(survey_id, ((s.id, s.name, s.phase) for s in port.state().surveys))
+def _unknown_survey(port: StationPort, survey_id: int) -> str:
+    return unknown_survey(survey_id, ((s.id, s.name, s.phase) for s in port.state().surveys))

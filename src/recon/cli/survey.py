@@ -23,7 +23,7 @@ from recon.cli.connection import (
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
 from recon.model.geo import GeoPoint
-from recon.model.survey import WhenDone, none_such
+from recon.model.survey import WhenDone, unknown_survey
 
 HECTARE_M2 = 10_000.0
 PHASES = {"created": "planned"}
@@ -189,7 +189,9 @@ def _status(number: int | None, as_json: bool) -> Work:
         known = await station.surveys.list()
         surveys = [survey for survey in known if number in (None, survey.id)]
         if number is not None and not surveys:
-            raise SurveyNumberError(none_such(number, ((s.id, s.name, s.phase) for s in known)))
+            raise SurveyNumberError(
+                unknown_survey(number, ((s.id, s.name, s.phase) for s in known))
+            )
         if as_json:
             print_json(msgspec.to_builtins(surveys))
         else:
@@ -256,7 +258,10 @@ def _print_surveys(surveys: list[SurveyStatus]) -> None:
     )
     print_table("surveys", columns, rows)
     members = [
-        (v.vehicle_name, "flying rows" if v.is_flying_rows else v.waits_for or v.refused or "idle")
+        (
+            v.vehicle_name,
+            "flying rows" if v.is_flying_rows else v.not_flying_reason or v.refused or "idle",
+        )
         for survey in surveys
         for v in survey.vehicles
     ]

@@ -29,12 +29,12 @@ class SurveyProgress(msgspec.Struct, frozen=True):
 
 
 class SurveyVehicle(msgspec.Struct, frozen=True):
-    """One vehicle of a survey; `waits_for` is the reason why it is not flying rows now."""
+    """One vehicle of a survey; `not_flying_reason` is the reason why it is not flying rows now."""
 
     serial: str
     vehicle_name: str
     is_flying_rows: bool
-    waits_for: str | None
+    not_flying_reason: str | None
     refused: str | None
     has_come_home: bool
     """Returned home for the survey and landed: after a battery change it can be added again."""

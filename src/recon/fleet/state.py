@@ -28,7 +28,7 @@ class LinkRecord:
     """Whether the bound link delivered a packet after that."""
     packets: int = 0
     images: int = 0
-    meaningless: int = 0
+    ignored_reports: int = 0
 
     @property
     def is_open(self) -> bool:

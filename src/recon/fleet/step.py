@@ -10,8 +10,8 @@ from recon.model.replacing import replace
 from recon.model.report import (
     CoreReport,
     ExtendedReport,
+    IgnoredReport,
     ImageReport,
-    MeaninglessReport,
     MessageReport,
     Report,
 )
@@ -95,7 +95,7 @@ def _count(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
         last_packet_at_ns=now_ns,
         packets=link.packets + 1,
         images=link.images + isinstance(report, ImageReport),
-        meaningless=link.meaningless + isinstance(report, MeaninglessReport),
+        ignored_reports=link.ignored_reports + isinstance(report, IgnoredReport),
     )
     return replace(fleet, links={**fleet.links, link_id: counted})
 

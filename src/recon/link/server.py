@@ -10,7 +10,7 @@ from typing import Any, cast
 from recon.link.capture import Capture, Direction
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
-from recon.model.errors import described
+from recon.model.errors import describe_fault
 from recon.model.event import Event, LinkClosed, LinkOpened, StationFaulted
 from recon.safety import ApprovedCommand
 
@@ -238,7 +238,7 @@ class Connection(asyncio.BufferedProtocol):
             yield
         except Exception as fault:
             number = None if self.session is None else self.session.link_id
-            self.server.handle(StationFaulted(f"on link {number}", described(fault)))
+            self.server.handle(StationFaulted(f"on link {number}", describe_fault(fault)))
             self.close("a fault in the station's own code")
 
     def _is_clear(self) -> bool:

@@ -126,7 +126,7 @@ BODY_NAMES: dict[type, str] = {
 class Command:
     """One order to one vehicle, or (all stop only) to one link without a serial.
 
-    `takeoff` explicitly allows the vehicle to leave the ground. `asked_as` is the role of the
+    `takeoff` explicitly allows the vehicle to leave the ground. `role` is the role of the
     client: only the authority holder may set the vehicle in motion.
     """
 
@@ -138,7 +138,7 @@ class Command:
     serial: str | None = None
     link_id: int | None = None
     takeoff: bool = False
-    asked_as: AuthorityHolder = AuthorityHolder.OPERATOR
+    role: AuthorityHolder = AuthorityHolder.OPERATOR
 
     @property
     def name(self) -> str:

@@ -21,7 +21,7 @@ class ReconError(Exception):
     """An error that is reported to the user as one sentence."""
 
 
-def described(fault: BaseException) -> str:
+def describe_fault(fault: BaseException) -> str:
     """Return one line for a fault in Recon's own code: the error, its file and line."""
     frames = traceback.extract_tb(fault.__traceback__)
     place = f" ({Path(frames[-1].filename).name}:{frames[-1].lineno})" if frames else ""

@@ -65,7 +65,7 @@ class Tick:
 
 
 @dataclass(frozen=True, slots=True)
-class SticksDue:
+class SetpointsDue:
     """The next setpoint of a stream is due. Its own event, because ticks are not precise enough."""
 
 
@@ -83,7 +83,7 @@ class OperatorOrder:
     serial: str | None = None
     link_id: int | None = None
     takeoff: bool = False
-    asked_as: AuthorityHolder = AuthorityHolder.OPERATOR
+    role: AuthorityHolder = AuthorityHolder.OPERATOR
     owner: str | None = None
 
 
@@ -156,7 +156,7 @@ class FleetReturnOrdered:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SurveyAsked:
+class SurveyRequested:
     """A survey is to be planned; its id is chosen by the client. Nothing flies yet."""
 
     survey: Survey
@@ -186,7 +186,7 @@ class SurveyStopped:
 
 
 @dataclass(frozen=True, slots=True)
-class AuditTroubled:
+class AuditFailed:
     """The audit cannot be written; `problem` is None when it can be written again."""
 
     problem: str | None
@@ -223,7 +223,7 @@ Event = (
     | CommandAnswered
     | CommandDropped
     | Tick
-    | SticksDue
+    | SetpointsDue
     | OperatorOrder
     | AuthorityTaken
     | OwnerConnected
@@ -233,11 +233,11 @@ Event = (
     | HazardDismissed
     | SeparationHoldSwitched
     | FleetReturnOrdered
-    | SurveyAsked
+    | SurveyRequested
     | SurveyStarted
     | SurveyStopped
     | AlarmAcknowledged
-    | AuditTroubled
+    | AuditFailed
     | StationFaulted
     | JobEnded
 )

@@ -85,10 +85,10 @@ class MessageReport:
 
 
 @dataclass(frozen=True, slots=True)
-class MeaninglessReport:
+class IgnoredReport:
     """A well-framed packet that is not acted on: wrong direction, unknown PID, out of range."""
 
     reason: str
 
 
-Report = CoreReport | ExtendedReport | ImageReport | AckReport | MessageReport | MeaninglessReport
+Report = CoreReport | ExtendedReport | ImageReport | AckReport | MessageReport | IgnoredReport

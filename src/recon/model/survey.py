@@ -98,7 +98,7 @@ class SurveyPhase(Enum):
         return self in (SurveyPhase.ABORTED, SurveyPhase.DONE)
 
 
-def none_such(survey_id: int, known: Iterable[tuple[int, str, str]]) -> str:
+def unknown_survey(survey_id: int, known: Iterable[tuple[int, str, str]]) -> str:
     """Return the sentence for an unknown survey id; `known` are (id, name, phase)."""
     there = ", ".join(f"{number} {name} ({phase})" for number, name, phase in known)
     return f"Survey {survey_id} not found; " + (
@@ -118,7 +118,7 @@ class CellState(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class MissionFor:
+class MissionAssignment:
     """A mission for one vehicle, to be judged by the gate like any order of guidance.
 
     `number` counts the survey's missions from 1 and identifies the mission when it ends.

@@ -10,7 +10,7 @@ from recon.model.event import (
     AuthorityTaken,
     Event,
     OperatorOrder,
-    SurveyAsked,
+    SurveyRequested,
     SurveyStarted,
     SurveyStopped,
 )
@@ -55,7 +55,7 @@ class StationOperator:
     def _event(self, action: OperatorAction) -> Event:
         match action:
             case RequestPlan():
-                return SurveyAsked(replace(self.survey, id=SURVEY_ID), BY)
+                return SurveyRequested(replace(self.survey, id=SURVEY_ID), BY)
             case StartDrones(serials):
                 return SurveyStarted(SURVEY_ID, serials, BY, takeoff=True)
             case TakeAuthority(serial):

@@ -12,8 +12,8 @@ from recon.model.report import (
     AnsweredKind,
     CoreReport,
     ExtendedReport,
+    IgnoredReport,
     ImageReport,
-    MeaninglessReport,
     MessageReport,
     MessageSeverity,
     Report,
@@ -74,24 +74,24 @@ def _compressed(packet: wire.CompressedImage) -> ImageReport:
     return ImageReport(target_fps_hz=_finite(packet.target_fps_hz), jpeg=packet.jpeg)
 
 
-def _acknowledgment(packet: wire.Acknowledgment) -> AckReport | MeaninglessReport:
+def _acknowledgment(packet: wire.Acknowledgment) -> AckReport | IgnoredReport:
     answered = _member(AnsweredKind, packet.source_pid)
     if answered is None:
-        return MeaninglessReport(f"acknowledgment of PID {packet.source_pid}, not a command")
+        return IgnoredReport(f"acknowledgment of PID {packet.source_pid}, not a command")
     return AckReport(answered=answered, positive=packet.positive == 1)
 
 
-def _message(packet: wire.MessageString) -> MessageReport | MeaninglessReport:
+def _message(packet: wire.MessageString) -> MessageReport | IgnoredReport:
     severity = _member(MessageSeverity, packet.type)
     if severity is None:
-        return MeaninglessReport(f"message type must be 0 to 3; got {packet.type}")
+        return IgnoredReport(f"message type must be 0 to 3; got {packet.type}")
     return MessageReport(severity=severity, text=printable(packet.text))
 
 
-def _unexpected(packet: wire.Packet) -> MeaninglessReport:
+def _unexpected(packet: wire.Packet) -> IgnoredReport:
     if isinstance(packet, wire.UnknownPacket):
-        return MeaninglessReport(f"unknown PID {packet.pid}")
-    return MeaninglessReport(f"{type(packet).__name__} is sent to apps only")
+        return IgnoredReport(f"unknown PID {packet.pid}")
+    return IgnoredReport(f"{type(packet).__name__} is sent to apps only")
 
 
 _READERS: dict[type, Callable[[Any], Report]] = {

@@ -24,7 +24,7 @@ from recon.guidance.survey import (
 from recon.model.geo import GroundGrid
 from recon.model.mission import Mission
 from recon.model.shade import ShadeMap
-from recon.model.survey import MissionFor, SurveyPhase
+from recon.model.survey import MissionAssignment, SurveyPhase
 from recon.model.units import NS_PER_S, seconds_to_ns
 
 FloatArray = npt.NDArray[np.float64]
@@ -68,7 +68,7 @@ class Flyer:
     waited_s: float = 0.0
     speed_mps: float = 0.0
 
-    def take(self, given: MissionFor, plan: SurveyPlan) -> None:
+    def take(self, given: MissionAssignment, plan: SurveyPlan) -> None:
         """Begin a mission."""
         places = east_north(given.mission, plan)
         speeds = [point.speed_mps for point in given.mission.waypoints]
@@ -131,7 +131,7 @@ class Flights:
     tells_shade: bool = True
     shown: BoolArray | None = None
     shown_in_sun: BoolArray | None = None
-    given: list[MissionFor] = field(default_factory=list)
+    given: list[MissionAssignment] = field(default_factory=list)
     tracks: list[tuple[str, Place]] = field(default_factory=list)
 
     def run(

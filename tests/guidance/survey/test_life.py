@@ -21,7 +21,7 @@ from recon.guidance.survey import (
     step,
 )
 from recon.model.command import Refusal
-from recon.model.survey import MissionFor, SurveyBudget, SurveyPhase
+from recon.model.survey import MissionAssignment, SurveyBudget, SurveyPhase
 from recon.model.units import seconds_to_ns
 
 PLAN = planned(survey_of(rectangle(), budget=SurveyBudget(rounds=4)))
@@ -48,7 +48,7 @@ class SurveyLife(RuleBasedStateMachine):
         self.state = created
         self.now_s = 100.0
         self.seats = {serial: Seat() for serial in (*SERIALS, OTHER)}
-        self.given: list[MissionFor] = []
+        self.given: list[MissionAssignment] = []
         self.refused_m = 0.0
         self.imaged = created.progress.state
 
@@ -122,7 +122,7 @@ class SurveyLife(RuleBasedStateMachine):
             self._check_given(before, mission)
         self.given += missions
 
-    def _check_given(self, before: SurveyState, mission: MissionFor) -> None:
+    def _check_given(self, before: SurveyState, mission: MissionAssignment) -> None:
         seat = self.seats[mission.serial]
         earlier = before.flights.get(mission.serial)
         assert before.phase is SurveyPhase.RUNNING

@@ -17,7 +17,7 @@ from recon.guidance.survey import Surveyor, SurveyPlan, SurveyState, create, sta
 from recon.guidance.survey.route import Cost, Route, RowLeg, route_of, shared
 from recon.guidance.survey.rows import Piece
 from recon.model.geo import LatLon
-from recon.model.survey import MissionFor
+from recon.model.survey import MissionAssignment
 from recon.model.vehicle import VehicleProfile
 from recon.model.zone import Region
 from recon.vehicles.mission_repair import Repaired, repair
@@ -31,7 +31,7 @@ def drawn(seed: int) -> SurveyPlan:
     return planned(survey_of(field))
 
 
-def missions(plan: SurveyPlan, count: int) -> tuple[SurveyState, tuple[MissionFor, ...]]:
+def missions(plan: SurveyPlan, count: int) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
     created = create(plan)
     assert isinstance(created, SurveyState)
     surveyors = [Surveyor(f"S-{i}", (30.0 * i, -50.0)) for i in range(count)]

@@ -36,28 +36,28 @@ def held_by(who: AuthorityHolder) -> Situation:
     return replace(situation(), authority=ControlAuthority(who, "Ann", 5, "taken over by Ann"))
 
 
-def judged(body: Body, asked_as: AuthorityHolder, who: AuthorityHolder) -> Refusal | None:
-    return authority(replace(command(body), asked_as=asked_as), held_by(who))
+def judged(body: Body, role: AuthorityHolder, who: AuthorityHolder) -> Refusal | None:
+    return authority(replace(command(body), role=role), held_by(who))
 
 
 @pytest.mark.parametrize("body", MOVES)
 @pytest.mark.parametrize("who", AuthorityHolder)
-@pytest.mark.parametrize("asked_as", AuthorityHolder)
+@pytest.mark.parametrize("role", AuthorityHolder)
 def test_only_the_holder_sets_a_vehicle_in_motion(
-    body: Body, asked_as: AuthorityHolder, who: AuthorityHolder
+    body: Body, role: AuthorityHolder, who: AuthorityHolder
 ) -> None:
-    answer = judged(body, asked_as, who)
-    assert (answer is None) is (asked_as is who)
+    answer = judged(body, role, who)
+    assert (answer is None) is (role is who)
     assert answer is None or answer.rule == "authority"
 
 
 @pytest.mark.parametrize("body", STOPS)
 @pytest.mark.parametrize("who", AuthorityHolder)
-@pytest.mark.parametrize("asked_as", AuthorityHolder)
+@pytest.mark.parametrize("role", AuthorityHolder)
 def test_any_client_stops_it_or_uses_the_camera(
-    body: Body, asked_as: AuthorityHolder, who: AuthorityHolder
+    body: Body, role: AuthorityHolder, who: AuthorityHolder
 ) -> None:
-    assert judged(body, asked_as, who) is None
+    assert judged(body, role, who) is None
 
 
 def test_a_refusal_names_the_holder_and_the_reason() -> None:

@@ -19,7 +19,7 @@ from recon.model.command import (
 )
 from recon.model.event import (
     AlarmAcknowledged,
-    AuditTroubled,
+    AuditFailed,
     AuthorityTaken,
     HazardDismissed,
     LinkClosed,
@@ -255,7 +255,7 @@ class TestAlarms:
         for _ in range(100):
             steps.hear(1, extended(), core())
             steps.pass_s(0.1)
-            steps.handle(AuditTroubled("full"), Tick(), AuditTroubled(None), Tick())
+            steps.handle(AuditFailed("full"), Tick(), AuditFailed(None), Tick())
         about_it = [
             e
             for e in steps.entries[before:]
@@ -297,7 +297,7 @@ class TestWords:
         scene = steps.handle(
             HazardDismissed("A", "one"),
             SeparationHoldSwitched(False, "two"),
-            AuditTroubled("no space"),
+            AuditFailed("no space"),
         )
         words = [e for e in scene if not e.kind.startswith("vehicle.")]
         assert [(e.kind, e.by) for e in words] == [

@@ -32,7 +32,7 @@ def holder_of(scene: CommandedStation) -> AuthorityHolder:
 
 
 def guidance_orders(scene: CommandedStation, body: Body, number: int = 90) -> Phase:
-    scene.happens(OperatorOrder(number, body, "guidance", "A", asked_as=AuthorityHolder.GUIDANCE))
+    scene.happens(OperatorOrder(number, body, "guidance", "A", role=AuthorityHolder.GUIDANCE))
     return scene.phase(number)
 
 
@@ -108,7 +108,7 @@ class TestByWord:
     def test_who_gave_it_and_when_is_kept(self, scene: CommandedStation) -> None:
         held = takes(scene, AuthorityHolder.GUIDANCE).station.control("A").authority
         assert (held.holder_name, held.since_ns) == ("Ann", scene.now_ns)
-        assert held.reason == "given to it by Ann"
+        assert held.reason == "given by Ann"
         held = takes(scene, AuthorityHolder.OPERATOR, "Bob").station.control("A").authority
         assert (held.holder, held.holder_name, held.reason) == (
             AuthorityHolder.OPERATOR,

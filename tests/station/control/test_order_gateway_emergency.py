@@ -139,7 +139,7 @@ class TestUnconfirmed:
         scene.keeps_receiving(1, *STANDING).passes(0.2)
         assert "order_not_confirmed" not in scene.alarms()
         assert scene.phase(order) is Phase.TIMED_OUT
-        assert scene.record(order).note == "by telemetry: it stands, after its time"
+        assert scene.record(order).note == "telemetry shows it hovering, after its time"
 
     def test_it_ends_when_confirmed_late(self) -> None:
         scene = flying()
@@ -197,7 +197,7 @@ class TestUnconfirmed:
         assert scene.phase(order) is Phase.TIMED_OUT
         assert "order_not_confirmed" in scene.alarms()
         scene.opens(2, *LANDING)
-        assert scene.record(order).note == "by telemetry: it is landing, after its time"
+        assert scene.record(order).note == "telemetry shows it landing, after its time"
         assert "order_not_confirmed" not in scene.passes(0.1).alarms()
 
 

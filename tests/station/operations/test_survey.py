@@ -38,7 +38,7 @@ class TestFlownByTwo:
     def test_every_mission_passed_the_gate_as_guidance(self, flown: SurveyedWorld) -> None:
         given = flown.missions()
         assert {each.command.serial for each in given} == {"SIM-1", "SIM-2"}
-        assert {each.command.asked_as for each in given} == {AuthorityHolder.GUIDANCE}
+        assert {each.command.role for each in given} == {AuthorityHolder.GUIDANCE}
         assert {each.command.issued_by for each in given} == {"ann: survey field"}
         assert all(each.command.id < 0 for each in given)
         assert all(each.phase is Phase.DONE for each in given)

@@ -62,7 +62,7 @@ class TestDone:
         assert {c.serial for c in returns} == {"SIM-1", "SIM-2", "SIM-3"}
         assert all(isinstance(c.body, FlyMission) for c in returns)
         holds = [each.command for each in orders if isinstance(each.command.body, Hover)]
-        assert {c.asked_as for c in (*returns, *holds)} == {AuthorityHolder.GUIDANCE}
+        assert {c.role for c in (*returns, *holds)} == {AuthorityHolder.GUIDANCE}
         assert {c.issued_by.split(":")[0] for c in (*returns, *holds)} == {"ann"}
 
     def test_no_alarm_is_left(self, done: SurveyedWorld) -> None:

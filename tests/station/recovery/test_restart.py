@@ -495,7 +495,7 @@ class TestWithoutASerial:
         assert again.alarms() == {"unidentified_lost"}
         view = hazard_view(again.station, state, again.now_ns)
         assert view is not None
-        assert (view.dismissed_as, view.radius_m) == ("lost-1", 120.4)
+        assert (view.dismissal_name, view.radius_m) == ("lost-1", 120.4)
         again.happens(HazardDismissed("lost-1", "Ann")).passes(0.2)
         assert again.alarms() == set()
         assert again.station.watchdog_state.lost == {}

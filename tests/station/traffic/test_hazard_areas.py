@@ -34,7 +34,7 @@ class TestHazard:
         view = hazard_view(scene.station, scene.station.fleet.vehicles["A"], scene.now_ns)
         assert view is not None
         assert abs(view.radius_m - 12.0) < 0.5
-        assert (view.growth_mps, view.largest_radius_m, view.dismissed_as) == (3.0, 150.0, "A")
+        assert (view.growth_mps, view.largest_radius_m, view.dismissal_name) == (3.0, 150.0, "A")
         assert (view.longitude_deg, view.latitude_deg) == view.corridor[0]
         assert view.corridor[1] == (PLACE.longitude_deg, PLACE.latitude_deg)
         later = stale(600.0)
@@ -110,7 +110,7 @@ class TestWithoutASerial:
         assert in_air(scene) == ["unidentified link 7"]
         view = hazard_view(scene.station, scene.station.watchdog_state.lost["link-7"], scene.now_ns)
         assert view is not None
-        assert view.dismissed_as == "link-7"
+        assert view.dismissal_name == "link-7"
 
     @pytest.mark.parametrize(
         ("changes", "is_kept"),

@@ -152,7 +152,7 @@ describe("the checklist", () => {
 
 describe("a hazard area", () => {
   it("is cleared by a long press, under the station's name for it", async () => {
-    const one = vehicle(3, { hazard: hazard([0, 0], { dismissed_as: "link-7" }) });
+    const one = vehicle(3, { hazard: hazard([0, 0], { dismissal_name: "link-7" }) });
     const root = show(VehicleDetail, station([one]));
     page.shared.selection.only(3);
     expect(root.textContent).toContain("anywhere within 50\u00a0m of its last position");

@@ -187,10 +187,10 @@ describe("commands", () => {
   it("show each phase's note once", () => {
     const history = [
       { phase: "sent", age_s: 40, note: "" },
-      { phase: "confirmed", age_s: 39.6, note: "by telemetry: descending" },
-      { phase: "confirmed", age_s: 7, note: "by telemetry: on the ground" },
+      { phase: "confirmed", age_s: 39.6, note: "telemetry shows it landing" },
+      { phase: "confirmed", age_s: 7, note: "telemetry shows it on the ground" },
     ] as const;
-    const note = "by telemetry: on the ground";
+    const note = "telemetry shows it on the ground";
     const landed = command(3, { kind: "land", age_s: 40, history: [...history], note });
     const root = show(CommandList, station([], { commands: [landed] }));
     const phases = [...root.querySelectorAll(".command-history li")].map(
@@ -198,10 +198,19 @@ describe("commands", () => {
     );
     expect(phases).toEqual([
       "sent +0.0 s",
-      "confirmed +0.4 s (by telemetry: descending)",
-      "confirmed +33 s (by telemetry: on the ground)",
+      "confirmed +0.4 s (telemetry shows it landing)",
+      "confirmed +33 s (telemetry shows it on the ground)",
     ]);
     expect(root.textContent?.split(note)).toHaveLength(2);
+  });
+
+  it("name the replacement of an order once", () => {
+    const note = "Replaced by order 4";
+    const replaced = [{ phase: "superseded", age_s: 7, note }] as const;
+    const old = command(3, { phase: "superseded", age_s: 40, history: [...replaced], note });
+    const root = show(CommandList, station([], { commands: [old] }));
+    const phase = root.querySelector(".command-history li");
+    expect(phase?.textContent).toBe("replaced +33 s (by order 4)");
   });
 });
 
@@ -224,7 +233,7 @@ describe("links", () => {
   it("show the number of ignored answers if there are any", () => {
     const root = show(LinkList, station([], { links: [link(1)] }));
     expect(root.textContent).not.toContain("ignored");
-    page.receive(station([], { links: [link(1, { answers_not_believed: 2 })] }));
+    page.receive(station([], { links: [link(1, { ignored_answers: 2 })] }));
     expect(root.textContent).toContain("2 answers ignored");
   });
 

@@ -506,7 +506,7 @@ export interface paths {
          * Dismiss Hazard
          * @description Dismiss the hazard area of a lost vehicle that has been located.
          *
-         *     A vehicle without a serial is named by its hazard area's `dismissed_as`.
+         *     A vehicle without a serial is named by its hazard area's `dismissal_name`.
          */
         post: operations["dismiss_hazard_api_vehicles__serial__hazard_dismiss_post"];
         delete?: never;
@@ -1019,10 +1019,10 @@ export interface components {
             /** Corridor Half Width M */
             corridor_half_width_m: number;
             /**
-             * Dismissed As
+             * Dismissal Name
              * @description name for dismissing it: the serial, or a link
              */
-            dismissed_as: string;
+            dismissal_name: string;
             /** Growth Mps */
             growth_mps: number;
             /** Largest Radius M */
@@ -1109,11 +1109,6 @@ export interface components {
          * @description One TCP connection of a companion app, with its error counters.
          */
         LinkView: {
-            /**
-             * Answers Not Believed
-             * @description acknowledgments ignored because they may answer another command
-             */
-            answers_not_believed: number;
             /** Bad Hash */
             bad_hash: number;
             /** Bad Size */
@@ -1130,12 +1125,17 @@ export interface components {
             commands_queued: number;
             /** Id */
             id: number;
+            /**
+             * Ignored Answers
+             * @description acknowledgments ignored because they may answer another command
+             */
+            ignored_answers: number;
+            /** Ignored Reports */
+            ignored_reports: number;
             /** Images Received */
             images_received: number;
             /** Last Packet Age S */
             last_packet_age_s: number | null;
-            /** Meaningless */
-            meaningless: number;
             /** Opened Age S */
             opened_age_s: number;
             /** Packets Received */
@@ -1738,6 +1738,11 @@ export interface components {
             /** Mission Command Id */
             mission_command_id: number | null;
             /**
+             * Not Flying Reason
+             * @description why it does not fly for the survey now
+             */
+            not_flying_reason: string | null;
+            /**
              * Refused
              * @description why its newest mission was refused; null if it was not
              */
@@ -1746,11 +1751,6 @@ export interface components {
             serial: string;
             /** Vehicle Name */
             vehicle_name: string;
-            /**
-             * Waits For
-             * @description why it does not fly for the survey now
-             */
-            waits_for: string | null;
         };
         /**
          * SurveyRequest

@@ -87,10 +87,10 @@ export function link(id: number, changes: Partial<LinkView> = {}): LinkView {
     bad_hash: 0,
     bad_size: 0,
     unknown_pid: 0,
-    meaningless: 0,
+    ignored_reports: 0,
     bytes_skipped: 0,
     commands_queued: 0,
-    answers_not_believed: 0,
+    ignored_answers: 0,
     ...changes,
   };
 }
@@ -248,7 +248,7 @@ export function hazard(
 ): HazardView {
   const [longitude_deg, latitude_deg] = at(east_m, north_m);
   return {
-    dismissed_as: "SN-003",
+    dismissal_name: "SN-003",
     age_s: 5,
     longitude_deg,
     latitude_deg,
@@ -283,7 +283,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         serial: "SN-001",
         vehicle_name: "Alder",
         is_flying_rows: true,
-        waits_for: null,
+        not_flying_reason: null,
         refused: null,
         mission_command_id: -3,
         has_come_home: false,
@@ -292,7 +292,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         serial: "SN-002",
         vehicle_name: "Birch",
         is_flying_rows: false,
-        waits_for: "battery too low",
+        not_flying_reason: "battery too low",
         refused: null,
         mission_command_id: null,
         has_come_home: false,

@@ -27,10 +27,10 @@ class LinkView(Message):
     bad_hash: int
     bad_size: int
     unknown_pid: int
-    meaningless: int
+    ignored_reports: int
     bytes_skipped: int
     commands_queued: int
-    answers_not_believed: int = Field(
+    ignored_answers: int = Field(
         description="acknowledgments ignored because they may answer another command"
     )
 

@@ -98,7 +98,7 @@ class SurveyingView(Message):
     serial: str
     vehicle_name: str
     is_flying_rows: bool = Field(description="a mission of the survey is in flight")
-    waits_for: str | None = Field(description="why it does not fly for the survey now")
+    not_flying_reason: str | None = Field(description="why it does not fly for the survey now")
     refused: str | None = Field(
         description="why its newest mission was refused; null if it was not"
     )

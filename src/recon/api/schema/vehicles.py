@@ -69,7 +69,7 @@ class HazardView(Message):
     It stays until telemetry returns, or an operator has located the vehicle and dismisses it.
     """
 
-    dismissed_as: str = Field(description="name for dismissing it: the serial, or a link")
+    dismissal_name: str = Field(description="name for dismissing it: the serial, or a link")
     age_s: float
     latitude_deg: float
     longitude_deg: float

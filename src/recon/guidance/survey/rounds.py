@@ -37,10 +37,10 @@ from recon.guidance.survey.state import (
     end_between_rounds,
     spent_budget,
 )
-from recon.model.survey import CellState, MissionFor, SurveyPhase
+from recon.model.survey import CellState, MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 
-Step = tuple[SurveyState, tuple[MissionFor, ...]]
+Step = tuple[SurveyState, tuple[MissionAssignment, ...]]
 
 
 def fly_rounds(
@@ -155,7 +155,7 @@ def _shares(
 
 def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Step:
     """Give each idle vehicle as much of its share as its battery allows."""
-    missions: list[MissionFor] = []
+    missions: list[MissionAssignment] = []
     for serial, route in state.waiting.items():
         if not _may_ask(state, serial, able, now_ns):
             continue
@@ -180,7 +180,7 @@ def _may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_
 
 def _flying(
     state: SurveyState, serial: str, flight: AssignedMission, rest: Route
-) -> tuple[SurveyState, MissionFor]:
+) -> tuple[SurveyState, MissionAssignment]:
     survey = state.plan.survey
     purpose = f"survey {survey.name}: round {state.round}"
     track = Track(flight.corners_m)
@@ -195,7 +195,7 @@ def _flying(
         missions=flight.number,
         flown_m=state.flown_m + flight.length_m,
     )
-    return state, MissionFor(serial, flight.number, mission, flight.length_m)
+    return state, MissionAssignment(serial, flight.number, mission, flight.length_m)
 
 
 def _sortie(plan: SurveyPlan, route: Route, surveyor: Surveyor) -> tuple[Track | None, int]:

@@ -21,10 +21,10 @@ def authority(command: Command, situation: Situation) -> Refusal | None:
     held, vehicle = situation.authority, situation.vehicle
     if vehicle is None or not command.moves:
         return None
-    if command.asked_as is held.holder:
+    if command.role is held.holder:
         return None
     return Refusal(
         RULE,
         f"{vehicle.display_name} is controlled by {held.holder.value} ({held.reason}), and the "
-        f"order comes from {command.asked_as.value}: {_WHAT_TO_DO[held.holder]}",
+        f"order comes from {command.role.value}: {_WHAT_TO_DO[held.holder]}",
     )

@@ -90,7 +90,7 @@ def _member(
         serial=member.serial,
         vehicle_name=member.serial if vehicle is None else vehicle.display_name,
         is_flying_rows=is_flown(station, member),
-        waits_for=waits,
+        not_flying_reason=waits,
         refused=None if refused is None else refused.reason,
         has_come_home=member.return_reason is not None and is_on_ground(station, member),
         mission_command_id=member.command_id,

@@ -195,7 +195,7 @@ class Service:
         line = self.driver.station.shade
         return None if line.sun is None else (line.number, line.sun)
 
-    def ask_survey(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
+    def request_survey(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
         """Request a survey."""
         return self._surveys.ask(asked, by)
 

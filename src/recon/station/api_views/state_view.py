@@ -174,10 +174,10 @@ def _link(fleet: Fleet, record: LinkRecord, around: DriverState, now_ns: int) ->
         bad_hash=0 if counters is None else counters.bad_hash,
         bad_size=0 if counters is None else counters.bad_size,
         unknown_pid=0 if counters is None else counters.unknown_pid,
-        meaningless=record.meaningless,
+        ignored_reports=record.ignored_reports,
         bytes_skipped=0 if counters is None else counters.bytes_skipped,
         commands_queued=0 if session is None else session.commands_queued,
-        answers_not_believed=0 if session is None else session.acks.ignored_late,
+        ignored_answers=0 if session is None else session.acks.ignored_late,
     )
 
 

@@ -7,7 +7,7 @@ from recon.api import schema
 from recon.api.port import SurveyCellStates
 from recon.guidance.survey.plan import RULE
 from recon.model.command import Refusal
-from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
+from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
 from recon.model.zone import Region
 from recon.site import Site
@@ -33,7 +33,7 @@ class SurveyService:
         if isinstance(region, Refusal):
             return _refused(region)
         number = self.ids()
-        self.driver.handle(SurveyAsked(_survey(number, asked, region), by))
+        self.driver.handle(SurveyRequested(_survey(number, asked, region), by))
         return self._taken(number)
 
     def start(

@@ -79,7 +79,7 @@ def hazard_view(station: Station, vehicle: VehicleState, now_ns: int) -> schema.
     home_place = home(vehicle) if found.home_m is not None else None
     way = [] if home_place is None else [_lon_lat(place), _lon_lat(home_place)]
     return schema.HazardView(
-        dismissed_as=dismissed_by(station, vehicle),
+        dismissal_name=dismissed_by(station, vehicle),
         age_s=found.age_s,
         latitude_deg=place.latitude_deg,
         longitude_deg=place.longitude_deg,

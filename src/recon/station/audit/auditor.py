@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from recon.model.event import AuditTroubled, Event, Tick
+from recon.model.event import AuditFailed, Event, Tick
 from recon.record.audit import AuditEntry
 from recon.record.audit_log import AuditLog
 from recon.station.audit.entries import Auditing, audit
@@ -22,7 +22,7 @@ class Auditor:
         self.snapshot_problem: Callable[[], str | None] = lambda: None
         """Why the recovery snapshot cannot be written; None while it can."""
         self.handle: Callable[[Event], None] = lambda event: None
-        """The driver's queue, for `AuditTroubled`."""
+        """The driver's queue, for `AuditFailed`."""
 
     def observe(self, before: Station, after: Station, event: Event) -> None:
         """Write what a step changed; once a tick, report whether writing works."""
@@ -34,7 +34,7 @@ class Auditor:
             problem = "; ".join(each for each in problems if each is not None) or None
             if problem != self._reported_problem:
                 self._reported_problem = problem
-                self.handle(AuditTroubled(problem))
+                self.handle(AuditFailed(problem))
 
     def put(self, entries: Iterable[AuditEntry]) -> None:
         """Write entries, also those of the station's start and end, which no step makes."""

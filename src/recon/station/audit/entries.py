@@ -18,7 +18,7 @@ from typing import Any
 from recon.model.command import Refusal
 from recon.model.event import (
     AlarmAcknowledged,
-    AuditTroubled,
+    AuditFailed,
     AuthorityTaken,
     Event,
     HazardDismissed,
@@ -94,7 +94,7 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
             word = "on" if is_on else "off"
             text = f"separation holds switched {word}"
             yield AuditEntry("separation_hold.switched", text, by, details={"is_on": is_on})
-        case AuditTroubled(problem):
+        case AuditFailed(problem):
             text = problem or "audit and recovery snapshot are written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
 

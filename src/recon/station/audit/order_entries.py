@@ -106,7 +106,7 @@ def _entry(record: OrderRecord, change: PhaseChange) -> AuditEntry:
     if change is record.history[0]:
         details["body"] = body_details(command)
         details["takeoff"] = command.takeoff
-        details["asked_as"] = command.asked_as.value
+        details["role"] = command.role.value
         details["sent_altitudes"] = record.altitudes
         if record.plan is not None:
             details["parts"] = len(record.plan.parts)
@@ -159,7 +159,7 @@ def _trouble(
 def _begin(record: OrderRecord) -> AuditEntry:
     command = record.command
     text = f"{record.vehicle_name}: stick stream started"
-    details = {"id": command.id, "body": body_details(command), "asked_as": command.asked_as.value}
+    details = {"id": command.id, "body": body_details(command), "role": command.role.value}
     return AuditEntry(
         "sticks.began", text, command.issued_by, command.serial, record.vehicle_name, details
     )

@@ -43,7 +43,7 @@ def take(station: Station, event: AuthorityTaken, now_ns: int) -> Station:
     """Return the station with authority over a vehicle transferred, unless that is refused."""
     if refusal(station, event) is not None:
         return station
-    given = "taken over by" if event.holder is AuthorityHolder.OPERATOR else "given to it by"
+    given = "taken over by" if event.holder is AuthorityHolder.OPERATOR else "given by"
     authority = ControlAuthority(event.holder, event.by, now_ns, f"{given} {event.by}")
     return _with_authority(station, event.serial, authority)
 
@@ -55,7 +55,7 @@ def after_stop(station: Station, command: Command, now_ns: int) -> Station:
     """
     target = station.target(command.serial, command.link_id)
     serial = None if target is None else target.serial
-    if serial is None or not command.is_emergency or command.asked_as is AuthorityHolder.GUIDANCE:
+    if serial is None or not command.is_emergency or command.role is AuthorityHolder.GUIDANCE:
         return station
     if station.control(serial).authority.holder is not AuthorityHolder.GUIDANCE:
         return station

@@ -75,7 +75,7 @@ def part_flown(station: Station, record: OrderRecord, now_ns: int, ask: Judge) -
     """Return the station after a vehicle flew a mission's present part to its end."""
     flown = record.plan
     if flown is None or flown.is_last:
-        note = "by telemetry: flown to its end; hovering"
+        note = "telemetry shows it flown to its end; hovering"
         return _put(station, orders.ended(record, Phase.DONE, now_ns, note)), ()
     if flown.broken is not None:
         return _broken_off(station, record, flown.broken, now_ns), ()

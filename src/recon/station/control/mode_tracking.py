@@ -223,7 +223,7 @@ def _on_finished(
     record = _active_order(station, serial)
     if vehicle.is_flying.value is False:
         if record is not None:
-            note = "by telemetry: it is on the ground"
+            note = "telemetry shows it on the ground"
             station = _put(station, orders.ended(record, Phase.DONE, now_ns, note))
         return _command_nothing(station, serial, now_ns), ()
     station = hold_here(station, serial, now_ns)

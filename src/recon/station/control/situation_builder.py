@@ -22,7 +22,7 @@ def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
         serial=order.serial,
         link_id=order.link_id,
         takeoff=order.takeoff,
-        asked_as=order.asked_as,
+        role=order.role,
     )
 
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
-from recon.model.errors import described
-from recon.model.event import ClockRead, Event, StationFaulted, SticksDue, Tick
+from recon.model.errors import describe_fault
+from recon.model.event import ClockRead, Event, SetpointsDue, StationFaulted, Tick
 from recon.model.units import NS_PER_S
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.fault_isolation import after_fault
@@ -86,7 +86,7 @@ class AsyncioDriver:
     def _run_timers(self, due_ns: int | None, now_ns: int) -> None:
         if due_ns is not None and now_ns >= due_ns:
             # Setpoints go first: a tick's work would delay them.
-            self.handle(SticksDue())
+            self.handle(SetpointsDue())
         if now_ns >= self._tick_ns:
             # Missed ticks are not made up for.
             self._tick_ns = max(self._tick_ns + TICK_NS, now_ns)
@@ -100,7 +100,7 @@ class AsyncioDriver:
     def _unhandled(self, _loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         """Turn an uncaught error of the event loop into an alarm."""
         fault = context.get("exception")
-        what = str(context.get("message")) if fault is None else described(fault)
+        what = str(context.get("message")) if fault is None else describe_fault(fault)
         self.handle(StationFaulted("in its event loop", what))
 
     def _step(self, event: Event) -> None:
@@ -123,7 +123,7 @@ class AsyncioDriver:
             yield
         except Exception as fault:
             if not isinstance(event, StationFaulted):
-                self._queue.put(StationFaulted(where, described(fault)))
+                self._queue.put(StationFaulted(where, describe_fault(fault)))
 
     def _carry_out(self, output: Output) -> None:
         match output:

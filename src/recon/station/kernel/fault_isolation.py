@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from recon.model.command import Hover
-from recon.model.errors import described
-from recon.model.event import Event, OperatorOrder, StationFaulted, SticksDue, Tick
+from recon.model.errors import describe_fault
+from recon.model.event import Event, OperatorOrder, SetpointsDue, StationFaulted, Tick
 from recon.safety.watchdogs import WATCHDOGS, Finding, TrafficPicture, Watchdog
 from recon.station.alarms import station_faults
 from recon.station.alarms.conditions import raise_alarms
@@ -51,11 +51,11 @@ def after_fault(
     The event is lost, except a tick and the beat of the setpoint streams: of these only the parts
     and the vehicles that raise are lost.
     """
-    if isinstance(event, SticksDue):
+    if isinstance(event, SetpointsDue):
         return drive_streams_isolated(station, now_ns)
     if not isinstance(event, Tick):
         where = f"handling {type(event).__name__}"
-        return note(station, StationFaulted(where, described(fault)), now_ns), ()
+        return note(station, StationFaulted(where, describe_fault(fault)), now_ns), ()
     outputs: tuple[Output, ...] = ()
     for part in parts:
         station, more = _attempt(part.name, part.isolated or part.run, station, now_ns)
@@ -75,7 +75,7 @@ def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
         try:
             station, more = order_gateway.update_streams(station, now_ns, (serial,))
         except Exception as fault:
-            station = note(station, StationFaulted(where, described(fault)), now_ns)
+            station = note(station, StationFaulted(where, describe_fault(fault)), now_ns)
             station, more = _attempt(where, partial(_end_stream, serial), station, now_ns)
             setpoint_stream = station.control(serial).stream
             if setpoint_stream is not None and setpoint_stream.closing is None:
@@ -105,7 +105,7 @@ def raise_alarms_isolated(station: Station, now_ns: int) -> Stepped:
     try:
         return raise_alarms(station, now_ns)
     except Exception as fault:
-        station = note(station, StationFaulted("raising alarms", described(fault)), now_ns)
+        station = note(station, StationFaulted("raising alarms", describe_fault(fault)), now_ns)
     book = station.alarms
     standing = [alarm.condition for alarm in book.alarms.values() if alarm.is_active]
     present = {c.key: c for c in (*standing, *station_faults.conditions(station, now_ns))}
@@ -121,7 +121,7 @@ def isolated(watchdog: Watchdog) -> Watchdog:
             return tuple(watchdog(picture))
         except Exception as fault:
             name = getattr(watchdog, "__name__", "?")
-            text = f"{WHOSE}: the watchdog {name} has failed: {described(fault)}; {TO_DO}"
+            text = f"{WHOSE}: the watchdog {name} has failed: {describe_fault(fault)}; {TO_DO}"
             key = f"watchdog_failed:{name}"
             return (Finding(key, "station_fault", Severity.CRITICAL, WHOSE, text),)
 
@@ -135,7 +135,7 @@ def _attempt(name: str, part: Part, station: Station, now_ns: int) -> Stepped:
     try:
         return part(station, now_ns)
     except Exception as fault:
-        return note(station, StationFaulted(name, described(fault)), now_ns), ()
+        return note(station, StationFaulted(name, describe_fault(fault)), now_ns), ()
 
 
 def _end_stream(serial: str, station: Station, now_ns: int) -> Stepped:

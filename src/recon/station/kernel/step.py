@@ -10,7 +10,7 @@ from typing import Any
 from recon.fleet import step as fleet_step
 from recon.model.event import (
     AlarmAcknowledged,
-    AuditTroubled,
+    AuditFailed,
     AuthorityTaken,
     ClockRead,
     CommandAnswered,
@@ -26,8 +26,8 @@ from recon.model.event import (
     PacketReceived,
     PreflightOverridden,
     SeparationHoldSwitched,
+    SetpointsDue,
     StationFaulted,
-    SticksDue,
     Tick,
 )
 from recon.model.replacing import replace
@@ -108,7 +108,7 @@ def _job_dropped(station: Station, event: JobDropped[Any, Any], now_ns: int) -> 
     return event.kind.dropped(station, event.job_id, now_ns)
 
 
-def _sticks_due(station: Station, _event: SticksDue, now_ns: int) -> Stepped:
+def _setpoints_due(station: Station, _event: SetpointsDue, now_ns: int) -> Stepped:
     return order_gateway.update_streams(station, now_ns)
 
 
@@ -120,7 +120,7 @@ def _owner_disconnected(station: Station, event: OwnerDisconnected, now_ns: int)
     return order_gateway.on_owner_disconnected(station, event.owner, now_ns)
 
 
-def _audit_troubled(station: Station, event: AuditTroubled, _now_ns: int) -> Station:
+def _audit_failed(station: Station, event: AuditFailed, _now_ns: int) -> Station:
     return replace(station, audit_problem=event.problem)
 
 
@@ -160,7 +160,7 @@ TICK_PARTS: tuple[TickPart, ...] = (
 HANDLERS: Mapping[type[Any], Handler] = dict(
     (
         on(Tick, _tick),
-        on(SticksDue, _sticks_due),
+        on(SetpointsDue, _setpoints_due),
         on(LinkOpened, _fleet),
         on(LinkClosed, _link_closed),
         on(PacketReceived, _packet),
@@ -179,7 +179,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(ClockRead, preflight.read_clock),
         changing(PreflightOverridden, preflight.override),
         changing(StationFaulted, station_faults.note),
-        changing(AuditTroubled, _audit_troubled),
+        changing(AuditFailed, _audit_failed),
         changing(AlarmAcknowledged, _acknowledged),
         *(command for each in OPERATIONS for command in each.commands),
     )

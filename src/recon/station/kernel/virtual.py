@@ -13,7 +13,7 @@ from typing import Protocol
 from recon.fleet.step import CloseLink
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
-from recon.model.event import ClockRead, Event, LinkClosed, LinkOpened, SticksDue, Tick
+from recon.model.event import ClockRead, Event, LinkClosed, LinkOpened, SetpointsDue, Tick
 from recon.model.units import seconds_to_ns
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.step import step
@@ -176,7 +176,7 @@ class VirtualDriver:
             heapq.heappop(self._due)[2]()
         sticks_ns = next_due_ns(self.station)
         if sticks_ns is not None and sticks_ns <= now_ns:
-            self.handle(SticksDue())
+            self.handle(SetpointsDue())
         if now_ns % TICK_EVERY_NS == 0:
             self._tick()
 

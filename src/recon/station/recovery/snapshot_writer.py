@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from recon.model.errors import described
+from recon.model.errors import describe_fault
 from recon.model.event import Event
 from recon.record.snapshot_file import read_snapshot, write_snapshot
 from recon.station.recovery.restart import LastRun
@@ -103,7 +103,7 @@ class SnapshotWriter:
             return False
         except Exception as fault:
             # This thread must survive whatever is in the station: the next state may do.
-            self.problem = f"the recovery snapshot cannot be taken: {described(fault)}"
+            self.problem = f"the recovery snapshot cannot be taken: {describe_fault(fault)}"
             return False
         self._written, self.problem = latest, None
         return True

@@ -55,7 +55,7 @@ class ReturningVehicle:
     clears: str | None = None
     by: str = ""
     """The user that called it."""
-    asked_as: AuthorityHolder = AuthorityHolder.OPERATOR
+    role: AuthorityHolder = AuthorityHolder.OPERATOR
     """The authority its orders are given under; when that changes, the return releases it."""
 
     def at(self, stage: Stage, now_ns: int, reason: str = "") -> "ReturningVehicle":

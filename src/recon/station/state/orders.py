@@ -167,7 +167,7 @@ def shown(record: OrderRecord, seen: Progress, at_ns: int) -> OrderRecord:
     if seen < Progress.CONFIRMED:
         return record
     body = record.command.body
-    begins, text = _BEGINNINGS.get(type(body), (Phase.CONFIRMED, "by telemetry"))
+    begins, text = _BEGINNINGS.get(type(body), (Phase.CONFIRMED, "confirmed by telemetry"))
     text = _of_part(record, text)
     if record.phase.is_final:
         late = noted(record, at_ns, f"{text}, after its time")
@@ -179,10 +179,10 @@ def shown(record: OrderRecord, seen: Progress, at_ns: int) -> OrderRecord:
 
 
 _BEGINNINGS: dict[type, tuple[Phase, str]] = {
-    FlyMission: (Phase.STARTED, "by telemetry: it flies the mission"),
-    LandNow: (Phase.CONFIRMED, "by telemetry: it is landing"),
-    ReturnHome: (Phase.CONFIRMED, "by telemetry: it flies home"),
-    Hover: (Phase.CONFIRMED, "by telemetry: it stands"),
+    FlyMission: (Phase.STARTED, "telemetry shows the mission flying"),
+    LandNow: (Phase.CONFIRMED, "telemetry shows it landing"),
+    ReturnHome: (Phase.CONFIRMED, "telemetry shows it flying home"),
+    Hover: (Phase.CONFIRMED, "telemetry shows it hovering"),
 }
 
 
@@ -207,7 +207,7 @@ def _is_shown_by_its_end(body: Body) -> bool:
 
 
 def _end_text(body: Body) -> str:
-    return "by telemetry: it is on the ground" if isinstance(body, (LandNow, ReturnHome)) else ""
+    return "telemetry shows it on the ground" if isinstance(body, (LandNow, ReturnHome)) else ""
 
 
 def stick_over(record: OrderRecord, at_ns: int) -> OrderRecord:

@@ -8,7 +8,7 @@ from typing import Literal
 from recon.guidance.survey import PositionSample, SurveyState
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
-from recon.model.survey import Survey, SurveyPhase, none_such
+from recon.model.survey import Survey, SurveyPhase, unknown_survey
 from recon.station.state.numbered_buffer import NumberedBuffer
 
 SURVEYS_KEPT = 16
@@ -113,10 +113,10 @@ class Surveys:
             del records[key]
         return replace(self, records=MappingProxyType(records))
 
-    def none_such(self, survey_id: int) -> str:
+    def unknown_survey(self, survey_id: int) -> str:
         """Return the sentence for an unknown survey: it names those there are."""
         known = ((key, each.survey.name, each.phase[0]) for key, each in self.records.items())
-        return none_such(survey_id, known)
+        return unknown_survey(survey_id, known)
 
     def without_pending(self, survey_id: int) -> "Surveys":
         """Return them without a survey's pending step: a command has changed the survey."""

@@ -56,8 +56,7 @@ def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ..
         if now_ns >= neutral.due_at_ns and _is_flown_by_sticks(station, neutral, now_ns):
             station, number = take_id(station)
             zero = _zero(neutral.body, station.fleet.vehicles[serial])
-            asked_as = neutral.command.asked_as
-            orders.append(OperatorOrder(number, zero, ISSUER, serial, asked_as=asked_as))
+            orders.append(OperatorOrder(number, zero, ISSUER, serial, role=neutral.command.role))
     return station, tuple(orders)
 
 

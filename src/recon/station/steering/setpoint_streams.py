@@ -198,12 +198,12 @@ def _with_progress(
     """Update the order's phase by telemetry: stick mode starts it, arrival ends it."""
     if not stream.is_obeyed and _shows_sticks(stream, vehicle):
         stream = replace(stream, is_obeyed=True)
-        note = "by telemetry: in stick mode"
+        note = "telemetry shows stick mode"
         station = change_phase(station, stream, Phase.STARTED, now_ns, note)
     has_come = seen is not None and has_arrived(stream.goal, seen, station.settings.steering)
     if stream.is_obeyed and stream.arrived_at_ns is None and has_come:
         stream = replace(stream, arrived_at_ns=now_ns)
-        note = "by telemetry: arrived; position held"
+        note = "telemetry shows it arrived; position held"
         station = change_phase(station, stream, Phase.DONE, now_ns, note)
     return station, stream
 

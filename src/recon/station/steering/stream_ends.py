@@ -117,7 +117,7 @@ def judge_setpoint(
         # After this the next setpoint has replaced it, or the stream has ended.
         expires_at_ns=now_ns + seconds_to_ns(1.5 * settings.period_s),
         serial=stream.command.serial,
-        asked_as=stream.command.asked_as,
+        role=stream.command.role,
     )
     return station, judge(station, command), replace(stream, last_stick_id=number)
 
@@ -155,7 +155,7 @@ def failure(
     if now_ns - stream.seen_at_ns > seconds_to_ns(settings.resumes_s):
         return f"telemetry incomplete or missing for {settings.resumes_s:g} s"
     authority = station.control(stream.command.serial).authority
-    if authority.holder is not stream.command.asked_as:
+    if authority.holder is not stream.command.role:
         return f"authority passed to {authority.holder.value} ({authority.reason})"
     waited_ns = now_ns - stream.started_at_ns
     if not stream.is_obeyed and waited_ns > seconds_to_ns(settings.obeyed_s):

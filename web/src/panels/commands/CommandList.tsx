@@ -89,6 +89,12 @@ function isNoteInHistory(command: CommandView): boolean {
   return command.note === "" || command.history.some((phase) => phase.note === command.note);
 }
 
+/** A phase's note without the phase's own name before it: "by order 5" of "Replaced by order 5". */
+function noteBesideName(shown: CommandView["history"][number]): string {
+  const name = `${PHASE_NAMES[shown.phase]} `;
+  return shown.note.startsWith(name) ? shown.note.slice(name.length) : shown.note;
+}
+
 /** A command's phases, each with its time since the order and its note. */
 function PhaseHistory(props: { command: CommandView }) {
   return (
@@ -102,7 +108,7 @@ function PhaseHistory(props: { command: CommandView }) {
           <li>
             {PHASE_NAMES[phase.phase].toLowerCase()}{" "}
             <span class="muted">+{formatAge(props.command.age_s - phase.age_s)}</span>
-            <Show when={phase.note !== ""}> ({phase.note})</Show>
+            <Show when={phase.note !== ""}> ({noteBesideName(phase)})</Show>
           </li>
         )}
       </For>

@@ -11,7 +11,7 @@ export function HazardSection(props: { hazard: HazardView; name: string }) {
   const { source, behindS } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const clear = async () => {
-    setProblem(responseProblem(await source.dismissHazard(props.hazard.dismissed_as)));
+    setProblem(responseProblem(await source.dismissHazard(props.hazard.dismissal_name)));
   };
   return (
     <section class="section" aria-label="Hazard area">
@@ -27,7 +27,7 @@ export function HazardSection(props: { hazard: HazardView; name: string }) {
         name={`Clear the hazard area of ${props.name}`}
         class="guard-grave"
         hold_ms={GUARD_MS}
-        subject={props.hazard.dismissed_as}
+        subject={props.hazard.dismissal_name}
         onConfirm={() => void clear()}
       />
       <p class="muted">Only if the aircraft is confirmed on the ground or under manual control.</p>

@@ -60,9 +60,9 @@ function LinkRow(props: { link: LinkView }) {
           {formatBytes(props.link.bytes_received)}, last {lastAge()} ago
         </p>
         <Show when={faults(props.link)}>{(text) => <p class="tone-warning">{text()}</p>}</Show>
-        <Show when={props.link.answers_not_believed > 0}>
+        <Show when={props.link.ignored_answers > 0}>
           <p class="tone-warning">
-            {props.link.answers_not_believed} answers ignored: they may belong to another command
+            {props.link.ignored_answers} answers ignored: they may belong to another command
           </p>
         </Show>
         <Show when={props.link.closed_reason}>
@@ -79,7 +79,7 @@ export function faults(link: LinkView): string {
     [link.bad_hash, "bad checksum"],
     [link.bad_size, "bad size"],
     [link.unknown_pid, "unknown packet type"],
-    [link.meaningless, "invalid content"],
+    [link.ignored_reports, "invalid content"],
     [link.bytes_skipped, "bytes skipped"],
   ];
   return counts

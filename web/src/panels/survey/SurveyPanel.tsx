@@ -41,7 +41,9 @@ function SurveySection(props: SurveyProps) {
   const is = (...phases: SurveyView["phase"][]) => phases.includes(props.survey.phase);
   /** Vehicles to list; of a finished survey only those still on their way home. */
   const active = () =>
-    props.survey.vehicles.filter(({ waits_for }) => !is("done", "aborted") || waits_for !== null);
+    props.survey.vehicles.filter(
+      ({ not_flying_reason }) => !is("done", "aborted") || not_flying_reason !== null,
+    );
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
       <p class="wire-text">
@@ -104,7 +106,7 @@ function SurveyVehicle(props: { vehicle: SurveyingView; isDone: boolean }) {
   return (
     <p class="wire-text">
       <strong>{props.vehicle.vehicle_name}</strong> {activity()}
-      <Show when={props.vehicle.waits_for ?? props.vehicle.refused}>
+      <Show when={props.vehicle.not_flying_reason ?? props.vehicle.refused}>
         {(why) => <span class="muted survey-reason">{why()}</span>}
       </Show>
     </p>

@@ -70,7 +70,7 @@ describe("a survey in the list", () => {
   });
 
   it("that is over has no buttons", () => {
-    const home = { is_flying_rows: false, waits_for: null };
+    const home = { is_flying_rows: false, not_flying_reason: null };
     const vehicles = survey(7).vehicles.map((one) => ({ ...one, ...home }));
     show(survey(7, { phase: "done", vehicles }));
     expect(page.root.querySelectorAll("[data-testid=survey-7] .guard")).toHaveLength(0);

@@ -99,7 +99,7 @@ def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Sta
         Stage.STOPPING,
         now_ns,
         by=by,
-        asked_as=order.asked_as,
+        role=order.role,
     )
     return replace(station, fleet_return=running.put(member))
 

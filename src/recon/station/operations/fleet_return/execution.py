@@ -86,7 +86,7 @@ def _hand_back_ended(station: Station, now_ns: int) -> Station:
     running = station.fleet_return
     for member in () if running is None else running.at(*ENDED):
         controlled_since_ns = station.control(member.serial).authority.since_ns
-        if member.asked_as is AuthorityHolder.GUIDANCE and controlled_since_ns <= member.since_ns:
+        if member.role is AuthorityHolder.GUIDANCE and controlled_since_ns <= member.since_ns:
             why = f"fleet return: {member.reason or 'landed'}"
             station = authority.hand_back(station, member.serial, member.by, why, now_ns)
     return station
@@ -243,7 +243,7 @@ def _order_mission(
         FlyMission(mission),
         f"{member.by}: fleet return",
         serial=member.serial,
-        asked_as=member.asked_as,
+        role=member.role,
     )
     command = command_of(station, order, now_ns)
     refusal = judge(command, situation(station, command, now_ns))
@@ -272,6 +272,6 @@ def _may_end(
         return False
     if running.at(*UNDER_WAY) or member.refused_since_ns is None:
         return True
-    if member.asked_as is AuthorityHolder.GUIDANCE:
+    if member.role is AuthorityHolder.GUIDANCE:
         return True  # other vehicles may fly rows for minutes; the battery rule ends its waiting
     return now_ns - member.refused_since_ns < seconds_to_ns(settings.gate_waits_s)

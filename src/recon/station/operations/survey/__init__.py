@@ -5,14 +5,14 @@ tick, `mission_dispatch` how missions become orders, `availability` which vehicl
 `return_to_home` their way home. Surveys live in memory only: after a restart none continues.
 """
 
-from recon.model.event import SurveyAsked, SurveyStarted, SurveyStopped
+from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.station.operations.operation import Operation
 from recon.station.operations.survey.audit import survey_entries
 from recon.station.operations.survey.commands import start_survey, stop_survey
 from recon.station.operations.survey.conditions import conditions
 from recon.station.operations.survey.execution import advance
 from recon.station.operations.survey.observations import on_position, on_shade
-from recon.station.operations.survey.planning import ask_survey
+from recon.station.operations.survey.planning import request_survey
 from recon.station.state.stepped import changing, on
 
 SURVEY = Operation(
@@ -20,7 +20,7 @@ SURVEY = Operation(
     tick=advance,
     conditions=conditions,
     commands=(
-        on(SurveyAsked, ask_survey),
+        on(SurveyRequested, request_survey),
         changing(SurveyStarted, start_survey),
         on(SurveyStopped, stop_survey),
     ),

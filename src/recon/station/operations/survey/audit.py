@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from recon.model.command import Refusal
-from recon.model.event import Event, SurveyAsked, SurveyStarted, SurveyStopped
+from recon.model.event import Event, SurveyRequested, SurveyStarted, SurveyStopped
 from recon.record.audit import AuditEntry
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import refusal_of
@@ -16,7 +16,7 @@ def survey_entries(
 ) -> Iterator[AuditEntry]:
     """Yield an entry for each command to a survey, and for each change of its phase."""
     match event:
-        case SurveyAsked(survey, by):
+        case SurveyRequested(survey, by):
             refusal = refusal_of(before)
             details = {"id": survey.id, "planner": survey.planner}
             yield _command(
@@ -51,7 +51,7 @@ def _command(
 
 def _changes(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
     """Changes of phase without a command: planned, impossible, done, paused by itself."""
-    if isinstance(event, SurveyStarted | SurveyStopped | SurveyAsked):
+    if isinstance(event, SurveyStarted | SurveyStopped | SurveyRequested):
         return
     for number, record in after.surveys.records.items():
         phase, reason = record.phase

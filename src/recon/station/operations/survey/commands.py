@@ -185,4 +185,4 @@ def _vehicle_refusal(
 
 
 def _unknown(station: Station, survey_id: int) -> Refusal:
-    return Refusal(RULE, station.surveys.none_such(survey_id))
+    return Refusal(RULE, station.surveys.unknown_survey(survey_id))

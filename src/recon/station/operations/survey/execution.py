@@ -22,7 +22,7 @@ from recon.guidance.survey import refused
 from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase
 from recon.model.event import OperatorOrder
-from recon.model.survey import MissionFor, SurveyPhase
+from recon.model.survey import MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 from recon.safety.rules.battery import RULE as BATTERY
 from recon.station.control import authority, order_gateway
@@ -144,7 +144,7 @@ def _read_missions(station: Station, record: SurveyRecord, now_ns: int) -> Stepp
             why = f"the mission of order {order.command.id} was ignored"
             by = f"station: survey {record.survey.name}: {why}"
             hold = OperatorOrder(
-                number, Hover(), by, serial=member.serial, asked_as=AuthorityHolder.GUIDANCE
+                number, Hover(), by, serial=member.serial, role=AuthorityHolder.GUIDANCE
             )
             station, sent = order_gateway.submit(station, hold, now_ns)
             outputs += sent
@@ -165,7 +165,9 @@ def _start_step(station: Station, survey_id: int, settings: SurveyTimes, now_ns:
     return replace(station, surveys=surveys), (job,)
 
 
-def _order_mission(station: Station, survey_id: int, given: MissionFor, now_ns: int) -> Stepped:
+def _order_mission(
+    station: Station, survey_id: int, given: MissionAssignment, now_ns: int
+) -> Stepped:
     """Order one mission under guidance; give a refusal back to the survey."""
     record = station.surveys.records[survey_id]
     member, state = record.members.get(given.serial), record.state

@@ -15,7 +15,7 @@ from recon.model.command import FlyMission
 from recon.model.event import OperatorOrder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
-from recon.model.survey import MissionFor
+from recon.model.survey import MissionAssignment
 from recon.model.vehicle import VehicleState
 from recon.safety import judge
 from recon.safety.rules.height_zones import RULE as HEIGHT_ZONES
@@ -48,7 +48,7 @@ LEVEL_M = 3.0
 def order_of(
     station: Station,
     record: SurveyRecord,
-    given: MissionFor,
+    given: MissionAssignment,
     vehicle: VehicleState,
     now_ns: int,
 ) -> tuple[OperatorOrder, str]:
@@ -69,7 +69,7 @@ def order_of(
 
 
 def _orders(
-    station: Station, record: SurveyRecord, given: MissionFor, vehicle: VehicleState
+    station: Station, record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
 ) -> tuple[OperatorOrder, ...]:
     member = record.members[given.serial]
     number, count = tuple(record.members).index(given.serial), len(record.members)
@@ -80,7 +80,7 @@ def _orders(
         f"{record.started_by}: survey {record.survey.name}",
         serial=given.serial,
         takeoff=member.may_take_off and vehicle.is_flying.value is False,
-        asked_as=AuthorityHolder.GUIDANCE,
+        role=AuthorityHolder.GUIDANCE,
     )
     missions = with_approaches(given.mission, vehicle, number, count, limits)
     return tuple(replace(order, body=FlyMission(mission)) for mission in missions)

@@ -21,10 +21,10 @@ from recon.guidance.survey import (
 )
 from recon.guidance.survey.plan import RULE
 from recon.model.command import Refusal
-from recon.model.event import SurveyAsked
+from recon.model.event import SurveyRequested
 from recon.model.geo import LocalFrame
 from recon.model.shade import ShadeMap
-from recon.model.survey import MissionFor, Survey
+from recon.model.survey import MissionAssignment, Survey
 from recon.model.zone import ZoneKind
 from recon.station.state.jobs import Job, JobKind
 from recon.station.state.station import Station
@@ -61,7 +61,7 @@ class SurveyStepped:
     """The survey after the step, and the missions to order."""
 
     state: SurveyState
-    missions: tuple[MissionFor, ...]
+    missions: tuple[MissionAssignment, ...]
     out_of_battery: tuple[str, ...] = ()
     """Serials of vehicles that wait with a battery too low for any row."""
 
@@ -82,7 +82,7 @@ def step_survey(work: StepSurvey) -> SurveyStepped:
     return SurveyStepped(state, missions, spent(state, work.vehicles))
 
 
-def ask_survey(station: Station, event: SurveyAsked, now_ns: int) -> Stepped:
+def request_survey(station: Station, event: SurveyRequested, now_ns: int) -> Stepped:
     """Record a requested survey, and start planning its rows unless it is refused."""
     record = SurveyRecord(event.survey, event.by, now_ns)
     refusal = refusal_of(station)

@@ -40,7 +40,7 @@ def is_under_way(station: Station, member: SurveyMember) -> bool:
     returning = None if running is None else running.members.get(member.serial)
     if member.return_reason is None or returning is None or returning.stage in ENDED:
         return False
-    return returning.asked_as is AuthorityHolder.GUIDANCE
+    return returning.role is AuthorityHolder.GUIDANCE
 
 
 def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: int) -> Stepped:
@@ -60,7 +60,7 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
     station, number = take_id(station)
     by = f"{record.started_by}: survey {record.survey.name}"
     hold = OperatorOrder(
-        number, Hover(), f"{by}: {why}", serial=serial, asked_as=AuthorityHolder.GUIDANCE
+        number, Hover(), f"{by}: {why}", serial=serial, role=AuthorityHolder.GUIDANCE
     )
     station, sent = commands.join(station, hold, by, now_ns)
     placed = station.orders.records[number]
