@@ -11,6 +11,7 @@ from tests.score.scenes import SMALL, small, written
 from recon.detection import DETECTORS
 from recon.forecast import FORECASTERS
 from recon.guidance.survey import PLANNERS
+from recon.model.survey import PLANNER_GOALS
 from recon.score import ScenarioError, load_scenario
 from recon.score.scenario_errors import key_lines, line_of
 from recon.score.scenario_schema import METHOD_NAMES
@@ -81,7 +82,7 @@ def test_values_of_the_file_are_in_the_scenario(tmp_path: Path) -> None:
 def test_method_names_are_those_of_the_registries() -> None:
     assert METHOD_NAMES["detection"] == ("ideal", *DETECTORS)
     assert METHOD_NAMES["forecast"] == ("none", *FORECASTERS)
-    assert METHOD_NAMES["planner"] == tuple(PLANNERS)
+    assert METHOD_NAMES["planner"] == tuple(PLANNERS) == tuple(PLANNER_GOALS)
 
 
 @pytest.mark.parametrize(

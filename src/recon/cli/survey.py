@@ -23,7 +23,7 @@ from recon.cli.connection import (
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
 from recon.model.geo import GeoPoint
-from recon.model.survey import WhenDone, unknown_survey
+from recon.model.survey import PLANNER_GOALS, WhenDone, unknown_survey
 
 HECTARE_M2 = 10_000.0
 PHASES = {"created": "planned"}
@@ -56,7 +56,7 @@ def create_command(
     ] = None,
     name: Annotated[str | None, typer.Option("--name", help="Name of the survey.")] = None,
     planner: Annotated[
-        str, typer.Option("--planner", help="lawnmower_once or lawnmower_again.")
+        str, typer.Option("--planner", help=f"{' or '.join(PLANNER_GOALS)}.")
     ] = "lawnmower_once",
     front: Annotated[
         float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")

@@ -1,9 +1,10 @@
 """A survey: region, height, overlap, budget; and its progress."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum, IntEnum
 from math import radians, tan
+from types import MappingProxyType
 
 from recon.model.mission import Mission
 from recon.model.zone import Region
@@ -115,6 +116,12 @@ class CellState(IntEnum):
     """A photo certainly shows it, but none certainly in sun."""
     IN_SUN = 2
     """A photo certainly shows it in sun."""
+
+
+PLANNER_GOALS: Mapping[str, CellState] = MappingProxyType(
+    {"lawnmower_once": CellState.IN_SHADE, "lawnmower_again": CellState.IN_SUN}
+)
+"""The state up to which each planner, by name, images every cell."""
 
 
 @dataclass(frozen=True, slots=True)

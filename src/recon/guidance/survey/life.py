@@ -27,7 +27,7 @@ from types import MappingProxyType
 
 from recon.guidance.survey.missions import apart_m, track_of
 from recon.guidance.survey.plan import RULE, SurveyPlan
-from recon.guidance.survey.planners import PLANNERS, WANTED
+from recon.guidance.survey.planners import PLANNERS
 from recon.guidance.survey.progress import (
     PositionSample,
     no_progress,
@@ -40,7 +40,7 @@ from recon.guidance.survey.route import Route, route_of
 from recon.guidance.survey.state import Refused, Surveyor, SurveyState
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
-from recon.model.survey import SurveyPhase
+from recon.model.survey import PLANNER_GOALS, SurveyPhase
 
 
 def create(plan: SurveyPlan) -> SurveyState | Refusal:
@@ -180,7 +180,7 @@ def _left(state: SurveyState, surveyor: Surveyor) -> Route:
     if waiting:
         return waiting
     plan = state.plan
-    pieces = plan.pieces_over(state.progress.state < WANTED[plan.survey.planner])
+    pieces = plan.pieces_over(state.progress.state < PLANNER_GOALS[plan.survey.planner])
     ((along_m, across_m),) = plan.lattice.along_across_m([surveyor.place_m]).tolist()
     return route_of(pieces, plan.lattice, (along_m, across_m)) if pieces else ()
 

@@ -9,14 +9,14 @@ from types import MappingProxyType
 
 from recon.guidance.survey.rounds import Step, fly_rounds
 from recon.guidance.survey.state import Surveyor, SurveyState
-from recon.model.survey import CellState
+from recon.model.survey import PLANNER_GOALS
 
 Planner = Callable[[SurveyState, Sequence[Surveyor], int], Step]
 
 
 def lawnmower_once(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
     """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
-    return fly_rounds(state, positions, now_ns, WANTED["lawnmower_once"])
+    return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_once"])
 
 
 def lawnmower_again(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
@@ -24,13 +24,8 @@ def lawnmower_again(state: SurveyState, positions: Sequence[Surveyor], now_ns: i
 
     It does not wait for sun: the survey's budget ends it under a closed sky.
     """
-    return fly_rounds(state, positions, now_ns, WANTED["lawnmower_again"])
+    return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_again"])
 
-
-WANTED: Mapping[str, CellState] = MappingProxyType(
-    {"lawnmower_once": CellState.IN_SHADE, "lawnmower_again": CellState.IN_SUN}
-)
-"""Up to which state of its cells each planner flies."""
 
 PLANNERS: Mapping[str, Planner] = MappingProxyType(
     {"lawnmower_once": lawnmower_once, "lawnmower_again": lawnmower_again}
