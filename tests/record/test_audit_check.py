@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from tests.examples import examples
 from tests.record.audits import entry, written
 
+from recon.model.errors import RecordError
 from recon.record.audit import STOPPED_KIND
 from recon.record.audit_check import check_audit
 from recon.record.audit_files import audit_files, read_run_end
 from recon.record.audit_log import AuditLog
-from recon.record.errors import RecordError
 
 
 def lines_of(path: Path) -> list[bytes]:

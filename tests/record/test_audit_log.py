@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from tests.record.audits import PATIENCE_S, entry, until, written
 
+from recon.model.errors import RecordError
 from recon.record import audit_log
 from recon.record.audit_check import check_audit
 from recon.record.audit_log import KEPT_ENTRIES, WAITING_ENTRIES, AuditLog, refuse_other_writer
-from recon.record.errors import RecordError
 
 
 class Disk:

@@ -11,9 +11,9 @@ from rasterio.io import DatasetReader, MemoryFile
 from rasterio.warp import transform
 
 from recon.geo import geo_from_enu
+from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
-from recon.record.errors import RecordError
 from recon.record.geotiff import geotiff_bytes, projected_crs, write_ground_image
 
 ORIGINS = [

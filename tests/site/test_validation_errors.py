@@ -9,8 +9,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from msgspec import inspect
 
+from recon.model.errors import SiteError
 from recon.site.elevation import ElevationTable
-from recon.site.errors import SiteError
 from recon.site.geojson import Polygons, Rings
 from recon.site.layers import _Named, _PadProperties, _ZoneProperties
 from recon.site.reading import convert

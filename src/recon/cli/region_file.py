@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Any
 
 from recon.client import ClientError
+from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.errors import SiteError
 from recon.site.geojson import Feature, read_features, regions_of
 
 Rings = list[list[list[float]]]

@@ -21,6 +21,14 @@ class ReconError(Exception):
     """An error that is reported to the user as one sentence."""
 
 
+class SiteError(ReconError):
+    """A site's folder cannot be used; the message names the file, the key, what was expected."""
+
+
+class RecordError(ReconError):
+    """A file could not be read or written; the message names the file and the reason."""
+
+
 def describe_fault(fault: BaseException) -> str:
     """Return one line for a fault in Recon's own code: the error, its file and line."""
     frames = traceback.extract_tb(fault.__traceback__)

@@ -3,7 +3,7 @@
 Formats, atomic writes and checks are here; what is written, and when, is decided by the station.
 """
 
-from recon.record.errors import RecordError
+from recon.model.errors import RecordError
 from recon.record.geotiff import geotiff_bytes, write_ground_image
 
 __all__ = ["RecordError", "geotiff_bytes", "write_ground_image"]

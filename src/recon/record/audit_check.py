@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from recon.model.errors import RecordError
 from recon.record.audit import (
     LOST_KIND,
     NO_LINE_BEFORE,
@@ -14,7 +15,6 @@ from recon.record.audit import (
     line_hash,
 )
 from recon.record.audit_files import RawLine, audit_files, raw_lines
-from recon.record.errors import RecordError
 
 MAX_FAULTS = 20
 

@@ -7,9 +7,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import BinaryIO
 
+from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.record.audit import LONGEST_LINE_BYTES, AuditLine, decode_line, line_hash
-from recon.record.errors import RecordError
 
 _NAME = re.compile(r"recon-audit-(\d{6})-\d{8}T\d{6}Z\.jsonl")
 MOST_RUNS = 999_999

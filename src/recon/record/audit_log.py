@@ -25,6 +25,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from recon.model.errors import RecordError
 from recon.record.audit import (
     LOST_KIND,
     NO_LINE_BEFORE,
@@ -35,7 +36,6 @@ from recon.record.audit import (
     line_hash,
 )
 from recon.record.audit_files import RunEnd, audit_files, next_file_name
-from recon.record.errors import RecordError
 
 WAITING_ENTRIES = 4096
 """A minute of the busiest traffic; some 4 MiB."""

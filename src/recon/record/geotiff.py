@@ -15,9 +15,9 @@ from rasterio.io import MemoryFile
 from rasterio.transform import Affine
 
 from recon.geo.ellipsoid import meridian_radius_m, prime_vertical_radius_m
+from recon.model.errors import RecordError
 from recon.model.geo import LocalFrame
 from recon.model.imagery import GroundImage
-from recon.record.errors import RecordError
 
 TILE_SIDE_PX = 256
 

@@ -14,8 +14,8 @@ from scipy import ndimage
 
 from recon.geo import Surface, enu_from_points
 from recon.model.airspace import Airspace, ElevationModel
+from recon.model.errors import SiteError
 from recon.model.geo import GroundGrid, LocalFrame
-from recon.site.errors import SiteError
 from recon.site.height_file import HeightFile, opened
 from recon.site.reading import file_inside
 from recon.site.schema import FileName

@@ -24,8 +24,8 @@ from rasterio.transform import Affine
 from rasterio.windows import Window
 
 from recon.geo import geo_from_enu
+from recon.model.errors import SiteError
 from recon.model.geo import LocalFrame
-from recon.site.errors import SiteError
 from recon.site.reading import read_bounded
 
 FloatArray = npt.NDArray[np.float64]

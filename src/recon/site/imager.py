@@ -14,8 +14,8 @@ from recon.camera import (
     pose_from_points,
 )
 from recon.geo import enu_from_geo, enu_from_points
+from recon.model.errors import SiteError
 from recon.model.geo import LocalFrame
-from recon.site.errors import SiteError
 from recon.site.reading import file_inside
 from recon.site.schema import ImagerTable
 from recon.site.site import Imager

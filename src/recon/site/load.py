@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.site.consistency import (
@@ -16,7 +17,6 @@ from recon.site.consistency import (
     refuse_sunken_zones,
 )
 from recon.site.elevation import ElevationTable, read_elevation
-from recon.site.errors import SiteError
 from recon.site.imager import imager_from_table
 from recon.site.layers import read_layers
 from recon.site.profiles import limits_from_table, profile_from_table

@@ -6,9 +6,9 @@ from typing import Any
 import msgspec
 
 from recon.model.airspace import FlightLimits
+from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
 from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
-from recon.site.errors import SiteError
 from recon.site.schema import LimitsTable, VehicleTable
 
 PLACEHOLDER_SERIAL = "00000"

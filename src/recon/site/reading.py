@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import msgspec
 
-from recon.site.errors import SiteError
+from recon.model.errors import SiteError
 from recon.site.validation_errors import shown_value, validation_error
 
 T = TypeVar("T")

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from tests.record.audits import entry, until, written
 
+from recon.model.errors import RecordError
 from recon.record.audit import FAILED_KIND, STOPPED_KIND
 from recon.record.audit_check import check_audit
 from recon.record.audit_files import audit_files
 from recon.record.audit_log import AuditLog
-from recon.record.errors import RecordError
 from recon.station.audit.start import (
     MAX_FILES_READ,
     AuditPlace,

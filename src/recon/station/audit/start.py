@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from recon import version
+from recon.model.errors import RecordError
 from recon.record.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
 from recon.record.audit_files import RunEnd, audit_files, read_run_end, run_number
 from recon.record.audit_log import AuditLog, refuse_other_writer
-from recon.record.errors import RecordError
 from recon.station.state.settings import StationSettings
 
 MAX_FILES_READ = 5

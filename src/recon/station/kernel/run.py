@@ -17,10 +17,9 @@ from recon.api.security import LOOPBACK_NAMES, Access
 from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
-from recon.model.errors import ReconError
+from recon.model.errors import ReconError, RecordError
 from recon.model.event import Event
 from recon.model.units import ns_to_seconds
-from recon.record.errors import RecordError
 from recon.site import Site
 from recon.site.reading import site_digest
 from recon.station.api_views.service import Service

@@ -33,7 +33,7 @@ from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
-from recon.station.state.recovery_settings import RestartSettings
+from recon.station.state.settings import RestartSettings
 from recon.station.state.station import Station
 from recon.station.state.vehicle_snapshot import PositionSnapshot, VehicleSnapshot
 from recon.station.traffic.known_traffic import MANY_LOST, with_lost

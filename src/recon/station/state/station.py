@@ -75,7 +75,7 @@ class Station:
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
     next_own_id: int = -1
-    """The number of the next command the station gives by itself; see `own_ids`."""
+    """The number of the next command the station gives by itself; see `take_id`."""
     owners: frozenset[str] = frozenset()
     """Open connections that may hold a steered order."""
     fleet_return: FleetReturn | None = None
@@ -152,3 +152,12 @@ def _with_member(serials: tuple[str, ...], serial: str, is_member: bool) -> tupl
     if (serial in serials) is is_member:
         return serials
     return (*serials, serial) if is_member else tuple(s for s in serials if s != serial)
+
+
+def take_id(station: Station) -> tuple[Station, int]:
+    """Return the station without its next own command number, and that number.
+
+    Numbers of the station's own commands go below zero, each used once; orders of operators and
+    programs are numbered from 1 up.
+    """
+    return replace(station, next_own_id=station.next_own_id - 1), station.next_own_id

@@ -13,8 +13,7 @@ from recon.model.command import Command, VirtualStick
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
-from recon.station.state.command_ids import take_id
-from recon.station.state.station import Station
+from recon.station.state.station import Station, take_id
 from recon.station.state.vehicle_control import PendingNeutral
 
 ISSUER = "station: end of a stick"

@@ -41,7 +41,6 @@ from recon.station.operations.fleet_return import planning, positions
 from recon.station.operations.fleet_return.positions import is_same_pad
 from recon.station.operations.fleet_return.progress import updated
 from recon.station.operations.settings import RETURN_SETTINGS, ReturnSettings
-from recon.station.state.command_ids import take_id
 from recon.station.state.fleet_return_record import (
     ENDED,
     UNDER_WAY,
@@ -50,7 +49,7 @@ from recon.station.state.fleet_return_record import (
     Stage,
 )
 from recon.station.state.outputs import Output
-from recon.station.state.station import Station
+from recon.station.state.station import Station, take_id
 from recon.station.state.stepped import Stepped
 
 WAITING_RULES = ("separation", "link_age")

@@ -13,9 +13,8 @@ from recon.model.event import OperatorOrder
 from recon.model.survey import SurveyPhase, WhenDone
 from recon.station.control import authority
 from recon.station.operations.fleet_return import commands
-from recon.station.state.command_ids import take_id
 from recon.station.state.fleet_return_record import ENDED
-from recon.station.state.station import Station
+from recon.station.state.station import Station, take_id
 from recon.station.state.stepped import Stepped
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
