@@ -17,7 +17,9 @@ help: ## List the targets
 demo: setup web ## Run a survey under broken cloud: station, simulated drones, console at http://127.0.0.1:8080
 	$(RUN) recon demo
 
-test: test-rust test-safety test-python test-web test-e2e ## Set everything up and pass all tests
+test: setup web ## Set everything up and pass all tests
+	@tools/chromium.sh
+	@$(MAKE) --jobs=2 --output-sync=line test-rust test-e2e test-safety test-python test-web
 
 check: setup web/node_modules/.stamp ## Formats, lint, types, import rules, stub and generated files
 	cargo fmt --all --check

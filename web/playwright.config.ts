@@ -21,7 +21,8 @@ export default defineConfig({
   globalSetup: "./e2e/servePage.ts",
   // One folder for each run, which clears it when it begins.
   outputDir: `test-results/${process.env["RECON_E2E_RUN"]}`,
-  workers: 1,
+  // One file at a time each: stations in flight mostly wait.
+  workers: 2,
   // Deadlines that only a broken test reaches, however busy the machine is.
   timeout: 300_000,
   expect: { timeout: 60_000 },
