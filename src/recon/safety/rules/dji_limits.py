@@ -133,9 +133,7 @@ def _mission(body: FlyMission, situation: Situation) -> Iterator[Refusal]:
     for number, waypoint in enumerate(mission.waypoints, start=1):
         for refusal in _waypoint(waypoint, mission.curved, limits):
             yield _refused(
-                f"Waypoint {number}: {refusal.reason[0].lower()}{refusal.reason[1:]}",
-                waypoint=number,
-                **refusal.parameters,
+                f"Waypoint {number}: {refusal.reason}", waypoint=number, **refusal.parameters
             )
     yield from _legs(mission, limits)
     if mission.curved:
@@ -156,8 +154,9 @@ def _count(mission: Mission, situation: Situation) -> Iterator[Refusal]:
 
 
 def _waypoint(waypoint: Waypoint, curved: bool, limits: SafetySettings) -> Iterator[Refusal]:
+    """What is wrong with one waypoint; its number goes before each sentence."""
     if not LatLon(waypoint.latitude_deg, waypoint.longitude_deg).is_valid():
-        yield _position(waypoint.latitude_deg, waypoint.longitude_deg, "Position")
+        yield _position(waypoint.latitude_deg, waypoint.longitude_deg, "position")
     height_m, least_m, most_m = (
         waypoint.height_above_takeoff_m,
         limits.min_height_m,
@@ -165,12 +164,12 @@ def _waypoint(waypoint: Waypoint, curved: bool, limits: SafetySettings) -> Itera
     )
     if not least_m <= height_m <= most_m:
         name = "height_above_takeoff"
-        yield _range("Height", name, height_m, least_m, most_m, "m", _ABOVE_TAKEOFF)
+        yield _range("height", name, height_m, least_m, most_m, "m", _ABOVE_TAKEOFF)
     if not 0.0 < as_sent(waypoint.speed_mps) <= limits.max_speed_mps:
-        yield _above_zero("Speed", "speed", waypoint.speed_mps, limits.max_speed_mps, "m/s", "")
+        yield _above_zero("speed", "speed", waypoint.speed_mps, limits.max_speed_mps, "m/s", "")
     if curved and (waypoint.loiter_s is not None or waypoint.gimbal_pitch_deg is not None):
         yield _refused(
-            "A curved mission cannot have loiter or gimbal actions: the SDK ignores them"
+            "a curved mission cannot have loiter or gimbal actions: the SDK ignores them"
         )
     yield from _actions(waypoint, limits)
 
@@ -178,10 +177,10 @@ def _waypoint(waypoint: Waypoint, curved: bool, limits: SafetySettings) -> Itera
 def _actions(waypoint: Waypoint, limits: SafetySettings) -> Iterator[Refusal]:
     loiter_s, pitch_deg = waypoint.loiter_s, waypoint.gimbal_pitch_deg
     if loiter_s is not None and not 0.0 <= loiter_s <= limits.max_loiter_s:
-        yield _range("Loiter", "loiter", loiter_s, 0.0, limits.max_loiter_s, "s")
+        yield _range("loiter", "loiter", loiter_s, 0.0, limits.max_loiter_s, "s")
     lowest_deg, highest_deg = limits.min_gimbal_pitch_deg, limits.max_gimbal_pitch_deg
     if pitch_deg is not None and not lowest_deg <= pitch_deg <= highest_deg:
-        yield _range("Gimbal pitch", "gimbal_pitch", pitch_deg, lowest_deg, highest_deg, "deg")
+        yield _range("gimbal pitch", "gimbal_pitch", pitch_deg, lowest_deg, highest_deg, "deg")
 
 
 def _legs(mission: Mission, limits: SafetySettings) -> Iterator[Refusal]:
