@@ -7,6 +7,7 @@ from fastapi import FastAPI, HTTPException, Request
 from recon.api import schema
 from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, client_name, found
+from recon.api.schema import requests
 from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     Body,
@@ -123,29 +124,29 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
 def to_body(order: schema.AnyOrder) -> Body:
     """Return the body of an order; the gate decides whether it may be executed."""
     match order:
-        case schema.HoverOrder():
+        case requests.HoverOrder():
             return Hover()
-        case schema.LandOrder():
+        case requests.LandOrder():
             return LandNow()
-        case schema.ReturnHomeOrder():
+        case requests.ReturnHomeOrder():
             return ReturnHome()
-        case schema.CameraStartOrder():
+        case requests.CameraStartOrder():
             return StartCamera(fps_hz=order.fps_hz)
-        case schema.CameraStopOrder():
+        case requests.CameraStopOrder():
             return StopCamera()
-        case schema.MissionOrder():
+        case requests.MissionOrder():
             return FlyMission(_mission(order))
-        case schema.StickOrder():
+        case requests.StickOrder():
             return _stick(order)
-        case schema.GoToOrder():
+        case requests.GoToOrder():
             return _goto(order)
-        case schema.NudgeOrder():
+        case requests.NudgeOrder():
             return Nudge(**order.model_dump(exclude={"kind"}))
-        case schema.HoldPositionOrder():
+        case requests.HoldPositionOrder():
             return HoldPosition()
 
 
-def _mission(order: schema.MissionOrder) -> Mission:
+def _mission(order: requests.MissionOrder) -> Mission:
     return Mission(
         waypoints=tuple(Waypoint(**waypoint.model_dump()) for waypoint in order.waypoints),
         land_at_end=order.land_at_end,
@@ -153,7 +154,7 @@ def _mission(order: schema.MissionOrder) -> Mission:
     )
 
 
-def _goto(order: schema.GoToOrder) -> GoTo:
+def _goto(order: requests.GoToOrder) -> GoTo:
     return GoTo(
         target=LatLon(order.latitude_deg, order.longitude_deg),
         height_above_takeoff_m=order.height_above_takeoff_m,
@@ -162,7 +163,7 @@ def _goto(order: schema.GoToOrder) -> GoTo:
     )
 
 
-def _stick(order: schema.StickOrder) -> VirtualStick:
+def _stick(order: requests.StickOrder) -> VirtualStick:
     return VirtualStick(
         frame=StickFrame(order.frame),
         yaw_deg=order.yaw_deg,
