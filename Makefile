@@ -9,7 +9,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e check format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e coverage check format bench fuzz study mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -63,6 +63,9 @@ PYTEST := $(RUN) python -m pytest -n 4 --dist loadfile
 test-safety: setup ## Tests of the gate and the watchdogs, with full branch coverage
 	$(PYTEST) tests/safety tests/architecture --cov=recon.safety --cov-branch \
 		--cov-report=term-missing:skip-covered --cov-fail-under=100
+
+coverage: setup ## Line coverage of every room, by all Python tests
+	$(PYTEST) --cov=recon --cov-report=term
 
 test-python: setup ## Tests of everything else in Python
 	$(PYTEST) --ignore=tests/safety --ignore=tests/architecture
