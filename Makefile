@@ -56,7 +56,7 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 	@touch $@
 
 test-rust: setup ## Tests of the wire crate
-	cargo test --workspace --quiet
+	MAKEFLAGS= cargo test --workspace --quiet
 
 PYTEST := $(RUN) python -m pytest -n 4 --dist loadfile
 
