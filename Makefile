@@ -17,9 +17,7 @@ help: ## List the targets
 demo: setup web ## Run a survey under broken cloud: station, simulated drones, console at http://127.0.0.1:8080
 	$(RUN) recon demo
 
-test: setup web ## Set everything up and pass all tests
-	@tools/chromium.sh
-	@$(MAKE) --jobs=2 --output-sync=line test-rust test-e2e test-safety test-python test-web
+test: test-rust test-safety test-python test-web test-e2e ## Set everything up and pass all tests
 
 check: setup web/node_modules/.stamp ## Formats, lint, types, import rules, stub and generated files
 	cargo fmt --all --check
@@ -56,7 +54,7 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 	@touch $@
 
 test-rust: setup ## Tests of the wire crate
-	MAKEFLAGS= cargo test --workspace --quiet
+	cargo test --workspace --quiet
 
 PYTEST := $(RUN) python -m pytest -n 4 --dist loadfile
 
