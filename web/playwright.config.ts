@@ -21,8 +21,7 @@ export default defineConfig({
   globalSetup: "./e2e/servePage.ts",
   // One folder for each run, which clears it when it begins.
   outputDir: `test-results/${process.env["RECON_E2E_RUN"]}`,
-  // One file at a time each: stations in flight mostly wait.
-  workers: 2,
+  workers: 1,
   // Deadlines that only a broken test reaches, however busy the machine is.
   timeout: 300_000,
   expect: { timeout: 60_000 },
