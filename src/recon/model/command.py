@@ -149,7 +149,7 @@ class Command:
     def moves(self) -> bool:
         """Whether this may move its vehicle, takeoff included.
 
-        A stick always counts; `safety.standstill` decides whether it only stops.
+        A stick always counts; `safety.path.order_path` decides whether it only stops.
         """
         return self.takeoff or isinstance(self.body, MOVING_BODIES)
 

@@ -78,7 +78,7 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     if station.control(vehicle.serial).restored is not None:
         station = restart.recheck(station, vehicle.serial, now_ns)
     if isinstance(event.report, ImageReport):
-        return station, outputs  # it shows nothing of any order
+        return station, outputs  # ticks update camera orders, the only ones an image confirms
     serials = () if vehicle.serial is None else (vehicle.serial,)
     station, orders = order_gateway.update_orders(station, now_ns, serials)
     return station, (*outputs, *orders)

@@ -121,8 +121,11 @@ class OrderRecord:
 
 @dataclass(frozen=True, slots=True)
 class OrderBook:
-    """All orders lately given. `watched` are those still alive, and those whose alarm is: time and
-    telemetry still change them. `put` keeps it, for it is asked for with every packet."""
+    """The recent orders.
+
+    `tracked` are those that time and telemetry still change: alive, or with an alarm. `put` keeps
+    it up to date, because it is read with every packet.
+    """
 
     records: Mapping[int, OrderRecord] = field(default_factory=dict)
     tracked: tuple[OrderRecord, ...] = ()
@@ -244,11 +247,11 @@ def put(book: OrderBook, record: OrderRecord, kept: int) -> OrderBook:
         finished = (key for key, r in records.items() if not r.is_tracked and key != newest_id)
         for key in tuple(islice(finished, len(records) - kept)):
             del records[key]
-    return OrderBook(records, _watched(book.tracked, record))
+    return OrderBook(records, _tracked(book.tracked, record))
 
 
-def _watched(before: tuple[OrderRecord, ...], newest: OrderRecord) -> tuple[OrderRecord, ...]:
-    """Return the watched records with the newest form of one, each in its old place."""
+def _tracked(before: tuple[OrderRecord, ...], newest: OrderRecord) -> tuple[OrderRecord, ...]:
+    """Return the tracked records with one replaced, in their order."""
     newest_id = newest.command.id
     if all(record.command.id != newest_id for record in before):
         return (*before, newest) if newest.is_tracked else before

@@ -37,7 +37,7 @@ class Clock:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A fault in the station's own code: doing what, what came of it, since when, and the last."""
+    """A fault in the station's own code: where, the error, first and last time."""
 
     where: str
     what: str
@@ -56,7 +56,7 @@ class Station:
     imaging: Imaging = field(default_factory=Imaging)
     shade: ShadePipeline = field(default_factory=ShadePipeline)
     surveys: Surveys = field(default_factory=Surveys)
-    """Of this run; never brought back after a restart."""
+    """Of this run; not restored after a restart."""
     frames: Mapping[str, Frame] = field(default_factory=dict)
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
@@ -64,26 +64,26 @@ class Station:
     controls: Mapping[str, VehicleControl] = field(default_factory=dict)
     """By serial; read with `control`, changed with `with_control` only."""
     streaming: tuple[str, ...] = ()
-    """Serials of the vehicles with a setpoint stream, kept by `with_control`: asked for with every
-    event, and few of many vehicles."""
+    """Serials of the vehicles with a setpoint stream, kept by `with_control`: read with every event,
+    and few of many vehicles."""
     neutral_pending: tuple[str, ...] = ()
     """Serials of the vehicles with a pending neutral setpoint, kept likewise."""
     clock: Clock | None = None
     """The computer's clock; None until it was first read."""
     restored_at_ns: int | None = None
-    """When this run took up what the last one knew; None when there was nothing."""
+    """When the last run's snapshot was restored; None without one."""
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
     next_own_id: int = -1
     """The number of the next command the station gives by itself; see `take_id`."""
     owners: frozenset[str] = frozenset()
-    """Open connections that may hold a steered order."""
+    """Open API streams that steered orders may depend on."""
     fleet_return: FleetReturn | None = None
-    """The newest fleet return, until the station is started anew or another one begins."""
+    """The newest fleet return of this run."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """Findings, holds and switches of the watchdogs."""
     faults: Mapping[str, Fault] = field(default_factory=dict)
-    """Of the station's own code, lately, by what it was doing."""
+    """Recent faults in the station's own code, by where they arose."""
 
     def control(self, serial: str | None) -> VehicleControl:
         """Return the control state of a vehicle; the default for one never commanded."""

@@ -35,8 +35,8 @@ class Tracking:
     """How far telemetry has confirmed the intent, for the flight table.
 
     Only modes received after `since_ns`, the intent's time, count. `mode_before` is the mode that
-    is no news. `doubt` is a verdict that counts once it has lasted since `doubt_since_ns`.
-    `failsafe` is what the aircraft does by itself, until it is commanded again or has landed.
+    is not new. `doubt` is a verdict that counts once it has lasted since `doubt_since_ns`.
+    `failsafe` describes the active failsafe, until the next command or the landing.
     """
 
     since_ns: int = 0
@@ -45,14 +45,14 @@ class Tracking:
     mode_before: FlightMode | None = None
     link_id: int | None = None
     read: Stamped[FlightMode] = Stamped()
-    """The mode report that was read last; each is read once, with a place as new."""
+    """The last mode report evaluated; each is evaluated once."""
     doubt: Verdict | None = None
     doubt_since_ns: int = 0
     core_at_ns: int | None = None
-    """When the telemetry came that the mission's passed waypoints were last counted by."""
+    """Receive time of the telemetry that last counted the mission's passed waypoints."""
     failsafe: str | None = None
     is_unbidden: bool = False
-    """New here, or on the ground with nothing commanded: its motion is not the station's."""
+    """First telemetry, or on the ground without a command: its motion is not the station's."""
 
 
 @dataclass(frozen=True)
