@@ -64,8 +64,8 @@ class Station:
     controls: Mapping[str, VehicleControl] = field(default_factory=dict)
     """By serial; read with `control`, changed with `with_control` only."""
     streaming: tuple[str, ...] = ()
-    """Serials of the vehicles with a setpoint stream, kept by `with_control`: read with every event,
-    and few of many vehicles."""
+    """Serials of the vehicles with a setpoint stream, kept by `with_control`: read at every
+    event, and few of many vehicles."""
     neutral_pending: tuple[str, ...] = ()
     """Serials of the vehicles with a pending neutral setpoint, kept likewise."""
     clock: Clock | None = None
