@@ -12,11 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from recon.geo import point_from_enu
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import FlightLimits, Region
 from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
-from recon.model.zone import Region
 from recon.sim.app.app import SimulatedApp
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.site import Site

@@ -23,9 +23,9 @@ from recon.guidance.survey import (
     start,
     step,
 )
+from recon.model.airspace import Region
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey
-from recon.model.zone import Region
 
 FRAME = LocalFrame(GeoPoint(44.99, -93.2, 250.0))
 COUNTS = (1, 3, 8)

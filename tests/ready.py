@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from recon.geo import enu_from_point
-from recon.model.airspace import Airspace
+from recon.model.airspace import Airspace, Region
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
-from recon.model.zone import Region
 from recon.site import Site
 from recon.site.site import Layers
 

@@ -17,14 +17,13 @@ from time import process_time
 import numpy as np
 
 from recon.geo.distance import moved_m
-from recon.model.airspace import Airspace
+from recon.model.airspace import Airspace, HeightDatum, Region, Zone, ZoneKind
 from recon.model.command import Body, Command, FlyMission, StickFrame, VirtualStick
+from recon.model.control import Commanded, Intent
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
-from recon.model.intent import Commanded, Intent
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import FlightMode, VehicleProfile, VehicleState, VelocityNed
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import ClaimingLink, PreparedAirspace, SafetySettings, Situation, Traffic
 from recon.safety.prediction.trajectory import Samples
 from recon.safety.rules.separation import separation as rule

@@ -15,13 +15,20 @@ import numpy as np
 import pytest
 
 from recon.geo import geo_from_enu
-from recon.model.airspace import Airspace, ElevationModel, FlightLimits
+from recon.model.airspace import (
+    Airspace,
+    ElevationModel,
+    FlightLimits,
+    HeightDatum,
+    Region,
+    Zone,
+    ZoneKind,
+)
 from recon.model.command import Body, Command, FlyMission, StickFrame, VirtualStick
 from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import ClaimingLink, PreparedAirspace, Situation
 from recon.safety.path.pieces import Kind, PathVolume
 from recon.safety.path.volumes import path_volume

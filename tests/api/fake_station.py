@@ -20,8 +20,8 @@ from recon.api.schema import (
     SurveyWays,
 )
 from recon.api.security import Access
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Body
+from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
 from recon.site import Site, default_site

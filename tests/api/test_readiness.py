@@ -9,7 +9,7 @@ from tests.link.approved import core, extended
 
 from recon import wire
 from recon.api import schema
-from recon.model.authority import AuthorityHolder
+from recon.model.control import AuthorityHolder
 from recon.model.event import LinkOpened, PacketReceived
 from recon.vehicles.reports import to_report
 

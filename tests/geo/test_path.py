@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from recon.geo import Polygon, corner_hulls, rounded_path, straight_path
 from recon.geo.path import corner_reaches_m
-from recon.model.zone import Region
+from recon.model.airspace import Region
 
 coordinate = st.integers(-20_000, 20_000).map(lambda decimetres: decimetres / 10.0)
 waypoints = st.integers(2, 3).flatmap(

@@ -16,9 +16,8 @@ from recon.guidance.fleet_return import (
     plan_return,
     way_home,
 )
-from recon.model.airspace import Airspace, FlightLimits
+from recon.model.airspace import Airspace, FlightLimits, HeightDatum, Region, Zone, ZoneKind
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 
 SETTINGS = FleetReturnSettings()
 LEAST = Separation(15.0, 6.0)

@@ -34,7 +34,7 @@ from recon.guidance.fleet_return import (
     Separation,
     mission_of,
 )
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
+from recon.model.airspace import HeightDatum, Region, Zone, ZoneKind
 
 CEILINGS_M = st.sampled_from([30.0, 45.0, 60.0, 120.0])
 

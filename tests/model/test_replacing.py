@@ -9,7 +9,7 @@ import pytest
 
 from recon.fleet.state import Fleet, LinkRecord
 from recon.model.replacing import replace
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import Tracking

@@ -13,13 +13,20 @@ from tests.oracles import sampled_fences as sampled
 from tests.oracles.agreement import Agreement, over
 from tests.oracles.places import NOW_NS, ORIGIN, FloatArray, degrees, lat_lon
 
-from recon.model.airspace import Airspace, ElevationModel, FlightLimits
+from recon.model.airspace import (
+    Airspace,
+    ElevationModel,
+    FlightLimits,
+    HeightDatum,
+    Region,
+    Zone,
+    ZoneKind,
+)
 from recon.model.command import Body, Command, FlyMission, GoTo, StickFrame, VirtualStick
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import PreparedAirspace, Situation
 from recon.safety.rules import Rule
 from recon.safety.rules.boundary import boundary

@@ -22,10 +22,10 @@ from recon.model.command import (
     StickFrame,
     VirtualStick,
 )
+from recon.model.control import Commanded, Intent
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.model.intent import Commanded, Intent
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Attitude, Failsafe, VehicleProfile, VehicleState, VelocityNed
 from recon.safety import PreparedAirspace, Situation, Traffic
 from recon.safety.rules import Rule

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 
 from tests.oracles.counting_app import CountingApp
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     Body,
     FlyMission,
@@ -27,6 +26,7 @@ from recon.model.command import (
     StopCamera,
     VirtualStick,
 )
+from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
     CommandSent,

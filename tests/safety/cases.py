@@ -7,7 +7,7 @@ from tests.ready import ready_airspace
 from recon.model.command import Body, Command, FlyMission, Refusal, StickFrame, VirtualStick
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import (
     AltitudeReference,
     Attitude,

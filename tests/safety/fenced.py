@@ -8,13 +8,21 @@ import numpy as np
 from tests.safety.cases import NOW, PLACE, TAKEOFF, command, situation, vehicle
 
 from recon.geo import geo_from_enu
-from recon.model.airspace import Airspace, ElevationModel, FlightLimits
+from recon.model.airspace import (
+    Airspace,
+    ElevationModel,
+    FlightLimits,
+    HeightDatum,
+    LandingPad,
+    Region,
+    Zone,
+    ZoneKind,
+)
 from recon.model.command import Body, FlyMission, GoTo, Refusal, StickFrame, VirtualStick
 from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
-from recon.model.zone import HeightDatum, LandingPad, Region, Zone, ZoneKind
 from recon.safety import PreparedAirspace, Situation
 from recon.safety.rules import Rule
 

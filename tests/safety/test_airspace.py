@@ -4,8 +4,7 @@ import numpy as np
 from tests.safety.traffic import FRAME
 
 from recon.geo import Footprints
-from recon.model.airspace import Airspace
-from recon.model.zone import Region, Zone, ZoneKind
+from recon.model.airspace import Airspace, Region, Zone, ZoneKind
 from recon.safety import PreparedAirspace
 
 

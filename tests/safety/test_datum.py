@@ -7,10 +7,9 @@ import pytest
 from tests.safety.cases import PLACE, TAKEOFF, vehicle
 from tests.safety.fenced import ORIGIN, airspace, flier, hills, place, square
 
-from recon.model.airspace import Airspace
+from recon.model.airspace import Airspace, LandingPad
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
-from recon.model.stamped import Stamped
-from recon.model.zone import LandingPad
+from recon.model.units import Stamped
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.datum import (
     FEW_PLACES,

@@ -9,7 +9,7 @@ from tests.safety.cases import STICK, TAKEOFF, command, mission, situation, vehi
 
 from recon.model.command import Body, GoTo, HoldPosition, Hover, LandNow, Nudge, Refusal, ReturnHome
 from recon.model.geo import LatLon
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.safety import ApprovedCommand, approve, judge
 from recon.safety.preflight import checklist
 

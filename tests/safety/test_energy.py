@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.safety.cases import PLACE, TAKEOFF, mission, vehicle, waypoint
 
 from recon.model.airspace import Airspace, FlightLimits
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.energy import (
     Consumption,

@@ -14,7 +14,7 @@ from recon.model.command import (
     VirtualStick,
 )
 from recon.model.geo import LatLon
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety.energy import (
     consumption,

@@ -21,8 +21,7 @@ from tests.safety.fenced import (
 )
 
 from recon.geo import Polygon
-from recon.model.airspace import FlightLimits
-from recon.model.zone import Region
+from recon.model.airspace import FlightLimits, Region
 from recon.safety.rules.boundary import boundary
 from recon.safety.rules.height_zones import height_zones
 from recon.safety.rules.home_distance import home_distance

@@ -34,7 +34,7 @@ from recon.model.command import (
     StopCamera,
 )
 from recon.model.mission import Mission
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety import approve, rules
 from recon.safety.gate import judge, judge_parts

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tests.safety.traffic import AIR, NOW, SETTINGS, S, aircraft, flies, judged, route, seen
 
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import Traffic

@@ -18,7 +18,7 @@ from recon.model.command import (
 )
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Attitude
 from recon.safety.path.order_path import (
     HoldPath,

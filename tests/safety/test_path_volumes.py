@@ -20,7 +20,7 @@ from recon.model.command import (
     StickFrame,
     StopCamera,
 )
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Attitude, Failsafe, VehicleState
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.path.pieces import Kind, PathVolume, UnknownPath

@@ -25,7 +25,7 @@ from tests.safety.traffic import (
 
 from recon.model.airspace import Airspace
 from recon.model.command import FlyMission, GoTo, HoldPosition, Nudge, StickFrame, VirtualStick
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.vehicle import Failsafe, TrackPoint, VehicleState
 from recon.safety import PreparedAirspace, Traffic

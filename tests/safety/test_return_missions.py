@@ -5,12 +5,11 @@ from dataclasses import replace
 import pytest
 from tests.safety.cases import TAKEOFF, mission, vehicle, waypoint
 
-from recon.model.airspace import Airspace
+from recon.model.airspace import Airspace, LandingPad
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import Mission
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
-from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.return_missions import leads_home
 

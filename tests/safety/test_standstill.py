@@ -12,9 +12,9 @@ from tests.safety.cases import (
     vehicle,
 )
 
-from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Hover, VirtualStick
-from recon.model.stamped import Stamped
+from recon.model.control import AuthorityHolder, ControlAuthority
+from recon.model.units import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety import Situation, Traffic, approve
 from recon.safety.path.order_path import is_stop

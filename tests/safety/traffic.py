@@ -3,10 +3,10 @@
 from recon.geo.distance import moved_m
 from recon.model.airspace import Airspace
 from recon.model.command import Body, Command, FlyMission, Refusal
+from recon.model.control import Commanded, Intent
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
-from recon.model.intent import Commanded, Intent
 from recon.model.mission import Mission, Waypoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import (
     Attitude,
     Failsafe,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from recon.geo import Polygon, enu_from_points
+from recon.model.airspace import ZoneKind
 from recon.model.units import NS_PER_S
-from recon.model.zone import ZoneKind
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.camera.rig import CameraRig
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet

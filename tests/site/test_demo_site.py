@@ -16,9 +16,9 @@ from recon.camera import (
     parse_control_points,
 )
 from recon.geo import Polygon, enu_from_points
+from recon.model.airspace import ZoneKind
 from recon.model.geo import LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe
-from recon.model.zone import ZoneKind
 from recon.safety import PreparedAirspace
 from recon.site import demo_site_folder, load_site
 from recon.site.demo_layers import BOUNDARY, ELEVATION_FILE, demo_elevation_bytes

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from tests.examples import examples
 
 from recon.geo import geo_from_enu
+from recon.model.airspace import HeightDatum, LandingPad, ZoneKind
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.model.zone import HeightDatum, LandingPad, ZoneKind
 from recon.site import Site, SiteError, load_site, site_report
 
 ORIGIN = GeoPoint(41.9012, -93.6034, 275.0)

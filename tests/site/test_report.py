@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from recon.geo import point_from_enu
+from recon.model.airspace import HeightDatum, Region, Zone, ZoneKind
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import Failsafe, VehicleProfile
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.site import Site, default_site, demo_site_folder, load_site, site_report
 from recon.site.demo_layers import BOUNDARY, FARMYARD, SURVEY, TREES, Outline
 from recon.site.demo_site import ORIGIN

@@ -9,12 +9,11 @@ from tests.ready import ready_airspace, ready_profile, ready_site
 from tests.station.station_world import HOME, World
 
 from recon.geo import point_from_enu
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import FlightLimits, LandingPad, Zone
 from recon.model.command import Phase
 from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import Failsafe
-from recon.model.zone import LandingPad, Zone
 from recon.safety import PreparedAirspace
 from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet

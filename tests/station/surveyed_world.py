@@ -7,11 +7,11 @@ import numpy as np
 from tests.station.returning_world import ReturningWorld, returning_world
 
 from recon.guidance.survey import CoverageFigures, SurveyState, figures
-from recon.model.authority import AuthorityHolder
+from recon.model.airspace import Region
 from recon.model.command import FlyMission
+from recon.model.control import AuthorityHolder
 from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyPhase
-from recon.model.zone import Region
 from recon.station.state.orders import OrderRecord
 from recon.station.state.survey_record import SurveyRecord
 

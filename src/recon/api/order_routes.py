@@ -8,7 +8,6 @@ from recon.api import schema
 from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, client_name, found
 from recon.api.schema import requests
-from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     Body,
     FlyMission,
@@ -23,6 +22,7 @@ from recon.model.command import (
     StopCamera,
     VirtualStick,
 )
+from recon.model.control import AuthorityHolder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 

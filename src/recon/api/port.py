@@ -17,8 +17,8 @@ from recon.api.schema import (
     SurveyView,
     SurveyWays,
 )
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Body
+from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
 

@@ -9,7 +9,6 @@ from recon.client.messages import AnswerMessage, Preflight, ReceivedState
 from recon.client.order import Order
 from recon.client.order_api import OrderApi
 from recon.client.telemetry import Telemetry
-from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     FlyMission,
     GoTo,
@@ -24,6 +23,7 @@ from recon.model.command import (
     StopCamera,
     VirtualStick,
 )
+from recon.model.control import AuthorityHolder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.units import ns_to_seconds

@@ -9,8 +9,7 @@ from recon.geo.distance import horizontal_distance_m
 from recon.model.geo import LatLon
 from recon.model.replacing import replace
 from recon.model.report import CoreReport, ExtendedReport
-from recon.model.stamped import Stamped
-from recon.model.units import seconds_to_ns
+from recon.model.units import Stamped, seconds_to_ns
 from recon.model.vehicle import TrackPoint, VehicleState
 
 LEAST_TRACK_STEP_M = 0.5

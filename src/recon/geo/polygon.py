@@ -9,7 +9,7 @@ import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo.footprints import Footprints, ShapeArray, finite_points, is_on_earth
-from recon.model.zone import Region
+from recon.model.airspace import Region
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from recon.model.authority import AuthorityHolder
+from recon.model.control import AuthorityHolder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
 

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, Phase
+from recon.model.control import AuthorityHolder
 from recon.model.report import Report
 from recon.model.survey import Survey
 

@@ -6,8 +6,8 @@ from enum import Enum, IntEnum
 from math import radians, tan
 from types import MappingProxyType
 
+from recon.model.airspace import Region
 from recon.model.mission import Mission
-from recon.model.zone import Region
 
 
 @dataclass(frozen=True, slots=True)

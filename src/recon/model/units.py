@@ -1,6 +1,8 @@
-"""Constants and small conversions of units."""
+"""Units: constants, small conversions, and a value with its receive time."""
 
 import math
+from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 NS_PER_S = 1_000_000_000
 
@@ -23,3 +25,24 @@ def wrap_degrees(angle_deg: float) -> float:
 def is_finite(*values: float) -> bool:
     """Return whether every value is neither NaN nor infinite."""
     return all(math.isfinite(value) for value in values)
+
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Stamped(Generic[T]):
+    """A value and when it was received; `value` is None while unknown."""
+
+    value: T | None = None
+    received_at_ns: int | None = None
+
+    def age_s(self, now_ns: int) -> float | None:
+        """Return the age in seconds, None when nothing was received yet."""
+        if self.received_at_ns is None:
+            return None
+        return (now_ns - self.received_at_ns) / NS_PER_S
+
+    def is_known(self) -> bool:
+        """Return whether there is a value."""
+        return self.value is not None

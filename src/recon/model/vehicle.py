@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from enum import Enum, IntEnum
 
-from recon.model.dji import DJI
 from recon.model.geo import GeoPoint, LatLon
-from recon.model.stamped import Stamped
+from recon.model.mission import DJI
+from recon.model.units import Stamped
 
 
 class FlightMode(IntEnum):

@@ -6,8 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo import Footprints, Polygon, Surface
-from recon.model.airspace import Airspace
-from recon.model.zone import Zone, ZoneKind
+from recon.model.airspace import Airspace, Zone, ZoneKind
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -27,8 +27,7 @@ from recon.model.command import (
     ReturnHome,
 )
 from recon.model.mission import Mission
-from recon.model.stamped import Stamped
-from recon.model.units import seconds_to_ns
+from recon.model.units import Stamped, seconds_to_ns
 from recon.model.vehicle import AltitudeReference, VehicleProfile
 from recon.safety.rules import RULES, Rule
 from recon.safety.rules.dji_limits import dji_limits

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from recon.model.zone import HeightDatum, Zone
+from recon.model.airspace import HeightDatum, Zone
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import places_m
 from recon.safety.path.pieces import PathVolume

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from recon.model.dji import DJI
+from recon.model.mission import DJI
 from recon.model.vehicle import LATE_UNDER_S, LIVE_UNDER_S
 
 

@@ -4,10 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from recon.model.authority import ControlAuthority
 from recon.model.command import Command
-from recon.model.intent import Intent
-from recon.model.stamped import Stamped
+from recon.model.control import ControlAuthority, Intent
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.settings import SafetySettings

@@ -10,9 +10,9 @@ import msgspec
 import numpy as np
 
 from recon.guidance.survey import SurveyPlan, plan_survey
+from recon.model.airspace import Region
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
-from recon.model.zone import Region
 from recon.score.scenario import Methods, Scenario
 from recon.score.scenario_errors import ScenarioError, ScenarioErrors, key_lines
 from recon.score.scenario_schema import CloudsTable, ScenarioFile, TaskTable

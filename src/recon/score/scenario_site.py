@@ -7,10 +7,9 @@ import numpy as np
 
 from recon.camera import ImageCircle, PoseSolution, TelemetryReference, level_pose
 from recon.geo import point_from_enu
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import FlightLimits, LandingPad, Region
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
-from recon.model.zone import LandingPad, Region
 from recon.score.scenario import EastNorth, ScenarioFleet, ScenarioImager
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.site import Imager, Site

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from recon.geo import enu_from_point
+from recon.model.airspace import Region
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey
-from recon.model.zone import Region
 from recon.score.scenario import EastNorth, ScenarioFleet, ScenarioImager
 from recon.score.scenario_errors import ScenarioErrors
 from recon.score.scenario_schema import FleetTable, ScenarioFile, ScenarioImagerTable

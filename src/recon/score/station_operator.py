@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from recon.fleet.state import staleness
-from recon.model.authority import AuthorityHolder
 from recon.model.command import ReturnHome
+from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
     Event,

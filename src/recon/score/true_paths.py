@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from recon.geo import Polygon, enu_from_point
 from recon.guidance.survey import SurveyPlan
+from recon.model.airspace import ZoneKind
 from recon.model.geo import LocalFrame
 from recon.model.units import NS_PER_S
-from recon.model.zone import ZoneKind
 from recon.score.photos import STEEPEST_COURSE, Photos
 from recon.score.settings import SCORE
 from recon.sim.app.app import SimulatedApp

@@ -10,11 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from recon.geo import Polygon, enu_from_points
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import FlightLimits, HeightDatum, Zone, ZoneKind
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import VehicleProfile
-from recon.model.zone import HeightDatum, Zone, ZoneKind
 from recon.site.elevation import LARGEST_GAP_M, ground_heights_m
 from recon.site.geojson import FARTHEST_M, FloatArray
 from recon.site.site import Site

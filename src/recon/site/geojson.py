@@ -16,9 +16,9 @@ import numpy.typing as npt
 from msgspec import Meta
 
 from recon.geo import enu_from_geo, region_fault
+from recon.model.airspace import Region
 from recon.model.errors import SiteError
 from recon.model.geo import LatLon, LocalFrame
-from recon.model.zone import Region
 from recon.site.reading import convert, read_bounded, refuse_non_finite
 from recon.site.validation_errors import shown_value
 

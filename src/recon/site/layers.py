@@ -7,9 +7,9 @@ from typing import Any, Literal
 import msgspec
 from msgspec import Struct
 
+from recon.model.airspace import HeightDatum, LandingPad, Region, Zone, ZoneKind
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.model.zone import HeightDatum, LandingPad, Region, Zone, ZoneKind
 from recon.site.geojson import Feature, point_of, read_features, regions_of
 from recon.site.reading import convert, file_inside
 from recon.site.schema import Altitude, LayersTable, Serial, Text

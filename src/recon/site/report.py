@@ -4,8 +4,7 @@ import numpy as np
 
 from recon.camera import PoseSolution
 from recon.geo import Polygon
-from recon.model.airspace import FlightLimits
-from recon.model.zone import ZoneKind
+from recon.model.airspace import FlightLimits, ZoneKind
 from recon.site.site import Imager, Layers, Site
 from recon.site.warnings import site_warnings
 

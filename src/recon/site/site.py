@@ -10,10 +10,9 @@ from recon.camera import (
     PoseSolution,
     TelemetryReference,
 )
-from recon.model.airspace import Airspace, ElevationModel, FlightLimits
+from recon.model.airspace import Airspace, ElevationModel, FlightLimits, LandingPad, Region, Zone
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
-from recon.model.zone import LandingPad, Region, Zone
 
 
 @dataclass(frozen=True, slots=True, eq=False)

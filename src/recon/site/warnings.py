@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from recon.geo import Polygon, enu_from_points
+from recon.model.airspace import HeightDatum, Zone, ZoneKind
 from recon.model.vehicle import VehicleProfile
-from recon.model.zone import HeightDatum, Zone, ZoneKind
 from recon.safety import SafetySettings
 from recon.safety.separation_minima import gate_minima
 from recon.site.consistency import highest_ground_m

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.guidance.survey import SurveyPlan, plan_survey
+from recon.model.airspace import Region
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
-from recon.model.zone import Region
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -18,10 +18,9 @@ from recon.guidance.survey import (
     start,
     step,
 )
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import FlightLimits, Region
 from recon.model.command import FlyMission, Refusal
 from recon.model.vehicle import Failsafe
-from recon.model.zone import Region
 from recon.safety.rules.boundary import boundary
 from recon.safety.rules.keep_out import keep_out
 

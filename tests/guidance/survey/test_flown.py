@@ -29,10 +29,10 @@ from recon.guidance.survey import (
     start,
     step,
 )
+from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.survey import CellState, Survey, SurveyBudget, SurveyPhase
 from recon.model.units import seconds_to_ns
-from recon.model.zone import Region
 
 
 def begun(survey: Survey, flyers: list[Flyer]) -> SurveyState:

@@ -27,9 +27,9 @@ from tests.guidance.survey.fields import (
 from recon.guidance.survey import SurveyPlan, SurveySurroundings, plan_survey
 from recon.guidance.survey.plan import row_reach_m
 from recon.guidance.survey.rows import Piece
+from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.survey import Survey, SurveyCamera
-from recon.model.zone import Region
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -16,10 +16,10 @@ from recon.geo.distance import horizontal_distance_m
 from recon.guidance.survey import Surveyor, SurveyPlan, SurveyState, create, start, step
 from recon.guidance.survey.route import Cost, Route, RowLeg, route_of, shared
 from recon.guidance.survey.rows import Piece
+from recon.model.airspace import Region
 from recon.model.geo import LatLon
 from recon.model.survey import MissionAssignment
 from recon.model.vehicle import VehicleProfile
-from recon.model.zone import Region
 from recon.vehicles.mission_repair import Repaired, repair
 
 COST = Cost(stop_m=25.6, least_cut_m=25.0)

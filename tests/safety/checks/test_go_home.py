@@ -8,10 +8,9 @@ from tests.ready import ready_airspace
 from tests.safety.cases import AIRSPACE, FACTS, TAKEOFF, vehicle, waypoint
 from tests.safety.checks.checked import ATTENTION, FAILS, OK, UNKNOWN, checked
 
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import FlightLimits, HeightDatum, Region, Zone, ZoneKind
 from recon.model.geo import GeoPoint
 from recon.model.vehicle import VehicleState
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.check import Check, CheckState
 from recon.safety.checks.site_facts import go_home_height

@@ -8,10 +8,9 @@ from tests.ready import ready_airspace
 from tests.safety.cases import AIRSPACE, FACTS, TAKEOFF, S, vehicle, waypoint
 from tests.safety.checks.checked import ATTENTION, FAILS, OK, UNKNOWN, checked
 
-from recon.model.airspace import ElevationModel
+from recon.model.airspace import ElevationModel, LandingPad
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
-from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.check import CheckState
 from recon.safety.checks.place import clock, fence, ground, home_place, pad_altitude

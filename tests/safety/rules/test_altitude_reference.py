@@ -20,7 +20,7 @@ from tests.safety.cases import (
 )
 
 from recon.model.command import Hover, Refusal
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety import ApprovedCommand, approve
 from recon.safety.rules.altitude_reference import altitude_reference

@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 from tests.safety.cases import STICK, command, mission, situation, vehicle
 
-from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import (
     Body,
     GoTo,
@@ -18,6 +17,7 @@ from recon.model.command import (
     StartCamera,
     StopCamera,
 )
+from recon.model.control import AuthorityHolder, ControlAuthority
 from recon.model.geo import LatLon
 from recon.safety import Situation
 from recon.safety.rules.authority import authority

@@ -8,7 +8,7 @@ from tests.safety.cases import STICK, TAKEOFF, command, mission, situation, vehi
 from recon.model.airspace import Airspace, FlightLimits
 from recon.model.command import Body, FlyMission, GoTo, HoldPosition, Hover, Nudge, StartCamera
 from recon.model.geo import LatLon
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleProfile, VehicleState
 from recon.safety import PreparedAirspace
 from recon.safety.energy import consumption, need_of

@@ -19,7 +19,7 @@ from tests.safety.fenced import (
 )
 
 from recon.model.command import Body, HoldPosition, Hover, LandNow, Nudge, ReturnHome
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.safety.path.pieces import PathVolume
 from recon.safety.path.volumes import path_volume

@@ -34,10 +34,10 @@ from tests.safety.fenced import (
 )
 from tests.safety.traffic import AIR, aircraft, at
 
-from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Body, Command, GoTo, Hover, Nudge, Refusal, StartCamera
+from recon.model.control import AuthorityHolder, ControlAuthority
 from recon.model.geo import LatLon
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety import ClaimingLink, Situation, Traffic
 from recon.safety.rules import RULES

@@ -28,7 +28,7 @@ from recon.model.command import (
     StartCamera,
     StopCamera,
 )
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.safety import approve
 from recon.safety.rules.flying import flying
 

@@ -7,7 +7,7 @@ from tests.safety.cases import STICK, command, mission, situation, vehicle
 
 from recon.model.command import Body, GoTo, HoldPosition, Hover, Nudge, Refusal, StopCamera
 from recon.model.geo import LatLon
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import FlightMode
 from recon.safety import SafetySettings
 from recon.safety.rules.gnss import gnss

@@ -21,11 +21,11 @@ from tests.safety.fenced import (
     stick,
 )
 
+from recon.model.airspace import HeightDatum, LandingPad
 from recon.model.command import Body, Hover, Nudge
 from recon.model.geo import GeoPoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
-from recon.model.zone import HeightDatum, LandingPad
 from recon.safety import PreparedAirspace
 from recon.safety.rules.height_zones import height_zones
 from recon.safety.settings import FenceSettings, SafetySettings

@@ -19,7 +19,7 @@ from tests.safety.fenced import (
 )
 
 from recon.model.command import Body, HoldPosition, Hover
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE
 from recon.safety.path.pieces import PathVolume

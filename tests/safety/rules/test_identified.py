@@ -15,7 +15,7 @@ from tests.safety.cases import (
 )
 
 from recon.model.command import Body, Hover, LandNow, Refusal, ReturnHome, StartCamera, StopCamera
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.safety import ClaimingLink, Situation, approve
 
 OTHERS = [mission(), STICK, StartCamera(1.0), StopCamera()]

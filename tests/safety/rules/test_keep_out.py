@@ -18,10 +18,10 @@ from tests.safety.fenced import (
     stick,
 )
 
+from recon.model.airspace import HeightDatum, Zone
 from recon.model.command import Body, Hover, Nudge
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
-from recon.model.zone import HeightDatum, Zone
 from recon.safety import PreparedAirspace
 from recon.safety.rules.keep_out import keep_out
 

@@ -18,7 +18,7 @@ from tests.safety.fenced import (
 )
 
 from recon.model.command import Body, HoldPosition, Hover, Nudge, ReturnHome
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.safety import PreparedAirspace
 from recon.safety.rules.max_height import max_height

@@ -19,11 +19,11 @@ from tests.safety.fenced import (
     stick,
 )
 
+from recon.model.airspace import LandingPad
 from recon.model.command import Body, HoldPosition, Hover, LandNow, Nudge
 from recon.model.geo import GeoPoint
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
-from recon.model.zone import LandingPad
 from recon.safety import PreparedAirspace
 from recon.safety.rules.min_height import min_height
 from recon.safety.settings import FenceSettings, SafetySettings

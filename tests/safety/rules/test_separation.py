@@ -19,9 +19,9 @@ from recon.model.command import (
     StickFrame,
     VirtualStick,
 )
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, TrackPoint, VehicleState
 from recon.safety import PreparedAirspace, Situation, Traffic
 from recon.safety.rules.separation import separation

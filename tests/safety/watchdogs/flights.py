@@ -10,8 +10,7 @@ from random import Random
 
 from tests.safety.traffic import AIR, S, aircraft, route
 
-from recon.model.authority import AuthorityHolder
-from recon.model.intent import Commanded, Intent
+from recon.model.control import AuthorityHolder, Commanded, Intent
 from recon.model.vehicle import FlightMode
 from recon.safety import PreparedAirspace
 from recon.safety.settings import SafetySettings

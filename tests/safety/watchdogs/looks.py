@@ -5,8 +5,7 @@ from dataclasses import replace
 
 from tests.safety.traffic import AIR, NOW, S, aircraft
 
-from recon.model.authority import AuthorityHolder
-from recon.model.intent import Commanded, Intent
+from recon.model.control import AuthorityHolder, Commanded, Intent
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import PreparedAirspace
 from recon.safety.settings import SafetySettings

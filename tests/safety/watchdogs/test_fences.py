@@ -17,10 +17,17 @@ from tests.safety.watchdogs.looks import (
     picture,
 )
 
-from recon.model.airspace import Airspace, ElevationModel, FlightLimits
+from recon.model.airspace import (
+    Airspace,
+    ElevationModel,
+    FlightLimits,
+    HeightDatum,
+    Region,
+    Zone,
+    ZoneKind,
+)
 from recon.model.geo import GroundGrid
 from recon.model.severity import Severity
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
 from recon.safety import PreparedAirspace
 from recon.safety.watchdogs import Finding
 from recon.safety.watchdogs.fences import fences

@@ -18,7 +18,7 @@ from tests.safety.watchdogs.looks import (
 )
 
 from recon.model.severity import Severity
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.safety.watchdogs import Finding
 from recon.safety.watchdogs.separation import separation

@@ -16,7 +16,7 @@ from tests.safety.watchdogs.looks import (
 )
 
 from recon.model.severity import Severity
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.safety.watchdogs import Finding, PreviousPosition
 from recon.safety.watchdogs.battery_home import battery_home

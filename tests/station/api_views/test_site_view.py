@@ -10,9 +10,8 @@ from tests.examples import examples
 
 from recon.api.schema import SiteView
 from recon.geo import Polygon, enu_from_geo, thinned_ring
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import FlightLimits, Region, Zone, ZoneKind
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.model.zone import Region, Zone, ZoneKind
 from recon.site import Layers, Site, default_site, demo_site_folder, load_site
 from recon.station.api_views.site_view import MAX_CORNERS, MAX_RINGS, site_view
 

@@ -8,7 +8,6 @@ from tests.station.station_world import from_the_ground, square_mission, world
 
 from recon import wire
 from recon.fleet.state import Fleet
-from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     FlyMission,
     Hover,
@@ -17,6 +16,7 @@ from recon.model.command import (
     StickFrame,
     VirtualStick,
 )
+from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AlarmAcknowledged,
     AuditFailed,

@@ -5,10 +5,9 @@ from tests.fleet.reports import core, extended
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import CommandedStation
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, FlyMission, Hover, LandNow, Phase, ReturnHome, VirtualStick
+from recon.model.control import AuthorityHolder, Commanded, Intent
 from recon.model.event import AuthorityTaken, CommandSent, OperatorOrder
-from recon.model.intent import Commanded, Intent
 from recon.model.vehicle import FlightMode
 from recon.station.control import authority
 from recon.station.state.outputs import WithdrawMotion

@@ -6,7 +6,7 @@ from tests.station.commanded import CommandedStation
 from tests.station.flown import GPS, at, flies, hovering, ordered, row, under_way
 
 from recon.model.command import Body, FlyMission, Hover, LandNow, Phase, ReturnHome, StartCamera
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.model.vehicle import FlightMode
 
 

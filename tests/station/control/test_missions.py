@@ -11,8 +11,8 @@ from tests.station.recovery.restarts import restart_world
 from tests.station.station_world import HOME, World, world
 
 from recon.geo.distance import horizontal_distance_m
-from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Hover, LandNow, Phase, StopCamera
+from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, CommandSent
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint

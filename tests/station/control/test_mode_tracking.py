@@ -16,9 +16,8 @@ from tests.station.flown import (
     under_way,
 )
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, Hover, LandNow, Phase, ReturnHome
-from recon.model.intent import Commanded
+from recon.model.control import AuthorityHolder, Commanded
 from recon.model.vehicle import FlightMode
 
 HOME, LANDING, SPORT = FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.GPS_SPORT

@@ -8,8 +8,8 @@ from tests.safety.cases import STICK, mission
 from tests.station.commanded import PROFILES, CommandedStation, flying
 
 from recon.fleet.state import Fleet
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, Hover, Phase, ReturnHome, StartCamera, StopCamera
+from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, CommandSent
 from recon.model.report import ImageReport
 from recon.model.vehicle import AltitudeReference, FlightMode

@@ -11,7 +11,6 @@ from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
 from tests.station.flown import NORTHWARD, STANDING, at, row, to_land
 
 from recon.fleet.state import Fleet
-from recon.model.authority import AuthorityHolder
 from recon.model.command import (
     Body,
     FlyMission,
@@ -22,6 +21,7 @@ from recon.model.command import (
     StartCamera,
     VirtualStick,
 )
+from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
     CommandAnswered,

@@ -6,8 +6,7 @@ import pytest
 from recon.camera.motion import TelemetryReference
 from recon.model.geo import LatLon
 from recon.model.imagery import Frame
-from recon.model.stamped import Stamped
-from recon.model.units import NS_PER_S
+from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import Attitude, VehicleState
 from recon.station.imaging.frames import lay_job, with_sample
 from recon.station.state.imaging import Imaging

@@ -7,9 +7,9 @@ from tests.sim.test_demo_flights import config
 from tests.station.station_world import World
 
 from recon.geo import point_from_enu
+from recon.model.airspace import Region
 from recon.model.command import FlyMission, Phase
 from recon.model.mission import Mission, Waypoint
-from recon.model.zone import Region
 from recon.sim.fleet import build_fleet
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.kernel.build import first_state

@@ -11,8 +11,8 @@ import pytest
 from tests.station.returning_world import LEAST_LEVEL_M, ReturningWorld, returning_world
 from tests.station.station_world import square_mission
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
+from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, SeparationHoldSwitched
 from recon.station.api_views.operation_views import fleet_return_view
 from recon.station.state.fleet_return_record import Stage

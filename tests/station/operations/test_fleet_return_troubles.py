@@ -11,12 +11,11 @@ from tests.station.station_world import square_mission
 
 from recon.fleet.state import Fleet
 from recon.geo import point_from_enu
-from recon.model.airspace import Airspace
+from recon.model.airspace import Airspace, LandingPad
 from recon.model.command import FlyMission, Hover, Phase
 from recon.model.event import FleetReturnOrdered, OperatorOrder
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleProfile
-from recon.model.zone import LandingPad
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.station.operations.fleet_return import positions
 from recon.station.operations.fleet_return.planning import PLAN_RETURN

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field, surveyed_world
 
-from recon.model.authority import AuthorityHolder
+from recon.model.airspace import HeightDatum, Zone, ZoneKind
 from recon.model.command import FlyMission, LandNow, Phase
+from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, SurveyStarted
 from recon.model.survey import SurveyPhase, WhenDone
-from recon.model.zone import HeightDatum, Zone, ZoneKind
 
 
 def two_ends() -> SurveyedWorld:

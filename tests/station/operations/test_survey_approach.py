@@ -9,7 +9,7 @@ from recon.geo.distance import moved_m
 from recon.model.airspace import FlightLimits
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.station.operations.survey.mission_dispatch import with_approach, with_approaches
 

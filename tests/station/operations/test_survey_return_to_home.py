@@ -5,8 +5,8 @@ from random import Random
 import pytest
 from tests.station.surveyed_world import SurveyedWorld, asked, field, surveyed_world
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Hover, LandNow
+from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken
 from recon.model.survey import SurveyBudget, SurveyPhase, WhenDone
 from recon.station.state.fleet_return_record import Stage

@@ -15,8 +15,8 @@ from tests.station.commanded import CommandedStation
 from tests.station.recovery.restarts import restart, restart_world, restored_from, saved
 from tests.station.station_world import World, from_the_ground, square_mission, world
 
-from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import FlyMission, Hover, LandNow, Phase
+from recon.model.control import AuthorityHolder, ControlAuthority
 from recon.model.event import AuthorityTaken, HazardDismissed, OperatorOrder
 from recon.model.units import NS_PER_S
 from recon.sim.fleet import Airborne

@@ -10,8 +10,8 @@ from tests.fleet.reports import core, extended
 from tests.record.audits import PATIENCE_S, until
 from tests.station.commanded import CommandedStation
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover
+from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, Event, HazardDismissed, Tick
 from recon.model.geo import LatLon
 from recon.record.snapshot_file import CURRENT, read_snapshot

@@ -13,7 +13,7 @@ from tests.station.steered_world import HEIGHT_M, OWNER, SERIAL, Steered, steere
 
 from recon import wire
 from recon.geo import enu_from_point
-from recon.model.authority import AuthorityHolder
+from recon.model.airspace import Region
 from recon.model.command import (
     FlyMission,
     GoTo,
@@ -25,10 +25,10 @@ from recon.model.command import (
     ReturnHome,
     StartCamera,
 )
+from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, OwnerConnected
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
-from recon.model.zone import Region
 from recon.safety import PreparedAirspace
 from recon.station.kernel.virtual import FakeLink
 

@@ -8,8 +8,8 @@ from tests.station.commanded import CommandedStation
 
 from recon.fleet.settings import FleetSettings
 from recon.geo.distance import moved_m
-from recon.model.authority import AuthorityHolder
 from recon.model.command import GoTo, Hover, Phase
+from recon.model.control import AuthorityHolder
 from recon.model.event import AlarmAcknowledged, AuthorityTaken, HazardDismissed
 from recon.station.api_views.vehicle_views import hazard_view
 from recon.station.traffic.known_traffic import hazard, in_the_air, is_dismissible

@@ -7,11 +7,10 @@ from tests.station.operations.test_fleet_return import SIX, six_in_the_air
 from tests.station.returning_world import LEAST_LEVEL_M
 
 from recon.geo.distance import moved_m
-from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import GoTo, Hover, Phase, ReturnHome
+from recon.model.control import AuthorityHolder, Commanded, ControlAuthority, Intent
 from recon.model.event import AuthorityTaken, SeparationHoldSwitched, Tick
 from recon.model.geo import LatLon
-from recon.model.intent import Commanded, Intent
 from recon.model.severity import Severity
 from recon.model.vehicle import FlightMode
 from recon.safety.watchdogs import CommandedHold, hold_outcome

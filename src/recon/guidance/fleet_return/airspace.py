@@ -8,8 +8,7 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.guidance.fleet_return.flight import EastNorth
 from recon.guidance.fleet_return.settings import FleetReturnSettings
-from recon.model.airspace import Airspace
-from recon.model.zone import HeightDatum, Region, Zone, ZoneKind
+from recon.model.airspace import Airspace, HeightDatum, Region, Zone, ZoneKind
 
 
 @dataclass(frozen=True, slots=True, eq=False)

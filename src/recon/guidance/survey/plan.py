@@ -14,11 +14,11 @@ from recon.guidance.survey.missions import RegionPaths
 from recon.guidance.survey.route import Place, RowLeg
 from recon.guidance.survey.rows import Piece, best_bearing_deg, lattice_over, row_pieces
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
+from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.model.units import is_finite
-from recon.model.zone import Region
 
 MOST_CELLS = 4_000_000
 """400 ha in cells of 1 m: more takes too much memory."""

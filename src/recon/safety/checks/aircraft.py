@@ -1,6 +1,6 @@
 """Checks of the aircraft's own reports: link, battery, GNSS, wind and its app's warnings."""
 
-from recon.model.stamped import Stamped
+from recon.model.units import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.check import Check, Point
 from recon.safety.rules.gnss import gnss_refusal

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from recon.model.airspace import HeightDatum, ZoneKind
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile, VehicleState
-from recon.model.zone import HeightDatum, ZoneKind
 from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.check import Check, Point
 from recon.safety.datum import takeoff_up_m

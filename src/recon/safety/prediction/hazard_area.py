@@ -6,7 +6,7 @@ plausible speed and reaches down to the ground, for its battery ends somewhere.
 
 from dataclasses import dataclass
 
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.safety.prediction.legs import stopping_distance_m
 from recon.safety.prediction.motion import VehicleMotion
 from recon.safety.prediction.predictor import go_home_top_m

@@ -5,8 +5,7 @@ from typing import NamedTuple
 from recon.geo import OnGlobe
 from recon.geo.distance import offset_north_east_m
 from recon.model.geo import LatLon
-from recon.model.stamped import Stamped
-from recon.model.units import NS_PER_S
+from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import Failsafe, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, takeoff_up_m_at

@@ -6,7 +6,7 @@ from math import hypot
 import numpy as np
 
 from recon.model.command import Body, FlyMission
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
 from recon.safety.path.order_path import StickFlight, StraightFlight, TakeoffClimb, order_path
 from recon.safety.prediction.hazard_area import hazard_area_of, hazard_trajectories

@@ -2,8 +2,8 @@
 
 from math import hypot
 
+from recon.model.control import Commanded, Intent
 from recon.model.geo import LatLon
-from recon.model.intent import Commanded, Intent
 from recon.model.mission import Mission
 from recon.safety.prediction.legs import (
     LEAST_M,

@@ -1,7 +1,7 @@
 """Only the holder of control authority sets a vehicle in motion; any client may stop it."""
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Command, Refusal
+from recon.model.control import AuthorityHolder
 from recon.safety.situation import Situation
 
 RULE = "authority"

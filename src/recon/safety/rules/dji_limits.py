@@ -15,9 +15,8 @@ from recon.model.command import (
     StartCamera,
     VirtualStick,
 )
-from recon.model.dji import DJI
 from recon.model.geo import LatLon
-from recon.model.mission import Mission, Waypoint
+from recon.model.mission import DJI, Mission, Waypoint
 from recon.safety.path.order_path import as_sent
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation

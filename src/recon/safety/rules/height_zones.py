@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from recon.model.airspace import ZoneKind
 from recon.model.command import Command, Refusal
-from recon.model.zone import ZoneKind
 from recon.safety.airspace import PreparedZone
 from recon.safety.heights import columns, height_text, stays_above, stays_below, up_of, zone_datum
 from recon.safety.path.order_path import is_stop

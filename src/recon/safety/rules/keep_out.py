@@ -3,8 +3,8 @@
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.airspace import Zone, ZoneKind
 from recon.model.command import Command, Refusal
-from recon.model.zone import Zone, ZoneKind
 from recon.safety.airspace import PreparedZone
 from recon.safety.heights import (
     height_text,

@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo import Footprints, Polygon
+from recon.model.airspace import ZoneKind
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.severity import Severity
-from recon.model.zone import ZoneKind
 from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.datum import places_m
 from recon.safety.heights import height_text, stays_above, stays_below, zone_datum

@@ -8,8 +8,8 @@ from math import hypot
 
 import numpy as np
 
-from recon.model.dji import DJI
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
+from recon.model.mission import DJI
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
 from recon.safety.prediction import PredictionSettings, Predictor, VehicleMotion

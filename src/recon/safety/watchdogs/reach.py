@@ -15,7 +15,7 @@ A vehicle that returns, lands, flies a curved mission, or whose mission is unkno
 
 from typing import NamedTuple
 
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.safety.prediction import PredictionSettings, VehicleMotion
 from recon.safety.prediction.legs import LEAST_M, VERTICAL_BRAKING_MPS2
 

@@ -23,7 +23,7 @@ from math import hypot
 
 import numpy as np
 
-from recon.model.authority import AuthorityHolder
+from recon.model.control import AuthorityHolder
 from recon.model.severity import Severity
 from recon.safety.prediction import HazardArea
 from recon.safety.separation_minima import SeparationMinima

@@ -7,7 +7,7 @@ vehicle with one another, or with what it was sent.
 from collections.abc import Iterator
 from math import hypot
 
-from recon.model.intent import Commanded
+from recon.model.control import Commanded
 from recon.model.severity import Severity
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import AltitudeReference, FlightMode

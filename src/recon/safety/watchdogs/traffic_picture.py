@@ -4,9 +4,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from recon.model.authority import AuthorityHolder
+from recon.model.control import AuthorityHolder, Commanded, Intent
 from recon.model.geo import LatLon
-from recon.model.intent import Commanded, Intent
 from recon.model.severity import Severity
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode, VehicleState

@@ -17,8 +17,8 @@ from recon.sim.flight.mission import MissionPoint
 class SdkLimits:
     """Mobile SDK 4 limits of missions and virtual sticks, and the aircraft's own settings.
 
-    Not taken from `recon.model.dji` on purpose: a wrong number there must show as a mission that
-    the station sends and the simulated aircraft rejects.
+    Not taken from `recon.model.mission` on purpose: a wrong number there must show as a mission
+    that the station sends and the simulated aircraft rejects.
     """
 
     max_waypoints: int = 99

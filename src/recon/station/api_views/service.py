@@ -8,8 +8,8 @@ from itertools import count
 from recon import version
 from recon.api import schema
 from recon.api.port import SurveyCellStates
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Body, Hover, Phase, Refusal
+from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AlarmAcknowledged,
     AuthorityTaken,

@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from recon.api import schema
 from recon.geo import geo_from_enu, thinned_ring
+from recon.model.airspace import LandingPad, Region, Zone
 from recon.model.geo import LocalFrame
-from recon.model.zone import LandingPad, Region, Zone
 from recon.site import Site
 
 FloatArray = npt.NDArray[np.float64]

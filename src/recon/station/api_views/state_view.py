@@ -9,8 +9,7 @@ from recon.api import schema
 from recon.fleet.state import Fleet, LinkRecord, staleness
 from recon.link.session import Session
 from recon.model.imagery import Frame
-from recon.model.stamped import Stamped
-from recon.model.units import ns_to_seconds
+from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.api_views.imaging_views import ground_image_view, shade_view
 from recon.station.api_views.operation_views import fleet_return_view, survey_views

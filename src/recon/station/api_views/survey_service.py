@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from recon.api import schema
 from recon.api.port import SurveyCellStates
 from recon.guidance.survey.plan import RULE
+from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.errors import SiteError
 from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
-from recon.model.zone import Region
 from recon.site import Site
 from recon.site.geojson import Feature, regions_of
 from recon.station.api_views.operation_views import cells_number, survey_view, survey_ways

@@ -8,10 +8,9 @@ something else, but setpoint streams end at once (`stream_ends` compares the hol
 from dataclasses import replace
 
 from recon.link.outbox import Lane, lane_of
-from recon.model.authority import AuthorityHolder, ControlAuthority
 from recon.model.command import Command, Phase, Refusal
+from recon.model.control import AuthorityHolder, ControlAuthority, Intent
 from recon.model.event import AuthorityTaken
-from recon.model.intent import Intent
 from recon.station.control import intents
 from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity

@@ -9,7 +9,7 @@ from recon.fleet.flight_table import AT_END_M, GOOD_GNSS_LEVEL, Instruction, Mod
 from recon.fleet.mission_progress import distance_to_m
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import Body, FlyMission, Hover, LandNow, ReturnHome, VirtualStick
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
 from recon.station.state.setpoint_stream import SetpointStream

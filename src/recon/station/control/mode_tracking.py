@@ -24,7 +24,7 @@ from recon.fleet.confirmation import SentContext
 from recon.fleet.flight_table import Instruction, ModeKind, Reading, Verdict, kind_of, read
 from recon.fleet.mission_progress import waypoints_passed
 from recon.model.command import STEERED_BODIES, Body, LandNow, Phase
-from recon.model.intent import Commanded, Intent
+from recon.model.control import Commanded, Intent
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState

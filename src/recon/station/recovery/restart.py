@@ -21,11 +21,10 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from recon.geo.distance import horizontal_distance_m
-from recon.model.authority import ControlAuthority
 from recon.model.command import BODY_NAMES, Body, Command, Phase
+from recon.model.control import ControlAuthority
 from recon.model.geo import LatLon
-from recon.model.stamped import Stamped
-from recon.model.units import ns_to_seconds
+from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
 from recon.station.control import authority

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 
 import msgspec
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import LIVING_PHASES, Phase, VirtualStick
+from recon.model.control import AuthorityHolder
 from recon.model.geo import LatLon
 from recon.model.vehicle import VehicleState
 from recon.station.state.orders import OrderRecord

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from recon.guidance.fleet_return import ReturnFlight
-from recon.model.authority import AuthorityHolder
+from recon.model.control import AuthorityHolder
 from recon.model.geo import LocalFrame
 
 

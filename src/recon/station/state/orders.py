@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 
 from recon.fleet.confirmation import Progress, SentContext
-from recon.model.authority import ControlAuthority
 from recon.model.command import (
     Body,
     Command,
@@ -21,6 +20,7 @@ from recon.model.command import (
     ReturnHome,
     VirtualStick,
 )
+from recon.model.control import ControlAuthority
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent
 from recon.model.mission import Mission
 from recon.model.units import seconds_to_ns

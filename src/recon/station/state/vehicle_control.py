@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 from recon.fleet.flight_table import Verdict
-from recon.model.authority import ControlAuthority
 from recon.model.command import Command, VirtualStick
-from recon.model.intent import Intent
-from recon.model.stamped import Stamped
+from recon.model.control import ControlAuthority, Intent
+from recon.model.units import Stamped
 from recon.model.vehicle import FlightMode
 from recon.safety import Override
 from recon.station.state.setpoint_stream import SetpointStream

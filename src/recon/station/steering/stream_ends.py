@@ -8,10 +8,9 @@ from typing import NamedTuple
 
 from recon.fleet.flight_table import Instruction, Place, Verdict, read
 from recon.guidance.steering import halted
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Command, Hover, Phase, Refusal, StickFrame, VirtualStick
+from recon.model.control import AuthorityHolder, Commanded
 from recon.model.event import OperatorOrder
-from recon.model.intent import Commanded
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState

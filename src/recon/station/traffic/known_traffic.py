@@ -10,8 +10,8 @@ from dataclasses import replace
 
 from recon.fleet.identity import has_no_room, without
 from recon.model.command import FlyMission, Phase
+from recon.model.control import Commanded, Intent
 from recon.model.event import HazardDismissed
-from recon.model.intent import Commanded, Intent
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety.prediction import HazardArea, hazard_area_of, vehicle_motion

@@ -9,9 +9,8 @@ from math import ceil, hypot, inf
 from typing import Any
 
 from recon.geo.distance import horizontal_distance_m
-from recon.model.dji import DjiLimits
 from recon.model.geo import LatLon
-from recon.model.mission import Waypoint
+from recon.model.mission import DjiLimits, Waypoint
 from recon.model.units import wrap_degrees
 
 

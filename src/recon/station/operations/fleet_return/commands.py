@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase, Refusal
+from recon.model.control import AuthorityHolder
 from recon.model.event import Event, FleetReturnOrdered, OperatorOrder
 from recon.record.audit import AuditEntry
 from recon.safety.datum import frame_for

@@ -30,8 +30,8 @@ from recon.guidance.fleet_return import (
     mission_of,
     whole_claim,
 )
-from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission, Hover, Phase, Refusal
+from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.safety import judge

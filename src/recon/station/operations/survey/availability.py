@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from recon.fleet.state import staleness
 from recon.guidance.survey import Surveyor
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Phase
+from recon.model.control import AuthorityHolder
 from recon.model.vehicle import Staleness, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import frame_for, home_enu_m, vehicle_enu_m

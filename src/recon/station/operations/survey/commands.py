@@ -5,8 +5,8 @@ from types import MappingProxyType
 
 from recon.guidance.survey import SurveyState, abort, pause, start
 from recon.guidance.survey.plan import RULE
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, LandNow, Phase, Refusal
+from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
     OperatorOrder,

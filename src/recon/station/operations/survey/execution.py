@@ -19,8 +19,8 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
 from dataclasses import replace
 
 from recon.guidance.survey import refused
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase
+from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.survey import MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns

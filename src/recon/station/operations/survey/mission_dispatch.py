@@ -10,8 +10,8 @@ from dataclasses import replace
 
 from recon.geo.distance import horizontal_distance_m
 from recon.model.airspace import FlightLimits
-from recon.model.authority import AuthorityHolder
 from recon.model.command import FlyMission
+from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.geo import LatLon
 from recon.model.mission import Mission

@@ -20,12 +20,12 @@ from recon.guidance.survey import (
     step,
 )
 from recon.guidance.survey.plan import RULE
+from recon.model.airspace import ZoneKind
 from recon.model.command import Refusal
 from recon.model.event import SurveyRequested
 from recon.model.geo import LocalFrame
 from recon.model.shade import ShadeMap
 from recon.model.survey import MissionAssignment, Survey
-from recon.model.zone import ZoneKind
 from recon.station.state.jobs import Job, JobKind
 from recon.station.state.station import Station
 from recon.station.state.stepped import Stepped

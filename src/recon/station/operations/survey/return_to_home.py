@@ -7,8 +7,8 @@ gate. It ends when an operator or a pilot takes control of the vehicle.
 
 from dataclasses import replace
 
-from recon.model.authority import AuthorityHolder
 from recon.model.command import Hover, Phase
+from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.survey import SurveyPhase, WhenDone
 from recon.station.control import authority

@@ -1,10 +1,34 @@
-"""What the station last commanded a vehicle to do, to predict its path."""
+"""Control of a vehicle: who may command it, and what the station last commanded.
+
+Transfers of authority are explicit. The intent is for predicting the path.
+"""
 
 from dataclasses import dataclass
 from enum import Enum
 
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
+
+
+class AuthorityHolder(Enum):
+    """The party that may set a vehicle in motion. Any party may stop it."""
+
+    PILOT = "pilot"
+    """The person with the controller; the station stops commanding."""
+    OPERATOR = "operator"
+    """A user or a program at the station."""
+    GUIDANCE = "guidance"
+    """The station's own planning."""
+
+
+@dataclass(frozen=True, slots=True)
+class ControlAuthority:
+    """The authority holder of a vehicle, since when, and why."""
+
+    holder: AuthorityHolder = AuthorityHolder.OPERATOR
+    holder_name: str = ""
+    since_ns: int = 0
+    reason: str = "not yet transferred"
 
 
 class Commanded(Enum):
