@@ -39,7 +39,7 @@ from recon.station.imaging.frames import LAY_FRAME, LayFrame
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.worker import JobRunner, ThreadWorker
-from recon.station.state.jobs import Job, JobDropped
+from recon.station.state.steps import Job, JobDropped
 
 LIMIT_MS = 20.0
 SETTLING_S = 2.0

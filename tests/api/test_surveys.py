@@ -17,7 +17,7 @@ from recon.geo import geo_from_enu
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
 from recon.station.imaging.shade import READ_SHADE, ShadeRead, on_ground_image
-from recon.station.state.jobs import JobDone
+from recon.station.state.steps import JobDone
 
 FRAME = LocalFrame(HOME)
 

@@ -20,8 +20,7 @@ from recon.link.settings import LinkSettings
 from recon.record.audit_log import AuditLog
 from recon.site import default_site
 from recon.station.api_views.service import Service
-from recon.station.audit.auditor import Auditor
-from recon.station.audit.log import LogPrinter
+from recon.station.audit.auditor import Auditor, LogPrinter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
 

@@ -26,8 +26,8 @@ from recon.station.kernel.step import step
 from recon.station.kernel.virtual import EPOCH_NS
 from recon.station.state.alarm_book import Alarm
 from recon.station.state.orders import OrderRecord
-from recon.station.state.outputs import SendCommand
 from recon.station.state.station import Clock, Station
+from recon.station.state.steps import SendCommand
 
 HOME = GeoPoint(PLACE.latitude_deg, PLACE.longitude_deg, 260.0)
 PROFILES = {serial: ready_profile(serial, HOME, n) for n, serial in enumerate("AB")}

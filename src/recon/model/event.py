@@ -210,7 +210,7 @@ class AlarmAcknowledged:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JobEnded:
-    """A job of the worker ended; the station's `state/jobs.py` has a subclass for each way."""
+    """A job of the worker ended; the station's `state/steps.py` has a subclass for each way."""
 
     job_id: int
 

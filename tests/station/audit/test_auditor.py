@@ -8,9 +8,8 @@ from tests.record.audits import PATIENCE_S, entry, until
 
 from recon.model.event import LinkOpened, Tick
 from recon.record.audit_log import AuditLog
-from recon.station.audit import log as log_module
-from recon.station.audit.auditor import Auditor
-from recon.station.audit.log import WAITING_LINES, LogPrinter
+from recon.station.audit import auditor as log_module
+from recon.station.audit.auditor import WAITING_LINES, Auditor, LogPrinter
 from recon.station.kernel.driver import AsyncioDriver
 from recon.station.state.station import Station
 

@@ -10,7 +10,7 @@ from recon.model.control import AuthorityHolder, Commanded, Intent
 from recon.model.event import AuthorityTaken, CommandSent, OperatorOrder
 from recon.model.vehicle import FlightMode
 from recon.station.control import authority
-from recon.station.state.outputs import WithdrawMotion
+from recon.station.state.steps import WithdrawMotion
 
 HOVERING = (core(), extended(mode=FlightMode.GPS_ATTI))
 

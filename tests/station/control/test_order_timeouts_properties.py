@@ -37,8 +37,8 @@ from recon.model.event import (
 from recon.model.vehicle import FlightMode
 from recon.station.kernel.step import step
 from recon.station.state.orders import OrderRecord
-from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station
+from recon.station.state.steps import Output, SendCommand
 
 MODES = [
     FlightMode.GPS_ATTI,

@@ -19,9 +19,8 @@ from recon.station.imaging.shade import READ_SHADE, ReadShade
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
 from recon.station.state.imaging import WAITING_KEPT
-from recon.station.state.jobs import Job, JobDone, JobDropped, JobFailed
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station
+from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Output
 
 GRID = GroundGrid(LocalFrame(HOME), -64.0, 64.0, 1.0, 128, 128)
 POSE = CameraPose(np.eye(3), np.array([0.0, 0.0, 120.0]))

@@ -11,7 +11,7 @@ from recon.station.imaging.frames import LAY_FRAME
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock
 from recon.station.kernel.event_queue import EventQueue
-from recon.station.state.jobs import JobDropped
+from recon.station.state.steps import JobDropped
 
 PATIENCE_S = 120.0
 

@@ -29,8 +29,8 @@ from recon.station.kernel import fault_isolation, step
 from recon.station.kernel.fault_isolation import TickPart, after_fault, isolated
 from recon.station.state.alarm_book import Alarm, Severity
 from recon.station.state.orders import OrderRecord
-from recon.station.state.outputs import CloseLink, Output, SendCommand
 from recon.station.state.station import Station
+from recon.station.state.steps import CloseLink, Output, SendCommand
 from recon.vehicles.reports import to_report
 
 FAULT = ZeroDivisionError("division by zero")

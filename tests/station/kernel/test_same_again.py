@@ -9,8 +9,8 @@ from tests.oracles.run_digest import RunDigest, parts_of
 from tests.oracles.same_again import FAULTS, HASH_SEEDS, in_another_process
 
 from recon.model.event import CommandAnswered, CommandSent, Event, LinkClosed
-from recon.station.state.jobs import JobDone
 from recon.station.state.station import Station
+from recon.station.state.steps import JobDone
 
 SECONDS = 20.0
 

@@ -14,9 +14,9 @@ from recon.model.report import ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.kernel.step import HANDLERS
-from recon.station.state.jobs import JobDone, JobDropped, JobFailed
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
+from recon.station.state.steps import JobDone, JobDropped, JobFailed
 
 IMAGE = ImageReport(target_fps_hz=1.0, jpeg=b"x")
 

@@ -23,9 +23,9 @@ from recon.model.event import (
 from recon.model.report import AckReport, AnsweredKind, ImageReport, MessageReport, MessageSeverity
 from recon.model.vehicle import FlightMode
 from recon.station.kernel.step import step
-from recon.station.state.outputs import SendCommand
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
+from recon.station.state.steps import SendCommand
 
 LINKS = st.integers(1, 4)
 IDS = st.integers(1, 12)

@@ -12,9 +12,8 @@ from recon.model.event import Event
 from recon.site import Site
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import JobRunner, ThreadWorker
-from recon.station.state.jobs import Job, JobDone, JobDropped, JobFailed, JobKind
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, JobKind, Stepped
 
 PATIENCE_S = 120.0
 DIRTY = "the lens is dirty"

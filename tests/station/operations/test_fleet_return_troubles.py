@@ -20,8 +20,8 @@ from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.station.operations.fleet_return import positions
 from recon.station.operations.fleet_return.planning import PLAN_RETURN
 from recon.station.state.fleet_return_record import Stage
-from recon.station.state.jobs import JobDropped, JobFailed
 from recon.station.state.station import Station
+from recon.station.state.steps import JobDropped, JobFailed
 
 ONE = [(0, 100, 30)]
 TWO = [(0, 100, 30), (60, 100, 40)]

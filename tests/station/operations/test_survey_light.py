@@ -12,7 +12,7 @@ from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.survey import CellState, SurveyBudget, SurveyPhase
 from recon.station.imaging.frames import LAY_FRAME
-from recon.station.state.jobs import JobDone
+from recon.station.state.steps import JobDone
 
 GRID = GroundGrid(LocalFrame(HOME), -40.0, 100.0, 1.0, 140, 200)
 POSE = CameraPose(np.eye(3), np.array([60.0, 30.0, 120.0]))

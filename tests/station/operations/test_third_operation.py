@@ -18,8 +18,8 @@ REGISTER_AND_RUN = dedent(
     from recon.station import operations
     from recon.station.operations.operation import Operation
     from recon.station.state.alarm_book import Condition, Severity
-    from recon.station.state.jobs import Job, JobKind
-    from recon.station.state.stepped import on
+    from recon.station.state.steps import Job, JobKind
+    from recon.station.state.steps import on
 
 
     @dataclass(frozen=True)

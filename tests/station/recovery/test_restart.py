@@ -36,7 +36,7 @@ from recon.station.recovery.snapshot import (
     vehicle_snapshot,
 )
 from recon.station.state.station import Station
-from recon.station.state.vehicle_snapshot import VehicleSnapshot
+from recon.station.state.vehicle_control import VehicleSnapshot
 from recon.station.traffic.known_traffic import LOST_KEPT
 
 HOUR_NS = 3_600 * NS_PER_S

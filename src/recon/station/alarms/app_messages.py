@@ -6,7 +6,7 @@ from recon.model.vehicle import VehicleState
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Stepped
 
 _SEVERITIES = {
     MessageSeverity.WARNING: Severity.WARNING,

@@ -30,7 +30,7 @@ from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderRecord
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Stepped
 from recon.station.traffic import identity_grace, known_traffic
 
 MAX_NAMES = 8

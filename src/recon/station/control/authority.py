@@ -14,8 +14,8 @@ from recon.model.event import AuthorityTaken
 from recon.station.control import intents
 from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.outputs import Output, WithdrawMotion
 from recon.station.state.station import Station
+from recon.station.state.steps import Output, WithdrawMotion
 from recon.station.steering import neutral_setpoint, stream_ends
 from recon.station.steering.stream_ends import StreamUpdate
 

@@ -14,9 +14,8 @@ from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety import Situation, judge_parts
 from recon.station.state import orders
 from recon.station.state.orders import FlightPlan, OrderRecord
-from recon.station.state.outputs import SendCommand
 from recon.station.state.station import Station
-from recon.station.state.stepped import Judge, Stepped
+from recon.station.state.steps import Judge, SendCommand, Stepped
 from recon.vehicles.mission_repair import repair
 from recon.vehicles.packets import describe_altitudes
 

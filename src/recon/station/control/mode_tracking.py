@@ -31,9 +31,8 @@ from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.control import authority, intents, missions
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station
-from recon.station.state.stepped import Judge, Stepped
+from recon.station.state.steps import Judge, Output, Stepped
 from recon.station.state.vehicle_control import NO_INTENT, Tracking
 
 _RECENT_S = 0.5

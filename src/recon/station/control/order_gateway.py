@@ -29,9 +29,8 @@ from recon.station.control.order_records import (
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
-from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station
-from recon.station.state.stepped import Judge, Stepped
+from recon.station.state.steps import Judge, Output, SendCommand, Stepped
 from recon.station.steering import neutral_setpoint, setpoint_streams, stream_ends
 from recon.station.steering.stream_ends import StreamUpdate
 

@@ -28,10 +28,9 @@ from recon.station.control import missions, mode_tracking
 from recon.station.control.order_records import target_of
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
-from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
-from recon.station.state.stepped import Judge
+from recon.station.state.steps import Judge, Output, SendCommand
 
 
 def progress_of(

@@ -20,9 +20,8 @@ from recon.site import Site
 from recon.station.imaging import shade
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imaging import ImagerSample, Imaging
-from recon.station.state.jobs import Job, JobKind
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Job, JobKind, Stepped
 
 SAMPLE_NEAR_S = 3.0
 """Running video causes telemetry dropouts of a second or two; further from the moment of capture, a

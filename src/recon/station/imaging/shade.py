@@ -10,9 +10,8 @@ from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap, SunForecast
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imaging import WAITING_KEPT, ShadePipeline
-from recon.station.state.jobs import Job, JobKind
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Job, JobKind, Stepped
 
 Method = TypeVar("Method")
 

@@ -16,9 +16,8 @@ from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.fault_isolation import after_fault
 from recon.station.kernel.step import TICK_PARTS, step
 from recon.station.kernel.worker import Worker
-from recon.station.state.jobs import Job
-from recon.station.state.outputs import Output, SendCommand, WithdrawMotion
 from recon.station.state.station import Station
+from recon.station.state.steps import Job, Output, SendCommand, WithdrawMotion
 from recon.station.steering.setpoint_streams import next_due_ns
 
 TICK_NS = 50_000_000

@@ -21,9 +21,8 @@ from recon.station.control import order_gateway
 from recon.station.kernel.watchdog_holds import run_watchdogs
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Severity
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station, take_id
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Output, Stepped
 
 Part = Callable[[Station, int], Stepped]
 

@@ -23,8 +23,7 @@ from recon.model.units import ns_to_seconds
 from recon.site import Site
 from recon.site.reading import site_digest
 from recon.station.api_views.service import Service
-from recon.station.audit.auditor import Auditor
-from recon.station.audit.log import LogPrinter
+from recon.station.audit.auditor import Auditor, LogPrinter
 from recon.station.audit.start import (
     AuditPlace,
     Begun,

@@ -43,10 +43,17 @@ from recon.station.kernel.watchdog_holds import run_watchdogs
 from recon.station.operations import OPERATIONS
 from recon.station.recovery import restart
 from recon.station.state import alarm_book
-from recon.station.state.jobs import JobDone, JobDropped, JobFailed
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station
-from recon.station.state.stepped import Handler, Stepped, changing, on
+from recon.station.state.steps import (
+    Handler,
+    JobDone,
+    JobDropped,
+    JobFailed,
+    Output,
+    Stepped,
+    changing,
+    on,
+)
 from recon.station.traffic import known_traffic, watchdog_runner
 
 

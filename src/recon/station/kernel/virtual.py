@@ -18,9 +18,8 @@ from recon.model.units import seconds_to_ns
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
-from recon.station.state.jobs import Job, JobFailed
-from recon.station.state.outputs import Output, SendCommand, WithdrawMotion
 from recon.station.state.station import Station
+from recon.station.state.steps import Job, JobFailed, Output, SendCommand, WithdrawMotion
 from recon.station.steering.setpoint_streams import next_due_ns
 
 STEP_NS = 10_000_000

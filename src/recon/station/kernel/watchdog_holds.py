@@ -6,9 +6,8 @@ from recon.model.command import Hover
 from recon.model.event import OperatorOrder
 from recon.safety.watchdogs import WATCHDOGS, Watchdog
 from recon.station.control import order_gateway
-from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.station import Station, take_id
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Output, SendCommand, Stepped
 from recon.station.traffic import watchdog_runner
 
 

@@ -13,7 +13,7 @@ import cv2
 from recon.model.errors import ReconError
 from recon.model.event import Event
 from recon.site import Site
-from recon.station.state.jobs import (
+from recon.station.state.steps import (
     InputT,
     Job,
     JobDone,

@@ -9,7 +9,7 @@ from recon.model.vehicle import VehicleState
 from recon.record.audit import AuditEntry
 from recon.station.state.alarm_book import Condition
 from recon.station.state.station import Station
-from recon.station.state.stepped import Handled, Stepped
+from recon.station.state.steps import Handled, Stepped
 
 
 def _no_entries(

@@ -34,7 +34,7 @@ from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
 from recon.station.state.settings import RestartSettings
 from recon.station.state.station import Station
-from recon.station.state.vehicle_snapshot import PositionSnapshot, VehicleSnapshot
+from recon.station.state.vehicle_control import PositionSnapshot, VehicleSnapshot
 from recon.station.traffic.known_traffic import MANY_LOST, with_lost
 
 INTERRUPTED = "the station was restarted during this order; check what the vehicle is doing"

@@ -16,7 +16,7 @@ from recon.model.geo import LatLon
 from recon.model.vehicle import VehicleState
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
-from recon.station.state.vehicle_snapshot import (
+from recon.station.state.vehicle_control import (
     LARGEST_M,
     LARGEST_MPS,
     PositionSnapshot,

@@ -1,15 +1,41 @@
-"""The surveys of this run."""
+"""The surveys of this run, and the observations that wait for their next step."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Literal
+from typing import Generic, Literal, TypeVar
 
 from recon.guidance.survey import PositionSample, SurveyState
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
 from recon.model.survey import Survey, SurveyPhase, unknown_survey
-from recon.station.state.numbered_buffer import NumberedBuffer
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NumberedBuffer(Generic[T]):
+    """`items` are those kept; the first of them has the number `first` of all that ever came."""
+
+    items: tuple[T, ...] = ()
+    first: int = 0
+
+    @property
+    def end(self) -> int:
+        """The number of the next item."""
+        return self.first + len(self.items)
+
+    def with_one(self, item: T, kept: int) -> "NumberedBuffer[T]":
+        """Return it with one more; beyond `kept` items the oldest are dropped."""
+        items = (*self.items, item)
+        dropped = max(0, len(items) - kept)
+        return NumberedBuffer(items[dropped:], self.first + dropped)
+
+    def from_number(self, number: int) -> "NumberedBuffer[T]":
+        """Return it without the items before a number."""
+        dropped = min(max(0, number - self.first), len(self.items))
+        return NumberedBuffer(self.items[dropped:], self.first + dropped)
+
 
 SURVEYS_KEPT = 16
 """Each has its cells, up to a few MB; the oldest that has ended is forgotten for a new one."""

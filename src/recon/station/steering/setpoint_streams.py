@@ -25,10 +25,9 @@ from recon.model.event import CommandSent, OperatorOrder
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
-from recon.station.state.outputs import SendCommand
 from recon.station.state.setpoint_stream import SetpointStream, first_due_ns, following_due_ns
 from recon.station.state.station import Station
-from recon.station.state.stepped import Judge
+from recon.station.state.steps import Judge, SendCommand
 from recon.station.steering import stream_ends
 from recon.station.steering.kinematic_state import (
     goal_of,

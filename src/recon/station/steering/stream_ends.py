@@ -17,10 +17,9 @@ from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import ApprovedCommand
 from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.outputs import Output, SendCommand
 from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.station import Station, take_id
-from recon.station.state.stepped import Judge
+from recon.station.state.steps import Judge, Output, SendCommand
 
 ISSUER = "station: end of a stream of sticks"
 RULE = "steering_ended"

@@ -10,7 +10,7 @@ from recon.station.operations.fleet_return.commands import audit_entries, call_h
 from recon.station.operations.fleet_return.conditions import conditions
 from recon.station.operations.fleet_return.execution import advance
 from recon.station.operations.operation import Operation
-from recon.station.state.stepped import on
+from recon.station.state.steps import on
 
 FLEET_RETURN = Operation(
     name="fleet return",

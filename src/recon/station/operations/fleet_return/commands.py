@@ -11,9 +11,8 @@ from recon.safety.datum import frame_for
 from recon.station.control import order_gateway
 from recon.station.operations.fleet_return.progress import is_still_left
 from recon.station.state.fleet_return_record import ENDED, FleetReturn, ReturningVehicle, Stage
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Output, Stepped
 
 RULE = "fleet_return"
 

@@ -48,9 +48,8 @@ from recon.station.state.fleet_return_record import (
     ReturningVehicle,
     Stage,
 )
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station, take_id
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Output, Stepped
 
 WAITING_RULES = ("separation", "link_age")
 """Rules of the gate whose refusals may end with time; any other refusal stands."""

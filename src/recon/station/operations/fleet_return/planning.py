@@ -15,10 +15,8 @@ from recon.model.units import seconds_to_ns
 from recon.station.operations.fleet_return import positions
 from recon.station.operations.settings import ReturnSettings
 from recon.station.state.fleet_return_record import UNDER_WAY, FleetReturn, ReturningVehicle, Stage
-from recon.station.state.jobs import Job, JobKind
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Job, JobKind, Output, Stepped
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,7 +13,7 @@ from recon.station.operations.survey.conditions import conditions
 from recon.station.operations.survey.execution import advance
 from recon.station.operations.survey.observations import on_position, on_shade
 from recon.station.operations.survey.planning import request_survey
-from recon.station.state.stepped import changing, on
+from recon.station.state.steps import changing, on
 
 SURVEY = Operation(
     name="survey",

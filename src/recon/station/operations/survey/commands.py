@@ -17,9 +17,8 @@ from recon.station.control import authority, order_gateway
 from recon.station.operations.survey.availability import is_flown
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.fleet_return_record import ENDED
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station, take_id
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Output, Stepped
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
 

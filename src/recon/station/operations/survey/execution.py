@@ -38,10 +38,8 @@ from recon.station.operations.survey.return_to_home import (
     returns_home,
     send_home,
 )
-from recon.station.state.jobs import Job, JobKind
-from recon.station.state.outputs import Output
 from recon.station.state.station import Station, take_id
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Job, JobKind, Output, Stepped
 from recon.station.state.survey_record import PendingStep, SurveyRecord
 
 

@@ -26,9 +26,8 @@ from recon.model.event import SurveyRequested
 from recon.model.geo import LocalFrame
 from recon.model.shade import ShadeMap
 from recon.model.survey import MissionAssignment, Survey
-from recon.station.state.jobs import Job, JobKind
 from recon.station.state.station import Station
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Job, JobKind, Stepped
 from recon.station.state.survey_record import SURVEYS_KEPT, SurveyRecord
 
 NO_SITE = "a survey needs a site with an origin; start the station with --site FOLDER"

@@ -15,7 +15,7 @@ from recon.station.control import authority
 from recon.station.operations.fleet_return import commands
 from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.station import Station, take_id
-from recon.station.state.stepped import Stepped
+from recon.station.state.steps import Stepped
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
 NO_BATTERY = "its battery is too low for any row that is left"

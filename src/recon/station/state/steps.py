@@ -1,4 +1,4 @@
-"""Heavy work for the worker: what a kind of job is, one job, and the events that end it.
+"""What a step of the station returns: outputs for the drivers, jobs among them, and its handlers.
 
 A room that needs heavy work declares one `JobKind` beside the code that starts its jobs. Nothing
 else has to know the kind: the worker runs it, and the step hands its end to the kind's own
@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
+from recon.fleet.step import CloseLink
+from recon.model.command import Command, Refusal
 from recon.model.event import JobEnded
+from recon.safety import ApprovedCommand
 from recon.site import Site
-
-if TYPE_CHECKING:
-    from recon.station.state.station import Station
-    from recon.station.state.stepped import Stepped
+from recon.station.state.station import Station
 
 InputT = TypeVar("InputT")
 ResultT = TypeVar("ResultT")
@@ -68,3 +68,47 @@ class JobDropped(JobEnded, Generic[InputT, ResultT]):
     """The worker dropped a job that had not begun, for a newer one of the same kind."""
 
     kind: JobKind[InputT, ResultT]
+
+
+@dataclass(frozen=True, slots=True)
+class SendCommand:
+    """Queue an approved command on its links."""
+
+    approved: ApprovedCommand
+
+
+@dataclass(frozen=True, slots=True)
+class WithdrawMotion:
+    """Remove unsent motion commands from these links' queues: another holder has control."""
+
+    link_ids: tuple[int, ...]
+    reason: str
+
+
+Output = SendCommand | CloseLink | WithdrawMotion | Job[Any, Any]
+"""A `Job` is started by the worker and comes back as an event."""
+
+
+EventT = TypeVar("EventT")
+
+Stepped = tuple[Station, tuple[Output, ...]]
+"""The station after a step, and what the drivers are to do."""
+
+Judge = Callable[[Station, Command], ApprovedCommand | Refusal]
+"""The gate's verdict on one command in a station's state."""
+
+Handler = Callable[[Station, Any, int], Stepped]
+"""A step for events of one type: station, event, station time in ns."""
+
+Handled = tuple[type[Any], Handler]
+"""A type of event and its handler: a row of the step's table."""
+
+
+def on(kind: type[EventT], handle: Callable[[Station, EventT, int], Stepped]) -> Handled:
+    """Return a row of the step's table, with the handler checked against the event's type."""
+    return kind, handle
+
+
+def changing(kind: type[EventT], change: Callable[[Station, EventT, int], Station]) -> Handled:
+    """Return a row of the step's table for a handler that has no outputs."""
+    return kind, lambda station, event, now_ns: (change(station, event, now_ns), ())
