@@ -15,6 +15,7 @@ const LIMITS: Limits = Limits {
     max_unknown_bytes: 3000,
     stall_timeout_ns: 2_000_000_000,
     age_timeout_ns: 10_000_000_000,
+    work_per_call: u64::MAX,
 };
 
 /// A frame decodes to a packet that encodes to the same bytes, or to an error that can be told; both as
@@ -54,6 +55,7 @@ pub fn deframer(input: &[u8]) {
         mend(stream)
     };
     let whole = run(&mended, &[], 0);
+    assert_eq!(run_bounded(&mended, 1 + 8 * u64::from(first)), whole);
     assert_eq!(run(&mended, reads, 0), whole);
     assert_eq!(run(&mended, &[1; 4096], 0), whole);
     assert_eq!(oracle(&mended), whole.0);
@@ -96,15 +98,34 @@ fn run(stream: &[u8], reads: &[u8], tick_ns: i64) -> (Vec<Packet>, Counters) {
         left = rest;
         if read == 0 {
             now_ns += tick_ns;
-            deframer.tick(now_ns, &mut |packet| bytes_out = sink(packet));
+            deframer.tick(now_ns, &mut |packet, _| bytes_out = sink(packet));
         }
-        deframer.push(part, now_ns, &mut |packet| bytes_out = sink(packet));
+        deframer.push(part, now_ns, &mut |packet, _| bytes_out = sink(packet));
         account(stream.len() - left.len(), bytes_out, &deframer);
     }
-    deframer.push(left, now_ns, &mut |packet| bytes_out = sink(packet));
-    deframer.finish(&mut |packet| bytes_out = sink(packet));
+    deframer.push(left, now_ns, &mut |packet, _| bytes_out = sink(packet));
+    deframer.finish(&mut |packet, _| bytes_out = sink(packet));
     account(stream.len(), bytes_out, &deframer);
     assert_eq!(deframer.pending_bytes(), 0);
+    (packets, deframer.counters().clone())
+}
+
+/// Packets and counters of a stream that comes at once, with a limit of work for each call.
+fn run_bounded(stream: &[u8], work_per_call: u64) -> (Vec<Packet>, Counters) {
+    let mut deframer = Deframer::new(Limits {
+        work_per_call,
+        ..LIMITS
+    });
+    let mut packets = Vec::new();
+    let mut sink = |packet, _| packets.push(packet);
+    deframer.push(stream, 0, &mut sink);
+    while deframer.is_busy() {
+        deframer.resume(&mut sink);
+    }
+    deframer.finish(&mut sink);
+    while deframer.is_busy() {
+        deframer.resume(&mut sink);
+    }
     (packets, deframer.counters().clone())
 }
 

@@ -74,3 +74,32 @@ def test_a_claim_beyond_the_limits_holds_nothing_up() -> None:
 
 def test_bytearrays_are_taken_too() -> None:
     assert wire.Deframer().feed(bytearray(ACK_FRAME)) == [ACK]
+
+
+def test_a_withheld_packet_has_the_time_its_bytes_came() -> None:
+    deframer = wire.Deframer()
+    assert deframer.feed(FALSE_HEADER + ACK_FRAME, 5) == []
+    assert deframer.arrivals_ns == []
+    assert deframer.tick(5 + 2 * SECOND_NS) == [ACK]
+    assert deframer.arrivals_ns == [5]
+    assert deframer.feed(ACK_FRAME, 3 * SECOND_NS) == [ACK]
+    assert deframer.arrivals_ns == [3 * SECOND_NS]
+
+
+def test_a_call_ends_at_its_limit_of_work() -> None:
+    deframer = wire.Deframer(wire.Limits(work_per_call=4 * 2**20))
+    found = deframer.feed(ACK_FRAME * 1000)
+    assert len(found) <= 64
+    most, done = deframer.work_done, deframer.work_done
+    while deframer.is_busy:
+        found += deframer.resume()
+        most, done = max(most, deframer.work_done - done), deframer.work_done
+    assert found == [ACK] * 1000
+    assert most < 5 * 2**20
+
+
+def test_time_in_which_nobody_read_is_no_stall() -> None:
+    deframer = wire.Deframer()
+    deframer.feed(ACK_FRAME[:5], 0)
+    deframer.excuse(3 * SECOND_NS)
+    assert deframer.feed(ACK_FRAME[5:], 3 * SECOND_NS) == [ACK]

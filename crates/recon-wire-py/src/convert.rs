@@ -35,7 +35,7 @@ macro_rules! integer {
     )+};
 }
 
-integer!(u8, i8, u16, u32, i64);
+integer!(u8, i8, u16, u32, i64, u64);
 
 impl FromNumber for f64 {
     fn from_number(value: &Bound<'_, PyAny>, _field: &'static str) -> PyResult<Self> {

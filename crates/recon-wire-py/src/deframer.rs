@@ -7,22 +7,37 @@ use std::borrow::Cow;
 
 /// Turns the bytes of one direction of one connection into packets.
 ///
-/// Times are nanoseconds of any one clock that does not run backwards.
+/// Times are nanoseconds of any one clock that does not run backwards. A call ends at the limits'
+/// `work_per_call`; `resume` goes on while `is_busy`.
 #[pyclass(module = "recon.wire")]
-pub struct Deframer(recon_wire::Deframer);
+pub struct Deframer {
+    inner: recon_wire::Deframer,
+    arrivals_ns: Vec<i64>,
+}
 
-/// Collects what a deframer step delivers as Python objects.
-fn collect(py: Python<'_>, step: impl FnOnce(&mut dyn FnMut(Packet))) -> PyResult<Vec<Py<PyAny>>> {
-    let mut delivered = Ok(Vec::new());
-    step(&mut |packet| {
-        if let Ok(list) = &mut delivered {
-            match to_python(py, packet) {
-                Ok(object) => list.push(object),
-                Err(error) => delivered = Err(error),
+impl Deframer {
+    /// Collects what a step delivers as Python objects, and when each arrived.
+    fn collect(
+        &mut self,
+        py: Python<'_>,
+        step: impl FnOnce(&mut recon_wire::Deframer, &mut dyn FnMut(Packet, i64)),
+    ) -> PyResult<Vec<Py<PyAny>>> {
+        let mut delivered = Ok(Vec::new());
+        let arrivals_ns = &mut self.arrivals_ns;
+        arrivals_ns.clear();
+        step(&mut self.inner, &mut |packet, arrived_ns| {
+            if let Ok(list) = &mut delivered {
+                match to_python(py, packet) {
+                    Ok(object) => {
+                        list.push(object);
+                        arrivals_ns.push(arrived_ns);
+                    }
+                    Err(error) => delivered = Err(error),
+                }
             }
-        }
-    });
-    delivered
+        });
+        delivered
+    }
 }
 
 #[pymethods]
@@ -31,7 +46,10 @@ impl Deframer {
     #[pyo3(signature = (limits=None))]
     fn new(limits: Option<&Limits>) -> Self {
         let limits = limits.map_or_else(Default::default, |limits| limits.0);
-        Self(recon_wire::Deframer::new(limits))
+        Self {
+            inner: recon_wire::Deframer::new(limits),
+            arrivals_ns: Vec::new(),
+        }
     }
 
     /// Takes in bytes received at `now_ns`; returns the packets they complete, in order.
@@ -42,28 +60,62 @@ impl Deframer {
         data: Cow<'_, [u8]>,
         now_ns: i64,
     ) -> PyResult<Vec<Py<PyAny>>> {
-        collect(py, |mut sink| self.0.push(&data, now_ns, &mut sink))
+        self.collect(py, |inner, mut sink| inner.push(&data, now_ns, &mut sink))
     }
 
     /// Gives up half a packet that waited too long; returns what was hidden behind it.
     fn tick(&mut self, py: Python<'_>, now_ns: i64) -> PyResult<Vec<Py<PyAny>>> {
-        collect(py, |mut sink| self.0.tick(now_ns, &mut sink))
+        self.collect(py, |inner, mut sink| inner.tick(now_ns, &mut sink))
     }
 
     /// Ends the stream; returns whole packets hidden in what was still held.
     fn finish(&mut self, py: Python<'_>) -> PyResult<Vec<Py<PyAny>>> {
-        collect(py, |mut sink| self.0.finish(&mut sink))
+        self.collect(py, |inner, mut sink| inner.finish(&mut sink))
+    }
+
+    /// Goes on with the work that the latest call left.
+    fn resume(&mut self, py: Python<'_>) -> PyResult<Vec<Py<PyAny>>> {
+        self.collect(py, |inner, mut sink| inner.resume(&mut sink))
+    }
+
+    /// Leaves a time in which nobody read from the connection out of every wait.
+    fn excuse(&mut self, duration_ns: i64) {
+        self.inner.excuse(duration_ns);
+    }
+
+    /// When the last byte of each packet of the latest call arrived, in order.
+    #[getter]
+    fn arrivals_ns(&self) -> Vec<i64> {
+        self.arrivals_ns.clone()
     }
 
     /// What it has seen so far: a snapshot.
     #[getter]
     fn counters(&self) -> Counters {
-        Counters(self.0.counters().clone())
+        Counters(self.inner.counters().clone())
     }
 
     /// Bytes waiting for the rest of their packet.
     #[getter]
     fn pending_bytes(&self) -> usize {
-        self.0.pending_bytes()
+        self.inner.pending_bytes()
+    }
+
+    /// Memory taken by what is pending.
+    #[getter]
+    fn buffered_bytes(&self) -> usize {
+        self.inner.buffered_bytes()
+    }
+
+    /// Whether the latest call ended at its limit of work, with more to do.
+    #[getter]
+    fn is_busy(&self) -> bool {
+        self.inner.is_busy()
+    }
+
+    /// Work done so far, in bytes searched or hashed.
+    #[getter]
+    fn work_done(&self) -> u64 {
+        self.inner.work_done()
     }
 }

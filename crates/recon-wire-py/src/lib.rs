@@ -4,6 +4,8 @@ mod deframer;
 mod errors;
 mod image;
 mod limits;
+#[cfg(target_os = "linux")]
+mod mapped_memory;
 mod packets;
 mod records;
 mod repr;
@@ -11,6 +13,10 @@ mod union;
 
 use pyo3::prelude::*;
 use std::borrow::Cow;
+
+#[cfg(target_os = "linux")]
+#[global_allocator]
+static MEMORY: mapped_memory::MappedMemory = mapped_memory::MappedMemory;
 
 /// hashA and hashB over `data` (ICD 3.3.1).
 #[pyfunction]

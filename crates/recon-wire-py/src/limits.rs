@@ -5,7 +5,7 @@ use pyo3::types::PyDict;
 
 macro_rules! limits_class {
     ($($field:ident: $type:ty),+) => {
-        /// Largest sizes per packet, and the patience for half a packet.
+        /// Largest sizes per packet, the patience for half a packet, and the work of one call.
         #[pyclass(frozen, eq, hash, module = "recon.wire")]
         #[derive(PartialEq, Eq, Hash)]
         pub struct Limits(pub recon_wire::Limits);
@@ -43,7 +43,7 @@ macro_rules! limits_class {
 limits_class!(
     max_serial_bytes: u32, max_message_bytes: u32, max_jpeg_bytes: u32, max_image_rows: u16,
     max_image_cols: u16, max_waypoints: u32, max_unknown_bytes: u32, stall_timeout_ns: i64,
-    age_timeout_ns: i64
+    age_timeout_ns: i64, work_per_call: u64
 );
 
 /// What a deframer has seen, at the moment it was asked.
@@ -99,17 +99,23 @@ impl Counters {
         self.0.bytes_skipped
     }
 
+    #[getter]
+    fn bytes_damaged(&self) -> u64 {
+        self.0.bytes_damaged
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let counters = &self.0;
         Ok(format!(
-            "Counters(packets={}, bad_hash={}, bad_size={}, bad_payload={}, unknown_pid={}, abandoned={}, bytes_skipped={})",
+            "Counters(packets={}, bad_hash={}, bad_size={}, bad_payload={}, unknown_pid={}, abandoned={}, bytes_skipped={}, bytes_damaged={})",
             self.packets(py)?,
             counters.bad_hash,
             counters.bad_size,
             counters.bad_payload,
             counters.unknown_pid,
             counters.abandoned,
-            counters.bytes_skipped
+            counters.bytes_skipped,
+            counters.bytes_damaged
         ))
     }
 }

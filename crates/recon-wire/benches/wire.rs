@@ -71,7 +71,7 @@ fn longest_mission() -> Packet {
 fn deframe(deframer: &mut Deframer, stream: &[u8]) -> usize {
     let mut count = 0;
     for read in stream.chunks(READ_BYTES) {
-        deframer.push(read, 0, &mut |packet| {
+        deframer.push(read, 0, &mut |packet, _| {
             black_box(&packet);
             count += 1;
         });
@@ -237,7 +237,7 @@ fn hostile_floor(floors: &mut Floors) {
         || {
             let mut deframer = Deframer::default();
             deframe(&mut deframer, &stream);
-            deframer.finish(&mut |packet| {
+            deframer.finish(&mut |packet, _| {
                 black_box(packet);
             });
         },

@@ -7,7 +7,7 @@ const STEP: usize = 256;
 /// Up to here a frame is hashed from its bytes, above from the remembered prefixes.
 const HASHED_DIRECTLY: usize = 4 * STEP;
 /// An emptied buffer larger than this is given back.
-const KEPT_CAPACITY: usize = 256 * 1024;
+const KEPT_CAPACITY: usize = 64 * 1024;
 
 /// Bytes held until the packet they begin is whole.
 ///
@@ -37,7 +37,7 @@ impl Held {
     /// Appends `data`, as part of a frame that takes `frame_bytes` in all from the first live byte.
     pub fn append(&mut self, data: &[u8], frame_bytes: usize) {
         self.compact();
-        self.reserve(frame_bytes);
+        self.reserve(data.len(), frame_bytes);
         self.bytes.extend_from_slice(data);
         self.remember_prefixes();
     }
@@ -50,6 +50,11 @@ impl Held {
         }
     }
 
+    /// Memory taken.
+    pub fn capacity_bytes(&self) -> usize {
+        self.bytes.capacity() + self.prefixes.capacity() * size_of::<Hash>()
+    }
+
     /// Hash over the frame of `size` bytes at the start, without its last two.
     pub fn frame_hash(&self, size: usize) -> Hash {
         let hashed = size - TRAILER_BYTES;
@@ -60,15 +65,29 @@ impl Held {
         Hash::of_range(before, through, hashed)
     }
 
-    /// Hands the buffer over when it ends with the frame of `size` bytes at the start; else `None`.
+    /// How many bytes [`Held::frame_hash`] reads at most.
+    pub fn bytes_hashed_for(&self, size: usize) -> usize {
+        if size <= HASHED_DIRECTLY {
+            size
+        } else {
+            2 * STEP
+        }
+    }
+
+    /// Hands the buffer over when little but the frame of `size` bytes at the start is in it; else `None`.
     ///
-    /// Returns the buffer and where in it the frame starts.
+    /// Returns the buffer and where in it the frame starts. What followed the frame stays held.
     pub fn take_frame(&mut self, size: usize) -> Option<(Vec<u8>, usize)> {
-        if self.start + size != self.bytes.len() {
+        let end = self.start + size;
+        if self.start > size || self.bytes.len() - end > size / 2 {
             return None;
         }
+        let rest = self.bytes.split_off(end);
         let taken = (std::mem::take(&mut self.bytes), self.start);
         self.clear();
+        if !rest.is_empty() {
+            self.append(&rest, rest.len());
+        }
         Some(taken)
     }
 
@@ -76,13 +95,15 @@ impl Held {
         self.start = 0;
         self.prefixes.clear();
         self.bytes.clear();
-        if self.bytes.capacity() > KEPT_CAPACITY {
+        if self.capacity_bytes() > KEPT_CAPACITY {
+            self.prefixes = Vec::new();
             self.bytes = Vec::new();
         }
     }
 
-    /// Moves the live bytes to the front once as many were taken: each byte taken pays for one moved.
-    fn compact(&mut self) {
+    /// Moves the live bytes to the front once as many were taken, and gives back what they do not need:
+    /// each byte taken pays for one moved.
+    pub fn compact(&mut self) {
         let steps = self.start / STEP;
         if steps == 0 || self.start < self.bytes.len() - self.start {
             return;
@@ -90,16 +111,19 @@ impl Held {
         self.bytes.drain(..steps * STEP);
         self.prefixes.drain(..steps);
         self.start -= steps * STEP;
+        if self.capacity_bytes() > KEPT_CAPACITY.max(4 * self.bytes.len()) {
+            self.bytes.shrink_to(2 * self.bytes.len());
+            self.prefixes.shrink_to(2 * self.prefixes.len());
+        }
     }
 
-    /// Makes room at once for a frame whose size was found good. A first frame gets exactly its size;
-    /// later ones, found behind failed ones, double the buffer so that growing stays linear.
-    fn reserve(&mut self, frame_bytes: usize) {
-        let more = (self.start + frame_bytes).saturating_sub(self.bytes.len());
-        if self.bytes.len() < STEP {
-            self.bytes.reserve_exact(more);
-        } else {
-            self.bytes.reserve(more);
+    /// Makes room for `more` bytes, of a frame that takes `frame_bytes` in all. The room follows what has
+    /// come, not what a header claims: it doubles up to the frame's end, so that growing stays linear.
+    fn reserve(&mut self, more: usize, frame_bytes: usize) {
+        let needed = self.bytes.len() + more;
+        if needed > self.bytes.capacity() {
+            let wanted = needed.max((2 * needed).min(self.start + frame_bytes));
+            self.bytes.reserve_exact(wanted - self.bytes.len());
         }
     }
 
@@ -172,18 +196,33 @@ mod tests {
     #[test]
     fn an_emptied_large_buffer_is_given_back() {
         let mut held = Held::default();
-        held.append(&noise(1000), 10_000_000);
-        held.advance(1000);
-        assert_eq!((held.bytes.capacity(), held.prefixes.len()), (0, 0));
+        held.append(&noise(100_000), 10_000_000);
+        assert!(held.capacity_bytes() < 250_000, "{}", held.capacity_bytes());
+        held.advance(100_000);
+        assert_eq!(held.capacity_bytes(), 0);
     }
 
     #[test]
-    fn only_a_frame_at_the_end_takes_the_buffer_along() {
+    fn a_buffer_shrinks_with_what_is_left_in_it() {
+        let mut held = Held::default();
+        held.append(&noise(1_000_000), 1_000_000);
+        held.advance(990_000);
+        held.compact();
+        assert_eq!(held.live(), &noise(1_000_000)[990_000..]);
+        assert!(held.capacity_bytes() < 100_000, "{}", held.capacity_bytes());
+    }
+
+    #[test]
+    fn a_frame_takes_the_buffer_along_unless_much_follows() {
         let mut held = Held::default();
         held.append(&noise(600), 600);
         held.advance(100);
-        assert_eq!(held.take_frame(400), None);
-        assert_eq!(held.take_frame(500), Some((noise(600), 100)));
-        assert!(held.is_empty());
+        assert_eq!(held.take_frame(300), None);
+        assert_eq!(
+            held.take_frame(400),
+            Some((noise(600)[..500].to_vec(), 100))
+        );
+        assert_eq!(held.live(), &noise(600)[500..]);
+        assert_eq!(held.frame_hash(100), Hash::of(&noise(600)[500..598]));
     }
 }

@@ -1,8 +1,9 @@
-//! How large a packet may be and how long half a packet may wait.
+//! How large a packet may be, how long half a packet may wait, and how much one call may do.
 
-/// Largest sizes per packet, and the patience for half a packet.
+/// Largest sizes per packet, the patience for half a packet, and the work of one call.
 ///
-/// Memory of a deframer stays within about four times the largest packet these allow.
+/// Memory of a deframer follows the bytes that arrived, never a size that is only claimed, and stays
+/// within about twice the largest packet these allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Limits {
     /// Bytes of `DroneSerial` in Extended Telemetry.
@@ -23,6 +24,8 @@ pub struct Limits {
     pub stall_timeout_ns: i64,
     /// Half a packet whose first byte is older than this fails (ns).
     pub age_timeout_ns: i64,
+    /// Work of one call to a deframer, in bytes searched or hashed.
+    pub work_per_call: u64,
 }
 
 impl Default for Limits {
@@ -37,6 +40,7 @@ impl Default for Limits {
             max_unknown_bytes: 64 * 1024,
             stall_timeout_ns: 2_000_000_000,
             age_timeout_ns: 10_000_000_000,
+            work_per_call: u64::MAX,
         }
     }
 }

@@ -32,11 +32,11 @@ fn run(pushes: &[(i64, &[u8])], tick_ms: i64) -> (Vec<usize>, usize) {
     let mut counts = Vec::new();
     for &(at_ms, data) in pushes {
         let mut count = 0;
-        deframer.push(data, at_ms * MS, &mut |_| count += 1);
+        deframer.push(data, at_ms * MS, &mut |_, _| count += 1);
         counts.push(count);
     }
     let mut count = 0;
-    deframer.tick(tick_ms * MS, &mut |_| count += 1);
+    deframer.tick(tick_ms * MS, &mut |_, _| count += 1);
     (counts, count)
 }
 
@@ -62,7 +62,7 @@ fn half_a_good_packet_behind_an_old_header_keeps_its_own_time() {
     let mut deframer = Deframer::default();
     let mut found = Vec::new();
     let mut push = |data: &[u8], at_ms: i64| {
-        deframer.push(data, at_ms * MS, &mut |packet| found.push(packet));
+        deframer.push(data, at_ms * MS, &mut |packet, _| found.push(packet));
     };
     push(&false_header(), 0);
     for at_ms in (1000..9900).step_by(500) {
@@ -79,7 +79,7 @@ fn half_a_packet_behind_found_ones_keeps_its_own_time() {
     let mut deframer = Deframer::default();
     let mut found = Vec::new();
     let mut push = |data: &[u8], at_ms: i64| {
-        deframer.push(data, at_ms * MS, &mut |packet| found.push(packet));
+        deframer.push(data, at_ms * MS, &mut |packet, _| found.push(packet));
     };
     push(&[false_header(), frame.repeat(20)].concat(), 0);
     for at_ms in (1000..9900).step_by(500) {
@@ -169,7 +169,7 @@ fn memory_follows_the_bytes_not_the_claim_of_four_gigabytes() {
         encode(&EmergencyCommand { action: 0 }.into(), &Limits::default()).expect("small");
     claim[2..6].copy_from_slice(&[0xff; 4]);
     let mut deframer = Deframer::default();
-    deframer.push(&claim, 0, &mut |packet| panic!("{packet:?}"));
+    deframer.push(&claim, 0, &mut |packet, _| panic!("{packet:?}"));
     assert_eq!(
         (deframer.pending_bytes(), deframer.counters().bad_size),
         (0, 1)

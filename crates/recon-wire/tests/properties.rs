@@ -97,7 +97,7 @@ proptest! {
         let (mut now_ns, mut fed, mut delivered) = (0, 0, 0);
         for (data, wait_ns, tick) in steps {
             now_ns += wait_ns;
-            let mut sink = |packet| delivered += frame(&packet).len();
+            let mut sink = |packet, _| delivered += frame(&packet).len();
             if tick {
                 deframer.tick(now_ns, &mut sink);
             }
@@ -117,12 +117,66 @@ proptest! {
         let mut now_ns = 0;
         for (data, wait_ns) in steps {
             now_ns += wait_ns;
-            ticked.tick(now_ns, &mut |packet| with.push(packet));
-            ticked.push(&data, now_ns, &mut |packet| with.push(packet));
-            plain.push(&data, now_ns, &mut |packet| without.push(packet));
+            ticked.tick(now_ns, &mut |packet, _| with.push(packet));
+            ticked.push(&data, now_ns, &mut |packet, _| with.push(packet));
+            plain.push(&data, now_ns, &mut |packet, _| without.push(packet));
         }
         prop_assert_eq!(with, without);
         prop_assert_eq!(ticked.counters(), plain.counters());
+    }
+
+    #[test]
+    fn a_limit_of_work_changes_nothing_but_the_calls(
+        pieces in prop::collection::vec((packet(), nasty_bytes(400)), 0..6),
+        cuts in prop::collection::vec(any::<usize>(), 0..9), work_per_call in 64u64..200_000,
+    ) {
+        let stream: Vec<u8> = pieces.iter().flat_map(|(p, noise)| [frame(p), noise.clone()].concat()).collect();
+        let mut deframer = Deframer::new(Limits { work_per_call, ..SMALL });
+        let mut found = Vec::new();
+        let mut sink = |packet, _| found.push(packet);
+        for part in parts(&stream, &cuts) {
+            deframer.push(part, 0, &mut sink);
+            while deframer.is_busy() {
+                deframer.resume(&mut sink);
+            }
+        }
+        deframer.finish(&mut sink);
+        while deframer.is_busy() {
+            deframer.resume(&mut sink);
+        }
+        let whole = deframe([&stream[..]], SMALL);
+        prop_assert_eq!((found, deframer.counters().clone()), whole);
+    }
+
+    /// Behind a false header, in reads of any size, one read every 100 ms.
+    #[test]
+    fn each_packet_has_the_time_of_its_last_byte(
+        packets in prop::collection::vec(packet(), 1..6),
+        cuts in prop::collection::vec(any::<usize>(), 0..30), work_per_call in 64u64..2_000_000,
+    ) {
+        let frames: Vec<_> = packets.iter().map(frame).collect();
+        let header = [&[0xda, 0xa7][..], &12_305u32.to_be_bytes(), &[2, 0, 0, 0, 0, 0, 64, 0, 64]].concat();
+        let stream = [header.clone(), frames.concat()].concat();
+        let (mut starts, mut at) = (Vec::new(), 0);
+        let mut deframer = Deframer::new(Limits { work_per_call, ..SMALL });
+        let mut found = Vec::new();
+        let mut sink = |packet, arrived_ns: i64| found.push((packet, arrived_ns));
+        for (read, part) in parts(&stream, &cuts).into_iter().enumerate() {
+            starts.push(at);
+            at += part.len();
+            deframer.push(part, read as i64 * 100_000_000, &mut sink);
+        }
+        deframer.finish(&mut sink);
+        while deframer.is_busy() {
+            deframer.resume(&mut sink);
+        }
+        let mut end = header.len();
+        for ((packet, bytes), (came, arrived_ns)) in packets.iter().zip(&frames).zip(&found) {
+            end += bytes.len();
+            let read = starts.iter().rposition(|&start| start < end).expect("the first starts at 0");
+            prop_assert_eq!((came, *arrived_ns), (packet, read as i64 * 100_000_000));
+        }
+        prop_assert_eq!(found.len(), packets.len());
     }
 }
 

@@ -15,6 +15,7 @@ pub const SMALL: Limits = Limits {
     max_unknown_bytes: 3000,
     stall_timeout_ns: 2_000_000_000,
     age_timeout_ns: 10_000_000_000,
+    work_per_call: u64::MAX,
 };
 
 /// All packets and the counters of a stream that comes in `parts` and then ends.
@@ -25,9 +26,9 @@ pub fn deframe<'a>(
     let mut deframer = Deframer::new(limits);
     let mut packets = Vec::new();
     for part in parts {
-        deframer.push(part, 0, &mut |packet| packets.push(packet));
+        deframer.push(part, 0, &mut |packet, _| packets.push(packet));
     }
-    deframer.finish(&mut |packet| packets.push(packet));
+    deframer.finish(&mut |packet, _| packets.push(packet));
     assert_eq!(deframer.pending_bytes(), 0);
     (packets, deframer.counters().clone())
 }
