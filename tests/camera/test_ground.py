@@ -23,8 +23,7 @@ from recon.camera import (
     load_camera,
     load_control_points,
 )
-from recon.camera.ground import source_mask
-from recon.camera.ground_maps import lattice_step
+from recon.camera.ground import lattice_step, source_mask
 from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, Frame, Registration

@@ -18,7 +18,7 @@ from recon.client.messages import (
     StationMessage,
     decode,
 )
-from recon.client.order_api import order_json
+from recon.client.order import order_json
 from recon.client.telemetry import Telemetry
 from recon.model.command import (
     Body,

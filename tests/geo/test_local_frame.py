@@ -14,7 +14,7 @@ from recon.geo import (
     point_from_enu,
     shift_east_north_m,
 )
-from recon.geo.ellipsoid import meridian_radius_m, prime_vertical_radius_m
+from recon.geo.local_frame import meridian_radius_m, prime_vertical_radius_m
 from recon.model.geo import GeoPoint, LocalFrame
 
 latitudes = st.floats(-89.9, 89.9)

@@ -20,8 +20,8 @@ from recon.guidance.fleet_return import (
     least_time_s,
     whole_claim,
 )
+from recon.guidance.fleet_return.flight import are_apart, column, distance_m, level_legs, point
 from recon.guidance.fleet_return.turn import places_left
-from recon.guidance.fleet_return.volume import are_apart, column, distance_m, level_legs, point
 
 COORDINATES = st.integers(-50, 50).map(float)
 PLACES = st.tuples(COORDINATES, COORDINATES)

@@ -8,8 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import SunForecast
-from recon.score.forecast_metrics import HorizonCells, LeadScore, score_lead
-from recon.score.shade_metrics import Overlap
+from recon.score.shade_scoring import HorizonCells, LeadScore, Overlap, score_lead
 
 GRID = GroundGrid(LocalFrame(GeoPoint(45.0, -93.0, 250.0)), 0.0, 8.0, 4.0, 2, 2)
 ALL = np.ones((2, 2), dtype=np.bool_)

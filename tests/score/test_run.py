@@ -13,8 +13,8 @@ from tests.score.scenes import SMALL, small
 
 from recon.model.geo import GeoPoint
 from recon.score import Methods, RunScore, Scenario, StationRun, run, tables
-from recon.score.forecast_metrics import HorizonCells
 from recon.score.run_score import shares_by, time_to_share
+from recon.score.shade_scoring import HorizonCells
 from recon.score.true_paths import TruePath, encounters, times_begun
 from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.fleet import IMAGER_SERIAL

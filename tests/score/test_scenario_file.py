@@ -13,8 +13,7 @@ from recon.forecast import FORECASTERS
 from recon.guidance.survey import PLANNERS
 from recon.model.survey import PLANNER_GOALS
 from recon.score import ScenarioError, load_scenario
-from recon.score.scenario_errors import key_lines, line_of
-from recon.score.scenario_schema import METHOD_NAMES
+from recon.score.scenario_schema import METHOD_NAMES, key_lines, line_of
 
 FOLDER = Path(__file__).parents[2] / "scenarios"
 FILES = sorted(FOLDER.glob("*.toml"))

@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap
-from recon.score.shade_metrics import (
+from recon.score.shade_scoring import (
     FARTHEST_EDGE_M,
     Overlap,
     boundary_error_m,

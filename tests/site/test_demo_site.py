@@ -21,13 +21,15 @@ from recon.model.geo import LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe
 from recon.safety import PreparedAirspace
 from recon.site import demo_site_folder, load_site
-from recon.site.demo_layers import BOUNDARY, ELEVATION_FILE, demo_elevation_bytes
 from recon.site.demo_site import (
+    BOUNDARY,
+    ELEVATION_FILE,
     IMAGER_HEIGHT_M,
     IMAGER_SERIAL,
     ORIGIN,
     SERIALS,
     demo_camera,
+    demo_elevation_bytes,
     demo_marked_telemetry,
     demo_site_files,
 )

@@ -11,10 +11,9 @@ from recon.model.airspace import HeightDatum, Region, Zone, ZoneKind
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import Failsafe, VehicleProfile
 from recon.site import Site, default_site, demo_site_folder, load_site, site_report
-from recon.site.demo_layers import BOUNDARY, FARMYARD, SURVEY, TREES, Outline
-from recon.site.demo_site import ORIGIN
+from recon.site.demo_site import BOUNDARY, FARMYARD, ORIGIN, SURVEY, TREES, Outline
+from recon.site.report import site_warnings
 from recon.site.site import Layers
-from recon.site.warnings import site_warnings
 
 
 def test_the_report_tells_the_fit_and_every_residual() -> None:

@@ -8,7 +8,7 @@ from tests.site.test_layers import HOLE, collection, polygon, refusal, ring
 from tests.site.test_layers import load as load_layer
 
 from recon.site import SiteError
-from recon.site.warnings import site_warnings
+from recon.site.report import site_warnings
 
 PLACE = "/layer.geojson: zone 'yard': "
 RIDGE = [(60, -20), (100, -20), (100, 20), (60, 20)]

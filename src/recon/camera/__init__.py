@@ -5,13 +5,6 @@ From files to a ground image: `load_camera` (lens), `load_control_points` and `p
 grid). Files and image formats end here; nothing in this room knows of the station or the protocol.
 """
 
-from recon.camera.calibration_file import format_camera, load_camera, parse_camera
-from recon.camera.control_points_file import (
-    ControlPoint,
-    format_control_points,
-    load_control_points,
-    parse_control_points,
-)
 from recon.camera.decode import decode_frame, decode_jpeg, jpeg_size
 from recon.camera.errors import (
     CalibrationError,
@@ -21,12 +14,20 @@ from recon.camera.errors import (
     FrameSizeError,
     PoseError,
 )
-from recon.camera.ground import GroundProjector
-from recon.camera.ground_maps import ground_maps
+from recon.camera.ground import GroundProjector, ground_maps
 from recon.camera.image_circle import ImageCircle, find_image_circle
 from recon.camera.motion import TelemetryReference, displaced_pose, level_pose
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.camera.pose import PointResidual, PoseSolution, pose_from_points
+from recon.camera.text_files import (
+    ControlPoint,
+    format_camera,
+    format_control_points,
+    load_camera,
+    load_control_points,
+    parse_camera,
+    parse_control_points,
+)
 
 __all__ = [
     "CalibrationError",

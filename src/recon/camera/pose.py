@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from recon.camera.control_points_file import ControlPoint
 from recon.camera.errors import PoseError
 from recon.camera.omnidirectional import OmnidirectionalCamera, scale_between
 from recon.camera.pose_fit import PoseFit, fit_pose, residuals_px
+from recon.camera.text_files import ControlPoint
 from recon.model.imagery import CameraPose
 
 FloatArray = npt.NDArray[np.float64]

@@ -14,8 +14,7 @@ from recon.client.messages import (
     StopMessage,
     VehicleReturn,
 )
-from recon.client.order import VehicleAnswer
-from recon.client.order_api import OrderApi
+from recon.client.order import OrderApi, VehicleAnswer
 from recon.client.surveys import SurveyCommands
 from recon.client.telemetry import Telemetry
 from recon.client.vehicle import Vehicle

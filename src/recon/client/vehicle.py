@@ -6,8 +6,7 @@ from urllib.parse import quote
 
 from recon.client.errors import ConnectionLostError
 from recon.client.messages import AnswerMessage, Preflight, ReceivedState
-from recon.client.order import Order
-from recon.client.order_api import OrderApi
+from recon.client.order import Order, OrderApi
 from recon.client.telemetry import Telemetry
 from recon.model.command import (
     FlyMission,

@@ -4,7 +4,6 @@ Lengths are metres; local coordinates are east, north, up of the site's origin. 
 and return (N, 2) or (N, 3) float64; NaN or infinity gives the safe answer, never an exception.
 """
 
-from recon.geo.footprints import Footprints
 from recon.geo.local_frame import (
     OnGlobe,
     enu_from_geo,
@@ -15,7 +14,7 @@ from recon.geo.local_frame import (
     shift_east_north_m,
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
-from recon.geo.polygon import Polygon, region_fault, thinned_ring
+from recon.geo.polygon import Footprints, Polygon, region_fault, thinned_ring
 from recon.geo.surface import Surface
 from recon.geo.tangent_plane import TangentPlane, tangent_plane
 

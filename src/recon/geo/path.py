@@ -11,7 +11,7 @@ from math import ceil, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from recon.geo.footprints import FARTHEST_M
+from recon.geo.polygon import FARTHEST_M
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import atan2, cos, degrees, hypot, radians, sin, sqrt
 
-from recon.geo.ellipsoid import (
+from recon.geo.local_frame import (
     ECCENTRICITY_SQUARED,
     FLATTENING,
     LATITUDE_ITERATIONS,

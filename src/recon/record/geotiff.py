@@ -14,7 +14,7 @@ from rasterio.enums import ColorInterp
 from rasterio.io import MemoryFile
 from rasterio.transform import Affine
 
-from recon.geo.ellipsoid import meridian_radius_m, prime_vertical_radius_m
+from recon.geo.local_frame import meridian_radius_m, prime_vertical_radius_m
 from recon.model.errors import RecordError
 from recon.model.geo import LocalFrame
 from recon.model.imagery import GroundImage

@@ -7,8 +7,8 @@ runs. Nothing else sees the simulator's truth.
 from recon.score.run import StationRun, run
 from recon.score.run_score import RunScore
 from recon.score.scenario import Methods, Scenario
-from recon.score.scenario_errors import ScenarioError
 from recon.score.scenario_file import load_scenario
+from recon.score.scenario_schema import ScenarioError
 from recon.score.tables import tables
 
 __all__ = [

@@ -13,16 +13,24 @@ from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
 from recon.score.connected_apps import ConnectedApps
 from recon.score.imager import config_of, jobs_of, settings_of
-from recon.score.photos import Imaged, imaged, phases_s
 from recon.score.run_score import ENOUGH, RunScore, shares_by, time_to_share
 from recon.score.scenario import Scenario
-from recon.score.scenario_errors import ScenarioError
+from recon.score.scenario_schema import ScenarioError
 from recon.score.scripted_operator import ScriptedOperator
 from recon.score.settings import SCORE
 from recon.score.shade_scoring import ImagerScore, ShadeScoring, footprint_on
 from recon.score.simulation import sky_of
 from recon.score.station_operator import SURVEY_ID, StationOperator
-from recon.score.true_paths import TruePath, breaches, encounters, photos_on_rows, true_path
+from recon.score.true_paths import (
+    Imaged,
+    TruePath,
+    breaches,
+    encounters,
+    imaged,
+    phases_s,
+    photos_on_rows,
+    true_path,
+)
 from recon.sim.fleet import IMAGER_SERIAL, build_fleet
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from recon.score.forecast_metrics import HorizonCells, LeadScore
-from recon.score.shade_metrics import Overlap
+from recon.score.shade_scoring import HorizonCells, LeadScore, Overlap
 
 FloatArray = npt.NDArray[np.float64]
 ENOUGH = 0.95

@@ -14,8 +14,14 @@ from recon.model.airspace import Region
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
 from recon.score.scenario import Methods, Scenario
-from recon.score.scenario_errors import ScenarioError, ScenarioErrors, key_lines
-from recon.score.scenario_schema import CloudsTable, ScenarioFile, TaskTable
+from recon.score.scenario_schema import (
+    CloudsTable,
+    ScenarioError,
+    ScenarioErrors,
+    ScenarioFile,
+    TaskTable,
+    key_lines,
+)
 from recon.score.staging import staged
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import InjectedFault, RandomFault, parse_fault

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Sequence
 from math import inf, isinf
 
-from recon.score.forecast_metrics import HorizonCells, LeadScore
 from recon.score.interval import Interval, interval, ratio, times
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.settings import SCORE
+from recon.score.shade_scoring import HorizonCells, LeadScore
 
 Row = tuple[str, ...]
 Parts = Callable[[LeadScore], tuple[float, float]]

@@ -1,4 +1,4 @@
-"""Packets into reports (ICD 3.1, decisions on noisy values)."""
+"""Packets into reports (ICD 3.1, decisions on noisy values); text from the wire is untrusted."""
 
 from collections.abc import Callable
 from enum import IntEnum
@@ -19,7 +19,32 @@ from recon.model.report import (
     Report,
 )
 from recon.model.vehicle import Attitude, BatteryWarning, CameraState, FlightMode, VelocityNed
-from recon.vehicles.text import printable
+
+
+def _escape(character: str) -> str:
+    if character == "\\":
+        return "\\\\"
+    if character.isprintable():
+        return character
+    code = ord(character)
+    if code < 0x80:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def printable(raw: bytes, limit_chars: int = 1000) -> str:
+    """Return `raw` as text without control, formatting or private characters.
+
+    Bytes that are not UTF-8 and characters that are not printable (terminal escapes, line breaks,
+    direction overrides) appear as backslash escapes; a backslash is doubled, so that two different
+    inputs within the limit never look the same. Longer text ends with an ellipsis.
+    """
+    text = "".join(
+        f"\\x{ord(c) - 0xDC00:02x}" if 0xDC80 <= ord(c) <= 0xDCFF else _escape(c)
+        for c in raw[: 4 * limit_chars].decode("utf-8", errors="surrogateescape")
+    )
+    return text if len(text) <= limit_chars else text[:limit_chars] + "…"
+
 
 PLACEHOLDER_SERIAL = b"00000"
 """What apps send before they know the aircraft's serial."""

@@ -4,7 +4,6 @@
 returns why a planned flight must wait. `mission_of` makes its landing mission.
 """
 
-from recon.guidance.fleet_return.airspace import WayHome, way_home
 from recon.guidance.fleet_return.flight import (
     CalledVehicle,
     Hovering,
@@ -13,6 +12,7 @@ from recon.guidance.fleet_return.flight import (
     Place,
     ReturnFlight,
     ReturnPlan,
+    Separation,
     mission_of,
 )
 from recon.guidance.fleet_return.plan import plan_return
@@ -25,7 +25,7 @@ from recon.guidance.fleet_return.turn import (
     least_time_s,
     whole_claim,
 )
-from recon.guidance.fleet_return.volume import Separation
+from recon.guidance.fleet_return.ways import WayHome, way_home
 
 __all__ = [
     "CalledVehicle",

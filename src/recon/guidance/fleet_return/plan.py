@@ -27,7 +27,6 @@ from math import floor, hypot, isfinite
 
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
-from recon.guidance.fleet_return.airspace import WayHome
 from recon.guidance.fleet_return.flight import (
     CalledVehicle,
     EastNorth,
@@ -36,16 +35,14 @@ from recon.guidance.fleet_return.flight import (
     Place,
     ReturnFlight,
     ReturnPlan,
-)
-from recon.guidance.fleet_return.settings import FleetReturnSettings
-from recon.guidance.fleet_return.volume import (
     Separation,
     are_apart,
     column,
     distance_to_leg_m,
     point,
 )
-from recon.guidance.fleet_return.ways import ReturnPaths
+from recon.guidance.fleet_return.settings import FleetReturnSettings
+from recon.guidance.fleet_return.ways import ReturnPaths, WayHome
 
 NO_WAY = "no path to its pad in any layer around keep-out zones and hovering vehicles"
 

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import dist, hypot
 
-from recon.guidance.fleet_return.flight import Hovering, Place, ReturnFlight
-from recon.guidance.fleet_return.settings import FleetReturnSettings
-from recon.guidance.fleet_return.volume import (
+from recon.guidance.fleet_return.flight import (
+    Hovering,
+    Place,
+    ReturnFlight,
     Separation,
     Volume,
     are_apart,
@@ -20,6 +21,7 @@ from recon.guidance.fleet_return.volume import (
     level_legs,
     point,
 )
+from recon.guidance.fleet_return.settings import FleetReturnSettings
 
 
 def least_time_s(flight: ReturnFlight, settings: FleetReturnSettings) -> float:

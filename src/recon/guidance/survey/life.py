@@ -27,7 +27,6 @@ from types import MappingProxyType
 
 from recon.guidance.survey.missions import apart_m, track_of
 from recon.guidance.survey.plan import RULE, SurveyPlan
-from recon.guidance.survey.planners import PLANNERS
 from recon.guidance.survey.progress import (
     PositionSample,
     no_progress,
@@ -35,7 +34,7 @@ from recon.guidance.survey.progress import (
     with_seen,
     with_shade,
 )
-from recon.guidance.survey.rounds import Step, ended, lasts
+from recon.guidance.survey.rounds import PLANNERS, Step, ended, lasts
 from recon.guidance.survey.route import Route, route_of
 from recon.guidance.survey.state import Refused, Surveyor, SurveyState
 from recon.model.command import Refusal

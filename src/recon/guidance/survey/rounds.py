@@ -1,4 +1,7 @@
-"""The rounds planner: share the missing rows among able vehicles, fly them, and repeat.
+"""The survey planners: share the missing rows among able vehicles, fly them, and repeat.
+
+A planner is pure: the running survey, its vehicles and the time in; the survey and the missions to
+give out. It is asked about once a second. `PLANNERS` has them by name; all fly rounds.
 
 Theory of operation. One call of `fly_rounds` does the first of these that applies:
 
@@ -18,7 +21,7 @@ sum of distances to their starts (linear assignment; Kuhn 1955, as in `scipy.opt
 """
 
 from bisect import bisect_left
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -37,7 +40,7 @@ from recon.guidance.survey.state import (
     end_between_rounds,
     spent_budget,
 )
-from recon.model.survey import CellState, MissionAssignment, SurveyPhase
+from recon.model.survey import PLANNER_GOALS, CellState, MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 
 Step = tuple[SurveyState, tuple[MissionAssignment, ...]]
@@ -221,3 +224,24 @@ def lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
     speed_mps = plan.survey.speed_mps
     needed_s = flight_time_s(track, speed_mps, surveyor.place_m, home_m, plan.settings)
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share
+
+
+Planner = Callable[[SurveyState, Sequence[Surveyor], int], Step]
+
+
+def lawnmower_once(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+    """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
+    return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_once"])
+
+
+def lawnmower_again(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+    """Fly all rows, and again what was imaged in shade, until all is imaged in sun.
+
+    It does not wait for sun: the survey's budget ends it under a closed sky.
+    """
+    return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_again"])
+
+
+PLANNERS: Mapping[str, Planner] = MappingProxyType(
+    {"lawnmower_once": lawnmower_once, "lawnmower_again": lawnmower_again}
+)

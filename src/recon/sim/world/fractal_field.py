@@ -17,8 +17,6 @@ from scipy.fft import ifft, irfft
 
 from recon.sim.world.keyframes import FloatArray, FloatImage, blend, generator, phase
 
-ComplexImage = npt.NDArray[np.complex64]
-
 BAND_RATIO = 4.0
 TILE_CELLS = 256
 CELLS_PER_WAVE = 32.0

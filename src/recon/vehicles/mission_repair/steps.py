@@ -96,9 +96,6 @@ def waypoints(numbers: list[int]) -> str:
     return f"{word} {listed(numbers)}"
 
 
-Change = Callable[[NumberedWaypoint], NumberedWaypoint]
-
-
 def into_ranges(
     points: list[NumberedWaypoint], limits: RepairLimits
 ) -> tuple[list[NumberedWaypoint], list[str]]:
