@@ -109,7 +109,7 @@ mutants: setup ## Mutate the gate's rules: a test must fail for each mutant
 
 docs: setup web/node_modules/.stamp ## Regenerate the API's description and the console's types
 	$(RUN) recon openapi > web/openapi.json
-	$(RUN) python -c "from recon.fleet.flight_table_page import markdown as page; print(page(), end='')" > docs/flight-table.md
+	$(RUN) python -m tools.flight_table_page > docs/flight-table.md
 	npm --prefix web run generate --silent
 
 format: setup web/node_modules/.stamp ## Format all sources

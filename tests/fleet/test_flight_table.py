@@ -4,6 +4,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
+from tools.flight_table_page import markdown
 
 from recon.fleet.flight_table import (
     KIND_OF_MODE,
@@ -16,7 +17,6 @@ from recon.fleet.flight_table import (
     kind_of,
     read,
 )
-from recon.fleet.flight_table_page import markdown
 from recon.model.vehicle import FlightMode
 
 PAGE = Path(__file__).parents[2] / "docs" / "flight-table.md"

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.geo import Polygon, corner_hulls, rounded_path, straight_path
+from recon.geo import Footprints, Polygon, corner_hulls, rounded_path, straight_path
 from recon.geo.path import corner_reaches_m
 from recon.model.airspace import Region
 
@@ -123,8 +123,9 @@ def test_what_is_not_finite_stays_in_the_path_and_no_fence_holds_it(
     points[at, 0] = nowhere
     path = rounded_path(points, np.abs(values))
     field = Polygon(Region(np.array([[-1e3, -1e3], [1e3, -1e3], [1e3, 1e3], [-1e3, 1e3]])))
-    assert not field.holds_legs(path.starts_m, path.ends_m).all()
-    assert not field.is_clear_of_legs(path.starts_m, path.ends_m).all()
+    legs = Footprints(np.stack([path.starts_m, path.ends_m, path.ends_m], axis=1))
+    assert not field.holds(legs).all()
+    assert not field.is_clear_of(legs).all()
 
 
 @given(routes())

@@ -1,11 +1,12 @@
 """Regions: shapes whose answers are known, and an independent slow checker on random ones."""
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.geo import Polygon, region_fault
+from recon.geo import Footprints, Polygon, region_fault
 from recon.model.airspace import Region
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
@@ -14,6 +15,11 @@ FRAMED = Polygon(Region(SQUARE, (HOLE,)))
 
 finite = st.floats(-200.0, 200.0).map(lambda value: round(value, 3))
 point = st.tuples(finite, finite)
+
+
+def legs(starts: npt.ArrayLike, ends: npt.ArrayLike) -> Footprints:
+    """Straight legs as footprints; starts and ends are (N, 2)."""
+    return Footprints(np.stack([starts, ends, ends], axis=1))
 
 
 def star(radii_m: list[float]) -> np.ndarray:
@@ -70,18 +76,16 @@ def test_points_in_a_square_with_a_hole() -> None:
 def test_legs(
     start: tuple[float, float], end: tuple[float, float], holds: bool, clear: bool
 ) -> None:
-    assert FRAMED.holds_legs([start], [end]).tolist() == [holds]
-    assert FRAMED.is_clear_of_legs([start], [end]).tolist() == [clear]
+    assert FRAMED.holds(legs([start], [end])).tolist() == [holds]
+    assert FRAMED.is_clear_of(legs([start], [end])).tolist() == [clear]
 
 
 def test_the_margin_is_kept_on_both_sides() -> None:
     inside, outside = ([[10, 10]], [[90, 10]]), ([[-10, 0]], [[-10, 90]])
-    assert FRAMED.holds_legs(*inside, 10.0).all()
-    assert not FRAMED.holds_legs(*inside, 10.001).any()
-    assert FRAMED.is_clear_of_legs(*outside, 10.0).all()
-    assert not FRAMED.is_clear_of_legs(*outside, 10.001).any()
-    assert not FRAMED.holds_legs(*inside, float("nan")).any()
-    assert not FRAMED.is_clear_of_legs(*outside, float("nan")).any()
+    assert FRAMED.holds(legs(*inside), 9.999).all()
+    assert not FRAMED.holds(legs(*inside), 10.0).any()
+    assert FRAMED.is_clear_of(legs(*outside), 9.999).all()
+    assert not FRAMED.is_clear_of(legs(*outside), 10.0).any()
 
 
 def test_what_is_not_finite_is_neither_inside_nor_at_a_distance() -> None:
@@ -93,7 +97,7 @@ def test_no_points_give_no_answers() -> None:
     none = np.zeros((0, 2))
     assert FRAMED.contains(none).shape == (0,)
     assert FRAMED.distance_to_edge_m(none).shape == (0,)
-    assert FRAMED.holds_legs(none, none).shape == (0,)
+    assert FRAMED.holds(legs(none, none)).shape == (0,)
 
 
 @given(stars, st.lists(point, min_size=1, max_size=20))
@@ -117,8 +121,8 @@ def test_legs_agree_with_dense_sampling(
     step_m = np.linalg.norm(np.subtract(end, start)) / 399
     distance_m = slow_distance_m(outline, samples)
     signed_m = np.where(winding(outline, samples) != 0, distance_m, -distance_m)
-    holds = polygon.holds_legs([start], [end], margin_m)[0]
-    clear = polygon.is_clear_of_legs([start], [end], margin_m)[0]
+    holds = polygon.holds(legs([start], [end]), margin_m)[0]
+    clear = polygon.is_clear_of(legs([start], [end]), margin_m)[0]
     # The distance changes no faster than the place: between samples by under a step.
     if signed_m.min() > margin_m + step_m:
         assert holds

@@ -11,7 +11,7 @@ from recon.model.command import Body, GoTo, HoldPosition, Hover, LandNow, Nudge,
 from recon.model.geo import LatLon
 from recon.model.units import Stamped
 from recon.safety import ApprovedCommand, approve, judge
-from recon.safety.preflight import checklist
+from recon.safety.checks import checklist
 
 UNKNOWN: dict[str, object] = {
     "position": Stamped(),

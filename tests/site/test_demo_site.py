@@ -15,7 +15,7 @@ from recon.camera import (
     parse_camera,
     parse_control_points,
 )
-from recon.geo import Polygon, enu_from_points
+from recon.geo import Footprints, Polygon, enu_from_points
 from recon.model.airspace import ZoneKind
 from recon.model.geo import LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe
@@ -101,8 +101,9 @@ def test_its_layers_lie_where_they_were_drawn_and_keep_apart() -> None:
     assert list(layers.survey_regions) == ["west field", "south-east field"]
     for outline in (region.outline_m for region in layers.survey_regions.values()):
         ends = np.roll(outline, -1, axis=0)
-        assert field.holds_legs(outline, ends, 20.0).all()
-        assert yard.is_clear_of_legs(outline, ends, 20.0).all()
+        legs = Footprints(np.stack([outline, ends, ends], axis=1))
+        assert field.holds(legs, 20.0).all()
+        assert yard.is_clear_of(legs, 20.0).all()
 
 
 def test_its_ground_is_flat_as_the_simulators_is(tmp_path: Path) -> None:

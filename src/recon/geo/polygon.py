@@ -1,4 +1,4 @@
-"""Regions on the ground: which points and legs lie in them, and how far from the edge.
+"""Regions on the ground: which points and footprints lie in them, and how far from the edge.
 
 Input that is not finite or not on earth gets the safe answer: neither inside nor clear. GEOS (by
 shapely) does the geometry, so that touching and grazing are decided in one place.
@@ -136,32 +136,6 @@ class Polygon:
         signed_m = np.where(shapely.covers(self._area, places), distance_m, -distance_m)
         return np.where(is_finite, signed_m, np.nan)
 
-    def holds_legs(
-        self, starts_m: npt.ArrayLike, ends_m: npt.ArrayLike, margin_m: float = 0.0
-    ) -> BoolArray:
-        """Return which straight legs stay inside as a whole, at least `margin_m` from the edge.
-
-        Starts and ends are (N, 2); the answer is (N,). A leg without length counts as its point.
-        With no margin a leg may touch the edge.
-        """
-        legs, is_finite = _legs(starts_m, ends_m)
-        far_m: FloatArray = shapely.distance(self._edge, legs)
-        inside: BoolArray = shapely.covers(self._area, legs)
-        holds: BoolArray = inside & (far_m >= margin_m) & is_finite
-        return holds
-
-    def is_clear_of_legs(
-        self, starts_m: npt.ArrayLike, ends_m: npt.ArrayLike, margin_m: float = 0.0
-    ) -> BoolArray:
-        """Return which straight legs stay outside as a whole, at least `margin_m` away.
-
-        As `holds_legs`; but a leg that touches the edge is not clear, whatever the margin.
-        """
-        legs, is_finite = _legs(starts_m, ends_m)
-        far_m: FloatArray = shapely.distance(self._area, legs)
-        clear: BoolArray = (far_m > 0.0) & (far_m >= margin_m) & is_finite
-        return clear
-
     def holds(self, footprints: Footprints, inset_m: float = 0.0) -> BoolArray:
         """Return which of N footprints lie inside as a whole, (N,).
 
@@ -277,18 +251,6 @@ def _circle_inside(area: shapely.Polygon) -> tuple[FloatArray, float]:
 
 def _shape(region: Region) -> shapely.Polygon:
     return shapely.Polygon(region.outline_m, list(region.holes_m))
-
-
-def _legs(
-    starts_m: npt.ArrayLike, ends_m: npt.ArrayLike
-) -> tuple[npt.NDArray[np.object_], BoolArray]:
-    starts, start_is_finite = finite_points(starts_m)
-    ends, end_is_finite = finite_points(ends_m)
-    legs: npt.NDArray[np.object_] = shapely.linestrings(np.stack([starts, ends], axis=1))
-    is_point = (starts == ends).all(axis=1)
-    # For GEOS a line of length 0 is empty, and lies in no region.
-    legs[is_point] = shapely.points(starts[is_point])
-    return legs, start_is_finite & end_is_finite
 
 
 def thinned_ring(ring_m: FloatArray, within_m: float) -> FloatArray:

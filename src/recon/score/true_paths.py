@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import ceil
+from random import Random
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +21,6 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.model.units import NS_PER_S
 from recon.score.settings import SCORE
 from recon.sim.app.app import SimulatedApp
-from recon.sim.camera.survey_shutter import IntervalTimer
 from recon.sim.world import Sky
 from recon.site import Site
 
@@ -54,8 +54,12 @@ class Imaged:
 
 
 def phases_s(seed: int, serials: Sequence[str], interval_s: float) -> list[float]:
-    """Return when in each interval the camera timers of drones trigger, as in the simulator."""
-    return [IntervalTimer(seed, serial, interval_s).phase_s for serial in serials]
+    """Return when in each interval the camera timers of drones trigger.
+
+    A pilot starts the timer by hand before the flight, so the station cannot know its phase: here
+    it is a function of seed and serial.
+    """
+    return [Random(f"{seed}/{serial}/shutter").uniform(0.0, interval_s) for serial in serials]
 
 
 def imaged(photos: Sequence[Photos], plan: SurveyPlan, sky: Sky) -> Imaged:

@@ -4,5 +4,5 @@ Everything but `run` and `proxy` is pure: time is an argument and random numbers
 same seed and commands give the same bytes. The ground under an aircraft is flat, at the height of
 its home point.
 
-Imports go downwards only: run, proxy -> fleet, truth -> app -> camera -> flight -> land -> world.
+Imports go downwards only: run, proxy -> fleet -> app -> camera -> flight -> land -> world.
 """

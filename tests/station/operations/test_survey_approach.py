@@ -11,7 +11,7 @@ from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
-from recon.station.operations.survey.mission_dispatch import with_approach, with_approaches
+from recon.station.operations.survey.mission_dispatch import with_approaches
 
 LIMITS = FlightLimits()
 ROWS = square_mission(height_m=60.0)
@@ -28,7 +28,7 @@ def heights_m(mission: Mission) -> list[float]:
 
 @pytest.mark.parametrize("count", [2, 3, 8])
 def test_each_of_several_approaches_and_waits_in_a_layer_of_its_own(count: int) -> None:
-    flown = [with_approach(ROWS, standing(20.0 * n), n, count, LIMITS) for n in range(count)]
+    flown = [with_approaches(ROWS, standing(20.0 * n), n, count, LIMITS)[0] for n in range(count)]
     for mission in flown:
         assert heights_m(mission)[:2] == [heights_m(mission)[-1]] * 2
         assert heights_m(mission)[2:-1] == heights_m(ROWS)
@@ -38,21 +38,21 @@ def test_each_of_several_approaches_and_waits_in_a_layer_of_its_own(count: int) 
 
 
 def test_the_end_is_straight_up_or_down_from_the_last_row() -> None:
-    last, end = with_approach(ROWS, standing(0.0), 0, 2, LIMITS).waypoints[-2:]
+    last, end = with_approaches(ROWS, standing(0.0), 0, 2, LIMITS)[0].waypoints[-2:]
     assert (last.latitude_deg, last.longitude_deg) == (end.latitude_deg, end.longitude_deg)
     assert last.height_above_takeoff_m != end.height_above_takeoff_m
     assert end.gimbal_pitch_deg is None
 
 
 def test_a_lone_vehicle_stays_where_its_rows_end() -> None:
-    assert heights_m(with_approach(ROWS, standing(0.0), 0, 1, LIMITS))[-1] == 60.0
+    assert heights_m(with_approaches(ROWS, standing(0.0), 0, 1, LIMITS)[0])[-1] == 60.0
 
 
 def test_one_that_begins_at_its_first_row_still_ends_in_its_layer() -> None:
     first = ROWS.waypoints[0]
     there = LatLon(first.latitude_deg, first.longitude_deg)
     level = VehicleState(None, position=Stamped(there), height_above_takeoff_m=Stamped(60.0))
-    flown = with_approach(ROWS, level, 1, 2, LIMITS)
+    flown = with_approaches(ROWS, level, 1, 2, LIMITS)[0]
     assert flown.waypoints[:-1] == ROWS.waypoints
     assert heights_m(flown)[-1] != 60.0
 

@@ -1,1 +1,37 @@
-"""The points of the preflight checklist, each a function of a vehicle and a situation."""
+"""The preflight checklist, worked out from a vehicle's state and profile, and its airspace.
+
+Every point is computed; none is ticked by hand. A point that fails or is unknown holds missions
+back (rule preflight) until an operator overrides the list with a reason, which is logged and ends
+with the landing. Attention holds nothing back. What the ICD does not carry (propellers, memory
+cards, the controller's mode switch) is on the pilot's own list.
+"""
+
+from collections.abc import Callable
+
+from recon.model.vehicle import VehicleState
+from recon.safety.check import Check
+from recon.safety.checks import aircraft, place, site_facts
+from recon.safety.situation import Situation
+
+_CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
+    aircraft.link,
+    aircraft.battery,
+    site_facts.endurance,
+    aircraft.gnss,
+    aircraft.wind,
+    site_facts.altitude_reference,
+    site_facts.go_home_height,
+    site_facts.failsafe,
+    place.home_place,
+    place.pad_altitude,
+    place.fence,
+    place.ground,
+    place.clock,
+    site_facts.camera_interval,
+    aircraft.app,
+)
+
+
+def checklist(vehicle: VehicleState, situation: Situation) -> tuple[Check, ...]:
+    """Return every point of a vehicle's checklist, in display order. Pure."""
+    return tuple(check(vehicle, situation) for check in _CHECKS)

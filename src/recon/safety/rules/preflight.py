@@ -1,7 +1,7 @@
 """Missions and takeoffs need a passed preflight checklist, or an explicit override."""
 
 from recon.model.command import Command, FlyMission, Refusal
-from recon.safety.preflight import checklist
+from recon.safety.checks import checklist
 from recon.safety.return_missions import leads_home
 from recon.safety.situation import Situation
 

@@ -6,9 +6,9 @@ from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleState
 from recon.safety import Situation
 from recon.safety.check import Check
+from recon.safety.checks import checklist
 from recon.safety.datum import home
 from recon.safety.prediction.motion import last_place
-from recon.safety.preflight import checklist
 from recon.station.control.preflight import facts
 from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import dismissed_by, hazard

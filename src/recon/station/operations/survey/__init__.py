@@ -10,8 +10,7 @@ from recon.station.operations.operation import Operation
 from recon.station.operations.survey.audit import survey_entries
 from recon.station.operations.survey.commands import start_survey, stop_survey
 from recon.station.operations.survey.conditions import conditions
-from recon.station.operations.survey.execution import advance
-from recon.station.operations.survey.observations import on_position, on_shade
+from recon.station.operations.survey.execution import advance, on_position, on_shade
 from recon.station.operations.survey.planning import request_survey
 from recon.station.state.steps import changing, on
 

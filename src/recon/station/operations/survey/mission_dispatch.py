@@ -86,25 +86,15 @@ def _orders(
     return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
 
 
-def with_approach(
-    mission: Mission, vehicle: VehicleState, number: int, count: int, limits: FlightLimits
-) -> Mission:
-    """Return the mission with its approach at the first of the vehicle's heights.
-
-    `number` counts the survey's `count` vehicles from 0; if there are too many for the available
-    heights, they share the last one.
-    """
-    return with_approaches(mission, vehicle, number, count, limits)[0]
-
-
 def with_approaches(
     mission: Mission, vehicle: VehicleState, number: int, count: int, limits: FlightLimits
 ) -> tuple[Mission, ...]:
     """Return the mission with each possible approach: straight up or down, across, onto the first
     row; and off the last row to the same height.
 
-    One for each of the vehicle's heights, the nearest to the rows first: no two of the survey's
-    `count` vehicles share a height, as long as there are enough. Zones are left to the gate.
+    One for each of the vehicle's heights, the nearest to the rows first. `number` counts the
+    survey's `count` vehicles from 0: no two share a height, as long as there are enough; beyond,
+    they share the last one. Zones are left to the gate.
     """
     rows_m = mission.waypoints[0].height_above_takeoff_m
     layers_m = _layers_m(rows_m, limits)

@@ -8,7 +8,7 @@ from tests.safety.cases import situation, vehicle
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE
 from recon.safety.check import CheckState
-from recon.safety.preflight import checklist
+from recon.safety.checks import checklist
 from recon.safety.situation import NO_FACTS
 
 KEYS = [

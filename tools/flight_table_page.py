@@ -1,4 +1,4 @@
-"""The flight table as a documentation page, generated from the table."""
+"""The flight table as a documentation page: `python -m tools.flight_table_page` prints it."""
 
 from recon.fleet.flight_table import (
     AT_END_M,
@@ -72,3 +72,7 @@ def _row(kinds: list[str], verdicts: tuple[Verdict, ...]) -> str:
 
 def _word(verdict: Verdict) -> str:
     return f"**{verdict.value}**" if verdict in (Verdict.PILOT, Verdict.FAILSAFE) else verdict.value
+
+
+if __name__ == "__main__":
+    print(markdown(), end="")
