@@ -13,7 +13,7 @@ from recon.model.errors import SiteError
 from recon.site.elevation import ElevationTable
 from recon.site.geojson import Polygons, Rings
 from recon.site.layers import _Named, _PadProperties, _ZoneProperties
-from recon.site.reading import convert
+from recon.site.reading import convert, in_words, shown_value
 from recon.site.schema import (
     GroundImageTable,
     ImagerTable,
@@ -23,7 +23,6 @@ from recon.site.schema import (
     SiteTable,
     VehicleTable,
 )
-from recon.site.validation_errors import in_words, shown_value
 
 TABLES: list[Any] = [
     *(

@@ -6,17 +6,18 @@ and return (N, 2) or (N, 3) float64; NaN or infinity gives the safe answer, neve
 
 from recon.geo.local_frame import (
     OnGlobe,
+    TangentPlane,
     enu_from_geo,
     enu_from_point,
     enu_from_points,
     geo_from_enu,
     point_from_enu,
     shift_east_north_m,
+    tangent_plane,
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
 from recon.geo.polygon import Footprints, Polygon, region_fault, thinned_ring
 from recon.geo.surface import Surface
-from recon.geo.tangent_plane import TangentPlane, tangent_plane
 
 __all__ = [
     "DEFAULT_CHORD_ERROR_M",

@@ -34,7 +34,7 @@ from recon.sim.world import (
     WindSettings,
     WindShift,
 )
-from recon.site.validation_errors import validation_error
+from recon.site.reading import validation_error
 
 LARGEST_BYTES = 1_000_000
 AT_LINE = re.compile(r"at line (\d+)")

@@ -19,8 +19,7 @@ from recon.geo import enu_from_geo, region_fault
 from recon.model.airspace import Region
 from recon.model.errors import SiteError
 from recon.model.geo import LatLon, LocalFrame
-from recon.site.reading import convert, read_bounded, refuse_non_finite
-from recon.site.validation_errors import shown_value
+from recon.site.reading import convert, read_bounded, refuse_non_finite, shown_value
 
 FloatArray = npt.NDArray[np.float64]
 

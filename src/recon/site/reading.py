@@ -1,16 +1,22 @@
-"""Reading a site's files: bounded, inside the folder; errors name file and key."""
+"""Reading a site's files: bounded, inside the folder; errors name file and key.
+
+A validation error's text comes from the schema: its ranges, choices and keys, or the description
+beside a pattern. Of msgspec's own text only the place of the error is read.
+"""
 
 import math
+import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from hashlib import sha256
 from pathlib import Path
 from typing import TypeVar
 
 import msgspec
+from msgspec import inspect
 
 from recon.model.errors import SiteError
-from recon.site.validation_errors import shown_value, validation_error
 
 T = TypeVar("T")
 
@@ -110,3 +116,146 @@ def _content_hash(path: Path) -> bytes:
         return content.digest()
     except OSError:
         return b"unreadable"
+
+
+K = TypeVar("K", bound=inspect.Type)
+
+MAX_SHOWN_LETTERS = 80
+_STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
+
+
+def validation_error(problem: msgspec.ValidationError, data: object, kind: object, key: str) -> str:
+    """Return "key: expected this, got that" for data of another type than `kind`, under `key`."""
+    what, _, where = str(problem).rpartition(" - at `$")
+    steps = [name or int(index) for name, index in _STEP.findall(where.rstrip("`"))]
+    owners, kinds = [data], [inspect.type_info(kind)]
+    try:
+        for step in steps:
+            owners.append(owners[-1][step])  # type: ignore[index]
+            kinds.append(_inner(kinds[-1], step))
+    except (LookupError, TypeError, StopIteration):
+        # The place was part of an unknown key: report the error at the top.
+        what, steps, owners, kinds = str(problem), [], owners[:1], kinds[:1]
+    what = what or str(problem)
+    if what.startswith("Object contains unknown field"):
+        return _unknown_key(_path(key, steps), owners[-1], kinds[-1])
+    if what.startswith("Object missing required field"):
+        missing = _missing(owners[-1], kinds[-1])
+        expected, path = in_words(_inner(kinds[-1], missing)), _path(key, [*steps, missing])
+        if expected == "a table":
+            return f"section [{path}] is missing"
+        return f"{path} is missing: expected {expected}"
+    hint = _swapped(owners, steps)
+    place = _path(key, steps)
+    lead = f"{place}: " if place else ""
+    return f"{lead}expected {in_words(kinds[-1])}, got {shown_value(owners[-1])}{hint}"
+
+
+def in_words(kind: inspect.Type) -> str:
+    """Return what a type allows: `a number of -90 to 90`, `'ground' or 'wgs84'`."""
+    if isinstance(kind, inspect.Metadata):
+        description = (kind.extra_json_schema or {}).get("description")
+        return str(description) if description else in_words(kind.type)
+    if isinstance(kind, inspect.UnionType):
+        choices = [one for one in kind.types if not isinstance(one, inspect.NoneType)]
+        return " or ".join(in_words(one) for one in choices)
+    if isinstance(kind, inspect.LiteralType):
+        return " or ".join(repr(value) for value in kind.values)
+    if isinstance(kind, inspect.FloatType):
+        return "a number" + _range(kind)
+    if isinstance(kind, inspect.IntType):
+        return "a whole number" + _range(kind)
+    if isinstance(kind, inspect.TupleType):
+        return f"a list of {len(kind.item_types)}, each {in_words(kind.item_types[0])}"
+    if isinstance(kind, inspect.ListType):
+        return "a list"
+    return "a text" if isinstance(kind, inspect.StrType) else "a table"
+
+
+def shown_value(value: object) -> str:
+    """Return a value of a file in printable characters, shortened."""
+    if isinstance(value, Mapping):
+        return "an object"
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    if value is None or isinstance(value, bool):
+        return "nothing" if value is None else str(value).lower()
+    if isinstance(value, int) and abs(value) > sys.float_info.max:
+        return "a number with very many digits"
+    text = ascii(value) if isinstance(value, str) else ascii(str(value))[1:-1]
+    return text if len(text) <= MAX_SHOWN_LETTERS else text[: MAX_SHOWN_LETTERS - 3] + "..."
+
+
+def _unknown_key(place: str, owner: object, kind: inspect.Type) -> str:
+    known = [field.encode_name for field in _struct(kind).fields]
+    unknown = next(str(name) for name in _keys(owner) if name not in known)
+    near = get_close_matches(unknown, known, n=1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    lead = f"{place}: " if place else ""
+    return f"{lead}expected only the keys {', '.join(known)}, got {shown_value(unknown)}{hint}"
+
+
+def _missing(owner: object, kind: inspect.Type) -> str:
+    there = set(_keys(owner))
+    fields = _struct(kind).fields
+    return next(f.encode_name for f in fields if f.required and f.encode_name not in there)
+
+
+def _keys(owner: object) -> Sequence[object]:
+    return list(owner) if isinstance(owner, Mapping) else []
+
+
+def _swapped(owners: Sequence[object], steps: Sequence[str | int]) -> str:
+    """Return a hint when an invalid latitude and its longitude would be valid swapped."""
+    if not steps or steps[-1] != "latitude_deg" or not isinstance(owners[-2], Mapping):
+        return ""
+    latitude, longitude = owners[-1], owners[-2].get("longitude_deg")
+    if not (_is_degrees(latitude, 180.0) and _is_degrees(longitude, 90.0)):
+        return ""
+    return "; latitude and longitude look swapped"
+
+
+def _is_degrees(value: object, most: float) -> bool:
+    return isinstance(value, int | float) and abs(value) <= most
+
+
+def _inner(kind: inspect.Type, step: str | int) -> inspect.Type:
+    """Return the type of what a type holds at a key or an index."""
+    if isinstance(step, str):
+        fields = _struct(kind).fields
+        return next(field.type for field in fields if field.encode_name == step)
+    for lists in _choices(kind, inspect.ListType):
+        return lists.item_type
+    (several,) = _choices(kind, inspect.TupleType)
+    return several.item_types[step]
+
+
+def _struct(kind: inspect.Type) -> inspect.StructType:
+    return _choices(kind, inspect.StructType)[0]
+
+
+def _choices(kind: inspect.Type, wanted: type[K]) -> list[K]:
+    """Return the types of one sort that a type allows: itself, or members of a union."""
+    if isinstance(kind, inspect.Metadata):
+        return _choices(kind.type, wanted)
+    members = kind.types if isinstance(kind, inspect.UnionType) else (kind,)
+    return [member for member in members if isinstance(member, wanted)]
+
+
+def _range(kind: inspect.FloatType | inspect.IntType) -> str:
+    if kind.le is None:
+        return ""
+    if kind.gt is not None:
+        return f" above {kind.gt:g}, {kind.le:g} at most"
+    return f" of {kind.ge:g} to {kind.le:g}"
+
+
+def _path(key: str, steps: Sequence[str | int]) -> str:
+    """Return `pad.latitude_deg` or `coordinates[0][1]` under a key."""
+    path = key
+    for step in steps:
+        if isinstance(step, int):
+            path += f"[{step}]"
+        else:
+            path += f".{step}" if path else step
+    return path

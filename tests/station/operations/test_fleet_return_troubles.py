@@ -17,7 +17,7 @@ from recon.model.event import FleetReturnOrdered, OperatorOrder
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
-from recon.station.operations.fleet_return import positions
+from recon.station.operations.fleet_return import planning
 from recon.station.operations.fleet_return.planning import PLAN_RETURN
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.station import Station
@@ -191,7 +191,7 @@ def test_where_it_lands(layer: bool, profile: bool, name: str) -> None:
     )
     airspace = PreparedAirspace(Airspace(frame=frame, landing_pads=pads))
     station = Station(fleet=Fleet(vehicles={"A": state}), airspace=airspace)
-    found = positions.returning(station, "A", frame)
+    found = planning.returning(station, "A", frame)
     assert not isinstance(found, str)
     wanted_m = {"north": (30.0, 0.0, 2.0), "of its own": (0.0, 40.0, 3.0)}.get(name, (0.0,) * 3)
     assert found.pad.name == name

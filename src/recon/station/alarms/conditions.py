@@ -22,7 +22,7 @@ from recon.model.command import Phase
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
-from recon.station.alarms import station_faults
+from recon.station.alarms import event_alarms
 from recon.station.imaging import frames
 from recon.station.operations import OPERATIONS
 from recon.station.state import alarm_book, orders
@@ -67,7 +67,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     for record in station.orders.tracked:
         yield from _waiting(record)
         yield from _of_order(record)
-    yield from station_faults.conditions(station, now_ns)
+    yield from event_alarms.fault_conditions(station, now_ns)
     for operation in OPERATIONS:
         yield from operation.conditions(station)
     yield from _watchdogs(station)

@@ -3,3 +3,31 @@
 `service.py` implements the API's port: requests become events for the driver, and `*_view`
 functions turn the station's state into the messages of `api/schema/`. Views only read the state.
 """
+
+from typing import Protocol
+
+from recon.link.server import LinkServer
+from recon.model.event import Event
+from recon.station.state.station import Station
+
+
+class RunningStation(Protocol):
+    """The driver as the API's service sees it."""
+
+    @property
+    def station(self) -> Station:
+        """The state after the newest step."""
+
+    @property
+    def started_at_ns(self) -> int:
+        """Station time of the start."""
+
+    @property
+    def links(self) -> LinkServer | None:
+        """The TCP server for companion apps; None if the station runs without one."""
+
+    def now_ns(self) -> int:
+        """Return station time."""
+
+    def handle(self, event: Event) -> None:
+        """Step the station by an event before returning, unless a step is already running."""

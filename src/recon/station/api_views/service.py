@@ -28,8 +28,8 @@ from recon.record import geotiff_bytes
 from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
-from recon.station.alarms.station_faults import TO_DO
-from recon.station.api_views.running_station import RunningStation
+from recon.station.alarms.event_alarms import FAULT_TO_DO
+from recon.station.api_views import RunningStation
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
@@ -300,7 +300,7 @@ def _not_taken(command_id: int, serial: str | None) -> schema.OrderResult:
         accepted=False,
         command_id=command_id,
         rule="station_fault",
-        reason=f"a fault in the station's own code, see the alarm; nothing was sent: {TO_DO}",
+        reason=f"a fault in the station's own code, see the alarm; nothing was sent: {FAULT_TO_DO}",
         parameters={},
         repairs=[],
         parts=0,

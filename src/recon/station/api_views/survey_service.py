@@ -13,8 +13,8 @@ from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
 from recon.site import Site
 from recon.site.geojson import Feature, regions_of
+from recon.station.api_views import RunningStation
 from recon.station.api_views.operation_views import cells_number, survey_view, survey_ways
-from recon.station.api_views.running_station import RunningStation
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
 

@@ -14,9 +14,9 @@ from recon.model.command import Hover
 from recon.model.errors import describe_fault
 from recon.model.event import Event, OperatorOrder, SetpointsDue, StationFaulted, Tick
 from recon.safety.watchdogs import WATCHDOGS, Finding, TrafficPicture, Watchdog
-from recon.station.alarms import station_faults
+from recon.station.alarms import event_alarms
 from recon.station.alarms.conditions import raise_alarms
-from recon.station.alarms.station_faults import TO_DO, WHOSE, note
+from recon.station.alarms.event_alarms import FAULT_TO_DO, STATION_NAME, note_fault
 from recon.station.control import order_gateway
 from recon.station.kernel.watchdog_holds import run_watchdogs
 from recon.station.state import alarm_book
@@ -53,7 +53,7 @@ def after_fault(
         return drive_streams_isolated(station, now_ns)
     if not isinstance(event, Tick):
         where = f"handling {type(event).__name__}"
-        return note(station, StationFaulted(where, describe_fault(fault)), now_ns), ()
+        return note_fault(station, StationFaulted(where, describe_fault(fault)), now_ns), ()
     outputs: tuple[Output, ...] = ()
     for part in parts:
         station, more = _attempt(part.name, part.isolated or part.run, station, now_ns)
@@ -73,7 +73,7 @@ def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
         try:
             station, more = order_gateway.update_streams(station, now_ns, (serial,))
         except Exception as fault:
-            station = note(station, StationFaulted(where, describe_fault(fault)), now_ns)
+            station = note_fault(station, StationFaulted(where, describe_fault(fault)), now_ns)
             station, more = _attempt(where, partial(_end_stream, serial), station, now_ns)
             setpoint_stream = station.control(serial).stream
             if setpoint_stream is not None and setpoint_stream.closing is None:
@@ -103,10 +103,12 @@ def raise_alarms_isolated(station: Station, now_ns: int) -> Stepped:
     try:
         return raise_alarms(station, now_ns)
     except Exception as fault:
-        station = note(station, StationFaulted("raising alarms", describe_fault(fault)), now_ns)
+        station = note_fault(
+            station, StationFaulted("raising alarms", describe_fault(fault)), now_ns
+        )
     book = station.alarms
     standing = [alarm.condition for alarm in book.alarms.values() if alarm.is_active]
-    present = {c.key: c for c in (*standing, *station_faults.conditions(station, now_ns))}
+    present = {c.key: c for c in (*standing, *event_alarms.fault_conditions(station, now_ns))}
     book = alarm_book.update(book, present.values(), now_ns, station.settings.alarms_kept)
     return replace(station, alarms=book), ()
 
@@ -119,9 +121,10 @@ def isolated(watchdog: Watchdog) -> Watchdog:
             return tuple(watchdog(picture))
         except Exception as fault:
             name = getattr(watchdog, "__name__", "?")
-            text = f"{WHOSE}: the watchdog {name} has failed: {describe_fault(fault)}; {TO_DO}"
+            what = f"the watchdog {name} has failed: {describe_fault(fault)}"
+            text = f"{STATION_NAME}: {what}; {FAULT_TO_DO}"
             key = f"watchdog_failed:{name}"
-            return (Finding(key, "station_fault", Severity.CRITICAL, WHOSE, text),)
+            return (Finding(key, "station_fault", Severity.CRITICAL, STATION_NAME, text),)
 
     return find
 
@@ -133,7 +136,7 @@ def _attempt(name: str, part: Part, station: Station, now_ns: int) -> Stepped:
     try:
         return part(station, now_ns)
     except Exception as fault:
-        return note(station, StationFaulted(name, describe_fault(fault)), now_ns), ()
+        return note_fault(station, StationFaulted(name, describe_fault(fault)), now_ns), ()
 
 
 def _end_stream(serial: str, station: Station, now_ns: int) -> Stepped:

@@ -33,7 +33,7 @@ from recon.model.event import (
 from recon.model.replacing import replace
 from recon.model.report import CoreReport, ImageReport, MessageReport
 from recon.model.vehicle import VehicleState
-from recon.station.alarms import app_messages, station_faults
+from recon.station.alarms import event_alarms
 from recon.station.alarms.conditions import raise_alarms
 from recon.station.control import authority, order_gateway, preflight
 from recon.station.imaging import frames
@@ -185,7 +185,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(SeparationHoldSwitched, watchdog_runner.switch_hold),
         changing(ClockRead, preflight.read_clock),
         changing(PreflightOverridden, preflight.override),
-        changing(StationFaulted, station_faults.note),
+        changing(StationFaulted, event_alarms.note_fault),
         changing(AuditFailed, _audit_failed),
         changing(AlarmAcknowledged, _acknowledged),
         *(command for each in OPERATIONS for command in each.commands),
@@ -196,7 +196,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
 _REPORTS: Mapping[type[Any], Callable[[Station, VehicleState, Any, int], Stepped]] = {
     CoreReport: _core,
     ImageReport: frames.on_frame,
-    MessageReport: app_messages.on_message,
+    MessageReport: event_alarms.on_message,
 }
 """What a report means beside its part in the vehicle's state; other reports mean no more."""
 

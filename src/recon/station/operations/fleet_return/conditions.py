@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from recon.station.operations.fleet_return.positions import is_same_pad
+from recon.station.operations.fleet_return.planning import is_same_pad
 from recon.station.operations.fleet_return.progress import is_still_left
 from recon.station.operations.settings import RETURN_SETTINGS
 from recon.station.state.alarm_book import Condition, Severity

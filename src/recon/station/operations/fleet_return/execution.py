@@ -37,8 +37,8 @@ from recon.model.units import seconds_to_ns
 from recon.safety import judge
 from recon.station.control import authority, order_gateway
 from recon.station.control.situation_builder import command_of, situation
-from recon.station.operations.fleet_return import planning, positions
-from recon.station.operations.fleet_return.positions import is_same_pad
+from recon.station.operations.fleet_return import planning
+from recon.station.operations.fleet_return.planning import is_same_pad
 from recon.station.operations.fleet_return.progress import updated
 from recon.station.operations.settings import RETURN_SETTINGS, ReturnSettings
 from recon.station.state.fleet_return_record import (
@@ -158,8 +158,8 @@ class _Traffic:
 
     def __init__(self, station: Station, running: FleetReturn, settings: ReturnSettings) -> None:
         self._settings = settings
-        self._separation = positions.separation(station, settings)
-        self._flying = positions.in_the_air(station, running.frame)
+        self._separation = planning.separation(station, settings)
+        self._flying = planning.in_the_air(station, running.frame)
         self._moving = {member.serial for member in running.at(*UNDER_WAY)}
         self._under_way = [
             claim_left(member.flight, self._place_m(member), settings.plan)

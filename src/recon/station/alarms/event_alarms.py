@@ -1,0 +1,90 @@
+"""Alarms that begin with an event: messages from an app, faults in the station's own code.
+
+They stay until an operator acknowledges them. A fault's alarm is critical while the fault recurs.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from recon.model.event import StationFaulted
+from recon.model.replacing import replace
+from recon.model.report import MessageReport, MessageSeverity
+from recon.model.units import seconds_to_ns
+from recon.model.vehicle import VehicleState
+from recon.station.state import alarm_book
+from recon.station.state.alarm_book import Condition, Severity
+from recon.station.state.station import Fault, Station
+from recon.station.state.steps import Stepped
+
+_SEVERITIES = {
+    MessageSeverity.WARNING: Severity.WARNING,
+    MessageSeverity.ERROR: Severity.ERROR,
+}
+
+
+def on_message(
+    station: Station, vehicle: VehicleState, report: MessageReport, now_ns: int
+) -> Stepped:
+    """Note a warning or an error, unless its app has too many that are not acknowledged."""
+    severity = _SEVERITIES.get(report.severity)
+    source = vehicle.serial if vehicle.serial is not None else f"link {vehicle.link_id}"
+    if severity is None or _unacknowledged(station, source) >= station.settings.app_messages_kept:
+        return station, ()
+    condition = Condition(
+        key=f"app:{source}:{report.text}",
+        severity=severity,
+        rule="app_message",
+        vehicle_name=vehicle.display_name,
+        text=f"{vehicle.display_name}: message from its app: {report.text}",
+        serial=vehicle.serial,
+        link_id=vehicle.link_id,
+    )
+    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book), ()
+
+
+def _unacknowledged(station: Station, source: str) -> int:
+    alarms = station.alarms.alarms.values()
+    return sum(alarm.condition.key.startswith(f"app:{source}:") for alarm in alarms)
+
+
+STATION_NAME = "Station"
+FAULT_TO_DO = "hold or land doubtful vehicles with their controllers, then restart the station"
+
+
+@dataclass(frozen=True, slots=True)
+class FaultSettings:
+    """Limits for the alarms of faults."""
+
+    lasts_s: float = 10.0
+    """A fault that has not recurred for this long has ended."""
+
+    kept: int = 32
+    """Different faults shown at once."""
+
+
+FAULT_SETTINGS = FaultSettings()
+
+
+def note_fault(station: Station, event: StationFaulted, now_ns: int) -> Station:
+    """Return the station with a fault recorded."""
+    first = station.faults.get(event.where)
+    since_ns = now_ns if first is None else first.since_ns
+    recent = {fault.where: fault for fault in _present(station, now_ns)}
+    recent.pop(event.where, None)
+    kept = dict(list(recent.items())[-(FAULT_SETTINGS.kept - 1) :])
+    fault = Fault(event.where, event.what, since_ns, now_ns)
+    return replace(station, faults={**kept, event.where: fault})
+
+
+def fault_conditions(station: Station, now_ns: int) -> Iterator[Condition]:
+    """Yield an alarm for each recent fault."""
+    for fault in _present(station, now_ns):
+        text = f"{STATION_NAME}: fault in its own code, {fault.where}: {fault.what}; {FAULT_TO_DO}"
+        key = f"station_fault:{fault.where}"
+        yield Condition(key, Severity.CRITICAL, "station_fault", STATION_NAME, text)
+
+
+def _present(station: Station, now_ns: int) -> Iterator[Fault]:
+    lasts_ns = seconds_to_ns(FAULT_SETTINGS.lasts_s)
+    return (fault for fault in station.faults.values() if now_ns - fault.at_ns <= lasts_ns)
