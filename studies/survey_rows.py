@@ -14,7 +14,7 @@ import numpy as np
 from tests.oracles.places import FloatArray
 
 from recon.guidance.survey import (
-    Flight,
+    AssignedMission,
     Surveyor,
     SurveyPlan,
     SurveyState,
@@ -70,7 +70,7 @@ def fields() -> dict[str, Region]:
     }
 
 
-def flights_of(region: Region, count: int) -> tuple[SurveyPlan, dict[str, Flight]]:
+def flights_of(region: Region, count: int) -> tuple[SurveyPlan, dict[str, AssignedMission]]:
     """Return the first missions of a survey by vehicles that stand south of the field."""
     survey = Survey(1, "field", region, height_above_takeoff_m=60.0, speed_mps=8.0)
     plan = plan_survey(survey, FRAME)
@@ -84,7 +84,9 @@ def flights_of(region: Region, count: int) -> tuple[SurveyPlan, dict[str, Flight
     return plan, dict(flying.flights)
 
 
-def picture(plan: SurveyPlan, flights: dict[str, Flight], title: str) -> cv2.typing.MatLike:
+def picture(
+    plan: SurveyPlan, flights: dict[str, AssignedMission], title: str
+) -> cv2.typing.MatLike:
     """Return one field with the ways of its vehicles, (H, W, 3) u8."""
     canvas = np.full((SIDE_PX, SIDE_PX, 3), PAPER, dtype=np.uint8)
     region = plan.survey.region

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon.record.audit import AuditEntry, Stamped, encode_line
+from recon.record.audit import AuditEntry, NumberedEntry, encode_line
 from recon.record.audit_log import AuditLog
 
 ENTRIES = 2_000
@@ -61,7 +61,7 @@ def test_putting_costs_little_and_lines_are_soon_in_the_file(
 
 def writing_at_once(path: Path) -> tuple[list[float], list[float]]:
     """Return what each line costs its writer without and with a sync."""
-    line = encode_line(Stamped(1, 0, 0, ENTRY), "0" * 64) + b"\n"
+    line = encode_line(NumberedEntry(1, 0, 0, ENTRY), "0" * 64) + b"\n"
     plain_s: list[float] = []
     synced_s: list[float] = []
     file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
