@@ -7,6 +7,7 @@ import websockets
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 from tests.api.test_stream import PATIENCE_S, served
+from tests.patient_loop import run_patiently
 
 from recon.api import streams
 
@@ -44,7 +45,7 @@ def test_a_stream_holds_while_it_is_open() -> None:
                 await reader.recv()
                 assert held(station) == frozenset()
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_silent_stream_is_closed_and_owns_nothing(
@@ -60,7 +61,7 @@ def test_a_silent_stream_is_closed_and_owns_nothing(
                     await read_on(reader)
             assert held(station) == frozenset()
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_an_owner_that_sends_keepalives_stays_open(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,7 +81,7 @@ def test_an_owner_that_sends_keepalives_stays_open(monkeypatch: pytest.MonkeyPat
                 await reader.send("")
                 assert held(station) == {NAME}
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 @pytest.mark.parametrize("name", ["short", "x" * 65, "a-name-with-a-space%20in-it", "ümlaut" * 4])
@@ -93,7 +94,7 @@ def test_names_that_are_none_are_refused(name: str) -> None:
                     await reader.recv()
             assert held(station) == frozenset()
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_name_is_one_streams_at_a_time() -> None:
@@ -111,7 +112,7 @@ def test_a_name_is_one_streams_at_a_time() -> None:
             await first.recv()
             assert held(station) == {NAME}
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 class TestOrders:

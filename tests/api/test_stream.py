@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator
 import uvicorn
 import websockets
 from tests.api.fake_station import FakeStation, application
+from tests.patient_loop import run_patiently
 
 from recon.api import streams as stream_module
 from recon.api.schema import StationState
@@ -50,7 +51,7 @@ def test_a_fast_reader_gets_one_state_after_another() -> None:
                 for _ in range(5):
                     StationState.model_validate_json(await reader.recv())
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_states_are_made_once_for_all_readers() -> None:
@@ -68,7 +69,7 @@ def test_states_are_made_once_for_all_readers() -> None:
                     await reader.recv()
             assert station.states_made < 8 * 10 / 2
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_reader_that_does_not_read_is_sent_the_present_not_the_past() -> None:
@@ -92,7 +93,7 @@ def test_a_reader_that_does_not_read_is_sent_the_present_not_the_past() -> None:
                 # Of 40 states of a megabyte the slow one holds a few: its own buffers', no queue.
                 assert len(waiting) < 20
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_readers_beyond_the_limit_are_refused_and_places_come_free() -> None:
@@ -114,4 +115,4 @@ def test_readers_beyond_the_limit_are_refused_and_places_come_free() -> None:
                 except websockets.InvalidStatus:
                     continue
 
-    asyncio.run(main())
+    run_patiently(main())

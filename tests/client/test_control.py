@@ -1,11 +1,11 @@
 """Authority, preflight, hazard areas and separation hold from Python, with a real station."""
 
-import asyncio
 from dataclasses import replace
 
 import pytest
 from tests.client.running_station import running_station
 from tests.client.test_flights import accepted, leg_north, refused
+from tests.patient_loop import run_patiently
 
 from recon.client import Refusal, RequestRefusedError, Station
 from recon.site import Site
@@ -32,7 +32,7 @@ def test_authority_is_taken_and_handed_over() -> None:
             assert answer.rule == "authority"
             accepted(await vehicle.hold())
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_ready_vehicle_passes_the_checklist() -> None:
@@ -48,7 +48,7 @@ def test_a_ready_vehicle_passes_the_checklist() -> None:
                 "clock",
             }
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_failed_checklist_is_overridden_with_a_reason() -> None:
@@ -69,7 +69,7 @@ def test_a_failed_checklist_is_overridden_with_a_reason() -> None:
             refusal = await vehicle.would_fly(mission, takeoff=True)
             assert refusal is None or refusal.rule != "preflight"
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_connected_vehicle_has_no_hazard_area() -> None:
@@ -79,7 +79,7 @@ def test_a_connected_vehicle_has_no_hazard_area() -> None:
             with pytest.raises(RequestRefusedError, match="No hazard area"):
                 await vehicle.dismiss_hazard()
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_switching_the_separation_hold_off_raises_an_alarm() -> None:
@@ -94,4 +94,4 @@ def test_switching_the_separation_hold_off_raises_an_alarm() -> None:
             assert "separation_hold_off" in rules
             await station.switch_separation_hold(True)
 
-    asyncio.run(main())
+    run_patiently(main())

@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Callable
 
 from tests.client.running_station import SERIALS, running_station
+from tests.patient_loop import run_patiently
 
 from recon.client import Order, Refusal, Station, VehicleReturn
 
@@ -38,7 +39,7 @@ def test_vehicles_return_in_separate_layers_and_a_hold_releases_them() -> None:
             assert {vehicle.stage for vehicle in released} == {"released"}
             assert all("hover, ordered by api" in (v.reason or "") for v in released)
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_vehicle_on_the_ground_is_refused() -> None:
@@ -50,4 +51,4 @@ def test_a_vehicle_on_the_ground_is_refused() -> None:
             assert answer.answer.rule == "flying"
             assert await station.fleet.returning() == ()
 
-    asyncio.run(main())
+    run_patiently(main())

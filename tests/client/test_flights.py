@@ -1,10 +1,10 @@
 """The client with a real station: orders are flown, refusals are values, states are new."""
 
-import asyncio
 from dataclasses import replace
 
 import pytest
 from tests.client.running_station import SERIALS, running_station
+from tests.patient_loop import run_patiently
 
 from recon.client import (
     ConnectionLostError,
@@ -69,7 +69,7 @@ def test_orders_are_flown_and_confirmed_by_telemetry() -> None:
             landed = await accepted(await vehicle.land()).wait()
             assert (landed.kind, landed.phase) == ("land", Phase.CONFIRMED)
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_camera_orders_reach_the_app() -> None:
@@ -81,7 +81,7 @@ def test_camera_orders_reach_the_app() -> None:
             ended = await accepted(await vehicle.stop_camera()).wait(Phase.SENT)
             assert ended.kind == "camera_stop"
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_refusals_are_values() -> None:
@@ -100,7 +100,7 @@ def test_refusals_are_values() -> None:
             assert vehicle.now().is_flying.value is False
             assert accepted(await vehicle.fly(leg, takeoff=True)).serial == "SIM-1"
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_fleet_orders_have_one_answer_per_vehicle() -> None:
@@ -117,7 +117,7 @@ def test_fleet_orders_have_one_answer_per_vehicle() -> None:
             statuses = [await accepted(answer.answer).wait() for answer in answers]
             assert [status.phase for status in statuses] == [Phase.CONFIRMED] * 2
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_an_empty_fleet_gets_no_orders() -> None:
@@ -126,7 +126,7 @@ def test_an_empty_fleet_gets_no_orders() -> None:
             assert await station.fleet.hold() == ()
             assert await station.all_stop() == ()
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_telemetry_is_new_and_skips_missed_states() -> None:
@@ -143,7 +143,7 @@ def test_telemetry_is_new_and_skips_missed_states() -> None:
                     break
             assert all(height_m is not None and height_m > 10.0 for height_m in heights_m)
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_vehicle_with_a_silent_app_becomes_late() -> None:
@@ -157,7 +157,7 @@ def test_a_vehicle_with_a_silent_app_becomes_late() -> None:
                     assert state.telemetry_age_s >= 1.0
                     return
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_vehicle_that_does_not_connect_is_named() -> None:
@@ -169,7 +169,7 @@ def test_a_vehicle_that_does_not_connect_is_named() -> None:
             with pytest.raises(ConnectionLostError, match="SIM-9"):
                 Vehicle("SIM-9", station._order_api).now()
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_waiting_for_an_acknowledged_order_times_out() -> None:
@@ -181,7 +181,7 @@ def test_waiting_for_an_acknowledged_order_times_out() -> None:
             with pytest.raises(WaitTimeoutError, match="expected confirmed within"):
                 await order.wait(timeout_s=0.5)
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_rejected_order_is_returned_with_its_phase() -> None:
@@ -193,7 +193,7 @@ def test_a_rejected_order_is_returned_with_its_phase() -> None:
             assert status.phase is Phase.REFUSED_BY_APP
             assert not status.has_reached(Phase.CONFIRMED)
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_token_opens_a_station_and_is_never_printed() -> None:
@@ -208,4 +208,4 @@ def test_a_token_opens_a_station_and_is_never_printed() -> None:
                     await wrong.__aenter__()
                 assert TOKEN not in str(problem.value)
 
-    asyncio.run(main())
+    run_patiently(main())

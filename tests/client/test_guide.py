@@ -1,13 +1,13 @@
 """Runs the guide's first example unchanged with a real station."""
 
 import ast
-import asyncio
 import re
 from pathlib import Path
 from types import CodeType
 
 import pytest
 from tests.client.running_station import running_station
+from tests.patient_loop import run_patiently
 
 GUIDE = Path(__file__).parents[2] / "docs/how-to/fly-from-python.md"
 BLOCKS = re.findall(r"```python\n(.*?)```", GUIDE.read_text(encoding="utf-8"), re.DOTALL)
@@ -27,5 +27,5 @@ def test_the_first_block_holds_a_vehicle(capsys: pytest.CaptureFixture[str]) -> 
         async with running_station(vehicles=1) as url:
             await eval(compiled(BLOCKS[0].replace("http://127.0.0.1:8080", url)), {})
 
-    asyncio.run(main())
+    run_patiently(main())
     assert "done" in capsys.readouterr().out

@@ -1,10 +1,10 @@
 """Goto, nudge and hold position from a program, and what happens when the program ends."""
 
-import asyncio
 from math import hypot
 
 import pytest
 from tests.client.running_station import running_station
+from tests.patient_loop import run_patiently
 
 from recon.client import (
     ConnectionLostError,
@@ -56,7 +56,7 @@ def test_a_goto_flies_to_the_target_and_a_nudge_continues_from_there() -> None:
             held = accepted(await vehicle.hold_position())
             assert (await held.wait(Phase.DONE)).kind == "hold_position"
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_vehicle_holds_when_its_program_ends() -> None:
@@ -80,7 +80,7 @@ def test_a_vehicle_holds_when_its_program_ends() -> None:
             assert "hover" in phases
             assert hypot(*offset_north_east_m(start, place(vehicle.now().position))) < 60.0
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_vehicle_holds_when_its_program_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -101,7 +101,7 @@ def test_a_vehicle_holds_when_its_program_hangs(monkeypatch: pytest.MonkeyPatch)
                 assert (await order.wait(Phase.DONE)).phase is Phase.FAILED
             await until_mode(vehicle, "gps_atti")
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_refused_steering_is_a_value() -> None:
@@ -125,7 +125,7 @@ def test_refused_steering_is_a_value() -> None:
             assert isinstance(broken, Refusal)
             assert broken.rule == "finite_numbers"
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_without_an_open_stream_nothing_is_sent() -> None:
@@ -136,4 +136,4 @@ def test_without_an_open_stream_nothing_is_sent() -> None:
             with pytest.raises(ConnectionLostError, match="nothing was sent"):
                 await vehicle.nudge(north_m=1.0)
 
-    asyncio.run(main())
+    run_patiently(main())

@@ -11,6 +11,7 @@ from starlette.types import Receive, Scope, Send
 from tests.client import fake_state
 from tests.client.raw_server import server
 from tests.client.running_station import serving
+from tests.patient_loop import run_patiently
 
 from recon.client import (
     BadAnswerError,
@@ -126,7 +127,7 @@ def test_telemetry_of_a_silent_stream_becomes_late_and_lost(
             with pytest.raises(ConnectionLostError, match="got none for 10 s"):
                 await anext(states)
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_buffered_messages_are_not_live() -> None:
@@ -150,7 +151,7 @@ def test_buffered_messages_are_not_live() -> None:
             assert state.staleness is Staleness.LATE
             assert state.telemetry_age_s == pytest.approx(1.25)
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_closed_stream_is_reopened() -> None:
@@ -162,7 +163,7 @@ def test_a_closed_stream_is_reopened() -> None:
             assert (await anext(states)).is_live
             assert fake.readers == 2
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_orders_from_before_a_restart_are_lost() -> None:
@@ -187,7 +188,7 @@ def test_orders_from_before_a_restart_are_lost() -> None:
                 await order.wait()
             assert fake.orders == 1
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 @pytest.mark.parametrize("results", ["", RESULT % '"SIM-2"', ", ".join([RESULT % '"SIM-1"'] * 2)])
@@ -200,7 +201,7 @@ def test_results_for_other_vehicles_are_no_answer(results: str) -> None:
                 await vehicle.land()
             assert fake.orders == 1
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 @pytest.mark.parametrize(
@@ -214,7 +215,7 @@ def test_a_stream_without_states_is_rejected(data: str | bytes) -> None:
                 pass
         assert fake.readers == 1
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_an_unreadable_message_ends_the_telemetry() -> None:
@@ -225,7 +226,7 @@ def test_an_unreadable_message_ends_the_telemetry() -> None:
                 async for _ in states:
                     pass
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def test_a_huge_state_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -236,7 +237,7 @@ def test_a_huge_state_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
             async with fake_station(FakeStation(sending(ONE, then_silent=True))):
                 pass
 
-    asyncio.run(main())
+    run_patiently(main())
 
 
 def opened_against(status: str, *headers: str) -> ClientError:
@@ -250,7 +251,7 @@ def opened_against(status: str, *headers: str) -> ClientError:
                 await Station(here.url, "secret-1").__aenter__()
             return problem.value
 
-    return asyncio.run(main())
+    return run_patiently(main())
 
 
 def test_a_redirect_is_not_followed() -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
+from tests.patient_loop import run_patiently
 
 from recon import wire
 from recon.model.geo import GeoPoint
@@ -115,7 +116,7 @@ def test_four_vehicles_connect_send_and_end() -> None:
             assert np.array_equal(image.pixels, PICTURE)
         assert all(link.is_closed for link in station.links)
 
-    asyncio.run(scenario())
+    run_patiently(scenario())
 
 
 def test_a_command_is_acknowledged_and_flown() -> None:
@@ -143,7 +144,7 @@ def test_a_command_is_acknowledged_and_flown() -> None:
             await station.until(lambda: any(p.is_flying for p in link.of(wire.CoreTelemetry)))
             assert any("mission of 2 waypoints" in line for line in station.lines)
 
-    asyncio.run(scenario())
+    run_patiently(scenario())
 
 
 def test_an_app_reconnects_after_the_station_was_gone() -> None:
@@ -155,7 +156,7 @@ def test_an_app_reconnects_after_the_station_was_gone() -> None:
             await station.until(lambda: len(station.links) == 2 and bool(station.links[1].packets))
             assert isinstance(station.links[1].packets[0], wire.MessageString)
 
-    asyncio.run(scenario())
+    run_patiently(scenario())
 
 
 def test_restart_closes_and_reconnects() -> None:
@@ -165,7 +166,7 @@ def test_restart_closes_and_reconnects() -> None:
             await station.until(lambda: station.links[0].is_closed)
             assert station.links[0].serials == station.links[1].serials == {b"SIM-1"}
 
-    asyncio.run(scenario())
+    run_patiently(scenario())
 
 
 def test_half_open_leaves_the_old_socket_silent_and_open() -> None:
@@ -179,7 +180,7 @@ def test_half_open_leaves_the_old_socket_silent_and_open() -> None:
             assert not old.is_closed
             assert new.serials == {b"SIM-1"}
 
-    asyncio.run(scenario())
+    run_patiently(scenario())
 
 
 def test_second_link_sends_beside_the_first_and_closes() -> None:
@@ -193,7 +194,7 @@ def test_second_link_sends_beside_the_first_and_closes() -> None:
             await station.until(lambda: len(first.packets) > received)
             assert not first.is_closed
 
-    asyncio.run(scenario())
+    run_patiently(scenario())
 
 
 def test_without_a_station_it_retries_and_ends_when_cancelled() -> None:
@@ -213,7 +214,7 @@ def test_without_a_station_it_retries_and_ends_when_cancelled() -> None:
             with pytest.raises(asyncio.CancelledError):
                 await task
 
-    asyncio.run(scenario())
+    run_patiently(scenario())
 
 
 class Broken:
@@ -233,4 +234,4 @@ def test_a_frame_that_cannot_be_rendered_is_reported_and_the_flight_continues() 
             await station.until(lambda: sum("frame lost" in x for x in station.lines) > 2)
             await station.until(lambda: len(station.links[0].packets) > 5)
 
-    asyncio.run(scenario())
+    run_patiently(scenario())

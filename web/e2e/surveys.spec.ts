@@ -12,6 +12,12 @@ const CONNECT_WITHIN_MS = 60_000;
 /** Vehicles taking off side by side wait for each other; a refused mission is retried after 15 s. */
 const FLIES_WITHIN_MS = 60_000;
 
+/** A laptop's and a phone's page, pixels. */
+const SIZES = [
+  [1440, 900],
+  [360, 740],
+] as const;
+
 async function hold(page: Page, button: Locator, until: () => Promise<void>): Promise<void> {
   await button.focus();
   await page.keyboard.down("Enter");
@@ -72,37 +78,35 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
 });
 
 for (const theme of THEMES) {
-  for (const [width, height] of [
-    [1440, 900],
-    [360, 740],
-  ] as const) {
-    test(`is legible during surveys: ${theme.name}, ${width} px wide`, async ({ page }) => {
+  test(`is legible during surveys: ${theme.name}`, async ({ page }) => {
+    await page.emulateMedia({ colorScheme: theme.colorScheme });
+    const fake = await FakeStation.behind(page, surveyedState(0));
+    fake.ways = WAYS;
+    fake.showPicture(await fieldPicture(page));
+    await page.goto("/");
+    const begin_ms = performance.now();
+    const timer = setInterval(
+      () => fake.send(surveyedState((performance.now() - begin_ms) / 1000)),
+      100,
+    );
+    page.once("close", () => clearInterval(timer));
+    await applyTheme(page, theme);
+    await page.keyboard.press("3");
+    const panel = page.getByRole("region", { name: "Surveys" });
+    await expect(panel.getByText("called home")).toBeVisible();
+    await panel.getByText("New survey").click();
+    for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
-      await page.emulateMedia({ colorScheme: theme.colorScheme });
-      const fake = await FakeStation.behind(page, surveyedState(0));
-      fake.ways = WAYS;
-      fake.showPicture(await fieldPicture(page));
-      await page.goto("/");
-      const begin_ms = performance.now();
-      const timer = setInterval(
-        () => fake.send(surveyedState((performance.now() - begin_ms) / 1000)),
-        100,
-      );
-      page.once("close", () => clearInterval(timer));
-      await applyTheme(page, theme);
-      await page.keyboard.press("3");
-      const panel = page.getByRole("region", { name: "Surveys" });
-      await expect(panel.getByText("called home")).toBeVisible();
-      await panel.getByText("New survey").click();
-      expect(await smallTexts(page)).toEqual([]);
-      expect(await smallTargets(page)).toEqual([]);
-      expect(await faintTexts(page)).toEqual([]);
-      expect(await cornerFaults(page)).toEqual([]);
+      const where = `${width} px wide`;
+      expect(await smallTexts(page), where).toEqual([]);
+      expect(await smallTargets(page), where).toEqual([]);
+      expect(await faintTexts(page), where).toEqual([]);
+      expect(await cornerFaults(page), where).toEqual([]);
       expect(await overlaps(page, ".survey-form label, .section-buttons button")).toEqual([]);
       await panel.evaluate((one) => one.scrollIntoView());
       await page.screenshot({ path: `screens/survey-${theme.name}-${width}.png` });
       await panel.locator("form").evaluate((form) => form.scrollIntoView({ block: "end" }));
       await page.screenshot({ path: `screens/survey-new-${theme.name}-${width}.png` });
-    });
-  }
+    }
+  });
 }

@@ -74,9 +74,9 @@ class Owners:
 class StateStream:
     """Serves all readers; those of one interval share one encoded state."""
 
-    def __init__(self, port: StationPort, clock_s: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, port: StationPort, clock_s: Callable[[], float] | None = None) -> None:
         self._port = port
-        self._clock_s = clock_s
+        self._clock_s = clock_s or time.monotonic
         self._text = ""
         self._made_at_s = float("-inf")
         self._readers = 0

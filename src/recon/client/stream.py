@@ -75,8 +75,8 @@ class StreamClock:
 class Stream:
     """Reads states until stopped; any number of tasks can wait for the next one."""
 
-    def __init__(self, address: Address, now_ns: Callable[[], int] = time.monotonic_ns) -> None:
-        self.now_ns = now_ns
+    def __init__(self, address: Address, now_ns: Callable[[], int] | None = None) -> None:
+        self.now_ns = now_ns or time.monotonic_ns
         self.newest: ReceivedState | None = None
         self.owner: str | None = None
         """Owner name of the current connection, which steered orders depend on."""

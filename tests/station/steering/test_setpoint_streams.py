@@ -135,7 +135,8 @@ class TestTelemetryLost:
         s.run_for(8.6)
         assert s.phase(order) is Phase.FAILED
         assert len(s.zeros(9.1)) >= 15
-        assert any("telemetry" in text for text in s.alarm_texts())
+        assert s.note(order) == "telemetry incomplete or missing for 3 s"
+        assert any("telemetry incomplete or missing for 3 s" in text for text in s.alarm_texts())
         ended_s = s.now_s
         s.run_for(20.0)
         assert s.moving_sticks(9.3) == []
@@ -298,7 +299,7 @@ class TestEnds:
         s.run_until(lambda: s.stream is None, 2.0)
         seen_s = s.now_s
         assert s.phase(order) is Phase.SUPERSEDED
-        assert "pilot" in s.note(order)
+        assert s.note(order).startswith("the pilot has taken over")
         assert s.w.driver.station.control(SERIAL).authority.holder is AuthorityHolder.PILOT
         assert s.refusal_rule(s.goto(50.0)) == "authority"
         s.run_for(10.0)
