@@ -16,11 +16,12 @@ from recon.geo.local_frame import (
     tangent_plane,
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
-from recon.geo.polygon import Footprints, Polygon, region_fault, thinned_ring
+from recon.geo.polygon import Box, Footprints, Polygon, region_fault, thinned_ring
 from recon.geo.surface import Surface
 
 __all__ = [
     "DEFAULT_CHORD_ERROR_M",
+    "Box",
     "Footprints",
     "OnGlobe",
     "Path",

@@ -4,6 +4,9 @@ Input that is not finite or not on earth gets the safe answer: neither inside no
 shapely) does the geometry, so that touching and grazing are decided in one place.
 """
 
+from math import hypot, inf
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
@@ -17,6 +20,31 @@ ShapeArray = npt.NDArray[np.object_]
 
 FARTHEST_M = 1e8
 """Farther than any two places on earth; GEOS overflows on far larger numbers."""
+
+
+class Box(NamedTuple):
+    """West, south, east and north limits in metres."""
+
+    west_m: float
+    south_m: float
+    east_m: float
+    north_m: float
+
+    def meets(self, other: "Box", gap_m: float) -> bool:
+        """Return whether another box is no farther than a gap away, along both axes."""
+        return (
+            self.west_m <= other.east_m + gap_m
+            and self.east_m >= other.west_m - gap_m
+            and self.south_m <= other.north_m + gap_m
+            and self.north_m >= other.south_m - gap_m
+        )
+
+    def farthest_m(self, east_m: float, north_m: float) -> float:
+        """Return how far the box's farthest corner is from a place."""
+        return hypot(
+            max(east_m - self.west_m, self.east_m - east_m),
+            max(north_m - self.south_m, self.north_m - north_m),
+        )
 
 
 class Footprints:
@@ -35,17 +63,34 @@ class Footprints:
         self._shapes: ShapeArray | None = None
         self.least_m: FloatArray = corners.min(axis=1)
         self.most_m: FloatArray = corners.max(axis=1)
+        self._box: Box | None = None
 
     def only(self, which: BoolArray | IntArray) -> "Footprints":
         """Return the footprints of a mask (N,), or at these indices."""
         chosen = Footprints.__new__(Footprints)
         chosen.is_finite, chosen._corners = self.is_finite[which], self._corners[which]
         chosen._shapes = None if self._shapes is None else self._shapes[which]
+        chosen._box = None
         chosen.least_m, chosen.most_m = self.least_m[which], self.most_m[which]
         return chosen
 
     def __len__(self) -> int:
         return len(self._corners)
+
+    @property
+    def box(self) -> Box:
+        """The box round all footprints; unbounded where one is not finite, and for no footprint.
+
+        Most paths are small, and far from an edge as a whole: four numbers show it soonest.
+        """
+        if self._box is None:
+            self._box = self._around_all()
+        return self._box
+
+    def _around_all(self) -> Box:
+        if len(self) == 0 or not self.is_finite.all():
+            return Box(-inf, -inf, inf, inf)
+        return Box(*self.least_m.min(axis=0).tolist(), *self.most_m.max(axis=0).tolist())
 
     @property
     def shapes(self) -> ShapeArray:
@@ -113,6 +158,7 @@ class Polygon:
         west, south, east, north = shapely.bounds(self._area)
         self._least_m, self._most_m = np.array([west, south]), np.array([east, north])
         self._middle_m, self._around_m = _circle_inside(area)
+        self._middle_east_m, self._middle_north_m = self._middle_m.tolist()
 
     @property
     def area_m2(self) -> float:
@@ -156,6 +202,18 @@ class Polygon:
         if inset_m > 0.0 and inside.any():
             inside[inside] = ~shapely.dwithin(self._edge, shapes[inside], inset_m)
         return inside
+
+    def has_circle_in_the_middle(self, east_m: float, north_m: float, radius_m: float) -> bool:
+        """Return whether a circle lies in the inscribed circle, and so inside, clear of the edge:
+        fast, and not true of every circle inside."""
+        far_m = hypot(east_m - self._middle_east_m, north_m - self._middle_north_m)
+        return far_m + radius_m <= self._around_m - LEAST_RESIZE_M
+
+    def has_box_in_the_middle(self, box: Box, inset_m: float) -> bool:
+        """Return whether a box lies in the inscribed circle, and so does what is in it: as `holds`,
+        fast, and not true of every box inside."""
+        far_m = box.farthest_m(self._middle_east_m, self._middle_north_m)
+        return far_m <= self._around_m - max(inset_m, 0.0) - LEAST_RESIZE_M
 
     def _is_in_the_middle(self, footprints: Footprints, inset_m: float) -> BoolArray:
         """Return which footprints' boxes lie in the inscribed circle, (N,): fast, without GEOS.

@@ -42,6 +42,10 @@ class Surface:
         half_m = 0.5 * grid.cell_m + ROUNDING_M
         self._least_m = np.array([grid.west_m, grid.north_m - grid.rows * grid.cell_m]) + half_m
         self._most_m = np.array([grid.west_m + grid.cols * grid.cell_m, grid.north_m]) - half_m
+        self._bounds_m: tuple[list[float], list[float]] = (
+            self._least_m.tolist(),
+            self._most_m.tolist(),
+        )
 
     def heights_m(self, points_m: npt.ArrayLike) -> FloatArray:
         """Return the heights (N,) at (N, 2) east-north points."""
@@ -70,6 +74,26 @@ class Surface:
         if self._is_beyond_all(self._bottom, triangles_m, -heights_m):
             return np.ones(len(heights_m), dtype=np.bool_)
         return self._bottom.is_below(self._triangle_nodes(triangles_m), -heights_m)
+
+    def covers_circle(self, east_m: float, north_m: float, radius_m: float) -> bool:
+        """Return whether the box round a circle lies on the surface."""
+        (west_m, south_m), (most_east_m, most_north_m) = self._bounds_m
+        return (
+            east_m - radius_m >= west_m
+            and north_m - radius_m >= south_m
+            and east_m + radius_m <= most_east_m
+            and north_m + radius_m <= most_north_m
+        )
+
+    @property
+    def highest_of_all_m(self) -> float:
+        """The highest ground of the whole surface; +inf with a gap in it."""
+        return self._top.highest_of_all
+
+    @property
+    def lowest_of_all_m(self) -> float:
+        """The lowest ground of the whole surface; -inf with a gap in it."""
+        return -self._bottom.highest_of_all
 
     def _is_beyond_all(
         self, side: "_Highest", triangles_m: npt.ArrayLike, heights_m: FloatArray

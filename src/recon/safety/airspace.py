@@ -1,11 +1,14 @@
 """A site's air made ready for many questions."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isfinite
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from recon.geo import Footprints, Polygon, Surface
+from recon.geo import Box, Footprints, Polygon, Surface
 from recon.model.airspace import Airspace, Zone, ZoneKind
 
 FloatArray = npt.NDArray[np.float64]
@@ -18,6 +21,16 @@ class PreparedZone:
 
     zone: Zone
     polygon: Polygon
+
+
+class Cylinder(NamedTuple):
+    """A circle on the ground and a band of heights, up_m of the frame."""
+
+    east_m: float
+    north_m: float
+    radius_m: float
+    low_m: float
+    high_m: float
 
 
 class PreparedAirspace:
@@ -40,6 +53,7 @@ class PreparedAirspace:
         self.boundary = None if boundary is None else Polygon(boundary)
         self.zones = tuple(PreparedZone(zone, Polygon(zone.region)) for zone in airspace.zones)
         self._zones = {kind: _boxed(self.zones, kind) for kind in ZoneKind}
+        self._boxes = {kind: _box_values(*boxed[1:]) for kind, boxed in self._zones.items()}
         self._ground = _ground(airspace)
 
     @property
@@ -57,13 +71,37 @@ class PreparedAirspace:
         finite may be near to every zone.
         """
         zones, least_m, most_m = self._zones[kind]
-        if not zones or not footprints.is_finite.all():
+        if not any(footprints.box.meets(box, gap_m) for box in self._boxes[kind]):
+            return []
+        if not footprints.is_finite.all():
             return list(zones)
-        # Each for itself: round them all at once is seldom near, for vehicles fly all over a site.
+        # Each for itself: the box round them all is often near, for vehicles fly all over a site.
         reaches = footprints.least_m <= (most_m + gap_m)[:, np.newaxis]
         reaches &= footprints.most_m >= (least_m - gap_m)[:, np.newaxis]
         is_near = (reaches[..., 0] & reaches[..., 1]).any(axis=1)
         return [zones[index] for index in np.flatnonzero(is_near)]
+
+    def may_touch_zone(self, kinds: Iterable[ZoneKind], cylinder: Cylinder) -> bool:
+        """Return whether a circle's box meets a box round a zone of these kinds: in doubt yes."""
+        east_m, north_m, radius_m = cylinder[:3]
+        if not isfinite(east_m + north_m + radius_m):
+            return True
+        around = Box(east_m - radius_m, north_m - radius_m, east_m + radius_m, north_m + radius_m)
+        return any(around.meets(box, 0.0) for kind in kinds for box in self._boxes[kind])
+
+    def is_surely_between_heights(self, cylinder: Cylinder) -> bool:
+        """Return whether a cylinder keeps the height limits whatever ground of the site is below
+        it: in doubt not."""
+        limits, ground = self.airspace.limits, self._ground
+        lowest_m = highest_m = 0.0
+        if ground is not None:
+            if not ground.covers_circle(*cylinder[:3]):
+                return False
+            lowest_m, highest_m = ground.lowest_of_all_m, ground.highest_of_all_m
+        return (
+            cylinder.low_m - limits.min_height_above_ground_m >= highest_m
+            and cylinder.high_m - limits.max_height_above_ground_m <= lowest_m
+        )
 
     def zones_of(self, kind: ZoneKind) -> tuple[PreparedZone, ...]:
         """Return the zones of one kind, in the site's order."""
@@ -102,6 +140,11 @@ def _boxed(
     least_m = np.array([outline.min(axis=0) for outline in outlines]).reshape(-1, 2)
     most_m = np.array([outline.max(axis=0) for outline in outlines]).reshape(-1, 2)
     return chosen, least_m, most_m
+
+
+def _box_values(least_m: FloatArray, most_m: FloatArray) -> list[Box]:
+    """The same boxes for comparing one at a time."""
+    return [Box(*box) for box in np.concatenate([least_m, most_m], axis=1).tolist()]
 
 
 def _ground(airspace: Airspace) -> Surface | None:

@@ -22,6 +22,7 @@ from tests.safety.watchdogs.test_fences import LAYER, TREES, WALL, site
 from recon.model.mission import Mission
 from recon.safety.watchdogs import TrafficPicture, WatchedVehicle
 from recon.safety.watchdogs.fences import fences
+from recon.safety.watchdogs.reach import near_each_other, near_limits
 from recon.safety.watchdogs.separation import separation
 
 SITE = site(WALL, LAYER)
@@ -160,6 +161,26 @@ def test_a_vehicle_without_a_bound_is_predicted_and_so_are_all() -> None:
     for intent in unknown:
         assert picture(in_context(aircraft("A"), intent=intent), aircraft("B")).reaches is None
     assert picture(aircraft("A"), aircraft("B", age_s=30.0)).reaches is None
+
+
+def test_only_vehicles_near_each_other_or_near_a_limit_are_predicted() -> None:
+    looked_at = picture(
+        in_context(aircraft("A", (0.0, -200.0)), intent=NOTHING),
+        in_context(aircraft("B", (0.0, -190.0)), intent=NOTHING),
+        in_context(aircraft("C", (0.0, 0.0)), intent=NOTHING),
+        in_context(aircraft("D", (0.0, 100.0), 140.0), intent=NOTHING),
+        airspace=SITE,
+    )
+    assert looked_at.reaches is not None
+    horizon_s = looked_at.settings.horizon_s
+    assert near_each_other(looked_at.reaches, looked_at.minima, horizon_s) == {0, 1}
+    assert near_each_other(looked_at.reaches[:1], looked_at.minima, horizon_s) == set()
+    assert SITE.airspace.frame is not None
+    ask = SITE, SITE.airspace.frame, looked_at.settings, looked_at.prediction
+    assert 3 in near_limits(looked_at.reaches, *ask)
+    assert 2 not in near_limits(looked_at.reaches, *ask)
+    assert [one.name for one in looked_at.only({0, 3}).predicted] == ["A", "D"]
+    assert looked_at.only({0, 1, 2, 3}) is looked_at
 
 
 def test_height_limits_hold_without_a_boundary() -> None:

@@ -204,6 +204,11 @@ class PathVolume:
             if isfinite(up_m)
         }
 
+    @cached_property
+    def held_to_heights(self) -> IntArray:
+        """The indices of the pieces that the site's height limits are for: not climbs, landings."""
+        return np.flatnonzero(self.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME))
+
     def of_kinds(self, *kinds: Kind) -> BoolArray:
         """Return which pieces are of these kinds, (N,)."""
         wanted = np.zeros(len(Kind), dtype=np.bool_)

@@ -5,6 +5,7 @@ at every height between; so it may on a leg, a goto, a nudge, and while a stick 
 The height it sets out from counts as up to 1 m nearer to where it goes (`height_noise_m`).
 """
 
+from collections.abc import Sequence
 from math import ceil, cos, radians
 from typing import Final
 
@@ -130,19 +131,19 @@ def straight_pieces(path: StraightFlight, departure: Departure, settings: FenceS
     if distance_m > 0.0:
         target_m = target_m + settings.steering_overshoot_m / distance_m * offset_m
     up_m = departure.takeoff_m + height_m
-    flown = _from_here(departure, np.array([*target_m, up_m]), path.name, settings)
+    flown = _from_here(departure, (*target_m.tolist(), up_m), path.name, settings)
     return joined(flown, ways_home(flown, departure))
 
 
 def hold_pieces(departure: Departure, settings: FenceSettings) -> Pieces:
     """The place where the vehicle is; its way home is no newer than it is."""
-    return _from_here(departure, departure.here_m, "the place to hold", settings)
+    return _from_here(departure, departure.here_m.tolist(), "the place to hold", settings)
 
 
 def takeoff_pieces(departure: Departure, height_m: float, settings: FenceSettings) -> Pieces:
     """Straight up to the height that a takeoff by hover ends at, and the ways home from there."""
     top_m = departure.here_m + np.array([0.0, 0.0, height_m])
-    flown = _from_here(departure, top_m, "the takeoff", settings)
+    flown = _from_here(departure, top_m.tolist(), "the takeoff", settings)
     return joined(flown, ways_home(flown, departure))
 
 
@@ -157,12 +158,13 @@ def stick_pieces(path: StickFlight, departure: Departure, settings: FenceSetting
     up_m = departure.takeoff_m + path.height_above_takeoff_m
     reach_m = path.reach_m(settings.stick)
     name = "the stick's way"
+    east_m, north_m, _up_m = departure.here_m.tolist()
     if path.speed_mps == 0.0:
-        return _from_here(departure, np.array([*departure.here_m[:2], up_m]), name, settings)
-    towards = np.array([path.east_mps, path.north_mps]) / path.speed_mps
+        return _from_here(departure, (east_m, north_m, up_m), name, settings)
+    towards = path.east_mps / path.speed_mps, path.north_mps / path.speed_mps
     if path.frame is StickFrame.GROUND:
-        target_m = departure.here_m[:2] + reach_m * towards
-        return _from_here(departure, np.array([*target_m, up_m]), name, settings)
+        target_m = east_m + reach_m * towards[0], north_m + reach_m * towards[1], up_m
+        return _from_here(departure, target_m, name, settings)
     triangles_m = _fan(departure, towards, reach_m, path)
     low_m, high_m = sorted((_setting_out_m(departure, up_m, settings), up_m))
     count = len(triangles_m)
@@ -177,7 +179,7 @@ def stick_pieces(path: StickFlight, departure: Departure, settings: FenceSetting
 
 
 def _fan(
-    departure: Departure, towards: FloatArray, reach_m: float, path: StickFlight
+    departure: Departure, towards: tuple[float, float], reach_m: float, path: StickFlight
 ) -> FloatArray:
     """The triangles (N, 3, 2) round what may be reached while the vehicle turns."""
     turn_deg = path.turn_deg
@@ -202,11 +204,20 @@ def _setting_out_m(departure: Departure, up_m: float, settings: FenceSettings) -
 
 
 def _from_here(
-    departure: Departure, target_m: FloatArray, name: str, settings: FenceSettings
+    departure: Departure, target_m: Sequence[float], name: str, settings: FenceSettings
 ) -> Pieces:
-    way_m = np.stack([departure.here_m, target_m])
-    way_m[0, 2] = _setting_out_m(departure, float(target_m[2]), settings)
-    return legs_between(way_m, (name,), is_entry=np.ones(1, dtype=np.bool_))
+    """One flight from where the vehicle is to (3,) east, north and up; written out, for each
+    setpoint of a stream is one."""
+    east_m, north_m, up_m = target_m
+    here_m, from_m = departure.here_m[:2].tolist(), _setting_out_m(departure, up_m, settings)
+    return block(
+        Kind.FLIGHT,
+        np.array([[here_m, (east_m, north_m), (east_m, north_m)]]),
+        np.array([min(from_m, up_m)]),
+        np.array([max(from_m, up_m)]),
+        (name,),
+        is_entry=np.ones(1, dtype=np.bool_),
+    )
 
 
 def ways_home(flown: Pieces, departure: Departure) -> Pieces:

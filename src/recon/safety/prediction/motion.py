@@ -6,7 +6,7 @@ from recon.geo import OnGlobe
 from recon.geo.distance import offset_north_east_m
 from recon.model.geo import LatLon
 from recon.model.units import NS_PER_S, Stamped
-from recon.model.vehicle import Failsafe, VehicleState
+from recon.model.vehicle import Failsafe, VehicleState, VelocityNed
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, takeoff_up_m_at
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
@@ -97,12 +97,17 @@ def vehicle_motion(
         high_m=up_m if known else ALL_HEIGHTS_M,
         velocity_mps=velocity_mps,
         speed_mps=speed_mps,
-        age_s=max(0.0, (now_ns - at_ns) / NS_PER_S),
+        age_s=age_at(now_ns, at_ns),
         takeoff_up_m=base_m,
         home_m=None if home_place is None else plane.east_north_m(home_place),
         go_home_up_m=None if go_home_m is None or base_m is None else base_m + go_home_m,
         goes_home=profile is None or profile.failsafe in (None, Failsafe.GO_HOME),
     )
+
+
+def age_at(now_ns: int, at_ns: int) -> float:
+    """Return the age in seconds of what was received at a time; never negative."""
+    return max(0.0, (now_ns - at_ns) / NS_PER_S)
 
 
 def last_place(state: VehicleState) -> tuple[LatLon | None, int]:
@@ -116,15 +121,26 @@ def last_place(state: VehicleState) -> tuple[LatLon | None, int]:
     return LatLon(last.latitude_deg, last.longitude_deg), last.at_ns
 
 
+def plausible_speed_mps(state: VehicleState, settings: PredictionSettings) -> float:
+    """Return a vehicle's horizontal speed, no faster than any flies; unknown counts as fast."""
+    velocity = state.velocity_ned.value
+    if velocity is None:
+        return settings.unknown_speed_mps
+    return min(_speed_mps(velocity), settings.plausible_speed_mps)
+
+
+def _speed_mps(velocity: VelocityNed) -> float:
+    return float((velocity.north_mps**2 + velocity.east_mps**2) ** 0.5)
+
+
 def _velocity(
     state: VehicleState, settings: PredictionSettings
 ) -> tuple[tuple[float, float, float], float]:
     """The velocity east, north, up and its plausible horizontal speed; unknown counts as fast."""
-    velocity = state.velocity_ned.value
+    velocity, plausible_mps = state.velocity_ned.value, plausible_speed_mps(state, settings)
     if velocity is None:
-        return (0.0, 0.0, 0.0), settings.unknown_speed_mps
-    speed_mps = float((velocity.north_mps**2 + velocity.east_mps**2) ** 0.5)
-    plausible_mps = min(speed_mps, settings.plausible_speed_mps)
+        return (0.0, 0.0, 0.0), plausible_mps
+    speed_mps = _speed_mps(velocity)
     share = 1.0 if speed_mps <= plausible_mps else plausible_mps / speed_mps
     return (
         (velocity.east_mps * share, velocity.north_mps * share, -velocity.down_mps),

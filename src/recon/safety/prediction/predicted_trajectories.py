@@ -8,10 +8,17 @@ import numpy as np
 from recon.model.command import Body, FlyMission
 from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
+from recon.model.vehicle import VehicleState
 from recon.safety.path.order_path import StickFlight, StraightFlight, TakeoffClimb, order_path
 from recon.safety.prediction.hazard_area import hazard_area_of, hazard_trajectories
 from recon.safety.prediction.legs import LEAST_S, STANDING_MPS, stop, stopping_distance_m
-from recon.safety.prediction.motion import VehicleMotion
+from recon.safety.prediction.motion import (
+    Plane,
+    VehicleMotion,
+    age_at,
+    last_place,
+    plausible_speed_mps,
+)
 from recon.safety.prediction.predictor import UNHOMED_RADIUS_M, Predictor
 from recon.safety.prediction.trajectory import (
     ALL_HEIGHTS_M,
@@ -105,6 +112,31 @@ def trajectory_bounds(
     )
 
 
+def is_too_far(
+    state: VehicleState,
+    intent: Intent,
+    plane: Plane,
+    around: TrajectoryBounds,
+    now_ns: int,
+    settings: PredictionSettings,
+) -> bool:
+    """Return whether a vehicle in contact is too far away to come into the bounds in time: in
+    doubt not.
+
+    `may_enter` denies it too; this needs neither its heights nor its home, and most traffic is far.
+    """
+    place, at_ns = last_place(state)
+    if place is None or intent.commanded is Commanded.RETURN:
+        return False
+    age_s = age_at(now_ns, at_ns)
+    if age_s > settings.stale_s:
+        return False
+    east_m, north_m = plane.east_north_m(place)
+    speed_mps = plausible_speed_mps(state, settings)
+    reach_m = _flown_m(speed_mps, age_s, intent, around.until_s, settings)
+    return hypot(east_m - around.east_m, north_m - around.north_m) > around.radius_m + reach_m
+
+
 def may_enter(
     motion: VehicleMotion, intent: Intent, around: TrajectoryBounds, settings: PredictionSettings
 ) -> bool:
@@ -147,10 +179,7 @@ def _reach_m(
     motion: VehicleMotion, intent: Intent, seconds: float, settings: PredictionSettings
 ) -> float:
     """How far from its last place a vehicle comes at most."""
-    is_commanded = intent.commanded in (Commanded.MISSION, Commanded.STICK, Commanded.RETURN)
-    fastest_mps = max(motion.speed_mps, settings.unknown_speed_mps if is_commanded else 0.0)
-    lasts_s = motion.age_s + max(seconds, settings.stick_horizon_s)
-    own_m = fastest_mps * lasts_s + stopping_distance_m(fastest_mps, settings)
+    own_m = _flown_m(motion.speed_mps, motion.age_s, intent, seconds, settings)
     if motion.age_s <= settings.stale_s and (
         motion.home_m is not None or intent.commanded is not Commanded.RETURN
     ):
@@ -159,6 +188,16 @@ def _reach_m(
     home_far_m = hypot(home_m[0] - motion.east_m, home_m[1] - motion.north_m)
     hidden_m = max(settings.hazard_radius_m, UNHOMED_RADIUS_M, home_far_m + settings.corridor_m)
     return max(own_m, hidden_m)
+
+
+def _flown_m(
+    speed_mps: float, age_s: float, intent: Intent, seconds: float, settings: PredictionSettings
+) -> float:
+    """How far a vehicle flies at most from its place `age_s` ago until so many seconds from now."""
+    is_commanded = intent.commanded in (Commanded.MISSION, Commanded.STICK, Commanded.RETURN)
+    fastest_mps = max(speed_mps, settings.unknown_speed_mps if is_commanded else 0.0)
+    lasts_s = age_s + max(seconds, settings.stick_horizon_s)
+    return fastest_mps * lasts_s + stopping_distance_m(fastest_mps, settings)
 
 
 def _band_m(

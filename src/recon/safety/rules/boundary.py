@@ -31,6 +31,8 @@ def boundary(command: Command, situation: Situation) -> Refusal | None:
     if isinstance(path, UnknownPath):
         return Refusal(RULE, path.reason)
     margin_m = situation.airspace.airspace.limits.boundary_margin_m
+    if fence.has_box_in_the_middle(path.footprints.box, margin_m):
+        return None
     # A climb covers what is below it.
     judged = np.flatnonzero(~path.of_kinds(Kind.CLIMB))
     outside = judged[~fence.holds(path.footprints.only(judged), margin_m)]

@@ -9,6 +9,7 @@ from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 
 RULE = "home_distance"
+ROUNDING_M = 1e-6
 
 
 def home_distance(command: Command, situation: Situation) -> Refusal | None:
@@ -27,6 +28,8 @@ def home_distance(command: Command, situation: Situation) -> Refusal | None:
         return Refusal(RULE, path.reason)
     limit_m = situation.airspace.airspace.limits.max_distance_from_home_m
     pieces, home_m = path.pieces, path.home_m[:2]
+    if path.footprints.box.farthest_m(*home_m.tolist()) <= limit_m - ROUNDING_M:
+        return None
     # The farthest point of a hull is one of its corners.
     far_m = np.linalg.norm(pieces.triangles_m - home_m, axis=-1).max(axis=1)
     here_m = float(np.linalg.norm(path.here_m[:2] - home_m))

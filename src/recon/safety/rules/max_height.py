@@ -36,8 +36,9 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     settings = situation.settings.fences
     limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
     most_m = limit_m + (settings.stop_slack_m if stops else 0.0)
-    judged = path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME)
-    high = _higher(path, np.flatnonzero(judged), situation, most_m)
+    high = _higher(path, path.held_to_heights, situation, most_m)
+    if len(high) == 0:
+        return None
     high = _worse(path, high, situation, settings.not_worse_m)
     return None if len(high) == 0 else _refusal(path, int(high[0]), situation)
 

@@ -6,7 +6,7 @@ from recon.model.command import Command, Refusal
 from recon.safety.datum import is_ground_assumed_flat
 from recon.safety.heights import columns, stays_above
 from recon.safety.path.order_path import is_stop
-from recon.safety.path.pieces import Kind, PathVolume, UnknownPath
+from recon.safety.path.pieces import PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 
@@ -32,7 +32,7 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
     slack_m = situation.settings.fences.stop_slack_m if stops else 0.0
     least_m = situation.airspace.airspace.limits.min_height_above_ground_m - slack_m
     pieces = path.pieces
-    judged = np.flatnonzero(path.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME))
+    judged = path.held_to_heights
     is_high_enough = stays_above(
         situation.airspace, pieces.triangles_m[judged], pieces.low_m[judged], least_m
     )

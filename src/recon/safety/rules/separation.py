@@ -38,6 +38,7 @@ from recon.safety.prediction import (
     vehicle_motion,
 )
 from recon.safety.prediction.predicted_trajectories import (
+    is_too_far,
     may_conflict,
     may_enter,
     trajectory_bounds,
@@ -87,6 +88,8 @@ def _others(
     bounds = trajectory_bounds(trajectory, _minima(situation), prediction)
     trajectories: list[Trajectory] = []
     for other in situation.traffic:
+        if is_too_far(other.vehicle, other.intent, plane, bounds, situation.now_ns, prediction):
+            continue
         seen = _placed(other.vehicle, plane, situation)
         if seen is None:
             if other.vehicle.core_received_at_ns is None:

@@ -23,6 +23,7 @@ from recon.safety.datum import places_m
 from recon.safety.heights import height_text, stays_above, stays_below, zone_datum
 from recon.safety.prediction.motion import last_place
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M, FloatArray
+from recon.safety.watchdogs.reach import near_limits
 from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture
 
 BoolArray = npt.NDArray[np.bool_]
@@ -32,9 +33,6 @@ NEAR_HOME_M = 15.0
 """Takeoffs and landings are low by nature: a vehicle this near to its home is on one."""
 
 FENCE, ZONE, HEIGHT = "fence_ahead", "zone_ahead", "height_limit"
-
-_ROUND_CIRCLE = np.array([(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)])
-"""A triangle around the square around the unit circle."""
 
 DEEPER_M = 0.5
 """A vehicle on the wrong side may drift this much before it counts as going deeper."""
@@ -57,7 +55,13 @@ class Way:
 def fences(picture: TrafficPicture) -> Iterator[Finding]:
     """Find vehicles that are, or will soon be, outside the site's limits."""
     frame = picture.airspace.airspace.frame
-    if frame is None or not picture.flying or _is_clear(picture, frame):
+    if frame is None:
+        return
+    reaches, settings = picture.reaches, picture.settings
+    if reaches is not None:
+        near = near_limits(reaches, picture.airspace, frame, settings, picture.prediction)
+        picture = picture.only(near)
+    if not picture.flying:
         return
     way = way_ahead(picture, frame)
     if picture.airspace.boundary is not None:
@@ -67,44 +71,6 @@ def fences(picture: TrafficPicture) -> Iterator[Finding]:
     for zone in picture.airspace.zones_near(ZoneKind.HEIGHT, way.ahead, 0.0):
         yield from _heights(picture, way, zone)
     yield from _limits(picture, way)
-
-
-def _is_clear(picture: TrafficPicture, frame: LocalFrame) -> bool:
-    """Whether no vehicle can reach a fence or a height limit: by its bound, without prediction.
-
-    The way ahead ends at most one sample later than its time.
-    """
-    reaches, airspace, settings = picture.reaches, picture.airspace, picture.settings
-    if reaches is None:
-        return False
-    here_m = places_m(frame, [_place(picture, number) for number in range(len(reaches))])
-    far_m = np.array(
-        [
-            reach.radius_m(_way_s(picture, reach.fastest_mps) + settings.sample_s)
-            for reach in reaches
-        ]
-    )
-    triangles_m = here_m[:, np.newaxis] + far_m[:, np.newaxis, np.newaxis] * _ROUND_CIRCLE
-    low_m = np.array([reach.low_m for reach in reaches])
-    high_m = np.array([reach.high_m for reach in reaches])
-    limits = airspace.airspace.limits
-    most_m, least_m = limits.max_height_above_ground_m, limits.min_height_above_ground_m
-    if not stays_above(airspace, triangles_m, low_m, least_m).all():
-        return False
-    if not stays_below(airspace, triangles_m, high_m, most_m).all():
-        return False
-    fence, around = airspace.boundary, Footprints(triangles_m)
-    if fence is not None and not (fence.distance_to_edge_m(here_m) > far_m).all():
-        return False
-    kinds = ZoneKind.KEEP_OUT, ZoneKind.HEIGHT
-    return not any(airspace.zones_near(kind, around, 0.0) for kind in kinds)
-
-
-def _way_s(picture: TrafficPicture, speed_mps: float) -> float:
-    """The time of the way ahead of a vehicle at this speed."""
-    prediction, settings = picture.prediction, picture.settings
-    stop_s = prediction.reaction_s + speed_mps / (2.0 * prediction.braking_mps2)
-    return min(settings.fence_factor * stop_s, settings.horizon_s)
 
 
 def _boundary(picture: TrafficPicture, way: Way, fence: Polygon) -> Iterator[Finding]:

@@ -3,34 +3,52 @@
 Theory of operation. Prediction (`look_ahead`) is the most expensive part of a watchdog run, and
 nearly always shows that nothing comes near. A `Reach` bounds it without predicting: a vehicle stays
 in the circle that its fastest speed allows, and between the lowest and the highest of its own and
-its commanded heights, vertical speed included. Trajectories are predicted only if two bounds come
-nearer than the minima, or one is not clear of the boundary, a zone or the height limits.
+its commanded heights, vertical speed included. A trajectory is predicted only if the vehicle's
+bound comes nearer to another's than the minima (`near_each_other`), or is not clear of the
+boundary, a zone or the height limits (`near_limits`).
 
-    all bounds clear             -> no findings
-    one not clear, or unbounded  -> predict and sample, as if there were no bounds
+    a bound is clear               -> no findings about this vehicle
+    not clear                      -> predict and sample this vehicle
+    a vehicle unbounded, or lost   -> predict and sample all
 
 A vehicle that returns, lands, flies a curved mission, or whose mission is unknown has no bound.
 `tests/safety/watchdogs/test_reach.py` compares the findings with and without the bounds.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
+from recon.geo import tangent_plane
+from recon.model.airspace import ZoneKind
 from recon.model.control import Commanded, Intent
+from recon.model.geo import LatLon, LocalFrame
+from recon.safety.airspace import Cylinder, PreparedAirspace
+from recon.safety.heights import stays_above, stays_below
 from recon.safety.prediction import PredictionSettings, VehicleMotion
 from recon.safety.prediction.legs import LEAST_M, VERTICAL_BRAKING_MPS2
+from recon.safety.prediction.motion import last_place
+from recon.safety.separation_minima import SeparationMinima
+from recon.safety.settings import WatchdogSettings
 
 SLOWEST_MPS = 1.0
 """Legs shorter than `LEAST_M` are predicted as flown in `LEAST_S`: this fast."""
 
 ROUNDING_M = 0.01
 
+_ROUND_CIRCLE = np.array([(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)])
+"""A triangle around the square around the unit circle."""
+
 
 class Reach(NamedTuple):
-    """The bound on one vehicle: its place in the plane, its fastest speed, its band of heights.
+    """The bound on one vehicle: its place, on earth and in the plane, its fastest speed, its band
+    of heights.
 
     `slack_m` holds rounding, and the phases of legs that are too short to be predicted.
     """
 
+    place: LatLon
     east_m: float
     north_m: float
     low_m: float
@@ -74,8 +92,11 @@ def reach_of(
     for height_m in heights_m:
         band_m = motion.up_m(height_m)
         low_m, high_m = min(low_m, band_m[0]), max(high_m, band_m[1])
+    place, _at_ns = last_place(motion.state)
+    assert place is not None, "a motion begins at a place"
     # A stick that climbs or sinks may do so from its commanded height on.
     return Reach(
+        place,
         motion.east_m,
         motion.north_m,
         low_m - change_m,
@@ -84,3 +105,99 @@ def reach_of(
         motion.age_s,
         slack_m,
     )
+
+
+def near_each_other(reaches: Sequence[Reach], need: SeparationMinima, horizon_s: float) -> set[int]:
+    """Return which vehicles can come nearer to another than the minima within the horizon.
+
+    What is not finite is near to all.
+    """
+    if len(reaches) < 2:
+        return set()
+    bounds_m = np.array(
+        [(r.east_m, r.north_m, r.low_m, r.high_m, r.radius_m(horizon_s)) for r in reaches]
+    )
+    east_m, north_m, low_m, high_m, radius_m = bounds_m.T[:, :, np.newaxis]
+    apart_m = np.hypot(east_m - east_m.T, north_m - north_m.T)
+    is_clear = apart_m >= need.horizontal_m + (radius_m + radius_m.T)
+    is_above = low_m - high_m.T >= need.vertical_m
+    is_clear |= is_above | is_above.T
+    np.fill_diagonal(is_clear, True)
+    return set(np.flatnonzero(~is_clear.all(axis=1)).tolist())
+
+
+def near_limits(
+    reaches: Sequence[Reach],
+    airspace: PreparedAirspace,
+    frame: LocalFrame,
+    settings: WatchdogSettings,
+    prediction: PredictionSettings,
+) -> set[int]:
+    """Return which vehicles can reach a fence or a height limit in their way ahead.
+
+    The way ahead ends at most one sample later than its time. Most vehicles are cleared by plain
+    comparisons of numbers; only the rest are asked of the polygon and the ground.
+    """
+    cylinders = {
+        number: _cylinder(
+            reach,
+            way_ahead_s(reach.fastest_mps, settings, prediction) + settings.sample_s,
+            frame,
+        )
+        for number, reach in enumerate(reaches)
+    }
+    kinds = ZoneKind.KEEP_OUT, ZoneKind.HEIGHT
+    near = {
+        number for number, cylinder in cylinders.items() if airspace.may_touch_zone(kinds, cylinder)
+    }
+    return near | _may_leave(airspace, cylinders) | _may_break_heights(airspace, cylinders)
+
+
+def way_ahead_s(
+    speed_mps: float, settings: WatchdogSettings, prediction: PredictionSettings
+) -> float:
+    """Return the time of the way ahead of a vehicle at this speed: in it fences are looked for."""
+    stop_s = prediction.reaction_s + speed_mps / (2.0 * prediction.braking_mps2)
+    return min(settings.fence_factor * stop_s, settings.horizon_s)
+
+
+def _cylinder(reach: Reach, seconds: float, frame: LocalFrame) -> Cylinder:
+    """What a vehicle can reach in so many seconds, in the site's frame."""
+    place, height_m = reach.place, frame.origin.ellipsoid_height_m
+    east_m, north_m, _up_m = tangent_plane(frame).enu_m(
+        place.latitude_deg, place.longitude_deg, height_m
+    )
+    return Cylinder(east_m, north_m, reach.radius_m(seconds), reach.low_m, reach.high_m)
+
+
+def _may_leave(airspace: PreparedAirspace, cylinders: Mapping[int, Cylinder]) -> set[int]:
+    fence = airspace.boundary
+    if fence is None:
+        return set()
+    asked = {
+        number: cylinder
+        for number, cylinder in cylinders.items()
+        if not fence.has_circle_in_the_middle(*cylinder[:3])
+    }
+    if not asked:
+        return set()
+    circles_m = np.array([cylinder[:3] for cylinder in asked.values()])
+    is_inside = fence.distance_to_edge_m(circles_m[:, :2]) > circles_m[:, 2]
+    return {number for number, holds in zip(asked, is_inside, strict=True) if not holds}
+
+
+def _may_break_heights(airspace: PreparedAirspace, cylinders: Mapping[int, Cylinder]) -> set[int]:
+    limits = airspace.airspace.limits
+    asked = {
+        number: cylinder
+        for number, cylinder in cylinders.items()
+        if not airspace.is_surely_between_heights(cylinder)
+    }
+    if not asked:
+        return set()
+    east_m, north_m, far_m, low_m, high_m = np.array(list(asked.values())).T
+    middles_m = np.stack([east_m, north_m], axis=1)[:, np.newaxis]
+    triangles_m = middles_m + far_m[:, np.newaxis, np.newaxis] * _ROUND_CIRCLE
+    clear = stays_above(airspace, triangles_m, low_m, limits.min_height_above_ground_m)
+    clear &= stays_below(airspace, triangles_m, high_m, limits.max_height_above_ground_m)
+    return {number for number, is_clear in zip(asked, clear, strict=True) if not is_clear}

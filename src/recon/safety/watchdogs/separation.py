@@ -1,7 +1,7 @@
 """The separation watchdog: predicted loss of separation within the next seconds.
 
-Theory of operation. Nothing is predicted while the bounds on all vehicles (`reach`) keep them
-apart. Pairs whose reach within the horizon cannot bring them below the minima are dropped next
+Theory of operation. No vehicle is predicted whose bound (`reach`) keeps it apart from all others.
+Pairs whose reach within the horizon cannot bring them below the minima are dropped next
 (`near_pairs`). For the rest the closest approach of the sampled trajectories is
 computed, in shares of the minima: below 1 both the horizontal and the vertical one are violated.
 
@@ -18,8 +18,6 @@ mission.
 """
 
 from collections.abc import Iterator
-from itertools import combinations
-from math import hypot
 
 import numpy as np
 
@@ -35,6 +33,7 @@ from recon.safety.watchdogs.closest_approach import (
     hazard_closeness,
     near_pairs,
 )
+from recon.safety.watchdogs.reach import near_each_other
 from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture, WatchedVehicle
 
 RULE = "separation"
@@ -43,8 +42,11 @@ HOLDS_OFF = "holding is switched off"
 
 def separation(picture: TrafficPicture) -> Iterator[Finding]:
     """Find the pairs of vehicles, and of vehicles and hazard areas, that come too near."""
-    need, in_contact = picture.minima, len(picture.flying)
-    if not picture.flying or _is_clear(picture, need):
+    need, reaches = picture.minima, picture.reaches
+    if reaches is not None:
+        picture = picture.only(near_each_other(reaches, need, picture.settings.horizon_s))
+    in_contact = len(picture.flying)
+    if in_contact == 0:
         return
     for watched in picture.watched:
         if watched.hazard is not None:
@@ -61,20 +63,6 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
             continue  # both lost: no hold can reach either
         found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
         yield _pair(picture, int(first[row]), int(second[row]), found, need)
-
-
-def _is_clear(picture: TrafficPicture, need: SeparationMinima) -> bool:
-    """Whether no two vehicles can reach each other: by their bounds, without prediction."""
-    reaches, horizon_s = picture.reaches, picture.settings.horizon_s
-    if reaches is None:
-        return False
-    placed = [(each, each.radius_m(horizon_s)) for each in reaches]
-    return all(
-        hypot(a.east_m - b.east_m, a.north_m - b.north_m) >= need.horizontal_m + a_m + b_m
-        or a.low_m - b.high_m >= need.vertical_m
-        or b.low_m - a.high_m >= need.vertical_m
-        for (a, a_m), (b, b_m) in combinations(placed, 2)
-    )
 
 
 def in_order_of_yielding(

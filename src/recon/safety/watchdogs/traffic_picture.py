@@ -1,7 +1,7 @@
 """The one picture all watchdogs look at."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from recon.model.control import AuthorityHolder, Commanded, Intent
@@ -202,9 +202,15 @@ class TrafficPicture:
             reaches.append(reach)
         return tuple(reaches)
 
+    def only(self, numbers: Collection[int]) -> "TrafficPicture":
+        """Return the picture with these of `flying` alone, by index: only they are predicted."""
+        if len(numbers) == len(self.flying):
+            return self  # with what is predicted already
+        return replace(self, flying=tuple(self.flying[number] for number in sorted(numbers)))
+
     @cached_property
     def ahead(self) -> LookAhead:
-        """The next seconds of `predicted`, in order; asked only where a reach is not clear."""
+        """The next seconds of `predicted`, in order."""
         rows = [_next_rows(one, self) for one in self.flying]
         rows += [_lost_rows(one, self) for one in self.lost]
         return look_ahead(rows, self.settings, self.prediction)
