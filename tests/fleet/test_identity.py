@@ -1,10 +1,11 @@
 """Which link is which vehicle: how apps in the field behave."""
 
-from tests.fleet.reports import Story, core, extended
+from tests.fleet.reports import S, Story, core, extended
 
 from recon.fleet.settings import FleetSettings
 from recon.fleet.state import Fleet
 from recon.fleet.step import SIMULATOR_GREETING
+from recon.model.event import PacketReceived, Tick
 from recon.model.geo import LatLon
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.vehicle import FlightMode
@@ -247,3 +248,24 @@ class TestSimulated:
         story = Story().opens(1).receives(1, GREETING, extended("A")).closes(1)
         assert story.vehicle().is_simulated
         assert not story.opens(2).receives(2, core(), extended("A")).vehicle().is_simulated
+
+
+class TestWithheldPackets:
+    """A packet that damaged bytes withheld is as old as its bytes."""
+
+    def test_one_from_before_the_rival_is_no_conflict(self) -> None:
+        story = two_links().at(10.5).happens(PacketReceived(1, core(), round(9.95 * S)))
+        assert not story.vehicle().in_conflict
+        assert story.at(10.6).receives(1, core()).vehicle().in_conflict
+
+    def test_it_does_not_replace_newer_telemetry_of_another_link(self) -> None:
+        story = two_links().at(11.5).happens(Tick())
+        assert story.vehicle().link_id == 2
+        newest = story.vehicle()
+        story.at(12.0).happens(PacketReceived(2, core(height_m=7.0), round(9.5 * S)))
+        assert story.vehicle().height_above_takeoff_m == newest.height_above_takeoff_m
+
+    def test_one_from_the_future_is_from_now(self) -> None:
+        story = Story().opens(1).receives(1, extended()).at(1.0)
+        story.happens(PacketReceived(1, core(), 5 * S))
+        assert story.vehicle().core_received_at_ns == S

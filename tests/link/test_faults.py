@@ -10,16 +10,16 @@ from recon.model.command import Hover
 from recon.model.event import LinkClosed, StationFaulted
 from recon.model.report import CoreReport
 
-METHODS = ("receive", "tick", "submit", "next_packet", "finish")
+METHODS = ("receive", "tick", "submit", "next_packet", "end_stream")
 
 
 def break_method(monkeypatch: pytest.MonkeyPatch, name: str, link_id: int) -> None:
     real = getattr(Session, name)
 
-    def broken(session: Session, *arguments: object) -> object:
+    def broken(session: Session, *arguments: object, **named: object) -> object:
         if session.link_id == link_id:
             raise ZeroDivisionError("division by zero")
-        return real(session, *arguments)
+        return real(session, *arguments, **named)
 
     monkeypatch.setattr(Session, name, broken)
 
@@ -39,7 +39,7 @@ def test_it_ends_that_link_with_an_event_and_the_next_link_works(
             station.server.tick()
             order(station, 1, Hover(), broken)
             first.write(core())
-            if method == "finish":
+            if method == "end_stream":
                 first.close()
             await station.until(lambda: station.closed_reason(broken) is not None)
             (fault, *_) = station.of(StationFaulted)

@@ -289,16 +289,19 @@ class TestLimits:
             s.receive(core(), number)
         assert s.closing_reason is None
 
-    def test_a_link_that_never_speaks_is_closed(self) -> None:
+    @pytest.mark.parametrize("data", [b"", ack(9), core()[:40]])
+    def test_an_idle_link_that_never_identified_itself_is_closed(self, data: bytes) -> None:
         s = session()
-        s.tick(30 * SECOND)
+        s.receive(data, 0)
+        s.tick(10 * SECOND)
         assert s.closing_reason is None
-        s.tick(30 * SECOND + 1)
-        assert s.closing_reason == "no valid packet within 30 s of connecting"
+        s.tick(10 * SECOND + 1)
+        assert s.closing_reason == "no serial number, no telemetry and no valid packet for 10 s"
 
-    def test_one_packet_is_speech_enough(self) -> None:
+    @pytest.mark.parametrize("telemetry", [core(), extended()])
+    def test_a_link_with_telemetry_is_an_aircraft_and_stays(self, telemetry: bytes) -> None:
         s = session()
-        s.receive(core(), SECOND)
+        s.receive(telemetry, SECOND)
         s.tick(3600 * SECOND)
         assert s.closing_reason is None
 
@@ -336,7 +339,7 @@ class TestEnd:
         sent_ids(s, 0)
         s.submit(approved(2, mission()))
         s.submit(approved(3, StartCamera(1.0)))
-        dropped = s.finish("the app closed the connection", MS)
+        dropped = s.finish("the app closed the connection")
         assert [(d.command_id, d.phase) for d in dropped if isinstance(d, CommandDropped)] == [
             (2, Phase.FAILED),
             (3, Phase.FAILED),
@@ -347,7 +350,7 @@ class TestEnd:
     def test_what_is_held_is_read(self) -> None:
         s = session()
         assert s.receive(IMAGE_HEAD + core(), 0) == []
-        events = s.finish("gone", MS)
+        events = s.finish("gone")
         assert [type(e.report) for e in events if isinstance(e, PacketReceived)] == [CoreReport]
 
 

@@ -96,7 +96,7 @@ def lived(steps: list[tuple[str, int]]) -> World:
     world = World()
     for operation, value in steps:
         world.do(operation, value)
-    world.take(world.session.finish("over", world.now_ns))
+    world.take(world.session.finish("over"))
     return world
 
 

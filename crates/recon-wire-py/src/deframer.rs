@@ -78,6 +78,11 @@ impl Deframer {
         self.collect(py, |inner, mut sink| inner.resume(&mut sink))
     }
 
+    /// Drops what is pending unsearched, for the memory it takes.
+    fn discard(&mut self) {
+        self.inner.discard();
+    }
+
     /// Leaves a time in which nobody read from the connection out of every wait.
     fn excuse(&mut self, duration_ns: i64) {
         self.inner.excuse(duration_ns);

@@ -74,6 +74,8 @@ pub struct Deframer {
     last_byte_ns: i64,
     /// Where the bytes of the latest push begin.
     push_start: u64,
+    /// Arrival of the latest packet delivered.
+    delivered_ns: Option<i64>,
     /// Half a packet that begins before this position has failed.
     give_up_before: u64,
     /// Skipped bytes before this position belong to a damaged frame.
@@ -164,6 +166,17 @@ impl Deframer {
     /// Leaves `duration_ns` out of every wait: nobody read from the connection in that time.
     pub fn excuse(&mut self, duration_ns: i64) {
         self.excused_ns = self.excused_ns.saturating_add(duration_ns.max(0));
+    }
+
+    /// Drops what is pending unsearched, for the memory it takes.
+    pub fn discard(&mut self) {
+        let pending = self.pending_bytes();
+        if pending > 0 {
+            self.abandon();
+            self.skip_held(pending - 1);
+            self.is_busy = false;
+            self.arrivals.clear();
+        }
     }
 
     fn end(&self) -> u64 {
@@ -360,12 +373,17 @@ impl Deframer {
         }
     }
 
+    /// When the byte at `position` came; never before that of an earlier packet, which marks could say.
     #[inline]
     fn arrived_ns(&mut self, position: u64) -> i64 {
-        if position >= self.push_start {
-            return self.last_byte_ns;
-        }
-        self.arrivals.of(position).unwrap_or(self.last_byte_ns)
+        let came_ns = if position >= self.push_start {
+            self.last_byte_ns
+        } else {
+            self.arrivals.of(position).unwrap_or(self.last_byte_ns)
+        };
+        let newest_ns = self.delivered_ns.map_or(came_ns, |last| last.max(came_ns));
+        self.delivered_ns = Some(newest_ns);
+        newest_ns
     }
 
     /// Counts a frame that failed its hash at the current position.

@@ -156,6 +156,22 @@ fn a_withheld_packet_has_the_time_its_last_byte_came() {
 }
 
 #[test]
+fn arrivals_never_run_backwards() {
+    let mut deframer = Deframer::default();
+    let mut found = Vec::new();
+    let mut push = |data: &[u8], at_ms: i64| {
+        deframer.push(data, at_ms * MS, &mut |_, arrived_ns| {
+            found.push(arrived_ns / MS)
+        });
+    };
+    push(&ack()[..5], 0);
+    push(&[&ack()[5..], &header(1, 20)[..], &ack()[..3]].concat(), 5);
+    push(&ack()[3..], 8);
+    push(&[0; 60], 9);
+    assert_eq!(found, [5, 5]);
+}
+
+#[test]
 fn time_in_which_nobody_read_is_no_wait() {
     let (mut deframer, mut found) = (Deframer::default(), 0);
     deframer.push(&ack()[..5], 0, &mut |_, _| {});
@@ -202,5 +218,29 @@ fn the_bytes_of_a_damaged_or_unfinished_frame_are_counted_apart() {
     assert_eq!(
         (counters.bytes_skipped, counters.bytes_damaged),
         (30_024, 30_017)
+    );
+}
+
+#[test]
+fn a_discarded_half_packet_is_damage_to_its_end() {
+    let (mut deframer, mut found) = (Deframer::default(), 0);
+    deframer.push(&[&header(100, 100), &ack()[..]].concat(), 0, &mut |_, _| {
+        found += 1
+    });
+    deframer.discard();
+    assert_eq!(
+        (
+            deframer.pending_bytes(),
+            deframer.buffered_bytes() <= 65_536
+        ),
+        (0, true)
+    );
+    deframer.push(&[7; 30_017 - 15 - 11], 0, &mut |_, _| found += 1);
+    deframer.push(&ack(), 0, &mut |_, _| found += 1);
+    let counters = deframer.counters();
+    assert_eq!((found, counters.abandoned), (1, 1));
+    assert_eq!(
+        (counters.bytes_skipped, counters.bytes_damaged),
+        (30_017, 30_017)
     );
 }

@@ -57,17 +57,22 @@ def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
     return _mark_rivals(fleet, serial) if is_bound else _bind(fleet, link_id, serial)
 
 
-def packet_received(fleet: Fleet, link_id: int, now_ns: int) -> Fleet:
-    """Return the fleet after a valid packet: from a bound link with rivals it is a conflict."""
+def packet_received(fleet: Fleet, link_id: int, received_at_ns: int) -> Fleet:
+    """Return the fleet after a valid packet: from a bound link with rivals it is a conflict.
+
+    A packet from before the rival reported the serial, withheld until now, does not count.
+    """
     serial = fleet.links[link_id].claimed_serial
     vehicle = fleet.vehicles.get(serial or "")
-    if vehicle is None or vehicle.link_id != link_id or not vehicle.rival_link_ids:
+    if vehicle is None or vehicle.link_id != link_id:
         return fleet
-    if vehicle.in_conflict and all(fleet.links[r].in_conflict for r in vehicle.rival_link_ids):
+    rivals = [fleet.links[rival_id] for rival_id in vehicle.rival_link_ids]
+    if vehicle.in_conflict and all(rival.in_conflict for rival in rivals):
         return fleet
-    for rival_id in vehicle.rival_link_ids:
-        fleet = _put_link(fleet, replace(fleet.links[rival_id], in_conflict=True))
-    return _mark_rivals(fleet, vehicle.serial or "")
+    outlived = [rival for rival in rivals if (rival.rival_since_ns or 0) <= received_at_ns]
+    for rival in outlived:
+        fleet = _put_link(fleet, replace(rival, in_conflict=True))
+    return _mark_rivals(fleet, vehicle.serial or "") if outlived else fleet
 
 
 def release(fleet: Fleet, link: LinkRecord, now_ns: int) -> Fleet:

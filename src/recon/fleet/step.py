@@ -37,7 +37,7 @@ def step(fleet: Fleet, event: Event, now_ns: int) -> tuple[Fleet, tuple[CloseLin
         case LinkClosed(link_id, reason):
             return _closed(fleet, link_id, reason, now_ns), ()
         case PacketReceived(link_id, report) if _is_open(fleet, link_id):
-            return _received(fleet, link_id, report, now_ns), ()
+            return _received(fleet, link_id, report, event.received_at_ns(now_ns), now_ns), ()
         case Tick():
             settled, closing = identity.settle(fleet, now_ns)
             return settled, tuple(CloseLink(*item) for item in closing)
@@ -79,20 +79,22 @@ def _forget_oldest(links: dict[int, LinkRecord], kept: int) -> dict[int, LinkRec
     return {key: link for key, link in links.items() if key not in forgotten}
 
 
-def _received(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
-    fleet = _count(fleet, link_id, report, now_ns)
-    fleet = identity.packet_received(fleet, link_id, now_ns)
+def _received(
+    fleet: Fleet, link_id: int, report: Report, received_at_ns: int, now_ns: int
+) -> Fleet:
+    fleet = _count(fleet, link_id, report, received_at_ns)
+    fleet = identity.packet_received(fleet, link_id, received_at_ns)
     if isinstance(report, ExtendedReport) and report.serial is not None:
         fleet = identity.claim(fleet, link_id, report.serial, now_ns)
         fleet = identity.forget_vehicles(fleet)
-    return _fold(fleet, link_id, report, now_ns)
+    return _fold(fleet, link_id, report, received_at_ns)
 
 
-def _count(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
+def _count(fleet: Fleet, link_id: int, report: Report, received_at_ns: int) -> Fleet:
     link = fleet.links[link_id]
     counted = replace(
         link,
-        last_packet_at_ns=now_ns,
+        last_packet_at_ns=received_at_ns,
         packets=link.packets + 1,
         images=link.images + isinstance(report, ImageReport),
         ignored_reports=link.ignored_reports + isinstance(report, IgnoredReport),
@@ -100,22 +102,38 @@ def _count(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
     return replace(fleet, links={**fleet.links, link_id: counted})
 
 
-def _fold(fleet: Fleet, link_id: int, report: Report, now_ns: int) -> Fleet:
+def _fold(fleet: Fleet, link_id: int, report: Report, received_at_ns: int) -> Fleet:
     state = fleet.vehicle_of_link(link_id)
-    if state is None:
+    if state is None or _has_newer(state, report, received_at_ns):
         return fleet
     match report:
         case CoreReport():
-            return _put(fleet, link_id, fold_core(state, report, now_ns, fleet.settings))
+            return _put(fleet, link_id, fold_core(state, report, received_at_ns, fleet.settings))
         case ExtendedReport():
-            return _put(fleet, link_id, fold_extended(state, report, now_ns))
+            return _put(fleet, link_id, fold_extended(state, report, received_at_ns))
         case ImageReport():
-            counted = replace(state, image_received_at_ns=now_ns, image_count=state.image_count + 1)
+            counted = replace(
+                state, image_received_at_ns=received_at_ns, image_count=state.image_count + 1
+            )
             return _put(fleet, link_id, counted)
         case MessageReport(_, text) if text == SIMULATOR_GREETING:
             fleet = _put(fleet, link_id, replace(state, is_simulated=True))
             return _remember_simulated(fleet, link_id)
     return fleet
+
+
+def _has_newer(state: VehicleState, report: Report, received_at_ns: int) -> bool:
+    """Whether another link has brought newer telemetry than a packet withheld on this one."""
+    match report:
+        case CoreReport():
+            known_ns = state.core_received_at_ns
+        case ExtendedReport():
+            known_ns = state.extended_received_at_ns
+        case ImageReport():
+            known_ns = state.image_received_at_ns
+        case _:
+            return False
+    return known_ns is not None and received_at_ns < known_ns
 
 
 def _remember_simulated(fleet: Fleet, link_id: int) -> Fleet:

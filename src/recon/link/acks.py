@@ -38,20 +38,21 @@ class AckBook:
         """Return whether a command of this kind is unanswered."""
         return bool(self._waiting[kind])
 
-    def answered(self, report: AckReport, now_ns: int) -> CommandAnswered | None:
+    def answered(self, report: AckReport, arrived_at_ns: int) -> CommandAnswered | None:
         """Return which command an acknowledgment answers, or None when it is ambiguous."""
         if report.answered is AnsweredKind.STICK:
             return None
         missed = self._missed_at_ns[report.answered]
-        self._forget_missed(missed, now_ns)
+        self._forget_missed(missed, arrived_at_ns)
         if missed:
             missed.popleft()
             self.ignored_late += 1
             return None
-        if not self._waiting[report.answered]:
+        waiting = self._waiting[report.answered]
+        if not waiting or arrived_at_ns < waiting[0][1]:
             self.unexpected += 1
             return None
-        command_id, _ = self._waiting[report.answered].popleft()
+        command_id, _ = waiting.popleft()
         return CommandAnswered(self.link_id, command_id, report.positive)
 
     def expire(self, now_ns: int) -> list[CommandAnswered]:

@@ -10,9 +10,15 @@ order (`outbox`):
   the previous one of their kind is answered. In a setpoint stream the gap is shorter, and a waiting
   camera order takes one turn.
 
-The session closes its link for garbage without a valid packet, for silence after connecting, and
-for a client that does not read. A link that reports another serial drops what waits for the first
-aircraft. Both drivers, on real sockets and in virtual time, run this code.
+The session closes its link for garbage without a valid packet, for a link without serial number and
+telemetry that is silent, and for a client that does not read. A link that reports another serial
+drops what waits for the first aircraft. Both drivers, on real sockets and in virtual time, run this
+code.
+
+One call does a bounded amount of work; while `is_busy`, the driver calls `resume` in turns with
+other links, before it reads on. Each packet is reported with the time at which its last byte was
+read. The waits for the rest of a packet count only time in which the station could read: the driver
+reports in `tick` whether unread bytes wait, and a long time between two calls is left out.
 """
 
 from dataclasses import dataclass
@@ -23,7 +29,7 @@ from recon.link.outbox import Lane, Outbox
 from recon.link.settings import LinkSettings
 from recon.model.command import FlyMission, VirtualStick
 from recon.model.event import CommandDropped, CommandSent, Event, PacketReceived
-from recon.model.report import AckReport, ExtendedReport
+from recon.model.report import AckReport, CoreReport, ExtendedReport
 from recon.model.units import seconds_to_ns
 from recon.safety import ApprovedCommand
 from recon.vehicles.packets import answered_kind, to_packet
@@ -51,13 +57,17 @@ class Session:
         self._outbox = Outbox.empty(link_id)
         self._deframer = wire.Deframer(
             wire.Limits(
-                max_image_rows=settings.max_image_rows, max_image_cols=settings.max_image_cols
+                max_image_rows=settings.max_image_rows,
+                max_image_cols=settings.max_image_cols,
+                work_per_call=settings.work_per_call,
             )
         )
-        self._opened_at_ns = opened_at_ns
+        self._readable_at_ns = opened_at_ns
+        self._last_packet_at_ns = opened_at_ns
+        self._telemetry_at_ns: int | None = None
         self._has_packets = False
         self._serial: str | None = None
-        self._skipped_at_last_packet = 0
+        self._garbage_at_last_packet = self._damaged_at_last_packet = 0
         self._last_sent_at_ns: int | None = None
         self._last_was_stick = False
         self._blocked_since_ns: int | None = None
@@ -77,23 +87,82 @@ class Session:
         """Whether any valid packet has arrived."""
         return self._has_packets
 
+    @property
+    def is_identified(self) -> bool:
+        """Whether the app has reported a serial number."""
+        return self._serial is not None
+
+    @property
+    def buffered_bytes(self) -> int:
+        """Memory of its half-received packet."""
+        return self._deframer.buffered_bytes
+
+    @property
+    def is_waiting_for_bytes(self) -> bool:
+        """Whether half a packet waits for its rest."""
+        return self._deframer.pending_bytes > 0
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether received bytes wait to be searched: call `resume`."""
+        return self._deframer.is_busy
+
+    @property
+    def work_done(self) -> int:
+        """Bytes searched or hashed so far; a packet counts as 64 KiB."""
+        return self._deframer.work_done
+
+    def is_without_telemetry(self, now_ns: int) -> bool:
+        """Whether an app without a serial number has sent no telemetry lately."""
+        telemetry_ns = self._telemetry_at_ns
+        late_ns = seconds_to_ns(self.settings.unidentified_timeout_s)
+        return self._serial is None and (telemetry_ns is None or now_ns - telemetry_ns > late_ns)
+
     def receive(self, data: bytes, now_ns: int) -> list[Event]:
         """Take bytes from the socket; return the events of their packets."""
         self.bytes_received += len(data)
-        return self._events(self._deframer.feed(data, now_ns), now_ns)
+        gap_ns = now_ns - self._readable_at_ns
+        if gap_ns > seconds_to_ns(self.settings.read_gap_s):
+            self._deframer.excuse(gap_ns)
+        self._readable_at_ns = now_ns
+        return self._events(self._deframer.feed(data, now_ns))
 
-    def tick(self, now_ns: int) -> list[Event]:
-        """Handle timeouts: stalled packets, missed acknowledgments, expired orders, liveness."""
-        events = self._events(self._deframer.tick(now_ns), now_ns)
+    def resume(self) -> list[Event]:
+        """Go on with received bytes that one call left; return the events of their packets."""
+        return self._events(self._deframer.resume())
+
+    def tick(self, now_ns: int, *, has_unread: bool = False) -> list[Event]:
+        """Handle timeouts: stalled packets, missed acknowledgments, expired orders, liveness.
+
+        `has_unread`: bytes wait in the socket, so a stalled packet is the station's own delay.
+        """
+        events: list[Event] = []
+        if not has_unread:
+            self._readable_at_ns = now_ns
+            events += self._events(self._deframer.tick(now_ns))
         events += self.acks.expire(now_ns)
         events += self._outbox.expire(now_ns)
         self._check_liveness(now_ns)
         return events
 
-    def finish(self, reason: str, now_ns: int) -> list[Event]:
-        """End the stream: buffered bytes are decoded, unsent orders fail with `reason`."""
-        events = self._events(self._deframer.finish(), now_ns)
-        return [*events, *self._outbox.empty_out(f"{reason}, before it was sent")]
+    def end_stream(self) -> list[Event]:
+        """Take the end of the connection; return the events of what is still held."""
+        return self._events(self._deframer.finish())
+
+    def drop_unsent(self, reason: str) -> list[CommandDropped]:
+        """Drop every order that waits: it fails with `reason`."""
+        return self._outbox.empty_out(f"{reason}, before it was sent")
+
+    def finish(self, reason: str) -> list[Event]:
+        """End the stream at once: buffered bytes are decoded, unsent orders fail with `reason`."""
+        events = self.end_stream()
+        while self.is_busy:
+            events += self.resume()
+        return [*events, *self.drop_unsent(reason)]
+
+    def discard_half_packet(self) -> None:
+        """Drop the half-received packet, for its memory."""
+        self._deframer.discard()
 
     def submit(self, approved: ApprovedCommand) -> list[CommandDropped]:
         """Queue an approved command; return the unsent ones it displaces.
@@ -166,17 +235,20 @@ class Session:
             return min(gap_s, settings.stick_gap_s)
         return gap_s
 
-    def _events(self, packets: list[wire.Packet], now_ns: int) -> list[Event]:
+    def _events(self, packets: list[wire.Packet]) -> list[Event]:
         events: list[Event] = []
-        for packet in packets:
+        for packet, arrived_at_ns in zip(packets, self._deframer.arrivals_ns, strict=True):
             report = to_report(packet)
             if isinstance(report, AckReport):
-                answered = self.acks.answered(report, now_ns)
+                answered = self.acks.answered(report, arrived_at_ns)
                 if answered is not None:
                     events.append(answered)
             if isinstance(report, ExtendedReport):
                 events += self._other_aircraft(report.serial)
-            events.append(PacketReceived(self.link_id, report))
+            if isinstance(report, CoreReport | ExtendedReport):
+                self._telemetry_at_ns = arrived_at_ns
+            events.append(PacketReceived(self.link_id, report, arrived_at_ns))
+            self._last_packet_at_ns = arrived_at_ns
         if packets:
             self._has_packets = True
         self._check_garbage(bool(packets))
@@ -192,21 +264,26 @@ class Session:
         return self._outbox.empty_out(reason) if is_another else []
 
     def _check_garbage(self, has_packets: bool) -> None:
-        skipped = self._deframer.counters.bytes_skipped
+        counters = self._deframer.counters
+        damaged = counters.bytes_damaged
+        garbage = counters.bytes_skipped - damaged
         if has_packets:
-            self._skipped_at_last_packet = skipped
-        elif skipped - self._skipped_at_last_packet > self.settings.garbage_limit_bytes:
-            self.closing_reason = (
-                f"{skipped - self._skipped_at_last_packet} bytes without one valid packet"
-            )
+            self._garbage_at_last_packet, self._damaged_at_last_packet = garbage, damaged
+            return
+        garbage -= self._garbage_at_last_packet
+        damaged -= self._damaged_at_last_packet
+        if garbage > self.settings.garbage_limit_bytes:
+            self.closing_reason = f"{garbage} bytes without one valid packet"
+        elif damaged > self.settings.damaged_limit_bytes:
+            self.closing_reason = f"{damaged} bytes of damaged packets without one valid packet"
 
     def _check_liveness(self, now_ns: int) -> None:
-        waited_ns = now_ns - self._opened_at_ns
-        if not self._has_packets and waited_ns > seconds_to_ns(
-            self.settings.first_packet_timeout_s
-        ):
+        silent_ns = now_ns - self._last_packet_at_ns
+        is_idle = self._serial is None and self._telemetry_at_ns is None
+        if is_idle and silent_ns > seconds_to_ns(self.settings.unidentified_timeout_s):
             self.closing_reason = (
-                f"no valid packet within {self.settings.first_packet_timeout_s:g} s of connecting"
+                "no serial number, no telemetry and no valid packet for "
+                f"{self.settings.unidentified_timeout_s:g} s"
             )
         since_ns = now_ns if self._blocked_since_ns is None else self._blocked_since_ns
         if now_ns - since_ns > seconds_to_ns(self.settings.stuck_output_timeout_s):

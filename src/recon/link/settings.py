@@ -31,10 +31,27 @@ class LinkSettings:
     of its kind may still belong to the command that missed it, and is counted but ignored."""
 
     garbage_limit_bytes: int = 8 * MIB
-    """Bytes skipped without a single valid packet between, after which a link is closed."""
+    """Bytes that belong to no frame, without a single valid packet between, after which a link is
+    closed."""
 
-    first_packet_timeout_s: float = 30.0
-    """A connection that has never delivered a valid packet is closed after this time."""
+    damaged_limit_bytes: int = 128 * MIB
+    """The same for bytes of frames that were damaged or never completed: five raw 4K images. One
+    flipped bit or a pause of the app costs a whole image, and no link."""
+
+    unidentified_timeout_s: float = 10.0
+    """A connection without a serial number and without telemetry gives up its place after this time
+    without a valid packet. Apps send telemetry ten times a second."""
+
+    buffer_budget_bytes: int = 256 * MIB
+    """Memory of half-received packets, of all links together: ten raw 4K images at once."""
+
+    work_per_call: int = 4 * MIB
+    """Bytes searched or hashed for one link before others get their turn: a millisecond or two. A
+    packet counts as 64 KiB."""
+
+    read_gap_s: float = 0.25
+    """After this time without a read or a tick, five ticks, the station itself did not run: that
+    time does not count against a half-received packet."""
 
     stuck_output_timeout_s: float = 5.0
     """With the socket full for this long the client does not read, and the link is closed."""
@@ -43,7 +60,10 @@ class LinkSettings:
     """Small, so that an emergency order never waits behind much data in the kernel."""
 
     max_links: int = 256
-    """Further connections are refused."""
+    """Further connections are refused, unless an unidentified link without telemetry gives way."""
+
+    limit_alarm_s: float = 10.0
+    """How long an alarm about dropped packets stays active after the last one."""
 
     read_bytes: int = 32 * 1024
     """Taken from one socket at a time: at most 3,640 of the smallest packets, decoded in 10 ms."""

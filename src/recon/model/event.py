@@ -26,10 +26,19 @@ class LinkClosed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PacketReceived:
-    """A packet arrived from a companion app."""
+    """A packet arrived from a companion app.
+
+    `arrived_at_ns` is when its last byte was read from the socket, which can be seconds before this
+    event: damaged or false bytes in front withhold a packet. None means now.
+    """
 
     link_id: int
     report: Report
+    arrived_at_ns: int | None = None
+
+    def received_at_ns(self, now_ns: int) -> int:
+        """Return the time that the ages of its values count from."""
+        return now_ns if self.arrived_at_ns is None else min(self.arrived_at_ns, now_ns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,6 +202,14 @@ class AuditFailed:
 
 
 @dataclass(frozen=True, slots=True)
+class LinkLimitReached:
+    """The link server reached a limit; `problem` is None when it is no longer reached."""
+
+    limit: str
+    problem: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class StationFaulted:
     """The station's own code raised: what it was doing, and the error."""
 
@@ -238,6 +255,7 @@ Event = (
     | SurveyStopped
     | AlarmAcknowledged
     | AuditFailed
+    | LinkLimitReached
     | StationFaulted
     | JobEnded
 )

@@ -4,6 +4,7 @@ import pytest
 from tests.fleet.reports import core, extended
 from tests.station.commanded import CommandedStation
 
+from recon.model.event import LinkLimitReached
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.vehicle import BatteryWarning
 from recon.station.state.alarm_book import Severity
@@ -96,3 +97,15 @@ class TestMessages:
             "A: message from its app: level WARNING",
             "A: message from its app: level ERROR",
         }
+
+
+class TestLinkLimits:
+    def test_a_limit_of_the_link_server_is_an_alarm_while_it_is_reached(self) -> None:
+        scene = CommandedStation().happens(LinkLimitReached("places", "256 apps are connected"))
+        scene.happens(LinkLimitReached("memory", "link 7 closed")).passes(0.1)
+        assert severities(scene, "link_limit") == [Severity.ERROR] * 2
+        scene.happens(LinkLimitReached("places", None)).passes(0.1)
+        active = [a for a in scene.station.alarms.alarms.values() if a.is_active]
+        assert [a.condition.text for a in active] == ["link 7 closed"]
+        scene.happens(LinkLimitReached("memory", None)).passes(0.1)
+        assert severities(scene, "link_limit") == []

@@ -23,6 +23,7 @@ from recon.model.event import (
     AuthorityTaken,
     HazardDismissed,
     LinkClosed,
+    LinkLimitReached,
     LinkOpened,
     OperatorOrder,
     PacketReceived,
@@ -298,12 +299,14 @@ class TestWords:
             HazardDismissed("A", "one"),
             SeparationHoldSwitched(False, "two"),
             AuditFailed("no space"),
+            LinkLimitReached("places", "256 apps are connected"),
         )
         words = [e for e in scene if not e.kind.startswith("vehicle.")]
         assert [(e.kind, e.by) for e in words] == [
             ("hazard.dismissed", "one"),
             ("separation_hold.switched", "two"),
             ("audit.trouble", "station"),
+            ("link.limit", "station"),
         ]
         assert words[1].details == {"is_on": False}
 

@@ -73,6 +73,8 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     yield from _watchdogs(station)
     yield from frames.conditions(station)
     yield from _audit(station)
+    for limit, problem in station.link_limits.items():
+        yield Condition(f"link_limit:{limit}", Severity.ERROR, "link_limit", "", problem)
 
 
 def _about(

@@ -22,6 +22,7 @@ from recon.model.event import (
     AuthorityTaken,
     Event,
     HazardDismissed,
+    LinkLimitReached,
     PreflightOverridden,
     SeparationHoldSwitched,
     Tick,
@@ -97,6 +98,10 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
         case AuditFailed(problem):
             text = problem or "audit and recovery snapshot are written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
+        case LinkLimitReached(limit, problem):
+            text = problem or f"link server: limit of {limit} no longer reached"
+            details = {"limit": limit, "is_reached": problem is not None}
+            yield AuditEntry("link.limit", text, details=details)
 
 
 def _refused(

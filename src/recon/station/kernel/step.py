@@ -19,6 +19,7 @@ from recon.model.event import (
     Event,
     HazardDismissed,
     LinkClosed,
+    LinkLimitReached,
     LinkOpened,
     OperatorOrder,
     OwnerConnected,
@@ -80,7 +81,8 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
         return station, outputs
     take = _REPORTS.get(type(event.report))
     if take is not None:
-        station, more = take(station, vehicle, event.report, now_ns)
+        received_at_ns = event.received_at_ns(now_ns)
+        station, more = take(station, vehicle, event.report, received_at_ns)
         outputs = (*outputs, *more)
     if station.control(vehicle.serial).restored is not None:
         station = restart.recheck(station, vehicle.serial, now_ns)
@@ -91,10 +93,14 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     return station, (*outputs, *orders)
 
 
-def _core(station: Station, vehicle: VehicleState, _report: CoreReport, now_ns: int) -> Stepped:
+def _core(
+    station: Station, vehicle: VehicleState, _report: CoreReport, received_at_ns: int
+) -> Stepped:
+    if vehicle.core_received_at_ns != received_at_ns:
+        return station, ()  # another link has brought newer telemetry
     for take in _POSITION_TAKERS:
-        station = take(station, vehicle, now_ns)
-    return frames.on_telemetry(station, vehicle, now_ns), ()
+        station = take(station, vehicle, received_at_ns)
+    return frames.on_telemetry(station, vehicle, received_at_ns), ()
 
 
 def _job_done(station: Station, event: JobDone[Any, Any], now_ns: int) -> Stepped:
@@ -129,6 +135,12 @@ def _owner_disconnected(station: Station, event: OwnerDisconnected, now_ns: int)
 
 def _audit_failed(station: Station, event: AuditFailed, _now_ns: int) -> Station:
     return replace(station, audit_problem=event.problem)
+
+
+def _link_limit(station: Station, event: LinkLimitReached, _now_ns: int) -> Station:
+    others = {key: text for key, text in station.link_limits.items() if key != event.limit}
+    reached = {} if event.problem is None else {event.limit: event.problem}
+    return replace(station, link_limits={**others, **reached})
 
 
 def _acknowledged(station: Station, event: AlarmAcknowledged, _now_ns: int) -> Station:
@@ -187,6 +199,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(PreflightOverridden, preflight.override),
         changing(StationFaulted, event_alarms.note_fault),
         changing(AuditFailed, _audit_failed),
+        changing(LinkLimitReached, _link_limit),
         changing(AlarmAcknowledged, _acknowledged),
         *(command for each in OPERATIONS for command in each.commands),
     )

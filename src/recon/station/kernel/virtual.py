@@ -116,7 +116,7 @@ class VirtualDriver:
         """End a connection as a FIN would."""
         wire = self._wires.pop(link_id, None)
         if wire is not None:
-            self._handle_all(wire.session.finish(reason, self.now_ns))
+            self._handle_all(wire.session.finish(reason))
             self.handle(LinkClosed(link_id, reason))
 
     def is_connected(self, link_id: int) -> bool:
@@ -182,6 +182,8 @@ class VirtualDriver:
     def _tick(self) -> None:
         for link_id, wire in tuple(self._wires.items()):
             self._handle_all(wire.session.tick(self.now_ns))
+            while wire.session.is_busy:
+                self._handle_all(wire.session.resume())
             self._pump(wire)
             if wire.session.closing_reason is not None:
                 self.disconnect(link_id, wire.session.closing_reason)
@@ -199,6 +201,8 @@ class VirtualDriver:
         wire = self._wires.get(link_id)
         if wire is not None and data and not wire.link.is_dead:
             self._handle_all(wire.session.receive(data, self.now_ns))
+            while wire.session.is_busy:
+                self._handle_all(wire.session.resume())
             self._pump(wire)
 
     def _pump(self, wire: _Wire) -> None:
