@@ -61,9 +61,9 @@ test("takes over a vehicle, overrides its checklist and clears a hazard area", a
     expect.poll(() => fake.requests.length).toBe(3),
   );
   expect(fake.requests).toEqual([
-    ["/api/vehicles/SN-001/authority", { holder: "operator" }],
-    ["/api/vehicles/SN-001/preflight/override", { reason: "height read off the app" }],
-    ["/api/vehicles/SN-003/hazard/dismiss", null],
+    ["/api/vehicle/authority?serial=SN-001", { holder: "operator" }],
+    ["/api/vehicle/preflight/override?serial=SN-001", { reason: "height read off the app" }],
+    ["/api/vehicle/hazard/dismiss?serial=SN-003", null],
   ]);
 });
 

@@ -1,4 +1,9 @@
-"""Routes for orders and operator commands: orders, fleet return, hazards, authority, preflight."""
+"""Routes for orders and operator commands: orders, fleet return, hazards, authority, preflight.
+
+A serial may be any text, also `..` and `A/B`, which no path carries unchanged through every client
+and server: it is a query parameter. In requests by hand, a serial of letters, digits and dashes may
+also stand in the path, as in `/api/vehicles/SIM-1/preflight`.
+"""
 
 from typing import Literal
 
@@ -74,7 +79,13 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
 
 
 def _add_hazards(app: FastAPI, port: StationPort) -> None:
-    @app.post("/api/vehicles/{serial}/hazard/dismiss", responses=PROBLEMS, status_code=204)
+    @app.post("/api/vehicle/hazard/dismiss", responses=PROBLEMS, status_code=204)
+    @app.post(
+        "/api/vehicles/{serial}/hazard/dismiss",
+        responses=PROBLEMS,
+        status_code=204,
+        include_in_schema=False,
+    )
     async def dismiss_hazard(serial: str, request: Request) -> None:
         """Dismiss the hazard area of a lost vehicle that has been located.
 
@@ -98,19 +109,22 @@ def _add_hazards(app: FastAPI, port: StationPort) -> None:
 
 
 def _add_readiness(app: FastAPI, port: StationPort) -> None:
-    @app.post("/api/vehicles/{serial}/authority")
+    @app.post("/api/vehicle/authority")
+    @app.post("/api/vehicles/{serial}/authority", include_in_schema=False)
     async def authority(
         serial: str, asked: schema.AuthorityRequest, request: Request
     ) -> schema.ActionResponse:
         """Transfer control authority: from now on only `holder` may set the vehicle in motion."""
         return port.take_authority(serial, AuthorityHolder(asked.holder), client_name(request))
 
-    @app.get("/api/vehicles/{serial}/preflight", responses=PROBLEMS)
+    @app.get("/api/vehicle/preflight", responses=PROBLEMS)
+    @app.get("/api/vehicles/{serial}/preflight", responses=PROBLEMS, include_in_schema=False)
     async def preflight(serial: str) -> schema.PreflightView:
         """A vehicle's preflight checklist as of now."""
         return found(port.preflight(serial), f"No vehicle with serial {serial!r}")
 
-    @app.post("/api/vehicles/{serial}/preflight/override")
+    @app.post("/api/vehicle/preflight/override")
+    @app.post("/api/vehicles/{serial}/preflight/override", include_in_schema=False)
     async def override_preflight(
         serial: str, asked: schema.PreflightOverrideRequest, request: Request
     ) -> schema.ActionResponse:

@@ -3,7 +3,7 @@
 import asyncio
 from typing import Annotated, Literal
 
-from fastapi import FastAPI, Path, Query, Response
+from fastapi import FastAPI, Query, Response
 
 from recon.api import pictures
 from recon.api.port import StationPort
@@ -24,12 +24,12 @@ def add_picture_routes(app: FastAPI, port: StationPort) -> None:
 
 
 def _add_camera(app: FastAPI, port: StationPort) -> None:
-    serial_path = Annotated[str, Path(max_length=2048)]
     jpeg: dict[int | str, dict[str, object]] = {200: {"content": {"image/jpeg": {}}}}
     tiff: dict[int | str, dict[str, object]] = {200: {"content": {"image/tiff": {}}}}
 
-    @app.get("/api/vehicles/{serial}/frame.jpg", response_class=Response, responses=PROBLEMS | jpeg)
-    async def frame(serial: serial_path) -> Response:
+    @app.get("/api/vehicle/frame.jpg", response_class=Response, responses=PROBLEMS | jpeg)
+    @app.get("/api/vehicles/{serial}/frame.jpg", response_class=Response, include_in_schema=False)
+    async def frame(serial: str) -> Response:
         """A vehicle's newest camera frame, unchanged."""
         newest = found(port.frame(serial), f"No frame received from {serial!r}")
         data = await asyncio.to_thread(pictures.frame_jpeg, newest)

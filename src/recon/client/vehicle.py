@@ -44,7 +44,6 @@ class Vehicle:
     def __init__(self, serial: str, order_api: OrderApi) -> None:
         self.serial = serial
         self._order_api = order_api
-        self._path = f"/api/vehicles/{quote(serial, safe='')}"
 
     async def hold(self) -> Order | Refusal:
         """Stop and hold the position."""
@@ -149,7 +148,7 @@ class Vehicle:
 
     async def preflight(self) -> Preflight:
         """Return the preflight checklist as of now, with instructions for unmet items."""
-        path = f"{self._path}/preflight"
+        path = self._path("preflight")
         return await self._order_api.http.get(path, Preflight, "a preflight checklist")
 
     async def override_preflight(self, reason: str) -> Refusal | None:
@@ -164,7 +163,7 @@ class Vehicle:
 
         Raises `RequestRefusedError` if the vehicle has none.
         """
-        await self._order_api.http.post_without_result(f"{self._path}/hazard/dismiss")
+        await self._order_api.http.post_without_result(self._path("hazard/dismiss"))
 
     def now(self) -> Telemetry:
         """Return the newest telemetry with ages as of now; raises `ConnectionLostError`."""
@@ -204,6 +203,10 @@ class Vehicle:
 
     async def _post(self, path: str, request: dict[str, str]) -> Refusal | None:
         answer = await self._order_api.http.post(
-            f"{self._path}/{path}", request, AnswerMessage, "an answer"
+            self._path(path), request, AnswerMessage, "an answer"
         )
         return answer.refusal
+
+    def _path(self, path: str) -> str:
+        # In the query: a serial such as `..` or `A/B` does not survive in a path.
+        return f"/api/vehicle/{path}?serial={quote(self.serial, safe='')}"

@@ -33,7 +33,7 @@ export class FakeStation {
     );
     await page.route("**/api/**", (route) => {
       const request = route.request();
-      const answer = fake.answer(new URL(request.url()).pathname, request.postData());
+      const answer = fake.answer(new URL(request.url()), request.postData());
       return answer === null ? route.abort() : route.fulfill(answer);
     });
     return fake;
@@ -72,7 +72,7 @@ export class FakeStation {
     socket.onMessage(() => undefined);
   }
 
-  private answer(path: string, body: string | null) {
+  private answer({ pathname: path, search }: URL, body: string | null) {
     if (!this.isReachable) return null;
     if (path === "/api/orders") return this.order(JSON.parse(body ?? "{}") as OrderRequest);
     if (path === "/api/orders/check")
@@ -81,13 +81,13 @@ export class FakeStation {
     if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
     const isControlRequest = /\/(authority|override)$/.test(path);
     if (isControlRequest || path === "/api/fleet-return") {
-      this.requests.push([path, JSON.parse(body ?? "{}")]);
+      this.requests.push([path + search, JSON.parse(body ?? "{}")]);
       return {
         json: isControlRequest ? { accepted: true, rule: null, reason: null } : { results: [] },
       };
     }
     if (/\/dismiss$|^\/api\/separation-hold\//.test(path)) {
-      this.requests.push([path, null]);
+      this.requests.push([path + search, null]);
       return { status: 204 };
     }
     if (path === "/api/all-stop") return this.stopAll();

@@ -413,27 +413,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/vehicles": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Vehicles
-         * @description All vehicles with every value's age.
-         */
-        get: operations["vehicles_api_vehicles_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/vehicles/{serial}": {
+    "/api/vehicle": {
         parameters: {
             query?: never;
             header?: never;
@@ -444,7 +424,7 @@ export interface paths {
          * Vehicle
          * @description One vehicle.
          */
-        get: operations["vehicle_api_vehicles__serial__get"];
+        get: operations["vehicle_api_vehicle_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -453,7 +433,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/vehicles/{serial}/authority": {
+    "/api/vehicle/authority": {
         parameters: {
             query?: never;
             header?: never;
@@ -466,14 +446,14 @@ export interface paths {
          * Authority
          * @description Transfer control authority: from now on only `holder` may set the vehicle in motion.
          */
-        post: operations["authority_api_vehicles__serial__authority_post"];
+        post: operations["authority_api_vehicle_authority_post"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/vehicles/{serial}/frame.jpg": {
+    "/api/vehicle/frame.jpg": {
         parameters: {
             query?: never;
             header?: never;
@@ -484,7 +464,7 @@ export interface paths {
          * Frame
          * @description A vehicle's newest camera frame, unchanged.
          */
-        get: operations["frame_api_vehicles__serial__frame_jpg_get"];
+        get: operations["frame_api_vehicle_frame_jpg_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -493,7 +473,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/vehicles/{serial}/hazard/dismiss": {
+    "/api/vehicle/hazard/dismiss": {
         parameters: {
             query?: never;
             header?: never;
@@ -508,14 +488,14 @@ export interface paths {
          *
          *     A vehicle without a serial is named by its hazard area's `dismissal_name`.
          */
-        post: operations["dismiss_hazard_api_vehicles__serial__hazard_dismiss_post"];
+        post: operations["dismiss_hazard_api_vehicle_hazard_dismiss_post"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/vehicles/{serial}/preflight": {
+    "/api/vehicle/preflight": {
         parameters: {
             query?: never;
             header?: never;
@@ -526,7 +506,7 @@ export interface paths {
          * Preflight
          * @description A vehicle's preflight checklist as of now.
          */
-        get: operations["preflight_api_vehicles__serial__preflight_get"];
+        get: operations["preflight_api_vehicle_preflight_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -535,7 +515,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/vehicles/{serial}/preflight/override": {
+    "/api/vehicle/preflight/override": {
         parameters: {
             query?: never;
             header?: never;
@@ -550,7 +530,27 @@ export interface paths {
          *
          *     Reason and client are written to the audit.
          */
-        post: operations["override_preflight_api_vehicles__serial__preflight_override_post"];
+        post: operations["override_preflight_api_vehicle_preflight_override_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vehicles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Vehicles
+         * @description All vehicles with every value's age.
+         */
+        get: operations["vehicles_api_vehicles_get"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -2740,33 +2740,13 @@ export interface operations {
             };
         };
     };
-    vehicles_api_vehicles_get: {
+    vehicle_api_vehicle_get: {
         parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["VehicleView"][];
-                };
-            };
-        };
-    };
-    vehicle_api_vehicles__serial__get: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
+            query: {
                 serial: string;
             };
+            header?: never;
+            path?: never;
             cookie?: never;
         };
         requestBody?: never;
@@ -2800,13 +2780,13 @@ export interface operations {
             };
         };
     };
-    authority_api_vehicles__serial__authority_post: {
+    authority_api_vehicle_authority_post: {
         parameters: {
-            query?: never;
-            header?: never;
-            path: {
+            query: {
                 serial: string;
             };
+            header?: never;
+            path?: never;
             cookie?: never;
         };
         requestBody: {
@@ -2835,13 +2815,13 @@ export interface operations {
             };
         };
     };
-    frame_api_vehicles__serial__frame_jpg_get: {
+    frame_api_vehicle_frame_jpg_get: {
         parameters: {
-            query?: never;
-            header?: never;
-            path: {
+            query: {
                 serial: string;
             };
+            header?: never;
+            path?: never;
             cookie?: never;
         };
         requestBody?: never;
@@ -2875,13 +2855,13 @@ export interface operations {
             };
         };
     };
-    dismiss_hazard_api_vehicles__serial__hazard_dismiss_post: {
+    dismiss_hazard_api_vehicle_hazard_dismiss_post: {
         parameters: {
-            query?: never;
-            header?: never;
-            path: {
+            query: {
                 serial: string;
             };
+            header?: never;
+            path?: never;
             cookie?: never;
         };
         requestBody?: never;
@@ -2913,13 +2893,13 @@ export interface operations {
             };
         };
     };
-    preflight_api_vehicles__serial__preflight_get: {
+    preflight_api_vehicle_preflight_get: {
         parameters: {
-            query?: never;
-            header?: never;
-            path: {
+            query: {
                 serial: string;
             };
+            header?: never;
+            path?: never;
             cookie?: never;
         };
         requestBody?: never;
@@ -2953,13 +2933,13 @@ export interface operations {
             };
         };
     };
-    override_preflight_api_vehicles__serial__preflight_override_post: {
+    override_preflight_api_vehicle_preflight_override_post: {
         parameters: {
-            query?: never;
-            header?: never;
-            path: {
+            query: {
                 serial: string;
             };
+            header?: never;
+            path?: never;
             cookie?: never;
         };
         requestBody: {
@@ -2984,6 +2964,26 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    vehicles_api_vehicles_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VehicleView"][];
                 };
             };
         };

@@ -92,16 +92,17 @@ describe("the live source", () => {
   it("encodes the serial in requests about one vehicle", async () => {
     const response = { accepted: false, rule: "stale", reason: "no telemetry" };
     const { source, requests } = setUp(() => json(response));
-    expect(await source.setAuthority("a/b", "operator")).toEqual({
+    expect(await source.setAuthority("..", "operator")).toEqual({
       kind: "answered",
       value: response,
     });
     await source.overridePreflight("a/b", "test flight");
-    const paths = requests.map(({ url }) => new URL(url).pathname);
-    expect(paths).toEqual([
-      "/api/vehicles/a%2Fb/authority",
-      "/api/vehicles/a%2Fb/preflight/override",
+    const addresses = requests.map(({ url }) => new URL(url));
+    expect(addresses.map(({ pathname }) => pathname)).toEqual([
+      "/api/vehicle/authority",
+      "/api/vehicle/preflight/override",
     ]);
+    expect(addresses.map((url) => url.searchParams.get("serial"))).toEqual(["..", "a/b"]);
     expect(await requests[1]?.json()).toEqual({ reason: "test flight" });
   });
 
@@ -172,7 +173,7 @@ describe("the live source", () => {
     );
     const outcome = await source.vehicleFrame("a/b ?", 7);
     expect(outcome).toMatchObject({ kind: "answered", value: { frameId: 8 } });
-    expect(requests[0]?.url).toContain("/api/vehicles/a%2Fb%20%3F/frame.jpg?id=7");
+    expect(requests[0]?.url).toContain("/api/vehicle/frame.jpg?serial=a%2Fb%20%3F&id=7");
   });
 });
 

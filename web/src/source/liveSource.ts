@@ -113,7 +113,7 @@ export class LiveSource implements StationSource {
 
   vehicleFrame(serial: string, frameId: number) {
     return this.requests.picture(
-      `/api/vehicles/${encodeURIComponent(serial)}/frame.jpg?id=${frameId}`,
+      `/api/vehicle/frame.jpg?serial=${encodeURIComponent(serial)}&id=${frameId}`,
     );
   }
 

@@ -57,21 +57,18 @@ export class Requests {
   }
 
   setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<ActionResponse>> {
-    const options = { params: { path: { serial } }, body: { holder }, signal: timeout() };
-    return answered(() => this.client.POST("/api/vehicles/{serial}/authority", options), identity);
+    const options = { params: { query: { serial } }, body: { holder }, signal: timeout() };
+    return answered(() => this.client.POST("/api/vehicle/authority", options), identity);
   }
 
   preflight(serial: string): Promise<Outcome<PreflightView>> {
-    const options = { params: { path: { serial } }, signal: timeout() };
-    return answered(() => this.client.GET("/api/vehicles/{serial}/preflight", options), identity);
+    const options = { params: { query: { serial } }, signal: timeout() };
+    return answered(() => this.client.GET("/api/vehicle/preflight", options), identity);
   }
 
   overridePreflight(serial: string, reason: string): Promise<Outcome<ActionResponse>> {
-    const options = { params: { path: { serial } }, body: { reason }, signal: timeout() };
-    return answered(
-      () => this.client.POST("/api/vehicles/{serial}/preflight/override", options),
-      identity,
-    );
+    const options = { params: { query: { serial } }, body: { reason }, signal: timeout() };
+    return answered(() => this.client.POST("/api/vehicle/preflight/override", options), identity);
   }
 
   planSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>> {
@@ -110,8 +107,8 @@ export class Requests {
   }
 
   dismissHazard(serial: string): Promise<Outcome<null>> {
-    const options = { params: { path: { serial } }, signal: timeout() };
-    return withoutBody(() => this.client.POST("/api/vehicles/{serial}/hazard/dismiss", options));
+    const options = { params: { query: { serial } }, signal: timeout() };
+    return withoutBody(() => this.client.POST("/api/vehicle/hazard/dismiss", options));
   }
 
   setSeparationHold(isOn: boolean): Promise<Outcome<null>> {
