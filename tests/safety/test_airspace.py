@@ -1,11 +1,16 @@
 """Which zones are worth asking."""
 
 import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.examples import examples
 from tests.safety.traffic import FRAME
 
 from recon.geo import Footprints
-from recon.model.airspace import Airspace, Region, Zone, ZoneKind
+from recon.model.airspace import Airspace, ElevationModel, Region, Zone, ZoneKind
+from recon.model.geo import GroundGrid
 from recon.safety import PreparedAirspace
+from recon.safety.airspace import Cylinder
 
 
 def square(name: str, east_m: float) -> Zone:
@@ -36,3 +41,56 @@ def test_one_that_is_between_all_and_near_to_none_is_not() -> None:
 
 def test_what_is_not_finite_may_be_near_to_every_zone() -> None:
     assert near((np.nan, 0.0)) == ["west", "east"]
+
+
+KEEP_OUT = (ZoneKind.KEEP_OUT,)
+
+
+def test_a_circle_may_touch_a_zone_that_its_box_meets() -> None:
+    assert AIR.may_touch_zone(KEEP_OUT, Cylinder(-60.0, 0.0, 6.0, 10.0, 20.0))
+    assert not AIR.may_touch_zone(KEEP_OUT, Cylinder(-60.0, 0.0, 4.0, 10.0, 20.0))
+    assert not AIR.may_touch_zone((ZoneKind.HEIGHT,), Cylinder(-50.0, 0.0, 4.0, 10.0, 20.0))
+    assert AIR.may_touch_zone(KEEP_OUT, Cylinder(np.nan, 0.0, 4.0, 10.0, 20.0))
+
+
+GRID = GroundGrid(FRAME, west_m=-100.0, north_m=100.0, cell_m=20.0, rows=10, cols=10)
+SLOPE = PreparedAirspace(
+    Airspace(
+        frame=FRAME,
+        elevation=ElevationModel(
+            GRID, FRAME.origin.ellipsoid_height_m + np.linspace(0.0, 30.0, 100).reshape(10, 10)
+        ),
+    )
+)
+"""Ground from 0 m in the north-west up to 30 m in the south-east; 5 to 120 m above it are allowed.
+"""
+
+
+def test_heights_are_sure_only_over_known_ground() -> None:
+    def is_sure(east_m: float, radius_m: float, low_m: float, high_m: float) -> bool:
+        return SLOPE.is_surely_between_heights(Cylinder(east_m, 0.0, radius_m, low_m, high_m))
+
+    assert is_sure(0.0, 50.0, 36.0, 119.0)
+    assert not is_sure(0.0, 50.0, 34.0, 119.0)
+    assert not is_sure(0.0, 50.0, 36.0, 121.0)
+    assert not is_sure(60.0, 50.0, 36.0, 119.0)
+
+
+@settings(max_examples=examples(200))
+@given(
+    st.tuples(st.floats(-120.0, 120.0), st.floats(-120.0, 120.0)),
+    st.floats(0.0, 60.0),
+    st.floats(0.0, 150.0),
+    st.floats(0.0, 50.0),
+)
+def test_sure_heights_keep_the_limits_over_all_ground_below(
+    middle_m: tuple[float, float], radius_m: float, low_m: float, thick_m: float
+) -> None:
+    east_m, north_m = middle_m
+    cylinder = Cylinder(east_m, north_m, radius_m, low_m, low_m + thick_m)
+    if SLOPE.is_surely_between_heights(cylinder):
+        limits = SLOPE.airspace.limits
+        offsets_m = radius_m * np.array([(-1.0, -1.0), (1.0, -1.0), (0.0, 1.0)])
+        lowest_m, highest_m = SLOPE.ground_within_up_m((offsets_m + middle_m)[np.newaxis])
+        assert low_m - highest_m[0] >= limits.min_height_above_ground_m
+        assert low_m + thick_m - lowest_m[0] <= limits.max_height_above_ground_m

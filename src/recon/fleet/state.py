@@ -67,7 +67,9 @@ class Fleet:
     def unbound_links(self) -> tuple[LinkRecord, ...]:
         """Return the open links not bound to a vehicle: unidentified or rivals."""
         return tuple(
-            link for link in self.links.values() if link.is_open and not self._is_bound(link)
+            link
+            for link in self.links.values()
+            if link.closed_at_ns is None and not self._is_bound(link)
         )
 
     def _is_bound(self, link: LinkRecord) -> bool:

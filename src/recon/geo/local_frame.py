@@ -214,13 +214,12 @@ class TangentPlane:
 
     def place(self, east_m: float, north_m: float, up_m: float) -> Three:
         """Return latitude_deg, longitude_deg and ellipsoidal height_m of a point."""
-        x, y, z = (
-            origin + east_m * east + north_m * north + up_m * up
-            for origin, east, north, up in zip(
-                self.origin_m, self.east, self.north, self.up, strict=True
-            )
+        origin_m, east, north, up = self.origin_m, self.east, self.north, self.up
+        return _geodetic(
+            origin_m[0] + east_m * east[0] + north_m * north[0] + up_m * up[0],
+            origin_m[1] + east_m * east[1] + north_m * north[1] + up_m * up[1],
+            origin_m[2] + east_m * east[2] + north_m * north[2] + up_m * up[2],
         )
-        return _geodetic(x, y, z)
 
 
 @lru_cache(maxsize=PLANES_KEPT)

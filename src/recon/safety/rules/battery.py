@@ -22,7 +22,11 @@ def battery(command: Command, situation: Situation) -> Refusal | None:
     vehicle, body = situation.vehicle, command.body
     if vehicle is None or not command.moves or is_stop(command, situation):
         return None
-    energy = situation.settings.energy
+    energy, reserve = situation.settings.energy, _reserve(situation)
+    is_unwarned = vehicle.battery_warning.value is BatteryWarning.NONE
+    is_stricter = reserve >= energy.landing_fraction
+    if is_unwarned and is_stricter and _short(vehicle, body, True, situation) is None:
+        return None  # wherever it leads
     is_away = command.takeoff or leads_away(body, vehicle, situation.airspace, energy)
     return _warned(vehicle, is_away) or _short(vehicle, body, is_away, situation)
 
@@ -61,9 +65,12 @@ def _short(
     need = need_of(uses, vehicle, body)
     if need is None:
         return _refused(vehicle, "position or home unknown, so the way home cannot be checked")
-    reserve = situation.airspace.airspace.limits.battery_reserve_fraction
-    left = reserve if is_away else energy.landing_fraction
+    left = _reserve(situation) if is_away else energy.landing_fraction
     return None if need.whole + left <= has else _too_little(vehicle, body, need, left, has)
+
+
+def _reserve(situation: Situation) -> float:
+    return situation.airspace.airspace.limits.battery_reserve_fraction
 
 
 def _too_little(vehicle: VehicleState, body: Body, need: Need, left: float, has: float) -> Refusal:

@@ -5,7 +5,7 @@ from math import exp, sqrt
 from random import Random
 
 from recon import wire
-from recon.geo import tangent_plane
+from recon.geo import TangentPlane, tangent_plane
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import CameraState
 from recon.sim.app.camera_feed import CameraFeed
@@ -99,6 +99,7 @@ class TelemetrySensors:
     _east: "SensorError" = field(init=False)
     _height: "SensorError" = field(init=False)
     _satellites: int = field(init=False)
+    _plane: TangentPlane = field(init=False)
 
     def __post_init__(self) -> None:
         s = self.settings
@@ -109,15 +110,14 @@ class TelemetrySensors:
             for fast, slow, slow_s in (level, level, upright)
         )
         self._satellites = self.random.randint(14, 19)
+        self._plane = tangent_plane(LocalFrame(self.home))
 
     def core(self, aircraft: Aircraft, seconds: float) -> wire.CoreTelemetry:
         """Return core telemetry (ICD 3.1.1), `seconds` after the previous packet."""
         motion = aircraft.motion
-        latitude, longitude = position_deg(
-            self.home,
-            motion.north_m + self._north.step(seconds, self.random, self.slow_random),
-            motion.east_m + self._east.step(seconds, self.random, self.slow_random),
-        )
+        north_m = motion.north_m + self._north.step(seconds, self.random, self.slow_random)
+        east_m = motion.east_m + self._east.step(seconds, self.random, self.slow_random)
+        latitude, longitude, _ = self._plane.place(east_m, north_m, 0.0)
         height = motion.height_m + self._height.step(seconds, self.random, self.slow_random)
         return wire.CoreTelemetry(
             is_flying=int(aircraft.is_flying),
