@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from recon.geo import tangent_plane
+from recon.geo import TangentPlane, tangent_plane
 from recon.model.airspace import ZoneKind
 from recon.model.control import Commanded, Intent
 from recon.model.geo import LatLon, LocalFrame
@@ -138,11 +138,13 @@ def near_limits(
     The way ahead ends at most one sample later than its time. Most vehicles are cleared by plain
     comparisons of numbers; only the rest are asked of the polygon and the ground.
     """
+    plane, height_m = tangent_plane(frame), frame.origin.ellipsoid_height_m
     cylinders = {
         number: _cylinder(
             reach,
             way_ahead_s(reach.fastest_mps, settings, prediction) + settings.sample_s,
-            frame,
+            plane,
+            height_m,
         )
         for number, reach in enumerate(reaches)
     }
@@ -161,12 +163,10 @@ def way_ahead_s(
     return min(settings.fence_factor * stop_s, settings.horizon_s)
 
 
-def _cylinder(reach: Reach, seconds: float, frame: LocalFrame) -> Cylinder:
-    """What a vehicle can reach in so many seconds, in the site's frame."""
-    place, height_m = reach.place, frame.origin.ellipsoid_height_m
-    east_m, north_m, _up_m = tangent_plane(frame).enu_m(
-        place.latitude_deg, place.longitude_deg, height_m
-    )
+def _cylinder(reach: Reach, seconds: float, plane: TangentPlane, height_m: float) -> Cylinder:
+    """What a vehicle can reach in so many seconds, in the site's frame, at its origin's height."""
+    place = reach.place
+    east_m, north_m, _up_m = plane.enu_m(place.latitude_deg, place.longitude_deg, height_m)
     return Cylinder(east_m, north_m, reach.radius_m(seconds), reach.low_m, reach.high_m)
 
 
