@@ -1,5 +1,7 @@
 """What apps say, built by construction."""
 
+from dataclasses import replace
+
 from recon.fleet.state import Fleet
 from recon.fleet.step import CloseLink, step
 from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived, Tick
@@ -57,6 +59,14 @@ def extended(
         flight_mode=mode,
         mission_id=0,
     )
+
+
+def jittered(report: Report, number: int) -> Report:
+    """The report with the last digits of a measured attitude: no two packets are the same."""
+    if not isinstance(report, CoreReport) or report.attitude is None:
+        return report
+    attitude = replace(report.attitude, roll_deg=report.attitude.roll_deg + number % 7 / 1000)
+    return replace(report, attitude=attitude)
 
 
 class Story:

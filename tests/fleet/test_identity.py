@@ -106,7 +106,7 @@ class TestTakeover:
         assert story.closing == []
 
     def test_reports_of_a_rival_never_move_the_vehicle(self) -> None:
-        elsewhere = LatLon(10.0, 10.0)
+        elsewhere = LatLon(42.0001, -93.6)
         story = two_links().at(10.5).receives(2, core(position=elsewhere))
         assert story.vehicle().position.value != elsewhere
         assert story.fleet.links[2].own_state.position.value == elsewhere
@@ -153,8 +153,8 @@ class TestTakeover:
 class TestHistory:
     def test_the_track_goes_on_over_a_reconnect(self) -> None:
         story = Story().opens(1).receives(1, extended(), core())
-        story.at(2.0).receives(1, core(position=LatLon(42.001, -93.6))).closes(1)
-        story.at(5.0).opens(2).receives(2, core(position=LatLon(42.002, -93.6)), extended())
+        story.at(10.0).receives(1, core(position=LatLon(42.001, -93.6))).closes(1)
+        story.at(20.0).opens(2).receives(2, core(position=LatLon(42.002, -93.6)), extended())
         assert [p.latitude_deg for p in story.vehicle().track] == [42.0, 42.001, 42.002]
 
     def test_an_old_value_keeps_its_age_over_a_reconnect(self) -> None:

@@ -47,7 +47,7 @@ class TestUnknown:
         assert story.vehicle().altitude_offset_m.value is None
 
     def test_every_value_with_an_age_is_listed(self) -> None:
-        assert len(STAMPED_FIELDS) == 17
+        assert len(STAMPED_FIELDS) == 18
         assert all(getattr(VehicleState(serial="A"), name).value is None for name in STAMPED_FIELDS)
 
 
@@ -119,7 +119,8 @@ class TestBattery:
         story = Story(fleet).opens(1).receives(1, extended(battery=0.4))
         story.receives(1, extended(battery=0.4))
         assert story.vehicle().battery_fraction.value == pytest.approx(0.8)
-        assert story.receives(1, extended(battery=0.9)).vehicle().battery_fraction.value == 1.0
+        story.at(60.0).receives(1, extended(battery=0.9))
+        assert story.vehicle().battery_fraction.value == 1.0
 
 
 class TestTrack:

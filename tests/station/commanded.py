@@ -1,8 +1,9 @@
 """A station with events from apps, links and operators, timed in seconds, without sockets."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
-from tests.fleet.reports import PLACE, S, core, extended
+from tests.fleet.reports import PLACE, S, core, extended, jittered
 from tests.ready import ready_airspace, ready_profile
 
 from recon.fleet.state import Fleet
@@ -18,9 +19,9 @@ from recon.model.event import (
     PacketReceived,
     Tick,
 )
-from recon.model.geo import GeoPoint
-from recon.model.report import Report
-from recon.model.vehicle import FlightMode
+from recon.model.geo import GeoPoint, LatLon
+from recon.model.report import CoreReport, ExtendedReport, Report
+from recon.model.vehicle import FlightMode, VelocityNed
 from recon.safety import ApprovedCommand, PreparedAirspace
 from recon.station.kernel.step import step
 from recon.station.kernel.virtual import EPOCH_NS
@@ -48,6 +49,7 @@ class CommandedStation:
         self.talk: dict[int, tuple[Report, ...]] = {}
         """Reports of each link, every 0.1 s."""
         self._next_order = 1
+        self._packets = 0
 
     def happens(self, event: Event) -> "CommandedStation":
         self.station, outputs = step(self.station, event, self.now_ns)
@@ -72,7 +74,8 @@ class CommandedStation:
 
     def receives(self, link_id: int, *reports: Report) -> "CommandedStation":
         for report in reports:
-            self.happens(PacketReceived(link_id, report))
+            self._packets += 1
+            self.happens(PacketReceived(link_id, jittered(report, self._packets)))
         return self
 
     def keeps_receiving(self, link_id: int, *reports: Report) -> "CommandedStation":
@@ -86,6 +89,35 @@ class CommandedStation:
                 self.receives(link_id, *reports)
             self.happens(Tick())
         return self
+
+    def lands(
+        self, link_id: int, *reports: Report, mode: FlightMode = FlightMode.AUTO_LANDING
+    ) -> "CommandedStation":
+        """The vehicle comes down to where these reports show it, at 10 m/s; then they go on."""
+        talk = [report for report in self.talk.get(link_id, ()) if isinstance(report, CoreReport)]
+        (down,) = (report for report in reports if isinstance(report, CoreReport))
+        up = talk[0] if talk else core()
+        altitude_m = (up.reported_altitude_m or 0.0) - (up.height_above_takeoff_m or 0.0)
+        down = replace(
+            down,
+            height_above_takeoff_m=0.0,
+            reported_altitude_m=altitude_m,
+            velocity_ned=VelocityNed(0.0, 0.0, 0.0),
+        )
+        (serial,) = {r.serial for r in reports if isinstance(r, ExtendedReport)} or {"A"}
+        height_m = up.height_above_takeoff_m or 0.0
+        for metre in range(int(height_m)):
+            left = 1.0 - (metre + 1) / height_m
+            sinking = replace(
+                up,
+                position=_between(down.position, up.position, left),
+                height_above_takeoff_m=height_m * left,
+                reported_altitude_m=altitude_m + height_m * left,
+                velocity_ned=VelocityNed(0.0, 0.0, 10.0),
+            )
+            self.keeps_receiving(link_id, sinking, extended(serial, mode=mode)).passes(0.1)
+        others = (report for report in reports if not isinstance(report, CoreReport))
+        return self.keeps_receiving(link_id, down, *others).passes(1.2)
 
     def order(
         self,
@@ -130,6 +162,16 @@ class CommandedStation:
     def alarms(self, *, active: bool = True) -> set[str]:
         every: Iterable[Alarm] = self.station.alarms.alarms.values()
         return {alarm.condition.rule for alarm in every if alarm.is_active is active}
+
+
+def _between(end: LatLon | None, start: LatLon | None, left: float) -> LatLon | None:
+    """The place on the way from `start` to `end` with this share left."""
+    if end is None or start is None:
+        return end
+    return LatLon(
+        end.latitude_deg + left * (start.latitude_deg - end.latitude_deg),
+        end.longitude_deg + left * (start.longitude_deg - end.longitude_deg),
+    )
 
 
 def flying(serial: str = "A") -> CommandedStation:

@@ -6,6 +6,7 @@ from tests.fleet.reports import PLACE, core, extended
 from tests.safety.cases import mission, waypoint
 from tests.station.commanded import CommandedStation
 
+from recon.geo.distance import offset_north_east_m
 from recon.model.command import Body, FlyMission
 from recon.model.geo import LatLon
 from recon.model.report import Report
@@ -53,8 +54,17 @@ def to_land(flown: FlyMission) -> FlyMission:
 def flies(scene: CommandedStation, *norths_m: float) -> CommandedStation:
     """The vehicle flies its mission past these places, a second at each."""
     for north_m in norths_m:
-        scene.keeps_receiving(1, *at(north_m, WAYPOINT, velocity=NORTHWARD)).passes(1.0)
+        # Half the way first: 15 m at once would be a jump.
+        between_m = 0.5 * (north_m + _north_m(scene))
+        scene.keeps_receiving(1, *at(between_m, WAYPOINT, velocity=NORTHWARD)).passes(0.1)
+        scene.keeps_receiving(1, *at(north_m, WAYPOINT, velocity=NORTHWARD)).passes(0.9)
     return scene
+
+
+def _north_m(scene: CommandedStation) -> float:
+    """How far north of the first waypoint the vehicle reports now."""
+    position = scene.station.fleet.vehicles["A"].position.value
+    return 0.0 if position is None else offset_north_east_m(PLACE, position)[0]
 
 
 def under_way(body: FlyMission | None = None) -> tuple[CommandedStation, int]:

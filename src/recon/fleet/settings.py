@@ -1,6 +1,83 @@
 """The fleet's thresholds, each with its reason."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class AirborneSettings:
+    """When a vehicle is believed in the air or on the ground (`fleet.airborne`)."""
+
+    slow_mps: float = 0.5
+    """Velocity noise of a vehicle that stands stays below."""
+    slow_s: float = 1.0
+    """Ten packets: a wrong flag in one or two of them lands nothing."""
+    landing_s: float = 1.5
+    """Modes come at 1 to 2 Hz: the last report in flight may be this much after a landing mode."""
+    takeoff_radius_m: float = 15.0
+    """GNSS drifts by some metres in a flight; on a slope of 1 in 5 the ground is 3 m lower here."""
+    takeoff_height_m: float = 2.0
+    """The barometer's usual drift in a flight."""
+    landing_gap_s: float = 5.0
+    """In less than this nothing descends and stops its motors."""
+    battery_change_gap_s: float = 15.0
+    battery_gain_fraction: float = 0.05
+    """A battery in flight only discharges; its gauge errs by a percent or two."""
+    rest_s: float = 120.0
+    rest_fraction: float = 0.02
+    """Motors that last an hour, longer than any of these, empty it by 3.3 % in that time."""
+    rest_m: float = 2.0
+    """A change of height beyond this is motion, not the barometer."""
+    moving_mps: float = 1.0
+    battery_fresh_s: float = 5.0
+    height_window_s: float = 30.0
+    """The greatest height is kept for one to two of these: a landing from 60 m takes 30 s."""
+    doubt_s: float = 2.0
+    """A landing is believed a second after it: what takes longer is a contradiction."""
+    sign_mps: float = 2.0
+    """Faster than a vehicle on the ground is carried."""
+    sign_m: float = 5.0
+    signs_s: float = 1.0
+    pressure_drift_mps: float = 0.05
+    """Slower than any climb, faster than the air pressure."""
+    takeoff_seen_s: float = 1.0
+    stands_still_s: float = 60.0
+    """After a longer gap of telemetry it may have been carried to another place to take off."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrustSettings:
+    """When telemetry is believed (`fleet.trust`)."""
+
+    jump_m: float = 10.0
+    """Beyond the fastest flight: GNSS wanders by metres, a jump is a new fix or an error."""
+    jump_vertical_m: float = 5.0
+    accepted_s: float = 2.0
+    """A run of packets that is consistent with itself for this long is the new truth."""
+    accepted_count: int = 5
+    frozen_moving_s: float = 1.0
+    frozen_mps: float = 0.3
+    """A vehicle that moves cannot send the same position for a second."""
+    frozen_s: float = 5.0
+    """Nor one that hovers: attitude and GNSS jitter in their last digits."""
+    reckoned_m: float = 20.0
+    """A position that stands still while the velocity adds up to this is stuck."""
+    stands_m: float = 3.0
+    reckoned_mps: float = 0.5
+    """Below, velocities are noise that adds up to nothing."""
+    reckoned_gap_s: float = 1.0
+    """Over longer gaps no velocity is known."""
+    lingers_s: float = 3.0
+    """A doubt ends this long after the last packet that showed it: alarms must not flicker."""
+    jump_lingers_s: float = 60.0
+    """An accepted jump may still be wrong: its alarm stays until the operator has looked."""
+    battery_rise_fraction: float = 0.10
+    battery_fall_fraction: float = 0.20
+    battery_s: float = 10.0
+    """A fall within this time; a cell that fails stays down, and counts at once."""
+    battery_gap_s: float = 15.0
+    """In a longer gap the battery may have been changed."""
+    backlog_s: float = 1.0
+    """What arrives in the first second after a suspension was sent before it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,3 +105,6 @@ class FleetSettings:
 
     closed_links_kept: int = 32
     """Closed links kept for display with the reason they closed."""
+
+    trust: TrustSettings = field(default_factory=TrustSettings)
+    airborne: AirborneSettings = field(default_factory=AirborneSettings)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from recon.fleet import identity
 from recon.fleet.state import Fleet, LinkRecord
 from recon.fleet.telemetry import fold_core, fold_extended
-from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived, Tick
+from recon.fleet.trust import after_gap
+from recon.model.event import ClockGap, Event, LinkClosed, LinkOpened, PacketReceived, Tick
 from recon.model.replacing import replace
 from recon.model.report import (
     CoreReport,
@@ -38,10 +39,24 @@ def step(fleet: Fleet, event: Event, now_ns: int) -> tuple[Fleet, tuple[CloseLin
             return _closed(fleet, link_id, reason, now_ns), ()
         case PacketReceived(link_id, report) if _is_open(fleet, link_id):
             return _received(fleet, link_id, report, event.received_at_ns(now_ns), now_ns), ()
+        case ClockGap():
+            return _after_gap(fleet, now_ns), ()
         case Tick():
             settled, closing = identity.settle(fleet, now_ns)
             return settled, tuple(CloseLink(*item) for item in closing)
     return fleet, ()
+
+
+def _after_gap(fleet: Fleet, now_ns: int) -> Fleet:
+    settings = fleet.settings.trust
+    vehicles = {
+        serial: after_gap(vehicle, now_ns, settings) for serial, vehicle in fleet.vehicles.items()
+    }
+    links = {
+        link_id: replace(link, own_state=after_gap(link.own_state, now_ns, settings))
+        for link_id, link in fleet.links.items()
+    }
+    return replace(fleet, vehicles=vehicles, links=links)
 
 
 def _is_open(fleet: Fleet, link_id: int) -> bool:
@@ -110,7 +125,8 @@ def _fold(fleet: Fleet, link_id: int, report: Report, received_at_ns: int) -> Fl
         case CoreReport():
             return _put(fleet, link_id, fold_core(state, report, received_at_ns, fleet.settings))
         case ExtendedReport():
-            return _put(fleet, link_id, fold_extended(state, report, received_at_ns))
+            extended = fold_extended(state, report, received_at_ns, fleet.settings)
+            return _put(fleet, link_id, extended)
         case ImageReport():
             counted = replace(
                 state, image_received_at_ns=received_at_ns, image_count=state.image_count + 1

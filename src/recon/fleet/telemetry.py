@@ -4,7 +4,9 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any
 
+from recon.fleet.airborne import AirborneBelief
 from recon.fleet.settings import FleetSettings
+from recon.fleet.trust import is_backlog, judge_battery, judge_core, merged_trust
 from recon.geo.distance import horizontal_distance_m
 from recon.model.geo import LatLon
 from recon.model.replacing import replace
@@ -18,45 +20,53 @@ LEAST_TRACK_STEP_M = 0.5
 def fold_core(
     state: VehicleState, report: CoreReport, now_ns: int, settings: FleetSettings
 ) -> VehicleState:
-    """Return the state after core telemetry (ICD 3.1.1).
+    """Return the state after core telemetry (ICD 3.1.1), if it is believed (`fleet.trust`).
 
-    A field reported as unknown becomes unknown: old values are never kept as new ones.
+    A field reported as unknown becomes unknown: old values are never kept as new ones. The takeoff
+    point changes at a believed takeoff only.
     """
+    state, belief = judge_core(state, report, now_ns, settings)
+    if belief is None:
+        return state
     offset_m = _altitude_offset_m(report)
-    takes_off = report.is_flying is True and state.is_flying.value is False
     return replace(
         state,
-        is_flying=Stamped(report.is_flying, now_ns),
+        is_flying=Stamped(belief.is_flying, now_ns),
+        reported_is_flying=Stamped(report.is_flying, now_ns),
         position=Stamped(report.position, now_ns),
         height_above_takeoff_m=Stamped(report.height_above_takeoff_m, now_ns),
         reported_altitude_m=Stamped(report.reported_altitude_m, now_ns),
         velocity_ned=Stamped(report.velocity_ned, now_ns),
         attitude=Stamped(report.attitude, now_ns),
         altitude_offset_m=Stamped(offset_m, now_ns),
-        altitude_offset_at_takeoff_m=(
-            offset_m if takes_off else _offset_at_takeoff_m(state, report, offset_m)
-        ),
-        takeoff_point=report.position if takes_off else state.takeoff_point,
+        altitude_offset_at_takeoff_m=_offset_at_takeoff_m(state, belief, offset_m),
+        takeoff_point=belief.home if belief.takes_off else state.takeoff_point,
         core_received_at_ns=now_ns,
         track=_extend_track(state, report, now_ns, settings),
     )
 
 
-def fold_extended(state: VehicleState, report: ExtendedReport, now_ns: int) -> VehicleState:
+def fold_extended(
+    state: VehicleState, report: ExtendedReport, now_ns: int, settings: FleetSettings
+) -> VehicleState:
     """Return the state after extended telemetry (ICD 3.1.2)."""
+    if is_backlog(state, now_ns):
+        return state
+    battery, trust = judge_battery(state, _battery(state, report), now_ns, settings.trust)
     return replace(
         state,
         gnss_satellite_count=Stamped(report.gnss_satellite_count, now_ns),
         gnss_signal_level=Stamped(report.gnss_signal_level, now_ns),
         max_height_reached=Stamped(report.max_height_reached, now_ns),
         max_distance_reached=Stamped(report.max_distance_reached, now_ns),
-        battery_fraction=Stamped(_battery(state, report), now_ns),
+        battery_fraction=Stamped(battery, now_ns),
         battery_warning=Stamped(report.battery_warning, now_ns),
         wind_level=Stamped(report.wind_level, now_ns),
         camera_state=Stamped(report.camera_state, now_ns),
         flight_mode=Stamped(report.flight_mode, now_ns),
         mission_id=Stamped(report.mission_id, now_ns),
         extended_received_at_ns=now_ns,
+        trust=trust,
     )
 
 
@@ -78,10 +88,15 @@ def with_newest_values(
     track = (*state.track, *(point for point in other.track if point.at_ns > last_ns))
     has_takeoff = other.takeoff_point is not None or state.altitude_offset_at_takeoff_m is None
     source = other if has_takeoff else state
+    is_newer = (other.core_received_at_ns or -1) > (state.core_received_at_ns or -1)
+    trust = state.trust
+    if is_newer:
+        trust, newest["is_flying"] = merged_trust(state, other)
     return replace(
         state,
         **newest,
         **times,
+        trust=trust,
         image_count=state.image_count + other.image_count,
         altitude_offset_at_takeoff_m=source.altitude_offset_at_takeoff_m,
         takeoff_point=other.takeoff_point or state.takeoff_point,
@@ -113,14 +128,13 @@ def _altitude_offset_m(report: CoreReport) -> float | None:
 
 
 def _offset_at_takeoff_m(
-    state: VehicleState, report: CoreReport, offset_m: float | None
+    state: VehicleState, belief: AirborneBelief, offset_m: float | None
 ) -> float | None:
     """The offset of the first packet in flight; None on the ground."""
-    if report.is_flying is False:
+    if belief.is_flying is False:
         return None
-    if report.is_flying and state.altitude_offset_at_takeoff_m is None:
-        return offset_m
-    return state.altitude_offset_at_takeoff_m
+    at_takeoff_m = None if belief.takes_off else state.altitude_offset_at_takeoff_m
+    return offset_m if at_takeoff_m is None and belief.is_flying else at_takeoff_m
 
 
 def _battery(state: VehicleState, report: ExtendedReport) -> float | None:

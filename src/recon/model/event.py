@@ -74,6 +74,13 @@ class Tick:
 
 
 @dataclass(frozen=True, slots=True)
+class ClockGap:
+    """The station did not run for this long: its computer slept, or its process was stopped."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
 class SetpointsDue:
     """The next setpoint of a stream is due. Its own event, because ticks are not precise enough."""
 
@@ -240,6 +247,7 @@ Event = (
     | CommandAnswered
     | CommandDropped
     | Tick
+    | ClockGap
     | SetpointsDue
     | OperatorOrder
     | AuthorityTaken

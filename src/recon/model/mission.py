@@ -29,6 +29,10 @@ class DjiLimits:
     max_gimbal_pitch_deg: float = 0.0
     min_corner_radius_m: float = 0.2
     max_corner_radius_m: float = 1_000.0
+    fastest_mps: float = 25.0
+    """Ground speed in strong wind that none of these aircraft exceeds; telemetry is held to it."""
+    fastest_vertical_mps: float = 12.0
+    """Twice what they climb and sink at (5 to 6 m/s, 8 m/s for the fastest): gusts add to it."""
 
 
 DJI = DjiLimits()

@@ -5,6 +5,7 @@ from enum import Enum, IntEnum
 
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import DJI
+from recon.model.trust import NO_TRUST, Trust
 from recon.model.units import Stamped
 
 
@@ -185,6 +186,8 @@ class VehicleState:
     profile: VehicleProfile | None = None
     is_simulated: bool = False
     is_flying: Stamped[bool] = Stamped()
+    """Believed (`fleet.airborne`), not as reported; None: it may be in the air."""
+    reported_is_flying: Stamped[bool] = Stamped()
     position: Stamped[LatLon] = Stamped()
     height_above_takeoff_m: Stamped[float] = Stamped()
     reported_altitude_m: Stamped[float] = Stamped()
@@ -213,6 +216,7 @@ class VehicleState:
     in_conflict: bool = False
     """Whether the old link kept sending after a rival appeared: the operator must resolve it."""
     track: tuple[TrackPoint, ...] = field(default=())
+    trust: Trust = NO_TRUST
 
     @property
     def display_name(self) -> str:

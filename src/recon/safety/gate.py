@@ -138,7 +138,7 @@ def _link_ids(command: Command, situation: Situation) -> tuple[int, ...]:
     return tuple(
         claiming_link.link_id
         for claiming_link in situation.claiming_links
-        if not (wakes and claiming_link.is_flying.value is False)
+        if not (wakes and claiming_link.may_be_on_ground)
     )
 
 

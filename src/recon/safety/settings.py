@@ -285,15 +285,6 @@ class WatchdogSettings:
     height_off_m: float = 4.0
     """From the heights of the leg being flown: half of what layers are apart."""
 
-    jump_m: float = 10.0
-    """Beyond what its speed explains: GNSS wanders by metres, a jump is a new fix or a lie."""
-
-    jump_per_s: float = 5.0
-    """More for each second between two positions: vehicles turn and gusts push."""
-
-    burst_s: float = 1.0
-    """Packets come in bursts: the time between two may be wrong by this."""
-
     stick_quiet_s: float = 0.5
     """A stream with no stick sent for this long: below 5 Hz aircraft may hover, and at 1 s the
     app's own timeout ends it."""

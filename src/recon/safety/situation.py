@@ -41,10 +41,17 @@ NO_FACTS = StationFacts()
 
 @dataclass(frozen=True, slots=True)
 class ClaimingLink:
-    """An open link reporting this serial, with its reported in-air flag."""
+    """An open link reporting this serial; whether it is in the air, as believed and as reported."""
 
     link_id: int
     is_flying: Stamped[bool]
+    reported_is_flying: Stamped[bool] = Stamped()
+
+    @property
+    def may_be_on_ground(self) -> bool:
+        """Whether it reports the ground, and is not believed to fly all the same."""
+        is_down = False in (self.is_flying.value, self.reported_is_flying.value)
+        return is_down and self.is_flying.value is not True
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,13 +3,12 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.traffic import at, flies, route
+from tests.safety.traffic import flies, route
 from tests.safety.watchdogs.looks import (
     NOW,
     Commanded,
     FlightMode,
     Intent,
-    S,
     aircraft,
     in_context,
     looks,
@@ -18,9 +17,9 @@ from tests.safety.watchdogs.looks import (
 from recon.model.severity import Severity
 from recon.model.units import Stamped
 from recon.model.vehicle import AltitudeReference, VehicleState
-from recon.safety.watchdogs import Finding, PreviousPosition
+from recon.safety.watchdogs import Finding
 from recon.safety.watchdogs.battery_home import battery_home
-from recon.safety.watchdogs.telemetry import heights, jumps, link, sticks
+from recon.safety.watchdogs.telemetry import heights, link, sticks
 
 
 def severities(findings: list[Finding]) -> list[Severity]:
@@ -122,43 +121,6 @@ class TestHeights:
             in_context(blind, intent=flies(leg, 1)),
         ):
             assert looks(heights, one) == []
-
-
-class TestJumps:
-    def moved(self, metres: float, seconds: float, speed_mps: float = 0.0) -> list[Finding]:
-        state = aircraft("A", (metres, 0.0), velocity=(speed_mps, 0.0, 0.0))
-        before = PreviousPosition(at(0.0, 0.0), speed_mps, NOW - round(seconds * S))
-        return looks(jumps, in_context(state, before=before))
-
-    @pytest.mark.parametrize(
-        ("metres", "seconds", "speed_mps", "count"),
-        [
-            (10.0, 0.1, 0.0, 0),
-            (11.0, 0.1, 0.0, 1),
-            (25.0, 0.1, 14.0, 0),
-            (27.0, 0.1, 14.0, 1),
-            (150.0, 10.0, 10.0, 0),
-            (190.0, 10.0, 10.0, 1),
-        ],
-    )
-    def test_farther_than_speed_and_time_allow(
-        self, metres: float, seconds: float, speed_mps: float, count: int
-    ) -> None:
-        assert len(self.moved(metres, seconds, speed_mps)) == count
-
-    def test_its_text_tells_how_far(self) -> None:
-        (found,) = self.moved(80.0, 0.1)
-        assert "jumped by 80 m" in found.text
-
-    def test_the_same_position_or_none_is_no_jump(self) -> None:
-        far = PreviousPosition(at(500.0, 0.0), 0.0, NOW)
-        for one in (
-            in_context(aircraft("A"), before=far),
-            in_context(aircraft("A")),
-            in_context(aircraft("A", None), before=replace(far, at_ns=0)),
-            in_context(replace(aircraft("A"), position=Stamped(at(0.0, 0.0))), before=far),
-        ):
-            assert looks(jumps, one) == []
 
 
 class TestSticks:

@@ -1,6 +1,7 @@
 """Everything that must be in the audit is there, once, with who asked; nothing of it is a flood."""
 
 import pytest
+from tests.fleet.reports import jittered
 from tests.link.approved import core, extended
 from tests.station.audited import Audited
 from tests.station.commanded import AIRSPACE, CLOCK, PROFILES
@@ -52,6 +53,7 @@ class Steps:
         self.memory = Auditing()
         self.now_ns = NS_PER_S
         self.entries: list[AuditEntry] = []
+        self.heard = 0
 
     def handle(self, *events: object) -> list[AuditEntry]:
         new: list[AuditEntry] = []
@@ -70,9 +72,9 @@ class Steps:
         return new
 
     def hear(self, link_id: int, *packets: bytes) -> list[AuditEntry]:
-        return self.handle(
-            *(PacketReceived(link_id, to_report(wire.decode(packet))) for packet in packets)
-        )
+        reports = [to_report(wire.decode(packet)) for packet in packets]
+        self.heard += 1
+        return self.handle(*(PacketReceived(link_id, jittered(r, self.heard)) for r in reports))
 
     def connect(self, link_id: int, serial: bytes = b"A", **telemetry: float) -> list[AuditEntry]:
         opened = self.handle(LinkOpened(link_id, f"10.0.0.{link_id % 250}:5"))
@@ -217,7 +219,10 @@ class TestFlights:
         here.order("SIM-1", LandNow())
         here.run_for(60.0)
         flight = [k for k in audited.kinds("vehicle.") if k != "vehicle.position"]
-        assert flight == ["vehicle.took_off", "vehicle.landed"]
+        assert flight == ["vehicle.took_off", "vehicle.home_set", "vehicle.landed"]
+        assert audited.of("vehicle.home_set")[0].text.startswith(
+            "SIM-1: home set at takeoff: 41.89"
+        )
         home = audited.of("vehicle.took_off")[0].details["takeoff_point"]
         true = here.app("SIM-1").settings.home
         assert home["latitude_deg"] == pytest.approx(true.latitude_deg, abs=3e-5)

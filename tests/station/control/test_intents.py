@@ -85,7 +85,7 @@ def test_after_a_mission_it_holds_where_it_ended() -> None:
 @pytest.mark.parametrize("body", [Hover(), LandNow(), ReturnHome()])
 def test_after_a_landing_nothing_is_commanded(body: Body) -> None:
     scene, _ = ordered(body)
-    scene.passes(1.0).keeps_receiving(1, *at(0.0, GPS, flying=False)).passes(1.5)
+    scene.passes(1.0).lands(1, *at(0.0, GPS, flying=False)).passes(1.5)
     assert intent(scene).commanded is Commanded.NOTHING
 
 

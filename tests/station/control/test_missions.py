@@ -200,7 +200,7 @@ class TestBrokenOff:
             if ends == "order":
                 scene.order(LandNow())
             else:
-                scene.keeps_receiving(1, *at(20.0, GPS, flying=False))
+                scene.lands(1, *at(20.0, GPS, flying=False))
             assert BROKEN_OFF not in scene.passes(0.2).alarms()
 
 

@@ -81,6 +81,8 @@ class TestAMission:
         self, mode: FlightMode, north_m: float
     ) -> None:
         scene, order = at_the_end()
+        for passed_m in (40.0, 32.0) if north_m < 50.0 else ():  # no faster than an aircraft
+            scene.keeps_receiving(1, *at(passed_m, WAYPOINT)).passes(0.1)
         scene.keeps_receiving(1, *at(north_m, mode)).passes(1.3)
         ended_as(scene, order, Phase.FAILED)
         assert "failsafe" in scene.alarms()
@@ -94,7 +96,7 @@ class TestAMission:
         assert "failsafe" not in scene.passes(0.2).alarms()
         scene, _ = under_way()
         scene.keeps_receiving(1, *at(25.0, HOME)).passes(1.5)
-        scene.keeps_receiving(1, *at(0.0, GPS, flying=False)).passes(0.3)
+        scene.lands(1, *at(0.0, GPS, flying=False)).passes(0.3)
         assert scene.alarms() == set()
 
     @pytest.mark.parametrize("mode", [SPORT, FlightMode.MANUAL, FlightMode.ATTI])
@@ -120,7 +122,7 @@ class TestAMission:
 
     def test_on_the_ground_it_has_failed_when_it_was_not_to_land(self) -> None:
         scene, order = at_the_end()
-        scene.keeps_receiving(1, *at(50.0, GPS, flying=False)).passes(1.3)
+        scene.lands(1, *at(50.0, GPS, flying=False)).passes(1.3)
         ended_as(scene, order, Phase.FAILED)
 
     def test_a_newer_order_supersedes_it(self) -> None:
@@ -178,7 +180,7 @@ class TestAMissionThatLands:
         scene, order = at_the_end(to_land(mission()))
         scene.keeps_receiving(1, *at(50.0, LANDING, height_m=10.0)).passes(3.0)
         assert scene.phase(order) is Phase.STARTED
-        scene.keeps_receiving(1, *at(50.0, GPS, flying=False, height_m=0.0)).passes(0.2)
+        scene.lands(1, *at(50.0, GPS, flying=False)).passes(0.2)
         ended_as(scene, order, Phase.DONE)
         assert commanded(scene) is Commanded.NOTHING
 
@@ -202,7 +204,7 @@ class TestOtherOrders:
         assert scene.phase(order) is Phase.CONFIRMED
         scene.keeps_receiving(1, *at(0.0, LANDING)).passes(5.0)
         assert scene.phase(order) is Phase.CONFIRMED
-        scene.keeps_receiving(1, *at(0.0, GPS, flying=False)).passes(0.2)
+        scene.lands(1, *at(0.0, GPS, flying=False)).passes(0.2)
         ended_as(scene, order, Phase.DONE)
         assert commanded(scene) is Commanded.NOTHING
 

@@ -149,6 +149,7 @@ class TestCameraAndStick:
         self, body: Body, limit_s: float, alarms: set[str]
     ) -> None:
         scene = flying()
+        scene.keeps_receiving(1, core(), extended(mode=FlightMode.GPS_WAYPOINT))
         order = scene.order(body)
         scene.passes(limit_s - 0.1)
         assert scene.phase(order) is Phase.SENT

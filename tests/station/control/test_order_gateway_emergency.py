@@ -11,7 +11,7 @@ from recon.model.vehicle import FlightMode
 DEAF = 20.0
 STANDING = (core(), extended(mode=FlightMode.GPS_ATTI))
 LANDING = (core(velocity=(0.0, 0.0, 1.0)), extended(mode=FlightMode.AUTO_LANDING))
-GROUND = (core(flying=False), extended(mode=FlightMode.GPS_ATTI))
+GROUND = (core(flying=False, height_m=0.0), extended(mode=FlightMode.GPS_ATTI))
 
 
 class TestRepeats:
@@ -86,8 +86,11 @@ class TestRepeats:
         self, body: Body
     ) -> None:
         scene = flying()
+        for height_m in range(40, 1, -1):
+            sinking = core(height_m=height_m, velocity=(0.0, 0.0, 10.0))
+            scene.keeps_receiving(1, sinking, extended(mode=FlightMode.AUTO_LANDING)).passes(0.1)
         order = scene.order(body)
-        scene.keeps_receiving(1, core(flying=False), extended(mode=None)).passes(DEAF)
+        scene.keeps_receiving(1, *GROUND).passes(DEAF)
         assert len(scene.times_s(order)) == 1
 
     @pytest.mark.parametrize("body", [Hover(), ReturnHome()])
@@ -209,7 +212,7 @@ class TestLanding:
         assert scene.phases(order) == [Phase.QUEUED, Phase.SENT, Phase.CONFIRMED]
         assert not scene.phase(order).is_final
         assert len(scene.times_s(order)) == 1
-        scene.keeps_receiving(1, *GROUND).passes(0.1)
+        scene.lands(1, *GROUND)
         assert scene.phase(order) is Phase.DONE
 
     def test_a_landing_that_stops_in_the_air_is_an_alarm(self) -> None:

@@ -9,7 +9,7 @@ from tests.station.commanded import CommandedStation, flying
 from recon.model.command import Hover, LandNow, Phase, ReturnHome, VirtualStick
 from recon.model.vehicle import FlightMode
 
-GROUND = (core(flying=False), extended(mode=FlightMode.GPS_ATTI))
+GROUND = (core(flying=False, height_m=0.0), extended(mode=FlightMode.GPS_ATTI))
 JOYSTICK = (core(velocity=(5.0, 0.0, 0.0)), extended(mode=FlightMode.JOYSTICK))
 PILOT = (core(velocity=(5.0, 0.0, 0.0)), extended(mode=FlightMode.GPS_SPORT))
 HELD = replace(STICK, velocity_x_mps=5.0, velocity_y_mps=0.0, timeout_s=1.0)

@@ -84,12 +84,13 @@ class TestItsEnd:
         assert is_overridden(scene)
         scene.keeps_receiving(1, *HOVERING).passes(5.0)
         assert is_overridden(scene)
-        scene.keeps_receiving(1, *ON_GROUND).passes(0.1)
+        scene.lands(1, *ON_GROUND)
         assert not is_overridden(scene)
 
     def test_a_landing_without_telemetry_ends_it_too(self, scene: CommandedStation) -> None:
         overrides(scene).keeps_receiving(1, *HOVERING).passes(1.0)
         scene.closes(1).passes(30.0).opens(2, *ON_GROUND)
+        scene.keeps_receiving(2, *ON_GROUND).passes(1.2)
         assert not is_overridden(scene)
 
     def test_a_reconnect_on_the_ground_does_not(self, scene: CommandedStation) -> None:

@@ -18,6 +18,7 @@ from tests.station.station_world import World, from_the_ground, square_mission, 
 from recon.model.command import FlyMission, Hover, LandNow, Phase
 from recon.model.control import AuthorityHolder, ControlAuthority
 from recon.model.event import AuthorityTaken, HazardDismissed, OperatorOrder
+from recon.model.report import CoreReport
 from recon.model.units import NS_PER_S
 from recon.sim.fleet import Airborne
 from recon.station.api_views.vehicle_views import hazard_view
@@ -514,6 +515,8 @@ class TestWithoutASerial:
     @pytest.mark.parametrize("last", [core(flying=False), extended("A")])
     def test_one_that_landed_or_reported_its_serial_does_not_either(self, last: Any) -> None:
         scene = self.flew()
+        if isinstance(last, CoreReport):
+            scene.lands(7, last, extended(None))
         scene.receives(7, last).closes(7)
         assert self.restarted(scene, 5.0).station.watchdog_state.lost == {}
 

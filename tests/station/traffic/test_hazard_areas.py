@@ -21,7 +21,10 @@ def stale(seconds: float = 60.0, **reported: object) -> CommandedStation:
     """A took off 100 m south of its last position; its telemetry is lost."""
     scene = CommandedStation().opens(1, core(flying=False), extended()).receives(1, core())
     moving = core(position=NORTH_100, velocity=(3.0, 0.0, 0.0), **reported)  # type: ignore[arg-type]
-    return scene.receives(1, moving).passes(seconds)
+    scene = scene.passes(4.0).receives(1, moving)
+    if reported.get("flying") is False:
+        scene.lands(1, moving, extended()).talk.clear()
+    return scene.passes(seconds)
 
 
 def in_air(scene: CommandedStation) -> list[str]:
@@ -187,7 +190,7 @@ class TestWithoutASerial:
     def test_while_its_link_is_open_its_own_telemetry_counts(self) -> None:
         scene = CommandedStation().opens(7, core(), extended(None)).passes(1.0)
         assert in_air(scene) == ["unidentified link 7"]
-        scene.receives(7, core(flying=False))
+        scene.lands(7, core(flying=False), extended(None))
         assert in_air(scene) == []
 
 

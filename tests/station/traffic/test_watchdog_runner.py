@@ -162,9 +162,8 @@ class TestSeparation:
         two.scene.station = station
         two.passes(0.2)
         assert two.scene.station.watchdog_state.held.get("B") is not held["B"]
-        two.flying = {1: False, 2: False}
-        two.passes(0.2)
-        assert two.scene.station.watchdog_state.held == {}
+        two.scene.lands(2, core(flying=False, position=place(70.0)), extended("B"))
+        assert "B" not in two.scene.station.watchdog_state.held
 
     def test_a_vehicle_whose_hold_was_not_sent_does_not_count_as_held(self) -> None:
         two = Two(110.0).passes(1.5)
@@ -207,13 +206,14 @@ class TestOthers:
         scene.passes(2.0)
         assert "link_lost" in scene.alarms()
 
-    def test_a_position_jump_is_an_alarm_until_acknowledged(self) -> None:
+    def test_a_position_jump_is_not_believed_and_an_alarm(self) -> None:
         scene = CommandedStation().opens(1, core(), extended())
         scene.keeps_receiving(1, core()).passes(1.0)
         assert scene.alarms() == set()
         scene.keeps_receiving(1, core(position=place(60.0))).passes(0.2)
         assert scene.alarms() == {"position_jump"}
-        scene.passes(5.0)
+        assert scene.station.fleet.vehicles["A"].position.value == PLACE
+        scene.keeps_receiving(1, core()).passes(5.0)
         assert scene.alarms() == set()
         assert scene.alarms(active=False) == {"position_jump"}
 

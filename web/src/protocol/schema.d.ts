@@ -860,6 +860,29 @@ export interface components {
             vehicle_name: string;
         };
         /**
+         * DoubtView
+         * @description Why telemetry of a vehicle is not believed; `text` is a sentence without its name.
+         */
+        DoubtView: {
+            /**
+             * Age S
+             * @description since the doubt began
+             */
+            age_s: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "ground_report" | "flight_signs" | "position_jump" | "frozen_telemetry" | "position_stands_still" | "battery_doubted";
+            /**
+             * Packets
+             * @description how many packets showed it
+             */
+            packets: number;
+            /** Text */
+            text: string;
+        };
+        /**
          * FleetReturnRequest
          * @description Vehicles to return home in layers; null: every vehicle that is or may be in flight.
          */
@@ -1963,12 +1986,15 @@ export interface components {
             camera_state: components["schemas"]["AgedText"];
             /** Conflict Link Ids */
             conflict_link_ids: number[];
+            /** Doubts */
+            doubts: components["schemas"]["DoubtView"][];
             flight_mode: components["schemas"]["AgedText"];
             frame: components["schemas"]["FrameView"] | null;
             gnss_satellite_count: components["schemas"]["AgedNumber"];
             gnss_signal_level: components["schemas"]["AgedNumber"];
             hazard: components["schemas"]["HazardView"] | null;
             height_above_takeoff_m: components["schemas"]["AgedNumber"];
+            /** @description as believed; null: it may be in the air */
             is_flying: components["schemas"]["AgedFlag"];
             /** Is Imager */
             is_imager: boolean;
@@ -1986,6 +2012,7 @@ export interface components {
             position: components["schemas"]["PositionView"];
             preflight_override: components["schemas"]["OverrideView"] | null;
             reported_altitude_m: components["schemas"]["AgedNumber"];
+            reported_is_flying: components["schemas"]["AgedFlag"];
             /** Serial */
             serial: string | null;
             /**

@@ -48,6 +48,8 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     staleness: "live",
     telemetry_age_s: 0.1,
     is_flying: aged(true),
+    reported_is_flying: aged(true),
+    doubts: [],
     position: { latitude_deg, longitude_deg, age_s: 0.1 },
     height_above_takeoff_m: aged(40 + 5 * number),
     reported_altitude_m: aged(331.4),

@@ -54,6 +54,22 @@ class AttitudeView(Message):
     age_s: float | None
 
 
+class DoubtView(Message):
+    """Why telemetry of a vehicle is not believed; `text` is a sentence without its name."""
+
+    kind: Literal[
+        "ground_report",
+        "flight_signs",
+        "position_jump",
+        "frozen_telemetry",
+        "position_stands_still",
+        "battery_doubted",
+    ]
+    text: str
+    age_s: float = Field(description="since the doubt began")
+    packets: int = Field(description="how many packets showed it")
+
+
 class FrameView(Message):
     """The newest camera frame of a vehicle; fetch it again when the id changes."""
 
@@ -132,7 +148,9 @@ class VehicleView(Message):
     steering: SteeringView | None
     staleness: StalenessName
     telemetry_age_s: float | None
-    is_flying: AgedFlag
+    is_flying: AgedFlag = Field(description="as believed; null: it may be in the air")
+    reported_is_flying: AgedFlag
+    doubts: list[DoubtView]
     position: PositionView
     height_above_takeoff_m: AgedNumber
     reported_altitude_m: AgedNumber

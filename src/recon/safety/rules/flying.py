@@ -41,7 +41,7 @@ def _no_takeoff(command: Command, vehicle: VehicleState | None) -> Refusal | Non
     if isinstance(command.body, TAKEOFF_BODIES):
         if vehicle is None or vehicle.is_flying.value is not None:
             return None
-        reason = "its app does not report whether it flies, so takeoff is uncertain"
+        reason = f"{_uncertain(vehicle)}, so takeoff is uncertain"
         return Refusal(RULE, f"{vehicle.display_name}: {reason}; check the app")
     can = ", ".join(BODY_NAMES[body] for body in TAKEOFF_BODIES)
     return Refusal(
@@ -72,6 +72,11 @@ def _not_flying(vehicle: VehicleState, situation: Situation) -> Refusal:
             parameters={"age_s": age_s, "max_s": limit_s},
         )
     if vehicle.is_flying.value is None:
-        reason = "its app does not report whether it flies; the order could start a takeoff"
-        return Refusal(RULE, f"{name}: {reason}")
+        return Refusal(RULE, f"{name}: {_uncertain(vehicle)}; the order could start a takeoff")
     return Refusal(RULE, f"{name}: on the ground; takeoff was not allowed")
+
+
+def _uncertain(vehicle: VehicleState) -> str:
+    if vehicle.reported_is_flying.value is None:
+        return "its app does not report whether it flies"
+    return "it reports on the ground, and no landing was seen"

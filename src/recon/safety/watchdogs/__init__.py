@@ -21,11 +21,10 @@ from recon.safety.settings import WatchdogSettings
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.fences import fences
 from recon.safety.watchdogs.separation import separation
-from recon.safety.watchdogs.telemetry import heights, jumps, link, sticks
+from recon.safety.watchdogs.telemetry import heights, link, sticks
 from recon.safety.watchdogs.traffic_picture import (
     CommandedHold,
     Finding,
-    PreviousPosition,
     TrafficPicture,
     WatchedVehicle,
     build_traffic_picture,
@@ -41,7 +40,6 @@ WATCHDOGS: tuple[Watchdog, ...] = (
     battery_home,
     link,
     heights,
-    jumps,
     sticks,
 )
 
@@ -49,7 +47,6 @@ __all__ = [
     "WATCHDOGS",
     "CommandedHold",
     "Finding",
-    "PreviousPosition",
     "TrafficPicture",
     "Watchdog",
     "WatchdogSettings",

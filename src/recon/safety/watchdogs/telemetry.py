@@ -1,11 +1,10 @@
-"""Watchdogs of telemetry: late links, position jumps, contradicting heights, quiet stick streams.
+"""Watchdogs of telemetry: late links, contradicting heights, quiet stick streams.
 
 None of them predicts anything and none requests a hold: each compares values received from one
 vehicle with one another, or with what it was sent.
 """
 
 from collections.abc import Iterator
-from math import hypot
 
 from recon.model.control import Commanded
 from recon.model.severity import Severity
@@ -28,32 +27,6 @@ def link(picture: TrafficPicture) -> Iterator[Finding]:
             yield watched.finding(
                 LINK_LATE, Severity.WARNING, "no telemetry for more than a second"
             )
-
-
-POSITION_JUMP = "position_jump"
-
-
-def jumps(picture: TrafficPicture) -> Iterator[Finding]:
-    """Find vehicles whose newest position does not follow from the one before."""
-    for watched in picture.watched:
-        jump_m = _jump_m(watched, picture)
-        if jump_m is not None:
-            text = f"its position has jumped by {jump_m:.0f} m; it may not be where it is shown"
-            yield watched.finding(POSITION_JUMP, Severity.ERROR, text)
-
-
-def _jump_m(watched: WatchedVehicle, picture: TrafficPicture) -> float | None:
-    """How far, when that is more than its speed and the times' uncertainty allow."""
-    before, motion, at_ns = watched.before, watched.motion, watched.state.position.received_at_ns
-    if before is None or motion is None or at_ns is None or at_ns <= before.at_ns:
-        return None
-    settings, between_s = picture.settings, (at_ns - before.at_ns) / NS_PER_S
-    was_m = motion.plane.east_north_m(before.place)
-    moved_m = hypot(motion.east_m - was_m[0], motion.north_m - was_m[1])
-    fastest_mps = max(before.speed_mps, motion.speed_mps)
-    allowed_m = settings.jump_m + settings.jump_per_s * between_s
-    allowed_m += fastest_mps * (between_s + settings.burst_s)
-    return moved_m if moved_m > allowed_m else None
 
 
 ALTITUDE_MISMATCH = "altitude_mismatch"

@@ -69,15 +69,6 @@ def hold_outcome(held: CommandedHold | None, refused: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class PreviousPosition:
-    """A vehicle's telemetry before the newest: where it was, how fast, and when."""
-
-    place: LatLon
-    speed_mps: float
-    at_ns: int
-
-
-@dataclass(frozen=True, slots=True)
 class WatchedVehicle:
     """A vehicle that flies or may, and what the station knows beside its state.
 
@@ -92,7 +83,6 @@ class WatchedVehicle:
     motion: VehicleMotion | None = None
     hazard: HazardArea | None = None
     held: CommandedHold | None = None
-    before: PreviousPosition | None = None
     is_imager: bool = False
     stick_quiet_s: float | None = None
     hold_refused: str = ""
@@ -109,10 +99,11 @@ class WatchedVehicle:
 
     @property
     def is_flying_in_contact(self) -> bool:
-        """Whether its telemetry is recent and reports flight and a position."""
-        return (
-            self.motion is not None and self.hazard is None and self.state.is_flying.value is True
-        )
+        """Whether its telemetry is recent, with a position, and it flies or that is in doubt."""
+        state = self.state
+        in_doubt = state.is_flying.value is None and state.reported_is_flying.value is False
+        is_up = state.is_flying.value is True or in_doubt
+        return self.motion is not None and self.hazard is None and is_up
 
     @property
     def may_continue_mission(self) -> bool:
@@ -132,6 +123,7 @@ class WatchedVehicle:
         """Whether a hold would be the station's to give: in the air, known, not the pilot's."""
         return (
             self.is_flying_in_contact
+            and self.state.is_flying.value is True
             and self.state.serial is not None
             and self.holder is not AuthorityHolder.PILOT
             and not self.hold_refused
@@ -288,7 +280,6 @@ def _placed(
         seen,
         hazard,
         one.held,
-        one.before,
         one.is_imager,
         one.stick_quiet_s,
         one.hold_refused,

@@ -39,6 +39,7 @@ from recon.sim.app.commands import AppBehaviour, AppResponse, CommandHandler
 from recon.sim.app.fault_effects import AircraftFaults, FaultSchedule
 from recon.sim.app.faults import (
     AIRCRAFT_FAULTS,
+    JUMP_DEG,
     LINK_FAULTS,
     PLACEHOLDER_SERIAL,
     FaultKind,
@@ -144,6 +145,7 @@ class SimulatedApp:
         self._flaws = Random(f"{name}/frames")
         self._aircraft_faults = AircraftFaults(aircraft, self._altitude, name)
         self._is_silent = False
+        self._repeated: dict[type, wire.Packet] = {}
         self._now_ns = self._start_ns
         self._fault_events = sorted(self._one_off_events(), key=_DUE_NS)
         self._log: deque[str] = deque(maxlen=64)
@@ -303,8 +305,13 @@ class SimulatedApp:
 
     def _send_core(self, now_ns: int) -> None:
         self._next_core_ns = now_ns + CORE_PERIOD_NS
-        packet = self._sensors.core(self.aircraft, CORE_PERIOD_NS / NS_PER_S)
-        self._broadcast(packet, now_ns)
+        packet = self._sensors.core(
+            self.aircraft,
+            CORE_PERIOD_NS / NS_PER_S,
+            is_flying=self.aircraft.is_flying and not self._has(FaultKind.FALSE_GROUND, now_ns),
+            north_deg=JUMP_DEG if self._has(FaultKind.POSITION_JUMP, now_ns) else 0.0,
+        )
+        self._broadcast(self._frozen(packet, now_ns), now_ns)
 
     def _send_extended(self, now_ns: int) -> None:
         self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
@@ -312,7 +319,14 @@ class SimulatedApp:
         serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
         reports_id = self.settings.behaviour.reports_mission_id
         packet = self._sensors.extended(self.aircraft, self.feed, serial, reports_id)
-        self._broadcast(packet, now_ns)
+        self._broadcast(self._frozen(packet, now_ns), now_ns)
+
+    def _frozen(self, packet: wire.Packet, now_ns: int) -> wire.Packet:
+        """Return the packet, or while telemetry is frozen the first of its kind since then."""
+        if not self._has(FaultKind.FROZEN_TELEMETRY, now_ns):
+            self._repeated.clear()
+            return packet
+        return self._repeated.setdefault(type(packet), packet)
 
     def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
         if self._has(FaultKind.CAMERA_STOPS, now_ns):

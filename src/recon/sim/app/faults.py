@@ -52,6 +52,12 @@ class FaultKind(Enum):
     """DJI gives no takeoff altitude: absolute altitudes are NaN, while active."""
     TAKEOFF_ALTITUDE_STALE = "takeoff-altitude-stale"
     """DJI gives another flight's takeoff altitude, 47 m higher: a step at start and end."""
+    FALSE_GROUND = "false-ground"
+    """Telemetry reports on the ground, whatever the aircraft does, while active."""
+    FROZEN_TELEMETRY = "frozen-telemetry"
+    """Core and extended telemetry repeat the values of the fault's start, while active."""
+    POSITION_JUMP = "position-jump"
+    """Reported positions are 60 m too far south: a step at start and end."""
 
     CAMERA_STOPS = "camera-stops"
     """No frames are sent although the feed is reported as on, while active."""
@@ -97,6 +103,9 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
     FaultKind.FALLS_SILENT: (30.0, inf),
     FaultKind.TAKEOFF_ALTITUDE_LOST: (0.0, inf),
     FaultKind.TAKEOFF_ALTITUDE_STALE: (0.0, 30.0),
+    FaultKind.FALSE_GROUND: (5.0, inf),
+    FaultKind.FROZEN_TELEMETRY: (5.0, 10.0),
+    FaultKind.POSITION_JUMP: (5.0, 10.0),
     FaultKind.CAMERA_STOPS: (5.0, 20.0),
     FaultKind.FRAMES_REPEATED: (5.0, 20.0),
     FaultKind.FRAMES_BLACK: (5.0, 3.0),
@@ -123,6 +132,9 @@ AIRCRAFT_FAULTS = (
 """Faults that change the aircraft at their start and at their end."""
 STALE_BY_M = 47.0
 """Difference between two pads of one farm, in the valley and on the hill."""
+
+JUMP_DEG = -60.0 / 111_070.0
+"""In latitude: more than any flight between two packets."""
 
 ALL_VEHICLES = "*"
 

@@ -112,16 +112,26 @@ class TelemetrySensors:
         self._satellites = self.random.randint(14, 19)
         self._plane = tangent_plane(LocalFrame(self.home))
 
-    def core(self, aircraft: Aircraft, seconds: float) -> wire.CoreTelemetry:
-        """Return core telemetry (ICD 3.1.1), `seconds` after the previous packet."""
+    def core(
+        self,
+        aircraft: Aircraft,
+        seconds: float,
+        *,
+        is_flying: bool | None = None,
+        north_deg: float = 0.0,
+    ) -> wire.CoreTelemetry:
+        """Return core telemetry (ICD 3.1.1), `seconds` after the previous packet.
+
+        `is_flying` replaces the aircraft's flag and `north_deg` is added to its latitude: faults.
+        """
         motion = aircraft.motion
         north_m = motion.north_m + self._north.step(seconds, self.random, self.slow_random)
         east_m = motion.east_m + self._east.step(seconds, self.random, self.slow_random)
         latitude, longitude, _ = self._plane.place(east_m, north_m, 0.0)
         height = motion.height_m + self._height.step(seconds, self.random, self.slow_random)
         return wire.CoreTelemetry(
-            is_flying=int(aircraft.is_flying),
-            latitude_deg=latitude,
+            is_flying=int(aircraft.is_flying if is_flying is None else is_flying),
+            latitude_deg=latitude + north_deg,
             longitude_deg=longitude,
             # takeoffLocationAltitude + altitude (ICD 3.1.1): the bias cancels in differences.
             altitude_m=self.altitude.believed_m + height,

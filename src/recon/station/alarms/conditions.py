@@ -22,7 +22,7 @@ from recon.model.command import Phase
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
-from recon.station.alarms import event_alarms
+from recon.station.alarms import event_alarms, flight_conditions
 from recon.station.imaging import frames
 from recon.station.operations import OPERATIONS
 from recon.station.state import alarm_book, orders
@@ -57,11 +57,14 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _battery(vehicle, station.settings)
         yield from _landing(vehicle, station.settings.landing_wait_s)
         yield from _failsafe(station, vehicle)
+        yield from _flight(vehicle, now_ns, station.settings)
     for link in station.fleet.unbound_links():
         yield from _not_taken(link, station.settings.fleet)
         yield from _unidentified(link, station.settings.serial_wait_s)
         if link.own_state.is_flying.value is not False:
             yield from _silence(link.own_state, now_ns)
+        if link.claimed_serial is None:
+            yield from _flight(link.own_state, now_ns, station.settings)
     for name, state in station.watchdog_state.lost.items():
         yield _lost_unidentified(name, state)
     for record in station.orders.tracked:
@@ -165,6 +168,11 @@ def _failsafe(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
     follows = station.control(vehicle.serial).tracking
     if follows is not None and follows.failsafe is not None:
         yield _about(vehicle, "failsafe", Severity.ERROR, follows.failsafe)
+
+
+def _flight(vehicle: VehicleState, now_ns: int, settings: StationSettings) -> Iterator[Condition]:
+    for rule, severity, text, after_s in flight_conditions.conditions(vehicle, now_ns, settings):
+        yield _about(vehicle, rule, severity, text, after_s)
 
 
 def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:

@@ -1,4 +1,4 @@
-"""Alarms that begin with an event: messages from an app, faults in the station's own code.
+"""Alarms that begin with an event: an app's message, a fault, a time the station did not run.
 
 They stay until an operator acknowledges them. A fault's alarm is critical while the fault recurs.
 """
@@ -6,7 +6,7 @@ They stay until an operator acknowledges them. A fault's alarm is critical while
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from recon.model.event import StationFaulted
+from recon.model.event import ClockGap, StationFaulted
 from recon.model.replacing import replace
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
@@ -75,6 +75,18 @@ def note_fault(station: Station, event: StationFaulted, now_ns: int) -> Station:
     kept = dict(list(recent.items())[-(FAULT_SETTINGS.kept - 1) :])
     fault = Fault(event.where, event.what, since_ns, now_ns)
     return replace(station, faults={**kept, event.where: fault})
+
+
+def note_gap(station: Station, event: ClockGap, now_ns: int) -> Station:
+    """Return the station with an alarm that it did not run for a while."""
+    text = (
+        f"{STATION_NAME} was suspended for {event.seconds:.0f} s and knows nothing of that time: "
+        "check every vehicle before you give orders, and keep the computer awake"
+    )
+    key = f"station_suspended:{now_ns}"
+    condition = Condition(key, Severity.ERROR, "station_suspended", STATION_NAME, text)
+    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book)
 
 
 def fault_conditions(station: Station, now_ns: int) -> Iterator[Condition]:

@@ -15,6 +15,7 @@ from recon.station.api_views.imaging_views import ground_image_view, shade_view
 from recon.station.api_views.operation_views import fleet_return_view, survey_views
 from recon.station.api_views.vehicle_views import (
     authority_view,
+    doubt_views,
     hazard_view,
     override_view,
     steering_view,
@@ -96,6 +97,8 @@ def _vehicle(
         staleness=staleness(vehicle, now_ns).value,
         telemetry_age_s=_age_s(vehicle.core_received_at_ns, now_ns),
         is_flying=aged.flag(vehicle.is_flying),
+        reported_is_flying=aged.flag(vehicle.reported_is_flying),
+        doubts=doubt_views(vehicle, now_ns),
         position=aged.parts(
             schema.PositionView, vehicle.position, ("latitude_deg", "longitude_deg")
         ),

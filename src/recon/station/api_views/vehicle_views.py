@@ -27,6 +27,20 @@ def authority_view(station: Station, serial: str | None, now_ns: int) -> schema.
     )
 
 
+def doubt_views(vehicle: VehicleState, now_ns: int) -> list[schema.DoubtView]:
+    """Return the doubts about a vehicle's telemetry that have not ended."""
+    return [
+        schema.DoubtView(
+            kind=doubt.kind.value,
+            text=doubt.text,
+            age_s=ns_to_seconds(now_ns - doubt.since_ns),
+            packets=doubt.count,
+        )
+        for doubt in vehicle.trust.doubts
+        if doubt.until_ns > now_ns
+    ]
+
+
 def override_view(station: Station, serial: str | None, now_ns: int) -> schema.OverrideView | None:
     """Return the override of a vehicle's checklist, if there is one."""
     given = station.control(serial).preflight_override

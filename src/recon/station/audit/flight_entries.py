@@ -1,7 +1,7 @@
 """Takeoffs, landings and positions in the audit.
 
 One entry per vehicle every five seconds in the air and every minute on the ground, and one
-whenever a flight begins or ends or its link closes.
+whenever a flight begins or ends or its link closes, home is set, or its telemetry is doubted.
 """
 
 from collections.abc import Iterator, Mapping
@@ -20,6 +20,9 @@ POSITION_KIND = "vehicle.position"
 TOOK_OFF_KIND = "vehicle.took_off"
 LANDED_KIND = "vehicle.landed"
 FLYING_KIND = "vehicle.flying"
+HOME_KIND = "vehicle.home_set"
+DOUBT_KIND = "vehicle.doubted"
+DOUBT_ENDED_KIND = "vehicle.believed"
 
 FLYING_EVERY_S = 5.0
 GROUNDED_EVERY_S = 60.0
@@ -51,9 +54,11 @@ def _entries(
         case PacketReceived(link_id, CoreReport()):
             vehicle = after.fleet.vehicle_of_link(link_id)
             if vehicle is not None and vehicle.serial is not None:
-                kind, text = _due(memory, before, vehicle, now_ns)
+                old = before.fleet.vehicles.get(vehicle.serial)
+                kind, text = _due(memory, old, vehicle, now_ns)
                 if kind:
                     yield _entry(kind, text, after, vehicle)
+                yield from _trust_entries(old, after, vehicle)
         case LinkClosed(link_id):
             vehicle = before.fleet.vehicle_of_link(link_id)
             if vehicle is not None and vehicle.serial is not None and vehicle.is_flying.value:
@@ -61,12 +66,12 @@ def _entries(
 
 
 def _due(
-    memory: FlightsLogged, before: Station, vehicle: VehicleState, now_ns: int
+    memory: FlightsLogged, old: VehicleState | None, vehicle: VehicleState, now_ns: int
 ) -> tuple[str, str]:
     """Return the kind and text of the entry that is due; empty when none is."""
     serial = vehicle.serial or ""
-    old = before.fleet.vehicles.get(serial)
-    match None if old is None else old.is_flying.value, vehicle.is_flying.value:
+    was_up = None if old is None else _has_flown(old)
+    match was_up, _has_flown(vehicle):
         case False, True:
             return TOOK_OFF_KIND, "took off"
         case True, False:
@@ -80,12 +85,47 @@ def _due(
     return "", ""
 
 
+def _has_flown(vehicle: VehicleState) -> bool | None:
+    """Whether it has flown since it was last believed on the ground; None: neither is known."""
+    if vehicle.is_flying.value is False:
+        return False
+    evidence = vehicle.trust.evidence
+    if evidence.flown_at_ns is not None:
+        return True
+    return None if evidence.ground is None else False
+
+
+def _trust_entries(
+    old: VehicleState | None, station: Station, vehicle: VehicleState
+) -> Iterator[AuditEntry]:
+    """Yield an entry for a new home, and for each doubt that begins or is settled."""
+    home = vehicle.takeoff_point
+    if home is not None and (old is None or old.takeoff_point != home):
+        place = f"{home.latitude_deg:.6f}, {home.longitude_deg:.6f}"
+        yield _entry(HOME_KIND, f"home set at takeoff: {place}", station, vehicle)
+    if old is None or old.trust.doubts is vehicle.trust.doubts:
+        return
+    known = {doubt.kind: doubt.text for doubt in old.trust.doubts}
+    for doubt in vehicle.trust.doubts:
+        before = known.pop(doubt.kind, None)
+        if before is None or _without_figures(before) != _without_figures(doubt.text):
+            yield _entry(DOUBT_KIND, doubt.text, station, vehicle)
+    for text in known.values():
+        yield _entry(DOUBT_ENDED_KIND, f"no longer: {text}", station, vehicle)
+
+
+def _without_figures(text: str) -> str:
+    """A doubt whose figures change is the same doubt."""
+    return "".join(letter for letter in text if not letter.isdigit())
+
+
 def _entry(kind: str, text: str, station: Station, vehicle: VehicleState) -> AuditEntry:
     name = vehicle.display_name
     velocity = vehicle.velocity_ned.value
     control = station.control(vehicle.serial)
     details: dict[str, Any] = {
         "is_flying": vehicle.is_flying.value,
+        "reported_is_flying": vehicle.reported_is_flying.value,
         "position": _position(vehicle.position.value),
         "height_above_takeoff_m": vehicle.height_above_takeoff_m.value,
         "velocity_north_mps": None if velocity is None else velocity.north_mps,

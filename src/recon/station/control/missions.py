@@ -125,6 +125,9 @@ def _break(station: Station, chain: FlightPlan, vehicle: VehicleState, now_ns: i
     silent_s = ns_to_seconds(max(now_ns - latest_ns, latest_ns - before_ns))
     if silent_s > gap_s:
         return f"no telemetry for more than {gap_s:g} s since the order"
+    jumped_ns = vehicle.trust.jump_accepted_at_ns
+    if jumped_ns is not None and before_ns <= jumped_ns:
+        return "its position jumped since the order"
     authority = station.control(vehicle.serial).authority
     if authority != chain.authority:
         return f"authority changed since the order ({authority.reason})"

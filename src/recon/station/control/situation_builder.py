@@ -84,4 +84,8 @@ def _claiming_links(station: Station, command: Command) -> tuple[ClaimingLink, .
         target = station.target(None, command.link_id)
         link_ids = () if target is None or target.link_id is None else (target.link_id,)
     states = ((link_id, fleet.vehicle_of_link(link_id)) for link_id in link_ids)
-    return tuple(ClaimingLink(link_id, s.is_flying) for link_id, s in states if s is not None)
+    return tuple(
+        ClaimingLink(link_id, state.is_flying, state.reported_is_flying)
+        for link_id, state in states
+        if state is not None
+    )

@@ -10,7 +10,7 @@ from typing import Any
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
 from recon.model.errors import describe_fault
-from recon.model.event import ClockRead, Event, SetpointsDue, StationFaulted, Tick
+from recon.model.event import ClockGap, ClockRead, Event, SetpointsDue, StationFaulted, Tick
 from recon.model.units import NS_PER_S
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.fault_isolation import after_fault
@@ -27,10 +27,19 @@ CLOCK_NS = 1_000_000_000
 """How often the computer's clock is read: a user or NTP may set it."""
 
 
+GAP_NS = 1_000_000_000
+"""Twenty ticks missed: what is in the sockets is old, and vehicles have flown on."""
+
+
 def station_clock() -> Callable[[], int]:
-    """Return a clock in nanoseconds that starts at UTC and never jumps within a run."""
-    offset_ns = time.time_ns() - time.monotonic_ns()
-    return lambda: offset_ns + time.monotonic_ns()
+    """Return a clock in nanoseconds that starts at UTC and is never set within a run.
+
+    It counts while the computer sleeps, so that orders expire and telemetry ages: Linux has a clock
+    of its own for that, elsewhere the monotonic clock does.
+    """
+    clock = getattr(time, "CLOCK_BOOTTIME", time.CLOCK_MONOTONIC)
+    offset_ns = time.time_ns() - time.clock_gettime_ns(clock)
+    return lambda: offset_ns + time.clock_gettime_ns(clock)
 
 
 def freeze_loaded_objects() -> None:
@@ -61,6 +70,8 @@ class AsyncioDriver:
         self._queue = EventQueue(self._step)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._tick_ns = self._clock_ns = 0
+        self._stepped_at_ns: int | None = None
+        """When the last event was stepped, from the first tick on."""
 
     def handle(self, event: Event) -> None:
         """Queue an event and step by it; events caused by its outputs are queued behind it."""
@@ -103,7 +114,16 @@ class AsyncioDriver:
         self.handle(StationFaulted("in its event loop", what))
 
     def _step(self, event: Event) -> None:
-        before, now_ns = self.station, self.now_ns()
+        now_ns, last_ns = self.now_ns(), self._stepped_at_ns
+        if last_ns is not None or isinstance(event, Tick):
+            self._stepped_at_ns = now_ns
+        if last_ns is not None and now_ns - last_ns > GAP_NS:
+            # First, because the event may be a packet that waited meanwhile.
+            self._step_at(ClockGap((now_ns - last_ns) / NS_PER_S), now_ns)
+        self._step_at(event, now_ns)
+
+    def _step_at(self, event: Event, now_ns: int) -> None:
+        before = self.station
         try:
             self.station, outputs = step(before, event, now_ns)
         except Exception as fault:

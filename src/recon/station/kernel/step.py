@@ -12,6 +12,7 @@ from recon.model.event import (
     AlarmAcknowledged,
     AuditFailed,
     AuthorityTaken,
+    ClockGap,
     ClockRead,
     CommandAnswered,
     CommandDropped,
@@ -66,6 +67,10 @@ def step(station: Station, event: Event, now_ns: int) -> Stepped:
 def _fleet(station: Station, event: Event, now_ns: int) -> Stepped:
     fleet, closing = fleet_step.step(station.fleet, event, now_ns)
     return station.with_fleet(fleet), closing
+
+
+def _clock_gap(station: Station, event: ClockGap, now_ns: int) -> Stepped:
+    return _fleet(event_alarms.note_gap(station, event, now_ns), event, now_ns)
 
 
 def _link_closed(station: Station, event: LinkClosed, now_ns: int) -> Stepped:
@@ -196,6 +201,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(HazardDismissed, known_traffic.dismiss),
         changing(SeparationHoldSwitched, watchdog_runner.switch_hold),
         changing(ClockRead, preflight.read_clock),
+        on(ClockGap, _clock_gap),
         changing(PreflightOverridden, preflight.override),
         changing(StationFaulted, event_alarms.note_fault),
         changing(AuditFailed, _audit_failed),

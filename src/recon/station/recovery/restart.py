@@ -20,10 +20,12 @@ from dataclasses import dataclass, replace
 
 import msgspec
 
+from recon.fleet.airborne import flown
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import BODY_NAMES, Body, Command, Phase
 from recon.model.control import ControlAuthority
 from recon.model.geo import LatLon
+from recon.model.trust import Trust
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
@@ -238,6 +240,7 @@ def _vehicle(
         profile=profile,
         is_simulated=last.is_simulated,
         is_flying=Stamped(last.is_flying, at_ns),
+        trust=Trust(evidence=flown(at_ns)),
         position=Stamped(_lat_lon_or_none(last.position), at_ns),
         height_above_takeoff_m=Stamped(last.height_above_takeoff_m, at_ns),
         velocity_ned=Stamped(_velocity(last), at_ns),

@@ -6,6 +6,7 @@ from recon.detection import DetectionSettings
 from recon.fleet.settings import FleetSettings
 from recon.forecast import ForecastSettings
 from recon.guidance.steering import SteeringSettings
+from recon.model.mission import DJI
 from recon.safety import SafetySettings
 from recon.station.state.setpoint_stream import StreamSettings
 
@@ -22,8 +23,7 @@ class RestartSettings:
     other vehicle: apps reconnect within seconds, and each vehicle that reports again is close to
     the hazard areas of those that are about to. The gate counts these areas from the start."""
 
-    fastest_mps: float = 25.0
-    """Ground speed in strong wind that none of these aircraft exceeds."""
+    fastest_mps: float = DJI.fastest_mps
     fastest_climb_mps: float = 10.0
     place_error_m: float = 30.0
     height_error_m: float = 5.0
@@ -33,12 +33,28 @@ class RestartSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class FlightAlarmSettings:
+    """What a vehicle in flight must not do, and for how long it must last to be an alarm."""
+
+    gnss_s: float = 2.0
+    """Under trees and at takeoff a fix is poor for a moment."""
+    height_s: float = 1.0
+    max_tilt_deg: float = 45.0
+    """DJI's aircraft lean by 25 to 35 degrees at most, in sport mode by 42."""
+    tilt_s: float = 0.5
+    max_descent_mps: float = 9.0
+    """They sink at 3 to 6 m/s, the fastest at 8."""
+    descent_s: float = 0.3
+
+
+@dataclass(frozen=True, slots=True)
 class StationSettings:
     """Times in seconds."""
 
     fleet: FleetSettings = field(default_factory=FleetSettings)
     safety: SafetySettings = field(default_factory=SafetySettings)
     restart: RestartSettings = field(default_factory=RestartSettings)
+    flight_alarms: FlightAlarmSettings = field(default_factory=FlightAlarmSettings)
     detection: DetectionSettings = field(default_factory=DetectionSettings)
     forecast: ForecastSettings = field(default_factory=ForecastSettings)
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.model.vehicle import VehicleState
-from recon.safety.watchdogs import CommandedHold, Finding, PreviousPosition
+from recon.safety.watchdogs import CommandedHold, Finding
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,6 @@ class WatchdogState:
     findings: Mapping[str, ActiveFinding] = field(default_factory=dict)
     held: Mapping[str, CommandedHold] = field(default_factory=dict)
     holds_refused: Mapping[str, HoldRefused] = field(default_factory=dict)
-    before: Mapping[str, PreviousPosition] = field(default_factory=dict)
     sticks: Mapping[str, StickCount] = field(default_factory=dict)
     dismissed: Mapping[str, int | None] = field(default_factory=dict)
     unidentified_since_ns: Mapping[int, int] = field(default_factory=dict)

@@ -151,6 +151,9 @@ def failure(
         return "connection lost: a steered order does not resume"
     if now_ns - stream.seen_at_ns > seconds_to_ns(settings.resumes_s):
         return f"telemetry incomplete or missing for {settings.resumes_s:g} s"
+    jumped_ns = vehicle.trust.jump_accepted_at_ns
+    if jumped_ns is not None and jumped_ns > stream.started_at_ns:
+        return "its position jumped: it may not be where it is shown"
     authority = station.control(stream.command.serial).authority
     if authority.holder is not stream.command.role:
         return f"authority passed to {authority.holder.value} ({authority.reason})"

@@ -16,7 +16,6 @@ from recon.model.vehicle import VehicleState
 from recon.safety.watchdogs import (
     CommandedHold,
     Finding,
-    PreviousPosition,
     TrafficPicture,
     Watchdog,
     WatchedVehicle,
@@ -64,7 +63,6 @@ def run(
         station.watchdog_state,
         run_at_ns=now_ns,
         findings=_kept(kept, findings, now_ns, seconds_to_ns(settings.lingers_s)),
-        before=_before(picture),
         held=_still_held(station),
     )
     return replace(station, watchdog_state=watch), _requests(findings, picture)
@@ -93,7 +91,6 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
             control.intent,
             control.authority.holder,
             held=watch.held.get(serial),
-            before=watch.before.get(serial),
             is_imager=vehicle.serial is not None and vehicle.serial == imager,
             stick_quiet_s=quiet_s,
             hold_refused="" if refused is None else refused.why,
@@ -125,21 +122,6 @@ def _kept(
         since_ns = now_ns if before is None else before.since_ns
         still[finding.key] = ActiveFinding(finding, since_ns, now_ns)
     return still
-
-
-def _before(picture: TrafficPicture) -> dict[str, PreviousPosition]:
-    """Each vehicle's newest position, for comparison with the next one."""
-    newest: dict[str, PreviousPosition] = {}
-    for one in picture.watched:
-        serial, position = one.state.serial, one.state.position
-        if serial is None:
-            continue
-        if position.value is not None and position.received_at_ns is not None:
-            speed_mps = 0.0 if one.motion is None else one.motion.speed_mps
-            newest[serial] = PreviousPosition(position.value, speed_mps, position.received_at_ns)
-        elif one.before is not None:
-            newest[serial] = one.before
-    return newest
 
 
 def _still_held(station: Station) -> dict[str, CommandedHold]:

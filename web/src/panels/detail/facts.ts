@@ -37,7 +37,8 @@ export function factsOf(vehicle: VehicleView): Fact[] {
     aged("Battery", vehicle.battery_fraction, formatFraction),
     aged("Battery warning", vehicle.battery_warning, plainWords),
     aged("Flight mode", vehicle.flight_mode, plainWords),
-    aged("Flying", vehicle.is_flying, (isFlying) => (isFlying ? "yes" : "no")),
+    flying(vehicle),
+    ...vehicle.doubts.map((doubt) => fact("Telemetry doubted", doubt.text, doubt.age_s)),
     aged("Satellites", vehicle.gnss_satellite_count, String),
     aged("GNSS signal (0 to 10)", vehicle.gnss_signal_level, String),
     aged("Wind level", vehicle.wind_level, String),
@@ -45,6 +46,18 @@ export function factsOf(vehicle: VehicleView): Fact[] {
     aged("Camera", vehicle.camera_state, plainWords),
     waypointAltitude(vehicle),
   ];
+}
+
+/** As believed; what is reported is added where it differs. */
+function flying(vehicle: VehicleView): Fact {
+  const { value, age_s } = vehicle.is_flying;
+  const reported = vehicle.reported_is_flying.value;
+  if (value === reported || reported === null) {
+    return aged("Flying", vehicle.is_flying, (isFlying) => (isFlying ? "yes" : "no"));
+  }
+  const believed = value === null ? "uncertain" : value ? "yes" : "no";
+  const reports = reported ? "reports in flight" : "reports on the ground";
+  return fact("Flying", `${believed} (${reports})`, age_s);
 }
 
 function aged<T>(

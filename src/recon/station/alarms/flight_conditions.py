@@ -1,0 +1,108 @@
+"""Conditions of a vehicle in flight, and doubts about its telemetry, as alarms.
+
+Each compares the newest telemetry with what the aircraft can do. The protocol carries no time of
+measurement, so the latency of telemetry cannot be known: a link that delays every packet alike
+looks live.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from recon.fleet.state import staleness
+from recon.model.severity import Severity
+from recon.model.trust import DoubtKind
+from recon.model.vehicle import Staleness, VehicleState
+from recon.station.state.settings import FlightAlarmSettings, StationSettings
+
+
+class FlightCondition(NamedTuple):
+    """A fact about one vehicle: rule, severity, a sentence without its name, and a delay."""
+
+    rule: str
+    severity: Severity
+    text: str
+    after_s: float = 0.0
+
+
+def conditions(
+    vehicle: VehicleState, now_ns: int, settings: StationSettings
+) -> Iterator[FlightCondition]:
+    """Yield what is doubted about a vehicle, and what is wrong with its flight."""
+    on_ground = vehicle.is_flying.value is False
+    for doubt in vehicle.trust.doubts:
+        if doubt.until_ns > now_ns:
+            is_minor = on_ground or doubt.kind is DoubtKind.BATTERY
+            severity = Severity.WARNING if is_minor else Severity.ERROR
+            yield FlightCondition(doubt.kind.value, severity, doubt.text)
+    is_live = staleness(vehicle, now_ns) in (Staleness.LIVE, Staleness.LATE)
+    if on_ground or not is_live:
+        return
+    yield from _gnss(vehicle, settings)
+    yield from _height(vehicle, settings.flight_alarms)
+    yield from _wind(vehicle, settings)
+    yield from _attitude(vehicle, settings.flight_alarms)
+    yield from _descent(vehicle, settings.flight_alarms)
+
+
+def _gnss(vehicle: VehicleState, settings: StationSettings) -> Iterator[FlightCondition]:
+    limits, after_s = settings.safety, settings.flight_alarms.gnss_s
+    count, level = vehicle.gnss_satellite_count.value, vehicle.gnss_signal_level.value
+    if vehicle.extended_received_at_ns is None:
+        return
+    satellites = "an unknown number of satellites" if count is None else f"{count} satellites"
+    signal = "signal level unknown" if level is None else f"signal level {level} of 5"
+    facts = f"{satellites}, {signal}"
+    is_lost = vehicle.position.value is None or level == 0
+    if is_lost:
+        text = f"GNSS lost ({facts}): it drifts with the wind; its pilot must steer it"
+        yield FlightCondition("gnss", Severity.CRITICAL, text, after_s)
+    elif (count is not None and count < limits.min_satellites) or (
+        level is not None and level < limits.min_gnss_level
+    ):
+        text = (
+            f"GNSS poor ({facts}), at least {limits.min_satellites} satellites and level "
+            f"{limits.min_gnss_level} are needed: watch its position, and be ready to steer it"
+        )
+        yield FlightCondition("gnss", Severity.ERROR, text, after_s)
+
+
+def _height(vehicle: VehicleState, limits: FlightAlarmSettings) -> Iterator[FlightCondition]:
+    if vehicle.height_above_takeoff_m.value is None:
+        text = (
+            "height unknown in flight: it counts as at any height. Check its app; land it if the "
+            "height does not return"
+        )
+        yield FlightCondition("height_unknown", Severity.ERROR, text, limits.height_s)
+
+
+def _wind(vehicle: VehicleState, settings: StationSettings) -> Iterator[FlightCondition]:
+    level, limit = vehicle.wind_level.value, settings.safety.preflight.strong_wind_level
+    if level is not None and level >= limit:
+        text = (
+            f"strong wind, reported by the aircraft (level {level}, limit {limit}), near what it "
+            "can fly in: bring it lower and home, or land it"
+        )
+        yield FlightCondition("strong_wind", Severity.WARNING, text)
+
+
+def _attitude(vehicle: VehicleState, limits: FlightAlarmSettings) -> Iterator[FlightCondition]:
+    attitude = vehicle.attitude.value
+    if attitude is None:
+        return
+    tilt_deg = max(abs(attitude.pitch_deg), abs(attitude.roll_deg))
+    if tilt_deg > limits.max_tilt_deg:
+        text = (
+            f"tilted by {tilt_deg:.0f} deg, limit {limits.max_tilt_deg:g} deg: its pilot must take "
+            "over; keep clear below"
+        )
+        yield FlightCondition("attitude", Severity.CRITICAL, text, limits.tilt_s)
+
+
+def _descent(vehicle: VehicleState, limits: FlightAlarmSettings) -> Iterator[FlightCondition]:
+    velocity = vehicle.velocity_ned.value
+    if velocity is not None and velocity.down_mps > limits.max_descent_mps:
+        text = (
+            f"descends at {velocity.down_mps:.1f} m/s, limit {limits.max_descent_mps:g} m/s: it "
+            "may be falling; keep clear below, its pilot must take over"
+        )
+        yield FlightCondition("descent", Severity.CRITICAL, text, limits.descent_s)
