@@ -61,8 +61,8 @@ class Opened:
     sent: list[Message] = field(default_factory=list)
 
     @property
-    def is_accepted(self) -> bool:
-        return any(message["type"] == "websocket.accept" for message in self.sent)
+    def is_served(self) -> bool:
+        return any(message["type"] == "websocket.send" for message in self.sent)
 
     @property
     def subprotocol(self) -> str | None:
@@ -71,6 +71,10 @@ class Opened:
     @property
     def close_code(self) -> int | None:
         return next((m["code"] for m in self.sent if m["type"] == "websocket.close"), None)
+
+    @property
+    def close_reason(self) -> str:
+        return next((m["reason"] for m in self.sent if m["type"] == "websocket.close"), "")
 
     @property
     def first_text(self) -> str:

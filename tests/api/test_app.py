@@ -252,7 +252,9 @@ class TestDoor:
     def test_a_foreign_page_is_refused(self, client: Client, origin: str) -> None:
         response = client.post("/api/all-stop", headers={"origin": origin})
         assert response.status_code == 403
-        assert not client.open_stream("/api/stream", origin=origin).is_accepted
+        refused = client.open_stream("/api/stream", origin=origin)
+        assert not refused.is_served
+        assert refused.close_code == 1008
 
     def test_our_own_page_is_let_in(self, client: Client) -> None:
         response = client.post("/api/all-stop", headers={"origin": BASE})
@@ -278,8 +280,9 @@ class TestDoor:
         wrong = TOKEN_PROTOCOL_PREFIX + "wrong"
         for protocols in ((), (PROTOCOL,), (PROTOCOL, wrong)):
             refused = client.open_stream("/api/stream", protocols=protocols)
-            assert not refused.is_accepted
+            assert not refused.is_served
             assert refused.close_code == 1008
+            assert refused.close_reason.startswith("token missing or wrong")
         offered = (PROTOCOL, TOKEN_PROTOCOL_PREFIX + TOKEN)
         opened = client.open_stream("/api/stream", protocols=offered)
         assert opened.subprotocol == PROTOCOL
@@ -296,7 +299,7 @@ class TestDoor:
         assert client.get("/api/state").headers["cache-control"] == "no-store"
 
     def test_another_websocket_path_is_refused(self, client: Client) -> None:
-        assert not client.open_stream("/elsewhere").is_accepted
+        assert not client.open_stream("/elsewhere").is_served
 
 
 class TestConsole:
@@ -335,7 +338,7 @@ class TestConsole:
         assert "secret" not in response.text.replace("secret.txt", "")
 
     def test_a_websocket_to_a_file_is_refused(self, with_console: Client) -> None:
-        assert not with_console.open_stream("/app.js").is_accepted
+        assert not with_console.open_stream("/app.js").is_served
 
     def test_without_one_a_page_describes_how_to_build_it(self, client: Client) -> None:
         assert "make web" in client.get("/").text

@@ -70,7 +70,7 @@ def test_without_an_audit_the_page_is_empty() -> None:
 def test_it_needs_the_token_like_all_else(station: FakeStation) -> None:
     client = Client(application(station, token=TOKEN))
     assert client.get("/api/audit").status_code == 401
-    assert not client.open_stream("/api/audit/stream").is_accepted
+    assert not client.open_stream("/api/audit/stream").is_served
 
 
 def test_the_stream_tells_every_entry_once_and_in_order(station: FakeStation) -> None:

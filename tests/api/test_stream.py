@@ -5,12 +5,14 @@ import contextlib
 import socket
 from collections.abc import AsyncIterator
 
+import pytest
 import uvicorn
 import websockets
 from tests.api.fake_station import FakeStation, application
 from tests.patient_loop import run_patiently
 
 from recon.api import streams as stream_module
+from recon.api.connections import HttpConnection, StreamConnection
 from recon.api.schema import StationState
 from recon.api.security import PROTOCOL
 
@@ -28,10 +30,14 @@ class BigStation(FakeStation):
 
 @contextlib.asynccontextmanager
 async def served(station: FakeStation) -> AsyncIterator[int]:
-    """Serve an application on a free port of loopback, with the station's own choice of `ws`."""
+    """Serve an application on a free port of loopback, with the station's own connections."""
     listening = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(
-        application(station), log_level="error", lifespan="off", ws="websockets-sansio"
+        application(station),
+        log_level="error",
+        lifespan="off",
+        http=HttpConnection,
+        ws=StreamConnection,
     )
     server = uvicorn.Server(config)
     task = asyncio.ensure_future(server._serve([listening]))
@@ -104,15 +110,18 @@ def test_readers_beyond_the_limit_are_refused_and_places_come_free() -> None:
                 for _ in range(stream_module.MAX_STATE_READERS):
                     reader = await stack.enter_async_context(websockets.connect(url))
                     await reader.recv()
-                with contextlib.suppress(websockets.InvalidStatus):
-                    await websockets.connect(url)
-                    raise AssertionError("one reader too many was let in")
+                async with websockets.connect(url) as refused:
+                    with pytest.raises(websockets.ConnectionClosed) as closed:
+                        await refused.recv()
+                assert closed.value.rcvd is not None
+                assert closed.value.rcvd.code == 1013
+                assert closed.value.rcvd.reason == "32 readers are connected: limit reached"
             while True:
                 try:
                     async with websockets.connect(url) as reader:
                         await reader.recv()
                     return
-                except websockets.InvalidStatus:
+                except websockets.ConnectionClosed:
                     continue
 
     run_patiently(main())

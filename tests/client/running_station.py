@@ -11,6 +11,7 @@ from starlette.types import ASGIApp
 from tests.ready import ready_profile, ready_site
 
 from recon.api.app import create_app
+from recon.api.connections import HttpConnection, StreamConnection
 from recon.api.security import Access
 from recon.geo import point_from_enu
 from recon.link.server import LinkServer
@@ -41,7 +42,8 @@ async def serving(app: ASGIApp, port: int = 0) -> AsyncIterator[str]:
         uvicorn.Config(
             app,
             log_level="critical",
-            ws="websockets-sansio",
+            http=HttpConnection,
+            ws=StreamConnection,
             lifespan="off",
             timeout_graceful_shutdown=1,
         )

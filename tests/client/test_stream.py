@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from starlette.types import Receive, Scope, Send
 from tests.client import fake_state
 from tests.client.raw_server import server
-from tests.client.running_station import serving
+from tests.client.running_station import running_station, serving
 from tests.patient_loop import run_patiently
 
 from recon.client import (
@@ -303,3 +303,13 @@ def test_another_run_of_the_station_has_another_clock() -> None:
     clock = StreamClock()
     assert clock.created_at_ns(1_000, RUN, 50) == 50
     assert clock.created_at_ns(9, RUN + 1, 70) == 70
+
+
+def test_a_refused_stream_states_the_reason() -> None:
+    async def main() -> None:
+        async with running_station(vehicles=0, token="the-token-of-the-station") as url:
+            with pytest.raises(RequestRefusedError, match="token missing or wrong"):
+                async with Station(url, "another-token-than-this"):
+                    pass
+
+    run_patiently(main())

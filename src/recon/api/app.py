@@ -2,10 +2,10 @@
 
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import FastAPI, Query, Request, Response, WebSocket
-from fastapi.exceptions import RequestValidationError
+from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException as AnyHTTPException
@@ -15,7 +15,7 @@ from recon.api.order_routes import add_order_routes
 from recon.api.picture_routes import add_picture_routes
 from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, found
-from recon.api.security import Access, AccessCheck
+from recon.api.security import POLICY_VIOLATION, Access, AccessCheck, refuse_stream
 from recon.api.streams import MAX_ENTRIES, AuditStream, StateStream
 from recon.api.survey_routes import add_survey_routes
 
@@ -101,7 +101,8 @@ def _add_audit_and_streams(app: FastAPI, port: StationPort) -> None:
 
     @app.websocket("/{path:path}")
     async def no_stream(socket: WebSocket, path: str) -> None:
-        await socket.close(1008, "No such stream; available: /api/stream, /api/audit/stream")
+        sentence = "No such stream; available: /api/stream, /api/audit/stream"
+        await refuse_stream(socket, POLICY_VIOLATION, sentence)
 
 
 def _add_console(app: FastAPI, console: Path | None) -> None:
@@ -119,9 +120,11 @@ def _add_errors_and_headers(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     async def invalid(_request: Request, problem: RequestValidationError) -> JSONResponse:
-        first = problem.errors()[0]
-        place = ".".join(str(part) for part in first["loc"] if part != "body")
-        return JSONResponse({"error": f"{place or 'body'}: {first['msg']}"}, status_code=422)
+        return JSONResponse({"error": _sentence(problem.errors()[0])}, status_code=422)
+
+    @app.exception_handler(WebSocketRequestValidationError)
+    async def invalid_stream(socket: WebSocket, problem: WebSocketRequestValidationError) -> None:
+        await refuse_stream(socket, POLICY_VIOLATION, _sentence(problem.errors()[0]))
 
     @app.exception_handler(AnyHTTPException)
     async def refused(_request: Request, problem: AnyHTTPException) -> JSONResponse:
@@ -137,3 +140,9 @@ def _add_errors_and_headers(app: FastAPI) -> None:
         if request.url.path.startswith("/api/"):
             response.headers.setdefault("Cache-Control", "no-store")
         return response
+
+
+def _sentence(fault: dict[str, Any]) -> str:
+    """Return what is wrong with a request: where, and why."""
+    place = ".".join(str(part) for part in fault["loc"] if part not in ("body", "query"))
+    return f"{place or 'body'}: {fault['msg']}"

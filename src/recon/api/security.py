@@ -12,11 +12,18 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.websockets import WebSocket, WebSocketDisconnect
 
 PROTOCOL = "recon.v1"
 TOKEN_PROTOCOL_PREFIX = "recon.token."
 MAX_BODY_BYTES = 1024 * 1024
 """The longest mission takes 20 KiB; a body is held in memory."""
+
+POLICY_VIOLATION = 1008
+TRY_AGAIN_LATER = 1013
+"""Close codes of refused streams (RFC 6455)."""
+MAX_REASON_BYTES = 123
+"""Of a close frame."""
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 
@@ -58,8 +65,7 @@ class AccessCheck:
         if sentence is None:
             await self.app(scope, receive, send)
         elif scope["type"] == "websocket":
-            await receive()
-            await send({"type": "websocket.close", "code": 1008, "reason": sentence})
+            await refuse_stream(WebSocket(scope, receive, send), POLICY_VIOLATION, sentence)
         else:
             await JSONResponse({"error": sentence}, status_code=status)(scope, receive, send)
 
@@ -82,6 +88,25 @@ class AccessCheck:
         if self.access.token_sha256 is not None:
             return True
         return _name_of(host) in self.access.host_names
+
+
+async def accept_stream(socket: WebSocket) -> None:
+    """Accept a WebSocket with the station's subprotocol, if it was offered."""
+    offered = socket.scope.get("subprotocols", [])
+    await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
+
+
+async def refuse_stream(socket: WebSocket, code: int, sentence: str) -> None:
+    """Refuse a WebSocket with a code and a sentence.
+
+    It is accepted first: of a refused handshake a browser shows neither.
+    """
+    reason = sentence.encode()[:MAX_REASON_BYTES].decode(errors="ignore")
+    try:
+        await accept_stream(socket)
+        await socket.close(code, reason)
+    except (WebSocketDisconnect, RuntimeError):
+        return
 
 
 def _body_refusal(headers: Headers) -> tuple[int, str | None]:

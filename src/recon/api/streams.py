@@ -1,9 +1,10 @@
 """The WebSocket streams: states to consoles and clients, and audit entries.
 
 States are conflated: a slow reader gets the newest state when it is ready, at most 10 Hz. The
-server's send blocks while more than 64 KiB wait for the socket, so a slow reader costs that and one
-message. Audit entries are not conflated: a slow reader holds one page and gets the rest as it
-reads; one that falls behind what the station keeps in memory sees a gap in the numbers (`first_n`).
+server's send blocks while more than 64 KiB wait for the socket, so a slow reader costs that and
+one message; one that reads nothing loses its place (`api/connections.py`). Audit entries are not
+conflated: a slow reader holds one page and gets the rest as it reads; one that falls behind what
+the station keeps in memory sees a gap in the numbers (`first_n`).
 
 An owner is an open state stream that steered orders depend on (`/api/stream?owner=NAME`). It sends
 a keepalive, any text, at least twice a second. When its connection closes, or no message arrives
@@ -21,7 +22,12 @@ from contextlib import asynccontextmanager
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from recon.api.port import StationPort
-from recon.api.security import PROTOCOL
+from recon.api.security import (
+    POLICY_VIOLATION,
+    TRY_AGAIN_LATER,
+    accept_stream,
+    refuse_stream,
+)
 
 INTERVAL_S = 0.1
 MAX_STATE_READERS = 32
@@ -85,17 +91,17 @@ class StateStream:
     async def serve(self, socket: WebSocket) -> None:
         """Send states to one reader until it disconnects."""
         if self._readers >= MAX_STATE_READERS:
-            await socket.close(1013, f"{MAX_STATE_READERS} readers are connected: limit reached")
+            sentence = f"{MAX_STATE_READERS} readers are connected: limit reached"
+            await refuse_stream(socket, TRY_AGAIN_LATER, sentence)
             return
         owner = socket.query_params.get("owner")
         fault = self._owners.fault(owner)
         if fault is not None:
-            await socket.close(1008, fault)
+            await refuse_stream(socket, POLICY_VIOLATION, fault)
             return
         self._readers += 1
         try:
-            offered = socket.scope.get("subprotocols", [])
-            await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
+            await accept_stream(socket)
             await self._send_until_gone(socket, owner)
             if owner is not None:
                 await socket.close(OWNER_SILENT, f"owner: no message for {SILENT_S:g} s")
@@ -138,12 +144,12 @@ class AuditStream:
     async def serve(self, socket: WebSocket, after: int) -> None:
         """Send entries to one reader until it disconnects."""
         if self._readers >= MAX_AUDIT_READERS:
-            await socket.close(1013, f"{MAX_AUDIT_READERS} readers are connected: limit reached")
+            sentence = f"{MAX_AUDIT_READERS} readers are connected: limit reached"
+            await refuse_stream(socket, TRY_AGAIN_LATER, sentence)
             return
         self._readers += 1
         try:
-            offered = socket.scope.get("subprotocols", [])
-            await socket.accept(subprotocol=PROTOCOL if PROTOCOL in offered else None)
+            await accept_stream(socket)
             await self._send_until_gone(socket, after)
         except (WebSocketDisconnect, RuntimeError):
             return

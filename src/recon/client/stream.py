@@ -39,6 +39,8 @@ KEEPALIVE_S = 0.5
 FIRST_PAUSE_S = 0.2
 LONGEST_PAUSE_S = 2.0
 _TOO_BIG = 1009
+_REFUSED = (1008, 1013)
+"""Access denied or invalid, and too many readers."""
 
 
 WINDOW_NS = 60 * NS_PER_S
@@ -151,6 +153,10 @@ class Stream:
                 "address, and give the token"
             ) from problem
         except ConnectionClosed as problem:
+            if problem.rcvd is not None and problem.rcvd.code in _REFUSED:
+                raise RequestRefusedError(
+                    f"{self._address.http} refused the stream: {problem.rcvd.reason}"
+                ) from problem
             if problem.sent is not None and problem.sent.code == _TOO_BIG:
                 raise BadAnswerError(
                     f"expected a state of up to {LONGEST_STATE_BYTES} bytes, got a longer one: is "

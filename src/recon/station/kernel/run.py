@@ -13,6 +13,7 @@ import uvicorn
 
 from recon import version
 from recon.api.app import create_app
+from recon.api.connections import PING_S, HttpConnection, StreamConnection
 from recon.api.security import LOOPBACK_NAMES, Access
 from recon.link.capture import Capture
 from recon.link.server import LinkServer
@@ -317,9 +318,12 @@ def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
             log_level="warning",
             access_log=False,
             server_header=False,
+            http=HttpConnection,
             # Its send waits while the reader's socket takes no more: see api/streams.py.
-            ws="websockets-sansio",
+            ws=StreamConnection,
             ws_max_size=64 * 1024,
+            ws_ping_interval=PING_S,
+            ws_ping_timeout=PING_S,
             timeout_graceful_shutdown=SHUTDOWN_S,
             lifespan="off",
         )
