@@ -81,6 +81,7 @@ bench: setup ## Measurements, each beside a baseline of the same run
 	cargo bench -p recon-wire
 	$(RUN) python -m pytest benches -p no:cacheprovider
 	$(RUN) python -m benches.safety.bench_watchdogs
+	$(RUN) python -m benches.fleet.bench_trust
 	$(RUN) python -m benches.station.bench_load
 	$(RUN) python -m benches.station.bench_stick_jitter
 	$(RUN) python -m benches.station.bench_all_stop

@@ -4,8 +4,10 @@ import asyncio
 import threading
 
 import pytest
+from tests.fleet.reports import core
 
-from recon.model.event import Event, LinkOpened, Tick
+from recon.model.event import ClockGap, Event, LinkOpened, PacketReceived, Tick
+from recon.model.units import NS_PER_S
 from recon.site import default_site
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.kernel.build import first_state
@@ -97,6 +99,27 @@ class TestAsyncioDriver:
 
         asyncio.run(main())
         assert "Traceback" not in "".join(capsys.readouterr())
+
+    def test_a_gap_between_its_ticks_comes_before_the_packets_that_waited(self) -> None:
+        now_ns = [0]
+        events: list[Event] = []
+        driver = AsyncioDriver(
+            first_state(default_site()),
+            lambda: now_ns[0],
+            lambda _before, _after, event: events.append(event),
+        )
+        driver.handle(LinkOpened(1, "127.0.0.1:1"))
+        now_ns[0] += 30 * NS_PER_S  # a slow start is no gap
+        for _ in range(3):
+            driver.handle(Tick())
+            now_ns[0] += NS_PER_S // 20
+        assert not any(isinstance(event, ClockGap) for event in events)
+        now_ns[0] += 60 * NS_PER_S
+        waited = PacketReceived(1, core())
+        driver.handle(waited)
+        assert events[-2:] == [ClockGap(pytest.approx(60.05)), waited]
+        link = driver.station.fleet.links[1]
+        assert link.own_state.core_received_at_ns is None
 
     def test_the_clock_begins_at_utc_and_never_runs_back(self) -> None:
         now_ns = station_clock()
