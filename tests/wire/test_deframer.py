@@ -98,7 +98,7 @@ def test_a_call_ends_at_its_limit_of_work() -> None:
     assert most < 5 * 2**20
 
 
-def test_time_in_which_nobody_read_is_no_stall() -> None:
+def test_time_in_which_it_was_not_read_is_no_stall() -> None:
     deframer = wire.Deframer()
     deframer.feed(ACK_FRAME[:5], 0)
     deframer.excuse(3 * SECOND_NS)

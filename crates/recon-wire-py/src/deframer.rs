@@ -83,7 +83,7 @@ impl Deframer {
         self.inner.discard();
     }
 
-    /// Leaves a time in which nobody read from the connection out of every wait.
+    /// Leaves a time in which the connection was not read out of every wait.
     fn excuse(&mut self, duration_ns: i64) {
         self.inner.excuse(duration_ns);
     }

@@ -163,7 +163,7 @@ impl Deframer {
         }
     }
 
-    /// Leaves `duration_ns` out of every wait: nobody read from the connection in that time.
+    /// Leaves `duration_ns` out of every wait: the connection was not read in that time.
     pub fn excuse(&mut self, duration_ns: i64) {
         self.excused_ns = self.excused_ns.saturating_add(duration_ns.max(0));
     }

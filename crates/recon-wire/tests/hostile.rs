@@ -172,7 +172,7 @@ fn arrivals_never_run_backwards() {
 }
 
 #[test]
-fn time_in_which_nobody_read_is_no_wait() {
+fn time_in_which_it_was_not_read_is_no_wait() {
     let (mut deframer, mut found) = (Deframer::default(), 0);
     deframer.push(&ack()[..5], 0, &mut |_, _| {});
     deframer.excuse(3000 * MS);
