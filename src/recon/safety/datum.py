@@ -93,6 +93,22 @@ def takeoff_up_m_at(
     return _takeoff_up_m(airspace, point, own, vehicle.serial)
 
 
+def is_takeoff_height_known(
+    airspace: PreparedAirspace, vehicle: VehicleState, point: LatLon | None
+) -> bool:
+    """Return whether a takeoff point's height comes from a pad or an elevation model.
+
+    Where flat ground is assumed the heights of two vehicles may differ by any slope between their
+    takeoff points: they say nothing about each other.
+    """
+    if point is None:
+        return False
+    if not is_ground_assumed_flat(airspace):
+        return takeoff_up_m_at(airspace, vehicle, point) is not None
+    own = None if vehicle.profile is None else vehicle.profile.pad
+    return _is_at_pad(airspace, point, own, vehicle.serial)
+
+
 def is_ground_assumed_flat(airspace: PreparedAirspace) -> bool:
     """Return whether no elevation model is loaded."""
     return airspace.airspace.elevation is None
@@ -142,6 +158,13 @@ def _takeoff_up_m(
         return 0.0
     ground_m = float(airspace.ground_up_m(places_m(frame, [point]))[0])
     return None if np.isnan(ground_m) else ground_m
+
+
+@lru_cache(maxsize=TAKEOFF_POINTS_KEPT)
+def _is_at_pad(
+    airspace: PreparedAirspace, point: LatLon, own_pad: GeoPoint | None, serial: str | None
+) -> bool:
+    return _pad_at(airspace, point, own_pad, serial) is not None
 
 
 def _pad_at(

@@ -17,7 +17,13 @@ counts as well. A hazard area ends with new telemetry or by an operator's dismis
 
 from recon.safety.prediction.conflicts import Conflict, first_conflict
 from recon.safety.prediction.hazard_area import HazardArea, hazard_area_of, hazard_trajectories
-from recon.safety.prediction.motion import Plane, VehicleMotion, vehicle_motion
+from recon.safety.prediction.motion import (
+    BoolArray,
+    Plane,
+    VehicleMotion,
+    unknown_heights,
+    vehicle_motion,
+)
 from recon.safety.prediction.predicted_trajectories import predict_order, predict_traffic
 from recon.safety.prediction.predictor import Predictor
 from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, Trajectory, part_text
@@ -25,6 +31,7 @@ from recon.safety.settings import PredictionSettings
 
 __all__ = [
     "FOREVER_S",
+    "BoolArray",
     "Conflict",
     "FlightPart",
     "HazardArea",
@@ -39,5 +46,6 @@ __all__ = [
     "part_text",
     "predict_order",
     "predict_traffic",
+    "unknown_heights",
     "vehicle_motion",
 ]

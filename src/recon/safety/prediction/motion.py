@@ -1,6 +1,10 @@
 """A vehicle's position and velocity in the plane, as prediction needs them."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
 
 from recon.geo import OnGlobe
 from recon.geo.distance import offset_north_east_m
@@ -8,9 +12,14 @@ from recon.model.geo import LatLon
 from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import Failsafe, VehicleState, VelocityNed
 from recon.safety.airspace import PreparedAirspace
-from recon.safety.datum import home, takeoff_up_m_at
+from recon.safety.datum import home, is_takeoff_height_known, takeoff_up_m_at
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
 from recon.safety.settings import PredictionSettings
+
+BoolArray = npt.NDArray[np.bool_]
+
+SAME_GROUND_M = 10.0
+"""Takeoff points this near to each other are at one height, to 2 m on a slope of 1 in 5."""
 
 
 class Plane:
@@ -52,11 +61,19 @@ class VehicleMotion(NamedTuple):
     go_home_up_m: float | None
     goes_home: bool
     """Whether it may go home by itself when it loses its controller."""
+    is_ground_known: bool = True
+    """Whether the height of its takeoff point is that of a pad or of an elevation model."""
 
     @property
     def name(self) -> str:
         """The display name."""
         return self.state.display_name
+
+    def at_any_height(self) -> "VehicleMotion":
+        """Return the same motion at an unknown height."""
+        return self._replace(
+            low_m=-ALL_HEIGHTS_M, high_m=ALL_HEIGHTS_M, takeoff_up_m=None, go_home_up_m=None
+        )
 
     def up_m(self, height_above_takeoff_m: float) -> tuple[float, float]:
         """Return the band of heights that one above its takeoff point is in."""
@@ -102,7 +119,24 @@ def vehicle_motion(
         home_m=None if home_place is None else plane.east_north_m(home_place),
         go_home_up_m=None if go_home_m is None or base_m is None else base_m + go_home_m,
         goes_home=profile is None or profile.failsafe in (None, Failsafe.GO_HOME),
+        is_ground_known=is_takeoff_height_known(airspace, state, home_place),
     )
+
+
+def unknown_heights(motions: Sequence[VehicleMotion]) -> BoolArray | None:
+    """Return the pairs of V vehicles whose heights cannot be compared, (V, V); None: no pair.
+
+    Where the ground of a takeoff point is not known, flat ground is assumed: right for two that
+    took off within `SAME_GROUND_M` of each other, and for others wrong by the slope between.
+    """
+    if all(motion.is_ground_known for motion in motions):
+        return None
+    known = np.array([motion.is_ground_known for motion in motions])
+    homes_m = np.array([motion.home_m or (np.nan, np.nan) for motion in motions])
+    east_m, north_m = homes_m.T[:, :, np.newaxis]
+    apart_m = np.hypot(east_m - east_m.T, north_m - north_m.T)
+    # Of an unknown home the comparison is False.
+    return np.asarray(~((known & known[:, np.newaxis]) | (apart_m <= SAME_GROUND_M)))
 
 
 def age_at(now_ns: int, at_ns: int) -> float:

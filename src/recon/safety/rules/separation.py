@@ -35,6 +35,7 @@ from recon.safety.prediction import (
     part_text,
     predict_order,
     predict_traffic,
+    unknown_heights,
     vehicle_motion,
 )
 from recon.safety.prediction.predicted_trajectories import (
@@ -97,6 +98,9 @@ def _others(
             name = other.vehicle.display_name
             text = f"{name} may be in the air at an unknown position: land it or dismiss it"
             return _refusal(own.name, text)
+        unknown = unknown_heights((own, seen))
+        if unknown is not None and unknown[0, 1]:
+            seen = seen.at_any_height()
         if may_enter(seen, other.intent, bounds, prediction):
             predicted = predict_traffic(seen, other.intent, prediction, bounds.until_s)
             trajectories += (

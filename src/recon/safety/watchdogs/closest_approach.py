@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from recon.safety.prediction import HazardArea
+from recon.safety.prediction import BoolArray, HazardArea
 from recon.safety.prediction.trajectory import FloatArray, Samples
 from recon.safety.separation_minima import SeparationMinima
 
@@ -31,8 +31,13 @@ class Approach:
     vertical_m: float
 
 
-def near_pairs(ahead: Samples, need: SeparationMinima) -> tuple[IntArray, IntArray]:
-    """Return the pairs whose reach lets them come too near at all, as two arrays of indices."""
+def near_pairs(
+    ahead: Samples, need: SeparationMinima, unknown: BoolArray | None = None
+) -> tuple[IntArray, IntArray]:
+    """Return the pairs whose reach lets them come too near at all, as two arrays of indices.
+
+    `unknown` is (V, V): the vehicles whose heights say nothing about each other.
+    """
     reach_m = np.hypot(
         ahead.east_m - ahead.east_m[:, :1], ahead.north_m - ahead.north_m[:, :1]
     ).max(axis=1, initial=0.0) + ahead.radius_m.max(axis=1, initial=0.0)
@@ -46,8 +51,9 @@ def near_pairs(ahead: Samples, need: SeparationMinima) -> tuple[IntArray, IntArr
         ahead.high_m.max(axis=1, initial=-np.inf),
     )
     is_near = apart_m < need.horizontal_m + reach_m[first] + reach_m[second]
-    is_near &= low_m[first] - high_m[second] < need.vertical_m
-    is_near &= low_m[second] - high_m[first] < need.vertical_m
+    is_level = low_m[first] - high_m[second] < need.vertical_m
+    is_level &= low_m[second] - high_m[first] < need.vertical_m
+    is_near &= is_level if unknown is None else is_level | unknown[first, second]
     return first[is_near], second[is_near]
 
 
@@ -58,14 +64,25 @@ def _all_pairs(count: int) -> tuple[IntArray, IntArray]:
 
 
 def closeness(
-    a: Samples, first: IntArray, b: Samples, second: IntArray, need: SeparationMinima
+    a: Samples,
+    first: IntArray,
+    b: Samples,
+    second: IntArray,
+    need: SeparationMinima,
+    unknown: BoolArray | None = None,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return closeness, horizontal and vertical gaps of P pairs at K moments, each (P, K)."""
+    """Return closeness, horizontal and vertical gaps of P pairs at K moments, each (P, K).
+
+    Between heights that say nothing about each other, `unknown` (V, V), the gap is 0 at most.
+    """
     horizontal_m = np.hypot(
         a.east_m[first] - b.east_m[second], a.north_m[first] - b.north_m[second]
     )
     horizontal_m -= a.radius_m[first] + b.radius_m[second]
     vertical_m = np.maximum(a.low_m[first] - b.high_m[second], b.low_m[second] - a.high_m[first])
+    if unknown is not None:
+        pairs = unknown[first, second][:, np.newaxis]
+        vertical_m = np.where(pairs, np.minimum(vertical_m, 0.0), vertical_m)
     return _shares(horizontal_m, vertical_m, need), horizontal_m, vertical_m
 
 

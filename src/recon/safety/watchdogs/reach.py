@@ -26,7 +26,7 @@ from recon.model.control import Commanded, Intent
 from recon.model.geo import LatLon, LocalFrame
 from recon.safety.airspace import Cylinder, PreparedAirspace
 from recon.safety.heights import stays_above, stays_below
-from recon.safety.prediction import PredictionSettings, VehicleMotion
+from recon.safety.prediction import BoolArray, PredictionSettings, VehicleMotion
 from recon.safety.prediction.legs import LEAST_M, VERTICAL_BRAKING_MPS2
 from recon.safety.prediction.motion import last_place
 from recon.safety.separation_minima import SeparationMinima
@@ -107,10 +107,15 @@ def reach_of(
     )
 
 
-def near_each_other(reaches: Sequence[Reach], need: SeparationMinima, horizon_s: float) -> set[int]:
+def near_each_other(
+    reaches: Sequence[Reach],
+    need: SeparationMinima,
+    horizon_s: float,
+    unknown: BoolArray | None = None,
+) -> set[int]:
     """Return which vehicles can come nearer to another than the minima within the horizon.
 
-    What is not finite is near to all.
+    What is not finite is near to all. Heights of pairs in `unknown` (V, V) say nothing.
     """
     if len(reaches) < 2:
         return set()
@@ -121,7 +126,8 @@ def near_each_other(reaches: Sequence[Reach], need: SeparationMinima, horizon_s:
     apart_m = np.hypot(east_m - east_m.T, north_m - north_m.T)
     is_clear = apart_m >= need.horizontal_m + (radius_m + radius_m.T)
     is_above = low_m - high_m.T >= need.vertical_m
-    is_clear |= is_above | is_above.T
+    is_above |= is_above.T
+    is_clear |= is_above if unknown is None else is_above & ~unknown
     np.fill_diagonal(is_clear, True)
     return set(np.flatnonzero(~is_clear.all(axis=1)).tolist())
 

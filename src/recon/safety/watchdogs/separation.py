@@ -17,13 +17,13 @@ area. A vehicle of a pilot is never held. Lost vehicles are hazard areas, and ma
 mission.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from recon.model.control import AuthorityHolder
 from recon.model.severity import Severity
-from recon.safety.prediction import HazardArea
+from recon.safety.prediction import BoolArray, HazardArea, unknown_heights
 from recon.safety.separation_minima import SeparationMinima
 from recon.safety.watchdogs.closest_approach import (
     Approach,
@@ -44,7 +44,9 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
     """Find the pairs of vehicles, and of vehicles and hazard areas, that come too near."""
     need, reaches = picture.minima, picture.reaches
     if reaches is not None:
-        picture = picture.only(near_each_other(reaches, need, picture.settings.horizon_s))
+        unknown = _unknown_heights(picture.flying)
+        near = near_each_other(reaches, need, picture.settings.horizon_s, unknown)
+        picture = picture.only(near)
     in_contact = len(picture.flying)
     if in_contact == 0:
         return
@@ -54,15 +56,21 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
     if len(picture.predicted) < 2:
         return
     flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
-    first, second = near_pairs(flies, need)
+    unknown = _unknown_heights(picture.predicted)
+    first, second = near_pairs(flies, need, unknown)
     if len(first) == 0:
         return
-    close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need)
+    close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need, unknown)
     for row in np.flatnonzero((close < 1.0).any(axis=1)):
         if min(first[row], second[row]) >= in_contact:
             continue  # both lost: no hold can reach either
         found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
         yield _pair(picture, int(first[row]), int(second[row]), found, need)
+
+
+def _unknown_heights(vehicles: Sequence[WatchedVehicle]) -> BoolArray | None:
+    """Return the pairs whose heights cannot be compared, (V, V); None: no pair."""
+    return unknown_heights([one.motion for one in vehicles if one.motion is not None])
 
 
 def in_order_of_yielding(
@@ -159,9 +167,9 @@ def _helps(
     need: SeparationMinima,
 ) -> bool:
     """Whether the first of the pair, held, comes less near to the second, which flies on."""
-    ahead = picture.ahead
+    ahead, unknown = picture.ahead, _unknown_heights(picture.predicted)
     close, horizontal_m, vertical_m = closeness(
-        ahead.if_held, pair[0], ahead.as_it_flies, pair[1], need
+        ahead.if_held, pair[0], ahead.as_it_flies, pair[1], need, unknown
     )
     instead = approach(close[0], horizontal_m[0], vertical_m[0], ahead.times_s)
     return _is_better(picture, found, instead)
