@@ -22,7 +22,7 @@ CORE_PERIOD_S = 0.1
 EXTENDED_PERIOD_S = 0.5
 IMAGE_PERIOD_S = 0.2
 IMAGE_ROWS, IMAGE_COLS = 720, 1280
-CONNECTING_S = 10.0
+CONNECTING_S = 120.0
 
 
 @dataclass
@@ -117,17 +117,19 @@ def extended_packet(number: int) -> bytes:
     )
 
 
-def image_packet() -> bytes:
+def image_packet(rows: int = IMAGE_ROWS, cols: int = IMAGE_COLS) -> bytes:
     """Return one raw image of noise, sent again and again."""
     rng = np.random.default_rng(1)
-    pixels = rng.integers(0, 256, (IMAGE_ROWS, IMAGE_COLS, 3), dtype=np.uint8)
+    pixels = rng.integers(0, 256, (rows, cols, 3), dtype=np.uint8)
     return wire.encode(wire.Image(target_fps_hz=1.0 / IMAGE_PERIOD_S, pixels=pixels))
 
 
-async def send_load(port: int, apps: int, streams: int, seconds: float) -> Sent:
+async def send_load(
+    port: int, apps: int, streams: int, seconds: float, image_size: tuple[int, int]
+) -> Sent:
     """Connect, send for a time, close politely; return what was sent."""
     loop, sent = asyncio.get_running_loop(), Sent()
-    image = image_packet() if streams > 0 else None
+    image = image_packet(*image_size) if streams > 0 else None
     running = []
     for number in range(apps):
         app = App(number, sent, image if number < streams else None)
@@ -149,8 +151,11 @@ def main() -> None:
     parser.add_argument("--apps", type=int, default=64)
     parser.add_argument("--streams", type=int, default=4)
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--image-rows", type=int, default=IMAGE_ROWS)
+    parser.add_argument("--image-cols", type=int, default=IMAGE_COLS)
     asked = parser.parse_args()
-    sent = uvloop.run(send_load(asked.port, asked.apps, asked.streams, asked.seconds))
+    image_size = (asked.image_rows, asked.image_cols)
+    sent = uvloop.run(send_load(asked.port, asked.apps, asked.streams, asked.seconds, image_size))
     print(json.dumps(asdict(sent)), flush=True)
 
 

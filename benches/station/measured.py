@@ -22,7 +22,7 @@ from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, st
 from recon.station.state.station import Station
 
 CONSOLE_PERIOD_S = 0.1
-ENDING_S = 30.0
+ENDING_S = 120.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +32,8 @@ class Load:
     apps: int
     streams: int
     seconds: float
+    image_rows: int = 720
+    image_cols: int = 1280
 
 
 @dataclass(slots=True)
@@ -183,6 +185,7 @@ async def _console(service: Service, state_ms: list[float]) -> None:
 
 async def _send(port: int, load: Load) -> Sent:
     options = ["--apps", load.apps, "--streams", load.streams, "--seconds", load.seconds]
+    options += ["--image-rows", load.image_rows, "--image-cols", load.image_cols]
     process = await asyncio.create_subprocess_exec(
         sys.executable,
         "-m",

@@ -6,7 +6,9 @@ from benches.station.measured import Load, measure_station
 
 
 def test_nothing_is_lost() -> None:
-    outcome = asyncio.run(measure_station(Load(apps=16, streams=1, seconds=3.0)))
+    # An image that is sent in one piece: a sender without a core stalls in the middle of others.
+    load = Load(apps=16, streams=1, seconds=3.0, image_rows=90, image_cols=160)
+    outcome = asyncio.run(measure_station(load))
     assert outcome.lost == {"core": 0, "extended": 0, "images": 0}
     assert (outcome.sent.core, outcome.sent.extended, outcome.sent.images) == (480, 96, 15)
 
