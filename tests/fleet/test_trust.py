@@ -58,6 +58,15 @@ class TestJumps:
         flight.north_m += 150.0
         assert flight.reports(0.2, flying=True).doubts == set()
 
+    def test_in_a_burst_packets_may_be_missing(self) -> None:
+        flight = in_flight()
+        flight.north_m += 15.0
+        flight.story.now_s -= 0.1
+        assert flight.reports(0.1, flying=True).doubts == set()
+        flight.north_m += 60.0
+        flight.story.now_s -= 0.1
+        assert flight.reports(0.1, flying=True).doubts == {DoubtKind.JUMP}
+
     def test_on_the_ground_heights_may_jump(self) -> None:
         flight = Flight(height_m=20.0).reports(2.0, flying=False)
         flight.height_m = 0.0

@@ -51,6 +51,10 @@ class TrustSettings:
     jump_m: float = 10.0
     """Beyond the fastest flight: GNSS wanders by metres, a jump is a new fix or an error."""
     jump_vertical_m: float = 5.0
+    together_s: float = 0.05
+    burst_s: float = 1.5
+    """Packets nearer in time than half their period were held back together, for as long as this;
+    some of them may be lost."""
     accepted_s: float = 2.0
     """A run of packets that is consistent with itself for this long is the new truth."""
     accepted_count: int = 5

@@ -6,9 +6,9 @@ acts (neutral setpoint after 1 s, gate, hazard area after 3 s). Its doubt is in 
 sentence, until `lingers_s` after the last packet that shows it:
 
 - *jump*: from the last believed place farther than 10 m and 25 m/s (in height 5 m and 12 m/s) times
-  the time since. The allowance grows in a gap. Packets that follow from each other for 2 s are
-  accepted as the new truth; the doubt stays for a minute then, and steered orders end. On the
-  ground heights may jump: the barometer is set to zero there.
+  the time since. The allowance grows in a gap, and within a burst by its length. Packets that
+  follow from each other for 2 s are accepted as the new truth; the doubt stays for a minute then,
+  and steered orders end. On the ground heights may jump: the barometer is set to zero there.
 - *frozen*: the same position, height, velocity and attitude in flight, for 1 s at a speed of
   0.3 m/s and more, for 5 s at any. Telemetry counts as old as its last change. What is measured
   jitters in its last digits.
@@ -284,17 +284,23 @@ def _jump(
     if before.position is not None and report.position is not None:
         moved_m = horizontal_distance_m(before.position, report.position)
         if moved_m > limits.jump_m:
-            seconds = (now_ns - before.position_at_ns) / NS_PER_S
+            seconds = _between_s(before.position_at_ns, now_ns, limits)
             if moved_m > limits.jump_m + DJI.fastest_mps * seconds:
                 return f"its position jumped by {moved_m:.0f} m"
     height_m = report.height_above_takeoff_m
     if with_height and before.height_m is not None and height_m is not None:
         climbed_m = abs(height_m - before.height_m)
         if climbed_m > limits.jump_vertical_m:
-            seconds = (now_ns - before.height_at_ns) / NS_PER_S
+            seconds = _between_s(before.height_at_ns, now_ns, limits)
             if climbed_m > limits.jump_vertical_m + DJI.fastest_vertical_mps * seconds:
                 return f"its height jumped from {before.height_m:.0f} m to {height_m:.0f} m"
     return None
+
+
+def _between_s(before_ns: int, now_ns: int, limits: TrustSettings) -> float:
+    """Return the time that may lie between two packets: those of a burst arrive together."""
+    seconds = (now_ns - before_ns) / NS_PER_S
+    return seconds + limits.burst_s if seconds < limits.together_s else seconds
 
 
 def _stays_off(trust: Trust, report: CoreReport) -> bool:
