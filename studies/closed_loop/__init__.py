@@ -1,0 +1,33 @@
+"""Random closed-loop runs of the whole station in virtual time, each from one seed.
+
+Every run draws a site, a fleet, links, faults, pilots and people who give orders. The station runs
+with all bytes between it and the simulated apps; oracles of their own (`tests/oracles/flown_air`,
+`flown_orders`) watch the simulator's truth at every step of 0.1 s.
+
+A violation is an episode: it begins when the truth breaks a limit, and ends 3 s after it was last
+broken. It is classed at its beginning, by the first rule that holds. The marks of a vehicle are
+taken from the truth, from the bytes that passed, and from nothing that the station concludes
+(`marks.py`):
+
+pilot
+    A pilot flew a vehicle of it within the last 12 s, or had left it where it now is, and it has
+    not been moved by an order since.
+fault
+    For a vehicle of it, within the last 12 s and in flight: no telemetry reached the station for
+    1 s; no downlink lived, or its app or aircraft ignored what it received (fault, no GNSS, reading
+    slowly, landing by itself on an empty battery); or its heights were wrong by a fault.
+physics
+    The station has had telemetry of a vehicle of it for less than 8 s (or was started less than 8 s
+    ago): what both need to stop from 15 m/s, one after the other. Or, within the last 8 s, wind
+    pushed a vehicle of it by more than 1 m/s off what it was commanded to fly. A takeoff counts
+    when the aircraft had landed less than a link's delay and 0.3 s before it received the packet.
+person
+    A person's order that is always sent took the vehicle there (land, return: never judged by
+    places), an operator had switched the separation holds off, or left a vehicle in the air
+    for 20 s under a battery alarm.
+station
+    Everything else.
+
+A hold that arrived late is a fault when the downlink died meanwhile or the station had no telemetry
+for 3 s (a hover must not start a takeoff, so it waits for telemetry), else the station's.
+"""
