@@ -19,7 +19,8 @@ from math import inf
 from multiprocessing import get_context
 
 from studies.closed_loop.marks import ViolationClass
-from studies.closed_loop.run import ClosedLoopRun, RunResult, Violation, fly
+from studies.closed_loop.run import ClosedLoopRun, fly
+from studies.closed_loop.violations import RunResult, Violation
 
 REPORT_EVERY = 10
 S_PER_HOUR = 3_600.0

@@ -1,12 +1,10 @@
 """One run: the station, its apps and all parties in virtual time, and the oracles at every step."""
 
-from collections import deque
-from dataclasses import dataclass, field, replace
-from math import hypot
+from dataclasses import replace
 from random import Random
 from time import process_time
 
-from tests.oracles.flown_air import NEAR_HOME_M, Breach, TruePlace, breaches
+from tests.oracles.flown_air import Breach, breaches
 from tests.oracles.flown_orders import (
     PilotGuard,
     ShownAges,
@@ -30,10 +28,7 @@ from recon.model.event import (
 from recon.model.report import CoreReport, ExtendedReport
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
-from recon.sim.app.app import SimulatedApp
-from recon.sim.app.faults import FaultKind
-from recon.sim.flight.battery import FORCED_LANDING_FRACTION
-from recon.sim.flight.flight_modes import GoHome, Land, TakeOff
+from recon.sim.flight.flight_modes import Land
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
 from recon.station.kernel.worker import JobRunner
@@ -41,66 +36,17 @@ from recon.station.recovery.restart import LastRun, restored
 from recon.station.recovery.snapshot import decode_snapshot, encode_snapshot, take_snapshot
 from recon.station.state.station import Station
 from studies.closed_loop.links import LinkedApps
-from studies.closed_loop.marks import (
-    Mark,
-    StationMarks,
-    VehicleMarks,
-    ViolationClass,
-    classify,
-)
+from studies.closed_loop.marks import StationMarks, VehicleMarks
 from studies.closed_loop.parties import BATTERY_RULES, Parties
-from studies.closed_loop.pilots import Pilot, PilotFlight
+from studies.closed_loop.pilots import Pilot
 from studies.closed_loop.scene import Scene, draw
+from studies.closed_loop.truth import STEP_S, TrueFleet
+from studies.closed_loop.violations import Casebook, RunResult
 
-STEP_S = 0.1
-EPISODE_ENDS_S = 3.0
-STORY_LINES = 14
 DOWN_S = 3.0
 """From a station's death to the next one's start."""
-DEAF_FAULTS = (
-    FaultKind.ACK_THEN_NOTHING,
-    FaultKind.NEGATIVE_ACK,
-    FaultKind.IGNORED_MISSIONS,
-    FaultKind.SLOW_READER,
-    FaultKind.FALLS_SILENT,
-)
-HEIGHT_FAULTS = (FaultKind.TAKEOFF_ALTITUDE_LOST, FaultKind.TAKEOFF_ALTITUDE_STALE)
-PUSHED_MPS = 1.0
-LANDS_BELOW_M = 1.0
 CODE_FAULT, RULE_FAULT = "station_fault", "rule_fault"
 """What the station says of a fault in its own code: an alarm, and a refusal."""
-
-
-@dataclass(slots=True)
-class Violation:
-    """One episode: the breach at its beginning, its class, and what had happened before."""
-
-    seed: int
-    at_s: float
-    breach: Breach
-    kind: ViolationClass
-    why: str
-    story: list[str]
-    until_s: float = 0.0
-    worst: str = ""
-    worst_size: float = 0.0
-
-
-@dataclass(slots=True)
-class RunResult:
-    """What one run came to."""
-
-    seed: int
-    seconds: float = 0.0
-    flight_s: float = 0.0
-    vehicles: int = 0
-    orders: int = 0
-    packets: int = 0
-    landings: int = 0
-    cpu_s: float = 0.0
-    violations: list[Violation] = field(default_factory=list)
-    stop_latencies_s: list[float] = field(default_factory=list)
-    error: str = ""
 
 
 class ClosedLoopRun:
@@ -110,39 +56,31 @@ class ClosedLoopRun:
         self.scene: Scene = draw(seed, seconds)
         self.rng = Random(f"{seed}/run")
         self.seconds, self.verbose = seconds, verbose
-        self.result = RunResult(seed, seconds, vehicles=len(self.scene.apps))
         self.driver = VirtualDriver(
             first_state(self.scene.site), jobs=JobRunner(self.scene.site), keeps_log=False
         )
         self.driver.observe = self._observe
         self.apps = {app.settings.serial: app for app in self.scene.apps}
-        settings = self.scene.settings
-        self.links = LinkedApps(
-            self.driver,
-            Random(f"{seed}/links"),
-            settings.has_bad_links,
-            self._packet_arrived,
-            self._core_made,
-        )
-        self.parties = Parties(
-            self.scene, Random(f"{seed}/parties"), self._handle, self.place, self._is_flying
-        )
-        self.pilots = self._pilots() if settings.has_pilots else {}
         self.marks = {serial: VehicleMarks() for serial in self.apps}
-        self.station_marks = StationMarks()
+        self.result = RunResult(seed, seconds, vehicles=len(self.apps))
+        self.book = Casebook(self.result, self.marks, lambda: self.now_s, verbose)
         self.stops, self.permits = StopClock(), TakeoffPermits()
         self.guard, self.ages = PilotGuard(), ShownAges()
-        self.log: deque[tuple[float, str, str]] = deque(maxlen=3_000)
-        """When, which vehicle (or ""), what."""
-        self._episodes: dict[tuple[str, tuple[str, ...], str], Violation] = {}
-        self._alarmed: set[tuple[str, tuple[str, ...], str]] = set()
-        self._was_flying = {serial: app.aircraft.is_flying for serial, app in self.apps.items()}
-        self._was_grounded = {s: app.aircraft.is_on_ground for s, app in self.apps.items()}
-        self._core_s: dict[str, float] = {}
+        settings, random = self.scene.settings, Random(f"{seed}/links")
+        self.links = LinkedApps(
+            self.driver, random, settings.has_bad_links, self._packet_arrived, self._core_made
+        )
+        self.fleet = TrueFleet(
+            self.scene, self.apps, self.links, self.book, self.stops, self.permits
+        )
+        random = Random(f"{seed}/parties")
+        place, is_flying = self.fleet.place, self.fleet.is_flying
+        self.parties = Parties(self.scene, random, self._handle, place, is_flying)
+        self.pilots = self._pilots() if settings.has_pilots else {}
         self._next_link_s = {serial: self.rng.uniform(8.0, 120.0) for serial in self.apps}
         self._alarm_ids: set[int] = set()
         self._died_s: float | None = None
-        self._survey_serials: dict[int, set[str]] = {}
+        self._snapshot = b""
 
     @property
     def now_s(self) -> float:
@@ -181,22 +119,8 @@ class ClosedLoopRun:
                 self._pilot_acted(serial, pilot, done)
         if self._died_s is None:
             self.parties.act(self.driver.station, now_s)
-        self._mark_all(now_s)
+        self.fleet.mark_all(now_s)
         self._check(now_s)
-
-    def place(self, serial: str) -> tuple[float, float, float]:
-        """Return where a vehicle truly is: east, north and up of the site's origin."""
-        home, motion = self.scene.homes_m[serial], self.apps[serial].aircraft.motion
-        return home[0] + motion.east_m, home[1] + motion.north_m, home[2] + motion.height_m
-
-    def _is_flying(self, serial: str) -> bool:
-        return self.apps[serial].aircraft.is_flying
-
-    def note(self, serial: str, text: str) -> None:
-        """Write a line of the run's story."""
-        self.log.append((self.now_s, serial, text))
-        if self.verbose:
-            print(f"{self.now_s:8.2f} {serial:<7} {text}", flush=True)
 
     def _pilots(self) -> dict[str, Pilot]:
         rng = Random(f"{self.scene.seed}/pilots")
@@ -220,7 +144,7 @@ class ClosedLoopRun:
                 if holder is not AuthorityHolder.PILOT:
                     self.guard.ends(serial)
             case SeparationHoldSwitched(is_on=is_on):
-                self.station_marks = replace(self.station_marks, are_holds_off=not is_on)
+                self.book.station_marks = replace(self.book.station_marks, are_holds_off=not is_on)
             case SurveyStarted(serials=serials, takeoff=True):
                 for serial in serials:
                     self.permits.allow(serial, now_s, float("inf"))
@@ -232,22 +156,24 @@ class ClosedLoopRun:
 
     def _note_answer(self, event: Event) -> None:
         if not isinstance(event, OperatorOrder):
-            self.note(getattr(event, "serial", "") or "", f"{type(event).__name__} {_said(event)}")
+            self.book.note(
+                getattr(event, "serial", "") or "", f"{type(event).__name__} {_said(event)}"
+            )
             return
         self.result.orders += 1
         record = self.driver.station.orders.records.get(event.command_id)
         answer = "no record" if record is None else f"{record.phase.value} {record.note}"
         if record is not None and record.refusal is not None and record.refusal.rule == RULE_FAULT:
-            self._found(Breach("code fault", (), RULE_FAULT, 0.0, record.refusal.reason))
+            self.book.found(Breach("code fault", (), RULE_FAULT, 0.0, record.refusal.reason))
         what = f"order {event.command_id} {_body_text(event)} -> {answer}"
-        self.note(event.serial or "", what[:260])
+        self.book.note(event.serial or "", what[:260])
 
     def _expects_stop(self, serial: str) -> bool:
         is_known = serial in self.driver.station.fleet.vehicles
         return is_known and self.apps[serial].aircraft.is_flying and self.links.has_downlink(serial)
 
     def _pilot_acted(self, serial: str, pilot: Pilot, done: str) -> None:
-        self.note(serial, done)
+        self.book.note(serial, done)
         if not pilot.is_flying:
             self.guard.ends(serial)
         elif pilot.has_just_taken and pilot.aircraft.has_pilot_control:
@@ -261,16 +187,16 @@ class ClosedLoopRun:
             # A hold leaves low what it stops on its way down.
             is_landing = isinstance(self.apps[serial].aircraft.active_mode, Land)
             marks.is_coming_down |= packet.action in (1, 2) or is_landing
-            self.note(serial, f"received {('hover', 'land', 'return')[packet.action]}")
+            self.book.note(serial, f"received {('hover', 'land', 'return')[packet.action]}")
             if packet.action == 0:
                 self.stops.arrived(serial, now_s)
         if moves:
             marks.is_coming_down = marks.left_by_pilot = False
-            if not isinstance(packet, wire.VirtualStickCommand):
-                self.note(serial, f"received a mission of {len(packet.waypoints)}")
+            if isinstance(packet, wire.ExecuteWaypointMission):
+                self.book.note(serial, f"received a mission of {len(packet.waypoints)}")
             found = self.guard.motion_arrived(serial, now_s, delay_s, type(packet).__name__)
             if found is not None:
-                self._found(found)
+                self.book.found(found)
 
     def _core_made(self, serial: str, place: tuple[float, float]) -> None:
         self.ages.made(serial, self.now_s, place)
@@ -283,7 +209,7 @@ class ClosedLoopRun:
             return
         now_s, marks = self.now_s, self.marks[serial]
         if isinstance(event.report, CoreReport):
-            self._core_s[serial] = now_s
+            self.fleet.core_s[serial] = now_s
             if marks.known_since_s is None and serial in after.fleet.vehicles:
                 marks.known_since_s = now_s
         elif isinstance(event.report, ExtendedReport):
@@ -301,18 +227,18 @@ class ClosedLoopRun:
             old = self.driver.station
             self._snapshot = encode_snapshot(take_snapshot(old, self.driver.now_ns))
             self.links.drop_all()
-            self.note("", "the station dies")
+            self.book.note("", "the station dies")
         elif self._died_s is not None and now_s >= self._died_s + DOWN_S:
             self._died_s = None
             fresh = replace(first_state(self.scene.site), clock=self.driver.station.clock)
             last = LastRun(decode_snapshot(self._snapshot))
             self.driver.station = restored(fresh, last, self.driver.now_ns)
-            self.station_marks = StationMarks(now_s)
+            self.book.station_marks = StationMarks(now_s)
             self._alarm_ids.clear()
             for marks in self.marks.values():
                 marks.known_since_s = None
             self.links.return_all()
-            self.note("", "the station starts again")
+            self.book.note("", "the station starts again")
 
     def _disturb_links(self, now_s: float) -> None:
         if not self.scene.settings.has_bad_links or self._died_s is not None:
@@ -320,83 +246,7 @@ class ClosedLoopRun:
         for serial, at_s in self._next_link_s.items():
             if now_s >= at_s:
                 self._next_link_s[serial] = now_s + self.rng.uniform(20.0, 200.0)
-                self.note(serial, self.links.disturb(serial))
-
-    def _mark_all(self, now_s: float) -> None:
-        for serial, app in self.apps.items():
-            self._mark(serial, app, self.marks[serial], now_s)
-
-    def _mark(self, serial: str, app: SimulatedApp, marks: VehicleMarks, now_s: float) -> None:
-        aircraft = app.aircraft
-        if self._was_flying[serial] and not aircraft.is_flying:
-            self.result.landings += 1
-            marks.landed_s, marks.left_by_pilot = now_s, False
-            self.note(serial, f"landed with {aircraft.battery.fraction:.0%}")
-        if self._was_grounded[serial] and not aircraft.is_on_ground:
-            self.note(serial, "takes off")
-            found = self.permits.took_off(serial, now_s)
-            if found is not None:
-                self._found(found)
-        self._was_flying[serial] = aircraft.is_flying
-        self._was_grounded[serial] = aircraft.is_on_ground
-        if not aircraft.is_flying:
-            return
-        self.result.flight_s += STEP_S
-        mode = aircraft.active_mode
-        if (
-            isinstance(mode, PilotFlight)
-            and aircraft.motion.ground_speed_mps + abs(aircraft.motion.velocity_up_mps) > 0.1
-        ):
-            marks.mark(Mark.PILOT_FLIES, now_s)
-            marks.left_by_pilot = True
-        if now_s - self._core_s.get(serial, 0.0) > 1.0:
-            marks.mark(Mark.BLIND, now_s)
-        marks.has_wrong_plane |= self._is_off_its_plane(serial)
-        if marks.has_wrong_plane:
-            marks.mark(Mark.LYING, now_s, "landed on a slope")
-        self._mark_faults(serial, app, marks, now_s)
-
-    def _mark_faults(
-        self, serial: str, app: SimulatedApp, marks: VehicleMarks, now_s: float
-    ) -> None:
-        aircraft = app.aircraft
-        if not self.links.has_downlink(serial):
-            marks.mark(Mark.DEAF, now_s, "no downlink")
-            self.stops.excuse(serial)
-        if not aircraft.has_gnss:
-            marks.mark(Mark.DEAF, now_s, "no GNSS")
-        for fault in app.settings.faults:
-            if not fault.is_active(self.driver.now_ns):
-                continue
-            if fault.kind in DEAF_FAULTS:
-                marks.mark(Mark.DEAF, now_s, fault.kind.value)
-            if fault.kind in HEIGHT_FAULTS and serial in self.scene.wgs84:
-                marks.mark(Mark.LYING, now_s, fault.kind.value)
-            if fault.kind is FaultKind.SLOW_READER:
-                self.stops.excuse(serial)
-        if aircraft.battery.fraction < FORCED_LANDING_FRACTION:
-            self._forced_landing(serial, app, now_s)
-            marks.mark(Mark.SELF_WILLED, now_s, "empty battery")
-        if max(abs(v) for v in aircraft.air.push) > PUSHED_MPS:
-            marks.mark(Mark.PUSHED, now_s)
-
-    def _is_off_its_plane(self, serial: str) -> bool:
-        """Whether it comes down away from home on a slope: the simulator's ground is the plane of
-        the first takeoff, so from there on its heights are not those of a real aircraft."""
-        ground = self.scene.truth.ground
-        if ground.is_flat:
-            return False
-        home, here = self.scene.homes_m[serial], self.place(serial)
-        if hypot(here[0] - home[0], here[1] - home[1]) <= NEAR_HOME_M:
-            return False
-        height_m = min(here[2] - home[2], here[2] - ground.height_m(here[0], here[1]))
-        return height_m < LANDS_BELOW_M
-
-    def _forced_landing(self, serial: str, app: SimulatedApp, now_s: float) -> None:
-        low = [f for f in app.settings.faults if f.kind is FaultKind.LOW_BATTERY]
-        if any(now_s >= fault.start_s for fault in low):
-            self.marks[serial].mark(Mark.SELF_WILLED, now_s, "a cell failed")
-        self._found(Breach("forced landing", (serial,), "", 0.0, "its battery is empty"))
+                self.book.note(serial, self.links.disturb(serial))
 
     def _check(self, now_s: float) -> None:
         station = self.driver.station
@@ -404,36 +254,14 @@ class ClosedLoopRun:
             self._note_alarms(station)
             self._check_ages(station, now_s)
         for late in list(self.stops.late(now_s)):
-            self._found(late)
-        places = {s: self._true_place(s) for s, app in self.apps.items() if app.aircraft.is_flying}
+            self.book.found(late)
+        places = {
+            s: self.fleet.true_place(s) for s, app in self.apps.items() if app.aircraft.is_flying
+        }
         for breach in breaches(self.scene.truth, places):
-            self._found(breach)
-        over = [key for key, v in self._episodes.items() if now_s - v.until_s > EPISODE_ENDS_S]
-        for key in over:
-            del self._episodes[key]
-            self._alarmed.discard(key)
+            self.book.found(breach)
+        self.book.end_old()
         self._check_alarms(station, now_s)
-
-    def _true_place(self, serial: str) -> TruePlace:
-        mode, marks = self.apps[serial].aircraft.active_mode, self.marks[serial]
-        here = self.place(serial)
-        is_low = isinstance(mode, Land | TakeOff | GoHome) or marks.is_coming_down
-        is_low = self._stays_low(marks, here, is_low)
-        return TruePlace(*here, self.scene.homes_m[serial][:2], is_low)
-
-    def _stays_low(
-        self, marks: VehicleMarks, here: tuple[float, float, float], is_low: bool
-    ) -> bool:
-        """Whether it may be low now: what is low already may climb, above where it came down."""
-        truth = self.scene.truth
-        if here[2] - truth.ground.height_m(here[0], here[1]) >= truth.least_height_m:
-            marks.low_at_m = None
-            return is_low
-        if is_low:
-            marks.low_at_m = here[:2]
-            return True
-        low = marks.low_at_m
-        return low is not None and hypot(here[0] - low[0], here[1] - low[1]) <= NEAR_HOME_M
 
     def _check_ages(self, station: Station, now_s: float) -> None:
         for serial, vehicle in station.fleet.vehicles.items():
@@ -447,12 +275,12 @@ class ClosedLoopRun:
             delay_s = self.links.delay_s(serial)
             found = self.ages.shown(serial, now_s, where, age_s, delay_s)
             if found is not None:
-                self._found(found)
+                self.book.found(found)
 
     def _check_alarms(self, station: Station, now_s: float) -> None:
-        if self._died_s is not None or now_s - self.station_marks.started_s < 12.0:
+        if self._died_s is not None or now_s - self.book.station_marks.started_s < 12.0:
             return
-        waiting = {k: v for k, v in self._episodes.items() if k not in self._alarmed}
+        waiting = {k: v for k, v in self.book.episodes.items() if k not in self.book.alarmed}
         if not waiting:
             return
         alarms = {
@@ -466,16 +294,16 @@ class ClosedLoopRun:
                 continue  # it is over, or interrupted
             found = missing_alarm(violation.breach, lasted_s, alarms)
             if found is not None:
-                self._alarmed.add(key)
-                self._found(found)
+                self.book.alarmed.add(key)
+                self.book.found(found)
 
     def _note_alarms(self, station: Station) -> None:
         for number, alarm in station.alarms.alarms.items():
             if number not in self._alarm_ids:
                 self._alarm_ids.add(number)
-                self.note(alarm.condition.serial or "", f"ALARM {alarm.condition.text[:200]}")
+                self.book.note(alarm.condition.serial or "", f"ALARM {alarm.condition.text[:200]}")
                 if alarm.condition.rule == CODE_FAULT:
-                    self._found(
+                    self.book.found(
                         Breach("code fault", (), alarm.condition.key, 0.0, alarm.condition.text)
                     )
         battery = {
@@ -488,40 +316,6 @@ class ClosedLoopRun:
                 marks.battery_alarm_since_s = None
             elif marks.battery_alarm_since_s is None:
                 marks.battery_alarm_since_s = self.now_s
-
-    def _found(self, breach: Breach) -> None:
-        now_s = self.now_s
-        running = self._episodes.get(breach.key)
-        if running is not None:
-            running.until_s = now_s
-            if breach.size > running.worst_size:
-                running.worst, running.worst_size = breach.text, breach.size
-            return
-        marks = [self.marks[serial] for serial in breach.serials]
-        kind, why = classify(breach, marks, self.station_marks, now_s)
-        violation = Violation(
-            self.scene.seed,
-            now_s,
-            breach,
-            kind,
-            why,
-            self._story(breach.serials),
-            now_s,
-            breach.text,
-            breach.size,
-        )
-        self._episodes[breach.key] = violation
-        self.result.violations.append(violation)
-        if self.verbose:
-            print(
-                f"{now_s:8.2f} VIOLATION {kind.value}: {breach.kind} {breach.serials}"
-                f" {breach.text}; {why}",
-                flush=True,
-            )
-
-    def _story(self, serials: tuple[str, ...]) -> list[str]:
-        lines = [item for item in self.log if item[1] in (*serials, "")]
-        return [f"{at_s:.1f} {who} {text}"[:200] for at_s, who, text in lines[-STORY_LINES:]]
 
 
 def fly(seconds: float, seed: int) -> RunResult:

@@ -2,7 +2,8 @@
 
 import pytest
 from studies.closed_loop.marks import ViolationClass
-from studies.closed_loop.run import ClosedLoopRun, RunResult
+from studies.closed_loop.run import ClosedLoopRun
+from studies.closed_loop.violations import RunResult
 
 from recon.model.command import Command, Hover, Nudge, Refusal
 from recon.model.event import PacketReceived
