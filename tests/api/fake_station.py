@@ -71,9 +71,17 @@ class FakeStation:
         takeoff: bool,
         issued_by: str,
         owner: str | None = None,
+        given_at_ns: int | None = None,
     ) -> OrderResponse:
         self.asked.append((serials, body, takeoff))
-        return self.service.order(serials, body, takeoff=takeoff, issued_by=issued_by, owner=owner)
+        return self.service.order(
+            serials,
+            body,
+            takeoff=takeoff,
+            issued_by=issued_by,
+            owner=owner,
+            given_at_ns=given_at_ns,
+        )
 
     def check(
         self,
@@ -83,8 +91,16 @@ class FakeStation:
         takeoff: bool,
         issued_by: str,
         owner: str | None = None,
+        given_at_ns: int | None = None,
     ) -> OrderResponse:
-        return self.service.check(serials, body, takeoff=takeoff, issued_by=issued_by, owner=owner)
+        return self.service.check(
+            serials,
+            body,
+            takeoff=takeoff,
+            issued_by=issued_by,
+            owner=owner,
+            given_at_ns=given_at_ns,
+        )
 
     def audit(self, after: int, at_most: int) -> AuditPage:
         return self.service.audit(after, at_most)
@@ -97,6 +113,9 @@ class FakeStation:
 
     def all_stop(self, issued_by: str) -> OrderResponse:
         return self.service.all_stop(issued_by)
+
+    def release_stop(self, serials: list[str] | None, by: str) -> ActionResponse:
+        return self.service.release_stop(serials, by)
 
     def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
         return self.service.fleet_return(serials, issued_by)

@@ -225,6 +225,26 @@ class TestOrders:
     def test_all_stop_without_vehicles(self, client: Client) -> None:
         assert client.post("/api/all-stop").json() == {"results": []}
 
+    def test_an_all_stop_is_released_by_a_request_of_its_own(self, client: Client) -> None:
+        client.post("/api/all-stop")
+        assert client.get("/api/state").json()["stop_latch"]["released"] == []
+        assert client.post("/api/all-stop/release", json={}).status_code == 422
+        asked = client.post("/api/all-stop/release", json={"serials": ["X"]}).json()
+        assert (asked["accepted"], asked["rule"]) == (False, "stop_latch")
+        assert client.post("/api/all-stop/release", json={"serials": None}).json()["accepted"]
+        assert client.get("/api/state").json()["stop_latch"] is None
+
+    @pytest.mark.parametrize("given", [-1, 2**53 + 1, "yesterday", 1.5])
+    def test_a_time_that_is_none_is_refused(self, client: Client, given: object) -> None:
+        assert (
+            client.post("/api/orders", json=HOVER | {"given_at_unix_ms": given}).status_code == 422
+        )
+
+    def test_the_time_at_which_an_order_was_given_is_taken(self, client: Client) -> None:
+        late = HOVER | {"takeoff": True, "given_at_unix_ms": 0}
+        (answer,) = client.post("/api/orders", json=late).json()["results"]
+        assert answer["rule"] == "reachable"
+
     @pytest.mark.parametrize("alarm_id", ["7", "-1", "9" * 40])
     def test_an_alarm_that_is_not_there(self, client: Client, alarm_id: str) -> None:
         response = client.post(f"/api/alarms/{alarm_id}/acknowledge")

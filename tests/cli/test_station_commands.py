@@ -53,6 +53,22 @@ class TestOnTheGround:
         stopped = station.recon("all-stop")
         assert stopped.code == 0
         assert stopped.out.count(": on the ground, nothing sent") == 2
+        assert station.recon("release-stop", "--all").code == 0
+
+    def test_an_all_stop_stays_in_force_until_it_is_released(
+        self, station: StationProcess, mission: Path
+    ) -> None:
+        assert station.recon("all-stop").code == 0
+        assert "ALL STOP by api 127.0.0.1" in station.recon("status").out
+        refused = station.recon("fly", "SIM-1", mission, "--takeoff", "--dry-run")
+        assert "would be refused (stop_latch): " in refused.out
+        assert station.recon("release-stop").code == 2
+        assert station.recon("release-stop", "SIM-1").code == 0
+        assert "released: SIM-1;" in station.recon("status").out
+        assert station.recon("release-stop", "--all").code == 0
+        assert "ALL STOP" not in station.recon("status").out
+        again = station.recon("release-stop", "--all")
+        assert (again.code, "refused (stop_latch)" in again.out) == (1, True)
 
     def test_a_dry_run_prints_the_refusal_and_sends_nothing(
         self, station: StationProcess, mission: Path

@@ -170,7 +170,7 @@ def header(**changes: object) -> bytes:
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        (header(version=2), "format version 2; this station reads version 1"),
+        (header(version=3), "format version 3; this station reads versions 1 to 2"),
         (header(format="recon-audit"), "not a recovery snapshot"),
         (header(bytes=MAX_BYTES + 1), "the header announces 33554433"),
         (header(bytes=-1), "header is damaged"),

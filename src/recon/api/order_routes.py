@@ -49,6 +49,7 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
             takeoff=asked.takeoff,
             issued_by=client_name(request),
             owner=asked.owner,
+            given_at_ns=_given_at_ns(asked),
         )
 
     @app.post("/api/orders/check")
@@ -60,12 +61,23 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
             takeoff=asked.takeoff,
             issued_by=client_name(request),
             owner=asked.owner,
+            given_at_ns=_given_at_ns(asked),
         )
 
     @app.post("/api/all-stop")
     async def all_stop(request: Request) -> schema.OrderResponse:
-        """Hold every vehicle in flight, identified or not. Never stops motors."""
+        """Hold every vehicle in flight, identified or not. Never stops motors.
+
+        Until released, no order sets a vehicle in motion, not one by guidance either.
+        """
         return port.all_stop(client_name(request))
+
+    @app.post("/api/all-stop/release")
+    async def release_stop(
+        asked: schema.StopReleaseRequest, request: Request
+    ) -> schema.ActionResponse:
+        """Release vehicles from the all stop. Nothing is sent to them, and nothing resumes."""
+        return port.release_stop(asked.serials, client_name(request))
 
     @app.post("/api/fleet-return")
     async def fleet_return(
@@ -133,6 +145,10 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
         Reason and client are written to the audit.
         """
         return port.override_preflight(serial, asked.reason, client_name(request))
+
+
+def _given_at_ns(asked: schema.OrderRequest) -> int | None:
+    return None if asked.given_at_unix_ms is None else asked.given_at_unix_ms * 1_000_000
 
 
 def to_body(order: schema.AnyOrder) -> Body:

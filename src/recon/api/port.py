@@ -46,10 +46,12 @@ class StationPort(Protocol):
         takeoff: bool,
         issued_by: str,
         owner: str | None = None,
+        given_at_ns: int | None = None,
     ) -> OrderResponse:
         """Give one order to each named vehicle; refusals are results, not errors.
 
-        `owner` names the open stream that a steered order depends on.
+        `owner` names the open stream that a steered order depends on; `given_at_ns` is when its
+        person gave it, in station time.
         """
 
     def check(
@@ -60,6 +62,7 @@ class StationPort(Protocol):
         takeoff: bool,
         issued_by: str,
         owner: str | None = None,
+        given_at_ns: int | None = None,
     ) -> OrderResponse:
         """Return what `order` would answer now, without giving it."""
 
@@ -70,7 +73,10 @@ class StationPort(Protocol):
         """Report that it has closed or is silent: its steered orders end."""
 
     def all_stop(self, issued_by: str) -> OrderResponse:
-        """Hold every link whose telemetry shows flight, identified or not."""
+        """Hold every link that may be in flight, identified or not; latched until released."""
+
+    def release_stop(self, serials: list[str] | None, by: str) -> ActionResponse:
+        """Release vehicles from the all stop in force; None: all."""
 
     def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
         """Return vehicles home in layers; None: every vehicle that is or may be in flight.

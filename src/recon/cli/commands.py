@@ -33,6 +33,9 @@ COMMANDS = {
         "stop_commands:all_stop_command",
         "Hold every vehicle in the air, identified or not. Never stops motors.",
     ),
+    "release-stop": CommandSource(
+        "stop_commands:release_stop_command", "Release vehicles from an all stop."
+    ),
     "hold": CommandSource("stop_commands:hold_command", "Stop vehicles and hold position."),
     "land": CommandSource("stop_commands:land_command", "Land vehicles where they are."),
     "return": CommandSource(

@@ -14,7 +14,7 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import print_json, print_line, print_table
-from recon.client import AlarmStatus, OrderStatus, Station, Telemetry
+from recon.client import AlarmStatus, OrderStatus, Station, StopLatchStatus, Telemetry
 
 
 def status_command(
@@ -31,11 +31,22 @@ def status_command(
             return DONE
         columns = ("vehicle", "serial", "telemetry", "state", "mode", "height", "speed", "battery")
         print_table("vehicles", columns, [_vehicle_row(vehicle) for vehicle in vehicles])
+        latch = await station.stop_in_force()
+        if latch is not None:
+            print_line(_in_force(latch))
         active = sum(alarm.is_active for alarm in alarms)
         print_line(f"{len(vehicles)} vehicles, {active} active alarms")
         return DONE
 
     run_at_station(address, token_file, work)
+
+
+def _in_force(latch: StopLatchStatus) -> str:
+    released = ", ".join(latch.released) or "none"
+    return (
+        f"ALL STOP by {latch.by} {latch.age_s:.0f} s ago: nothing moves a vehicle; released: "
+        f"{released}; end it with recon release-stop"
+    )
 
 
 def alarms_command(

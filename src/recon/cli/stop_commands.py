@@ -1,4 +1,7 @@
-"""`recon hold`, `land`, `return`, `all-stop`: always allowed for a vehicle in the air."""
+"""`recon hold`, `land`, `return`, `all-stop`: always allowed for a vehicle in the air.
+
+`release-stop` ends what an all stop leaves behind: until then nothing moves a vehicle.
+"""
 
 import asyncio
 import time
@@ -10,6 +13,8 @@ import typer
 
 from recon.cli.connection import (
     DEFAULT_ADDRESS,
+    DONE,
+    REFUSED,
     AddressOption,
     JsonOption,
     NamesArgument,
@@ -20,7 +25,7 @@ from recon.cli.connection import (
     read_token,
     run_at_station,
 )
-from recon.cli.output import Outcome, await_outcomes, print_outcomes
+from recon.cli.output import Outcome, await_outcomes, print_line, print_outcomes
 from recon.client import ClientError, FleetCommands, OrderStatus, Station, StopAnswer, VehicleAnswer
 
 CONFIRMATION_TIMEOUT_S = 15.0
@@ -80,9 +85,40 @@ def all_stop_command(
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Hold every vehicle in the air, identified or not. Never stops motors."""
+    """Hold every vehicle in the air, identified or not. Never stops motors.
+
+    It stays in force: nothing moves a vehicle until `recon release-stop`.
+    """
     outcomes = asyncio.run(_all_stop(Station(address, read_token(token_file)), wait))
     raise typer.Exit(print_outcomes(outcomes, as_json))
+
+
+def release_stop_command(
+    vehicles: NamesArgument = None,
+    all_vehicles: Annotated[
+        bool, typer.Option("--all", help="Every vehicle, also those that connect later.")
+    ] = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Release vehicles from an all stop.
+
+    Nothing is sent to them, and nothing resumes by itself.
+    """
+    if bool(vehicles) is all_vehicles:
+        raise VehicleNameError("Name the vehicles or use --all")
+
+    async def work(station: Station) -> int:
+        serials = None if all_vehicles else named_serials(station, vehicles)
+        refusal = await station.release_stop(serials)
+        which = "every vehicle" if serials is None else ", ".join(serials)
+        if refusal is not None:
+            print_line(f"{which}: refused ({refusal.rule}): {refusal.reason}")
+            return REFUSED
+        print_line(f"{which}: released from the all stop (audited); nothing was sent")
+        return DONE
+
+    run_at_station(address, token_file, work)
 
 
 def _order(

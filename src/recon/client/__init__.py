@@ -25,6 +25,7 @@ from recon.client.messages import (
     PreflightOverride,
     PreflightPoint,
     StopAnswer,
+    StopLatchStatus,
     VehicleReturn,
 )
 from recon.client.order import Order, VehicleAnswer
@@ -72,6 +73,7 @@ __all__ = [
     "StationUnreachableError",
     "StickFrame",
     "StopAnswer",
+    "StopLatchStatus",
     "SurveyCommands",
     "SurveyProgress",
     "SurveyStatus",

@@ -197,6 +197,14 @@ class StationMessage(msgspec.Struct, frozen=True):
     uptime_s: float
 
 
+class StopLatchStatus(msgspec.Struct, frozen=True):
+    """The all stop in force: by whom, how long ago in seconds, and the serials released since."""
+
+    by: str
+    age_s: float
+    released: tuple[str, ...]
+
+
 class StateMessage(msgspec.Struct, frozen=True):
     """The complete state at `time_ns` (station time, nanoseconds)."""
 
@@ -206,6 +214,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     commands: tuple[OrderStatus, ...]
     alarms: tuple[AlarmStatus, ...]
     fleet_return: FleetReturnMessage | None = None
+    stop_latch: StopLatchStatus | None = None
 
     @property
     def run_started_ns(self) -> int:

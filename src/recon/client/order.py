@@ -11,7 +11,13 @@ from recon.client.errors import (
     OrderInvalidError,
     WaitTimeoutError,
 )
-from recon.client.messages import OrderMessage, OrderStatus, ReceivedState, ResultMessage
+from recon.client.messages import (
+    AnswerMessage,
+    OrderMessage,
+    OrderStatus,
+    ReceivedState,
+    ResultMessage,
+)
 from recon.model.command import (
     BODY_NAMES,
     STEERED_BODIES,
@@ -188,6 +194,14 @@ class OrderApi:
         """Hold all flying vehicles."""
         return await self._send_to_fleet("/api/all-stop", None, "results of an all stop")
 
+    async def release_stop(self, serials: Sequence[str] | None) -> Refusal | None:
+        """Release vehicles from the all stop in force; None: all."""
+        request = {"serials": None if serials is None else list(serials)}
+        answer = await self.http.post(
+            "/api/all-stop/release", request, AnswerMessage, "an answer to a release"
+        )
+        return answer.refusal
+
     async def fleet_return(self, serials: Sequence[str] | None) -> tuple[VehicleAnswer, ...]:
         """Start a return in layers; None means all vehicles that fly or may fly."""
         request = {"serials": None if serials is None else list(serials)}
@@ -206,8 +220,24 @@ class OrderApi:
         order = order_json(body)
         if isinstance(order, Refusal):
             return order
-        request = {"serials": list(serials), "order": order, "takeoff": takeoff}
+        request = {
+            "serials": list(serials),
+            "order": order,
+            "takeoff": takeoff,
+            "given_at_unix_ms": self._station_time_ms(),
+        }
         return {**request, "owner": self._owner()} if isinstance(body, STEERED_BODIES) else request
+
+    def _station_time_ms(self) -> int | None:
+        """Return the station's time now, by its newest state; None without one.
+
+        An order to move that arrives long after this is refused. No two clocks are compared: it is
+        the station's own, counted on.
+        """
+        state = self.stream.newest
+        if state is None:
+            return None
+        return round(state.message.time_ns / 1e6 + self.stream.age_s(state) * 1e3)
 
     def _run_started_ns(self) -> int:
         """Start of the station's run before the order was sent: command ids belong to a run."""

@@ -11,6 +11,7 @@ from recon.client.messages import (
     OrderStatus,
     StateMessage,
     StopAnswer,
+    StopLatchStatus,
     StopMessage,
     VehicleReturn,
 )
@@ -18,7 +19,7 @@ from recon.client.order import OrderApi, VehicleAnswer
 from recon.client.surveys import SurveyCommands
 from recon.client.telemetry import Telemetry
 from recon.client.vehicle import Vehicle
-from recon.model.command import Body, Hover, LandNow, ReturnHome
+from recon.model.command import Body, Hover, LandNow, Refusal, ReturnHome
 
 OPEN_WITHIN_S = 5.0
 
@@ -102,8 +103,22 @@ class Station:
         return tuple(vehicle.older_by(age_s) for vehicle in state.message.vehicles)
 
     async def all_stop(self) -> tuple[VehicleAnswer, ...]:
-        """Hold all flying vehicles, identified or not. Never stops motors."""
+        """Hold all flying vehicles, identified or not. Never stops motors.
+
+        Until `release_stop` the station sends nothing that moves a vehicle.
+        """
         return await self._order_api.all_stop()
+
+    async def release_stop(self, serials: Sequence[str] | None = None) -> Refusal | None:
+        """Release vehicles from the all stop in force, or all; None on success.
+
+        Nothing is sent to them, and nothing resumes: order what they are to do.
+        """
+        return await self._order_api.release_stop(serials)
+
+    async def stop_in_force(self) -> StopLatchStatus | None:
+        """Return the all stop in force; None without one."""
+        return (await self._state()).stop_latch
 
     async def all_stop_at_once(self) -> tuple[StopAnswer, ...]:
         """Hold all flying vehicles with a single request.

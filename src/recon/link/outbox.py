@@ -80,10 +80,10 @@ class Outbox:
                 return self._lanes.pop(lane)
         return None
 
-    def withdraw(self, lane: Lane, reason: str) -> list[CommandDropped]:
-        """Remove and return the order of one lane."""
-        old = self._lanes.pop(lane, None)
-        return [] if old is None else [self._dropped(old, Phase.SUPERSEDED, reason)]
+    def withdraw_motion(self, reason: str) -> list[CommandDropped]:
+        """Remove and return every order that may move the vehicle, a takeoff by hover too."""
+        moving = [lane for lane, approved in self._lanes.items() if approved.command.moves]
+        return [self._dropped(self._lanes.pop(each), Phase.SUPERSEDED, reason) for each in moving]
 
     def empty_out(self, reason: str) -> list[CommandDropped]:
         """Remove everything: nothing is sent again automatically after a reconnect."""

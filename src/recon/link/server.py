@@ -17,10 +17,11 @@ from contextlib import contextmanager
 from typing import Any, cast
 
 from recon.link.capture import Capture, Direction
-from recon.link.session import Session
+from recon.link.session import Objection, Session, no_objection
 from recon.link.settings import MIB, LinkSettings
 from recon.model.errors import describe_fault
 from recon.model.event import (
+    CommandDropped,
     Event,
     LinkClosed,
     LinkLimitReached,
@@ -51,6 +52,8 @@ class LinkServer:
         self.now_ns = now_ns
         self.settings = settings
         self.capture = capture
+        self.objection: Objection = no_objection
+        """Judges an order again at the moment of sending."""
         self.connections: dict[int, Connection] = {}
         self.refused_connections = 0
         self.ended: dict[int, Session] = {}
@@ -356,9 +359,12 @@ class Connection(asyncio.BufferedProtocol):
         """Write packets that may go, each by itself, while the socket takes them."""
         while self.session is not None and self._transport is not None and self._is_clear():
             now_ns = self.server.now_ns()
-            outgoing = self.session.next_packet(now_ns)
+            outgoing = self.session.next_packet(now_ns, self.server.objection)
             if outgoing is None:
                 return
+            if isinstance(outgoing, CommandDropped):
+                self.server.handle(outgoing)
+                continue
             self._transport.write(outgoing.data)
             self._record(Direction.TO_APP, outgoing.data, now_ns)
             self.server.handle(outgoing.event)

@@ -21,13 +21,14 @@ read. The waits for the rest of a packet count only time in which the station co
 reports in `tick` whether unread bytes wait, and a long time between two calls is left out.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from recon import wire
 from recon.link.acks import AckBook
 from recon.link.outbox import Lane, Outbox
 from recon.link.settings import LinkSettings
-from recon.model.command import FlyMission, VirtualStick
+from recon.model.command import FlyMission, Phase, VirtualStick
 from recon.model.event import CommandDropped, CommandSent, Event, PacketReceived
 from recon.model.report import AckReport, CoreReport, ExtendedReport
 from recon.model.units import seconds_to_ns
@@ -42,6 +43,15 @@ class Outgoing:
 
     data: bytes
     event: CommandSent
+
+
+Objection = Callable[[ApprovedCommand], str | None]
+"""Why an approved order may not be sent at this moment; None: it may."""
+
+
+def no_objection(_approved: ApprovedCommand) -> str | None:
+    """Let every approved order go."""
+    return None
 
 
 class Session:
@@ -176,15 +186,23 @@ class Session:
         return self._outbox.put(approved)
 
     def withdraw_motion(self, reason: str) -> list[CommandDropped]:
-        """Drop the unsent mission or stick; what was sent cannot be withdrawn."""
-        return self._outbox.withdraw(Lane.MOTION, reason)
+        """Drop the unsent mission, stick or takeoff; what was sent cannot be withdrawn."""
+        return self._outbox.withdraw_motion(reason)
 
-    def next_packet(self, now_ns: int) -> Outgoing | None:
-        """Return the next packet that may be written now; call only while the socket is clear."""
+    def next_packet(
+        self, now_ns: int, objection: Objection = no_objection
+    ) -> Outgoing | CommandDropped | None:
+        """Return the next packet that may be written now; call only while the socket is clear.
+
+        `objection` judges the order again at this moment; with one, the order is dropped instead.
+        """
         approved = self._outbox.take(lambda lane, waiting: self._may_go(lane, waiting, now_ns))
         if approved is None:
             return None
         command = approved.command
+        why_not = objection(approved)
+        if why_not is not None:
+            return CommandDropped(self.link_id, command.id, Phase.REFUSED_BY_STATION, why_not)
         self.acks.sent(answered_kind(command.body), command.id, now_ns)
         self._last_sent_at_ns = now_ns
         self._last_was_stick = isinstance(command.body, VirtualStick)

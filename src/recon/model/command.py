@@ -127,7 +127,8 @@ class Command:
     """One order to one vehicle, or (all stop only) to one link without a serial.
 
     `takeoff` explicitly allows the vehicle to leave the ground. `role` is the role of the
-    client: only the authority holder may set the vehicle in motion.
+    client: only the authority holder may set the vehicle in motion. `given_at_ns` is when its
+    person gave it, None if not stated; `issued_at_ns` when it reached the station.
     """
 
     id: int
@@ -139,6 +140,7 @@ class Command:
     link_id: int | None = None
     takeoff: bool = False
     role: AuthorityHolder = AuthorityHolder.OPERATOR
+    given_at_ns: int | None = None
 
     @property
     def name(self) -> str:

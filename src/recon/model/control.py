@@ -31,6 +31,22 @@ class ControlAuthority:
     reason: str = "not yet transferred"
 
 
+@dataclass(frozen=True, slots=True)
+class StopLatch:
+    """An all stop in force: nothing sets a vehicle in motion until a person releases it.
+
+    It holds vehicles that connect later too. `released` are the serials released since.
+    """
+
+    by: str
+    at_ns: int
+    released: frozenset[str] = frozenset()
+
+    def holds(self, serial: str | None) -> bool:
+        """Whether a vehicle is latched; a link without a serial always is."""
+        return serial is None or serial not in self.released
+
+
 class Commanded(Enum):
     """The state a vehicle was commanded into."""
 

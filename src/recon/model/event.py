@@ -90,7 +90,8 @@ class OperatorOrder:
     """One order for one vehicle, or for one link without a serial.
 
     `command_id` is chosen by the client, to match the answer. `owner` names the API stream whose
-    end stops a setpoint stream; None for orders that do not depend on a connection.
+    end stops a setpoint stream; None for orders that do not depend on a connection. `given_at_ns`
+    is when its person gave it, in station time; None if not stated.
     """
 
     command_id: int
@@ -101,6 +102,7 @@ class OperatorOrder:
     takeoff: bool = False
     role: AuthorityHolder = AuthorityHolder.OPERATOR
     owner: str | None = None
+    given_at_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +111,21 @@ class AuthorityTaken:
 
     serial: str
     holder: AuthorityHolder
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class AllStopped:
+    """A person stopped every vehicle. It stays in force until released; the holds are orders."""
+
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class StopReleased:
+    """A person releases vehicles from an all stop; `serials` None releases all."""
+
+    serials: tuple[str, ...] | None
     by: str
 
 
@@ -251,6 +268,8 @@ Event = (
     | SetpointsDue
     | OperatorOrder
     | AuthorityTaken
+    | AllStopped
+    | StopReleased
     | OwnerConnected
     | OwnerDisconnected
     | ClockRead

@@ -1,6 +1,6 @@
 """The file of the recovery snapshot: a checksummed payload, replaced as a whole.
 
-    {"format":"recon-snapshot","version":1,"bytes":2210,"sha256":"9f86..."}
+    {"format":"recon-snapshot","version":2,"bytes":2210,"sha256":"9f86..."}
     <payload of that many bytes>
 
 A write goes to a temporary file in the same folder, which is synced. Then the current file becomes
@@ -22,8 +22,10 @@ CURRENT = "recon-snapshot.json"
 PREVIOUS = "recon-snapshot.previous.json"
 TEMPORARY = "recon-snapshot.tmp"
 FORMAT = "recon-snapshot"
-VERSION = 1
-"""Grows when an older station could not read a newer snapshot's payload."""
+VERSION = 2
+"""Grows when an older station could not read a newer snapshot's payload, or would lose what it must
+not: 2 added the latch of an all stop."""
+READABLE_VERSIONS = (1, VERSION)
 
 MAX_BYTES = 32 * 1024 * 1024
 """200 missions of the longest kind are 4 MiB."""
@@ -116,10 +118,10 @@ def _header(line: bytes) -> _Header:
         raise ValueError("its header is damaged") from problem
     if header.format != FORMAT:
         raise ValueError("it is not a recovery snapshot")
-    if header.version != VERSION:
+    if header.version not in READABLE_VERSIONS:
         raise ValueError(
-            f"format version {header.version}; this station reads version {VERSION}: start the "
-            "station version that wrote it"
+            f"format version {header.version}; this station reads versions 1 to {VERSION}: start "
+            "the station version that wrote it"
         )
     if header.bytes > MAX_BYTES:
         raise ValueError(f"expected up to {MAX_BYTES} bytes, the header announces {header.bytes}")

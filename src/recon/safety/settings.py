@@ -102,6 +102,20 @@ class EnergySettings:
 
 
 @dataclass(frozen=True, slots=True)
+class BlindStopSettings:
+    """When a hover is sent although telemetry is stale."""
+
+    fastest_descent_mps: float = 10.0
+    """The fastest of DJI's aircraft that fly missions sinks at 9 m/s; one more for the air."""
+
+    height_error_m: float = 5.0
+    """A barometer's error, and what stands or grows on the ground."""
+
+    fastest_mps: float = 25.0
+    """How far it may have come over higher ground: in strong wind none is faster."""
+
+
+@dataclass(frozen=True, slots=True)
 class FenceSettings:
     """Beside what the site's own limits say."""
 
@@ -293,6 +307,14 @@ class WatchdogSettings:
 @dataclass(frozen=True, slots=True)
 class SafetySettings:
     """Limits of DJI's Mobile SDK 4 where no other reason is given."""
+
+    blind_stop: BlindStopSettings = field(default_factory=BlindStopSettings)
+
+    given_at_most_s: float = 5.0
+    """Later than this an order to move no longer fits what its person saw: as an order's expiry."""
+
+    clock_ahead_s: float = 2.0
+    """A client counts in the station's clock, or in one set by NTP: within a second or two."""
 
     fresh_telemetry_s: float = LATE_UNDER_S
     """Telemetry this old still tells whether a vehicle flies: running video causes dropouts of a

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from recon.model.command import Command
-from recon.model.control import ControlAuthority, Intent
+from recon.model.control import ControlAuthority, Intent, StopLatch
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
@@ -78,7 +78,8 @@ class Situation:
     `vehicle` is the state of the command's vehicle, or of the unidentified link it names; None when
     there is neither. `claiming_links` are its open links, its own first; more than one while its
     identity is unsettled. `stick_height_above_takeoff_m` is what its newest stick asked for.
-    `traffic` are the other vehicles in the air, lost ones included.
+    `traffic` are the other vehicles in the air, lost ones included. `stop_latch` is the all stop in
+    force.
     """
 
     now_ns: int
@@ -87,6 +88,7 @@ class Situation:
     settings: SafetySettings = SafetySettings()
     airspace: PreparedAirspace = OPEN_AIRSPACE
     authority: ControlAuthority = ControlAuthority()
+    stop_latch: StopLatch | None = None
     intent: Intent = Intent()
     stick_height_above_takeoff_m: float | None = None
     traffic: tuple[Traffic, ...] = ()

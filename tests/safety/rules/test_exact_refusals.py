@@ -35,7 +35,7 @@ from tests.safety.fenced import (
 from tests.safety.traffic import AIR, aircraft, at
 
 from recon.model.command import Body, Command, GoTo, Hover, Nudge, Refusal, StartCamera
-from recon.model.control import AuthorityHolder, ControlAuthority
+from recon.model.control import AuthorityHolder, ControlAuthority, StopLatch
 from recon.model.geo import LatLon
 from recon.model.units import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
@@ -126,6 +126,15 @@ ORDERS = [
         "Order expired 1.0 s ago; give it again if still wanted",
         late_s=1.0,
         max_s=0.0,
+    ),
+    case(
+        "stop_latch",
+        command(FAR),
+        replace(HERE, stop_latch=StopLatch("Ann", NOW - 3 * S)),
+        "A: stopped by the all stop of Ann 3 s ago; release its stop first. Hold, land and return "
+        "home are always accepted",
+        age_s=3.0,
+        by="Ann",
     ),
     case(
         "finite_numbers",

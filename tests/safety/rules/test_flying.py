@@ -58,7 +58,8 @@ class TestWithoutTakeoff:
     @pytest.mark.parametrize(("age_s", "is_open"), [(3.0, True), (3.000000001, False)])
     def test_telemetry_must_be_fresh(self, body: Body, age_s: float, is_open: bool) -> None:
         """An order to move is then still refused, by the younger age it needs itself."""
-        judged = flying(command(body), situation(vehicle(age_s=age_s)))
+        low = vehicle(age_s=age_s, height_above_takeoff_m=30.0)
+        judged = flying(command(body), situation(low))
         assert (judged is None) is is_open
 
     def test_it_is_not_sent_before_any_telemetry(self, body: Body) -> None:

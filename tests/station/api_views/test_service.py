@@ -78,6 +78,23 @@ class TestAllStop:
         assert result.accepted
         assert "waits for telemetry" in (result.reason or "")
 
+    def test_it_stays_in_force_until_a_person_releases_it(self, bench: Bench) -> None:
+        bench.open(1, extended(b"A"), core())
+        bench.service.all_stop("Ann")
+        bench.now_ns += 3 * NS_PER_S
+        bench.open(2, extended(b"B"), core())
+        latch = bench.state().stop_latch
+        assert latch is not None
+        assert (latch.by, latch.age_s, latch.released) == ("Ann", 3.0, [])
+        assert [v.is_stopped for v in bench.state().vehicles] == [True, True]
+        (refused,) = bench.service.order(["B"], mission(), takeoff=False, issued_by="t").results
+        assert refused.rule == "stop_latch"
+        assert bench.service.release_stop(["A"], "Bob").accepted
+        assert [v.is_stopped for v in bench.state().vehicles] == [False, True]
+        assert bench.service.release_stop(None, "Bob").accepted
+        assert bench.state().stop_latch is None
+        assert not bench.service.release_stop(None, "Bob").accepted
+
 
 class TestOrders:
     def test_results_carry_names_and_numbers(self, bench: Bench) -> None:
@@ -103,6 +120,19 @@ class TestOrders:
         ]
         (landed,) = bench.service.order(["A"], LandNow(), takeoff=False, issued_by="t").results
         assert (landed.repairs, landed.parts) == ([], 0)
+
+    def test_one_to_move_that_was_given_long_ago_is_refused_and_a_stop_is_not(
+        self, bench: Bench
+    ) -> None:
+        bench.open(1, extended(b"A"), core())
+        bench.now_ns += 30 * NS_PER_S
+        bench.hear(1, extended(b"A"), core())
+        given_ns = bench.now_ns - 25 * NS_PER_S
+        for body, rule in ((mission(), "not_expired"), (Hover(), None)):
+            (result,) = bench.service.order(
+                ["A"], body, takeoff=False, issued_by="t", given_at_ns=given_ns
+            ).results
+            assert result.rule == rule
 
     def test_numbers_are_never_given_twice(self, bench: Bench) -> None:
         ids = [

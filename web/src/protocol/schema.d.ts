@@ -36,8 +36,30 @@ export interface paths {
         /**
          * All Stop
          * @description Hold every vehicle in flight, identified or not. Never stops motors.
+         *
+         *     Until released, no order sets a vehicle in motion, not one by guidance either.
          */
         post: operations["all_stop_api_all_stop_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/all-stop/release": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Release Stop
+         * @description Release vehicles from the all stop. Nothing is sent to them, and nothing resumes.
+         */
+        post: operations["release_stop_api_all_stop_release_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1244,6 +1266,11 @@ export interface components {
          *     holds.
          */
         OrderRequest: {
+            /**
+             * Given At Unix Ms
+             * @description when its person gave the order, in the station's time (a state's `time_ns` and the time since then) or by a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
+             */
+            given_at_unix_ms?: number | null;
             /** Order */
             order: components["schemas"]["HoverOrder"] | components["schemas"]["LandOrder"] | components["schemas"]["ReturnHomeOrder"] | components["schemas"]["CameraStartOrder"] | components["schemas"]["CameraStopOrder"] | components["schemas"]["MissionOrder"] | components["schemas"]["StickOrder"] | components["schemas"]["GoToOrder"] | components["schemas"]["NudgeOrder"] | components["schemas"]["HoldPositionOrder"];
             /** Owner */
@@ -1569,6 +1596,7 @@ export interface components {
             shade: components["schemas"]["ShadeLineView"] | null;
             site: components["schemas"]["SiteView"] | null;
             station: components["schemas"]["StationView"];
+            stop_latch: components["schemas"]["StopLatchView"] | null;
             /** Surveys */
             surveys: components["schemas"]["SurveyView"][];
             /** Time Ns */
@@ -1656,6 +1684,29 @@ export interface components {
             velocity_y_mps: number;
             /** Yaw Deg */
             yaw_deg: number;
+        };
+        /**
+         * StopLatchView
+         * @description The all stop in force: nothing sets a vehicle in motion until a person releases it.
+         */
+        StopLatchView: {
+            /** Age S */
+            age_s: number;
+            /** By */
+            by: string;
+            /**
+             * Released
+             * @description serials released since; every other one is latched
+             */
+            released: string[];
+        };
+        /**
+         * StopReleaseRequest
+         * @description Vehicles to release from an all stop; null: all, also those that connect later.
+         */
+        StopReleaseRequest: {
+            /** Serials */
+            serials: string[] | null;
         };
         /**
          * SurveyBudgetRequest
@@ -2000,6 +2051,11 @@ export interface components {
             is_imager: boolean;
             /** Is Simulated */
             is_simulated: boolean;
+            /**
+             * Is Stopped
+             * @description held by an all stop: only hold, land and return are sent until it is released
+             */
+            is_stopped: boolean;
             /** Link Id */
             link_id: number | null;
             mission_id: components["schemas"]["AgedNumber"];
@@ -2139,6 +2195,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["OrderResponse"];
+                };
+            };
+        };
+    };
+    release_stop_api_all_stop_release_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StopReleaseRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ActionResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };

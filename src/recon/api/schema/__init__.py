@@ -30,6 +30,7 @@ from recon.api.schema.requests import (
     FleetReturnRequest,
     OrderRequest,
     PreflightOverrideRequest,
+    StopReleaseRequest,
     WaypointOrder,
 )
 from recon.api.schema.site import (
@@ -49,6 +50,7 @@ from recon.api.schema.station import (
     ReturningView,
     StationState,
     StationView,
+    StopLatchView,
 )
 from recon.api.schema.surveys import (
     SurveyBudgetRequest,
@@ -129,6 +131,8 @@ __all__ = [
     "StationState",
     "StationView",
     "SteeringView",
+    "StopLatchView",
+    "StopReleaseRequest",
     "StrictMessage",
     "SurveyBudgetRequest",
     "SurveyCameraRequest",

@@ -11,6 +11,14 @@ from recon.api.schema.surveys import SurveyView
 from recon.api.schema.vehicles import VehicleView
 
 
+class StopLatchView(Message):
+    """The all stop in force: nothing sets a vehicle in motion until a person releases it."""
+
+    by: str
+    age_s: float
+    released: list[str] = Field(description="serials released since; every other one is latched")
+
+
 class LinkView(Message):
     """One TCP connection of a companion app, with its error counters."""
 
@@ -85,6 +93,7 @@ class StationState(Message):
     links: list[LinkView]
     commands: list[CommandView]
     alarms: list[AlarmView]
+    stop_latch: StopLatchView | None
     ground_image: GroundImageView | None
     fleet_return: FleetReturnView | None
     shade: ShadeLineView | None

@@ -144,6 +144,9 @@ class VehicleView(Message):
     is_simulated: bool
     is_imager: bool
     authority: AuthorityView
+    is_stopped: bool = Field(
+        description="held by an all stop: only hold, land and return are sent until it is released"
+    )
     preflight_override: OverrideView | None
     steering: SteeringView | None
     staleness: StalenessName

@@ -24,6 +24,7 @@ from recon.safety.rules.preflight import preflight
 from recon.safety.rules.reachable import reachable
 from recon.safety.rules.separation import separation
 from recon.safety.rules.speed import speed
+from recon.safety.rules.stop_latch import stop_latch
 from recon.safety.situation import Situation
 
 Rule = Callable[[Command, Situation], Refusal | None]
@@ -34,6 +35,7 @@ RULES: tuple[Rule, ...] = (
     identified,
     not_expired,
     finite_numbers,
+    stop_latch,
     authority,
     dji_limits,
     altitude_reference,

@@ -1,6 +1,7 @@
 """An aircraft on the ground takes off only if the order includes takeoff.
 
-Apps in the field answer hover, return and missions on the ground with a takeoff.
+Apps in the field answer hover, return and missions on the ground with a takeoff. A hover goes out
+without fresh telemetry as long as the vehicle cannot have landed since the last report.
 """
 
 from recon.model.command import (
@@ -15,6 +16,7 @@ from recon.model.command import (
     VirtualStick,
 )
 from recon.model.vehicle import VehicleState
+from recon.safety.landing_time import cannot_have_landed
 from recon.safety.situation import ClaimingLink, Situation
 
 RULE = "flying"
@@ -24,6 +26,7 @@ _NEEDS_FLIGHT = (Hover, ReturnHome, FlyMission, VirtualStick, *STEERED_BODIES)
 def flying(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a moving order unless fresh telemetry shows flight, or the order includes takeoff.
 
+    A hover passes on older telemetry too, while a landing since then is physically impossible.
     Takeoff is accepted with hover, mission and stick only, and for a vehicle whose app reports
     whether it flies.
     """
@@ -33,6 +36,8 @@ def flying(command: Command, situation: Situation) -> Refusal | None:
     if vehicle is None or not isinstance(command.body, _NEEDS_FLIGHT):
         return None
     if any(_shows_flight(claiming_link, situation) for claiming_link in situation.claiming_links):
+        return None
+    if isinstance(command.body, Hover) and cannot_have_landed(situation):
         return None
     return _not_flying(vehicle, situation)
 

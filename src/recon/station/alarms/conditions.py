@@ -19,6 +19,7 @@ from collections.abc import Iterator
 from recon.fleet.settings import FleetSettings
 from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
+from recon.model.control import AuthorityHolder, Commanded
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
@@ -27,7 +28,7 @@ from recon.station.imaging import frames
 from recon.station.operations import OPERATIONS
 from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.orders import OrderRecord
+from recon.station.state.orders import OrderRecord, interrupted_mission
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
 from recon.station.state.steps import Stepped
@@ -58,6 +59,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from _landing(vehicle, station.settings.landing_wait_s)
         yield from _failsafe(station, vehicle)
         yield from _flight(vehicle, now_ns, station.settings)
+        yield from _resumed(station, vehicle)
     for link in station.fleet.unbound_links():
         yield from _not_taken(link, station.settings.fleet)
         yield from _unidentified(link, station.settings.serial_wait_s)
@@ -75,6 +77,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
         yield from operation.conditions(station)
     yield from _watchdogs(station)
     yield from frames.conditions(station)
+    yield from _stop_latch(station)
     yield from _audit(station)
     for limit, problem in station.link_limits.items():
         yield Condition(f"link_limit:{limit}", Severity.ERROR, "link_limit", "", problem)
@@ -175,6 +178,36 @@ def _flight(vehicle: VehicleState, now_ns: int, settings: StationSettings) -> It
         yield _about(vehicle, rule, severity, text, after_s)
 
 
+def _resumed(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
+    """A mission of the station that goes on after its pilot took over and let go."""
+    control = station.control(vehicle.serial)
+    is_pilots = control.authority.holder is AuthorityHolder.PILOT
+    if not is_pilots or vehicle.flight_mode.value is not FlightMode.GPS_WAYPOINT:
+        return
+    if vehicle.is_flying.value is not True or control.intent.commanded is not Commanded.NOTHING:
+        return
+    if interrupted_mission(station.orders, vehicle.serial or "") is not None:
+        text = (
+            "flies a mission again although its pilot took control: it resumed by itself; the "
+            "station does not control it: hold it, or let its pilot stop it"
+        )
+        yield _about(vehicle, "mission_resumed", Severity.CRITICAL, text)
+
+
+def _stop_latch(station: Station) -> Iterator[Condition]:
+    latch = station.stop_latch
+    if latch is None:
+        return
+    names = [v.display_name for v in station.fleet.vehicles.values() if latch.holds(v.serial)]
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    which = f"{', '.join(names[:MAX_NAMES])}{more}" if names else "vehicles that connect later"
+    text = (
+        f"all stop by {latch.by} in force for {which}: only hold, land and return are sent until a "
+        "person releases it"
+    )
+    yield Condition("all_stop", Severity.WARNING, "all_stop", "", text)
+
+
 def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:
     if link.claimed_serial is None and link.own_state.is_flying.value is True:
         text = f"in flight without a serial ({link.remote_address}): check its companion app"
@@ -215,7 +248,8 @@ def _lost_unidentified(name: str, state: VehicleState) -> Condition:
 
 
 def _waiting(record: OrderRecord) -> Iterator[Condition]:
-    if not record.waits_for_telemetry or record.phase is not Phase.QUEUED:
+    what = _waiting_for(record)
+    if what is None:
         return
     name = record.vehicle_name
     yield Condition(
@@ -223,13 +257,26 @@ def _waiting(record: OrderRecord) -> Iterator[Condition]:
         severity=Severity.CRITICAL,
         rule="stop_waits",
         vehicle_name=name,
-        text=(
-            f"{name}: stop not sent, no telemetry: it is sent when telemetry returns; use the "
-            "controller"
-        ),
+        text=f"{name}: {what}; use the controller",
         serial=record.command.serial,
         link_id=record.command.link_id,
     )
+
+
+def _waiting_for(record: OrderRecord) -> str | None:
+    """What a stop waits for that is not confirmed, and what the station does meanwhile."""
+    is_sent = record.phase in (Phase.SENT, Phase.ACKNOWLEDGED)
+    if record.phase is not Phase.QUEUED and not is_sent:
+        return None
+    if record.follows is not None:
+        what = "not confirmed" if is_sent else "not sent yet, it is on the ground"
+        order = record.follows
+        return f"stop {what}: it follows order {order} until telemetry shows it holding"
+    if not record.waits_for_telemetry:
+        return None
+    if is_sent:
+        return "stop sent without telemetry, not confirmed: it is sent again when telemetry returns"
+    return "stop not sent, no telemetry: it is sent when telemetry returns"
 
 
 def _of_order(record: OrderRecord) -> Iterator[Condition]:

@@ -12,6 +12,7 @@ from recon.model.command import Body, Hover, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AlarmAcknowledged,
+    AllStopped,
     AuthorityTaken,
     FleetReturnOrdered,
     HazardDismissed,
@@ -20,6 +21,7 @@ from recon.model.event import (
     OwnerDisconnected,
     PreflightOverridden,
     SeparationHoldSwitched,
+    StopReleased,
 )
 from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import ShadeMap, SunForecast
@@ -34,7 +36,7 @@ from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.api_views.vehicle_views import preflight_view
-from recon.station.control import authority, preflight
+from recon.station.control import authority, preflight, stop_latch
 from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
@@ -79,10 +81,19 @@ class Service:
         takeoff: bool,
         issued_by: str,
         owner: str | None = None,
+        given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
         """Give one order to each named vehicle, once each."""
         asked = [
-            OperatorOrder(self._ids(), body, issued_by, serial=serial, takeoff=takeoff, owner=owner)
+            OperatorOrder(
+                self._ids(),
+                body,
+                issued_by,
+                serial=serial,
+                takeoff=takeoff,
+                owner=owner,
+                given_at_ns=given_at_ns,
+            )
             for serial in dict.fromkeys(serials)
         ]
         return self._give(asked)
@@ -95,10 +106,19 @@ class Service:
         takeoff: bool,
         issued_by: str,
         owner: str | None = None,
+        given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
         """Return what `order` would answer now; nothing is given and nothing changes."""
         orders = [
-            OperatorOrder(DRY_RUN_ID, body, issued_by, serial=serial, takeoff=takeoff, owner=owner)
+            OperatorOrder(
+                DRY_RUN_ID,
+                body,
+                issued_by,
+                serial=serial,
+                takeoff=takeoff,
+                owner=owner,
+                given_at_ns=given_at_ns,
+            )
             for serial in dict.fromkeys(serials)
         ]
         station = self.driver.station
@@ -116,11 +136,12 @@ class Service:
         self.driver.handle(OwnerDisconnected(owner))
 
     def all_stop(self, issued_by: str) -> schema.OrderResponse:
-        """Hold every link whose telemetry shows flight, identified or not.
+        """Latch every vehicle, then hold every link that may be in flight, identified or not.
 
         Vehicles on the ground or without a connection are in the results with the gate's refusal:
         no vehicle that may be in flight is omitted.
         """
+        self.driver.handle(AllStopped(issued_by))
         fleet = self.driver.station.fleet
         serials = self._within_reach()
         links = [
@@ -133,6 +154,12 @@ class Service:
         orders = [OperatorOrder(self._ids(), Hover(), issued_by, serial=s) for s in serials]
         orders += [OperatorOrder(self._ids(), Hover(), issued_by, link_id=i) for i in links]
         return self._give(orders)
+
+    def release_stop(self, serials: list[str] | None, by: str) -> schema.ActionResponse:
+        """Release vehicles from the all stop in force; None: all."""
+        named = None if serials is None else tuple(dict.fromkeys(serials))
+        event = StopReleased(named, by)
+        return self._command(event, stop_latch.refusal(self.driver.station, event))
 
     def fleet_return(self, serials: list[str] | None, issued_by: str) -> schema.OrderResponse:
         """Return vehicles home in layers; None: every vehicle that is or may be in flight."""
@@ -232,7 +259,7 @@ class Service:
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
 
     def _command(
-        self, event: AuthorityTaken | PreflightOverridden, refusal: Refusal | None
+        self, event: AuthorityTaken | PreflightOverridden | StopReleased, refusal: Refusal | None
     ) -> schema.ActionResponse:
         """Handle an operator command, unless it is refused."""
         if refusal is not None:

@@ -8,6 +8,7 @@ from typing import Any
 from recon.api import schema
 from recon.fleet.state import Fleet, LinkRecord, staleness
 from recon.link.session import Session
+from recon.model.control import StopLatch
 from recon.model.imagery import Frame
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
@@ -47,11 +48,20 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         links=[_link(station.fleet, r, around, now_ns) for r in station.fleet.links.values()],
         commands=_commands(station, now_ns),
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
+        stop_latch=_stop_latch(station.stop_latch, now_ns),
         ground_image=ground_image_view(station, now_ns),
         fleet_return=fleet_return_view(station, now_ns),
         shade=shade_view(station, now_ns),
         surveys=survey_views(station, now_ns),
     )
+
+
+def _stop_latch(latch: StopLatch | None, now_ns: int) -> schema.StopLatchView | None:
+    if latch is None:
+        return None
+    # After a restart the clock may be behind that of the last run.
+    age_s = max(0.0, ns_to_seconds(now_ns - latch.at_ns))
+    return schema.StopLatchView(by=latch.by, age_s=age_s, released=sorted(latch.released))
 
 
 def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
@@ -92,6 +102,7 @@ def _vehicle(
         is_simulated=vehicle.is_simulated,
         is_imager=vehicle.serial is not None and vehicle.serial == station.imaging.imager_serial,
         authority=authority_view(station, vehicle.serial, now_ns),
+        is_stopped=station.is_stopped(vehicle.serial),
         preflight_override=override_view(station, vehicle.serial, now_ns),
         steering=steering_view(station, vehicle.serial),
         staleness=staleness(vehicle, now_ns).value,

@@ -18,6 +18,7 @@ from typing import Any
 from recon.model.command import Refusal
 from recon.model.event import (
     AlarmAcknowledged,
+    AllStopped,
     AuditFailed,
     AuthorityTaken,
     Event,
@@ -25,6 +26,7 @@ from recon.model.event import (
     LinkLimitReached,
     PreflightOverridden,
     SeparationHoldSwitched,
+    StopReleased,
     Tick,
 )
 from recon.record.audit import AuditEntry
@@ -32,7 +34,7 @@ from recon.station.audit.alarm_entries import AlarmsLogged, acknowledged_entry, 
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
-from recon.station.control import authority, preflight
+from recon.station.control import authority, preflight, stop_latch
 from recon.station.operations import OPERATIONS
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import VehicleControl
@@ -88,6 +90,11 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
             yield from _refused(after, "authority", authority.refusal(before, event), by, serial)
         case PreflightOverridden(serial=serial, by=by):
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
+        case AllStopped(by):
+            text = "all stop: nothing moves a vehicle until a person releases it"
+            yield AuditEntry("all_stop.latched", text, by)
+        case StopReleased():
+            yield _released(before, event)
         case HazardDismissed(serial, by):
             name = known_traffic.lost_key(before, serial) or serial
             yield _about(before, "hazard.dismissed", "hazard area dismissed", by, name)
@@ -102,6 +109,19 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
             text = problem or f"link server: limit of {limit} no longer reached"
             details = {"limit": limit, "is_reached": problem is not None}
             yield AuditEntry("link.limit", text, details=details)
+
+
+def _released(before: Station, event: StopReleased) -> AuditEntry:
+    refusal = stop_latch.refusal(before, event)
+    if refusal is not None:
+        details: dict[str, Any] = {"rule": refusal.rule, "reason": refusal.reason}
+        return AuditEntry(
+            "all_stop.refused", f"refused: {refusal.reason}", event.by, None, "", details
+        )
+    serials = None if event.serials is None else list(event.serials)
+    which = "every vehicle" if serials is None else ", ".join(serials)
+    text = f"all stop released for {which}"
+    return AuditEntry("all_stop.released", text, event.by, details={"serials": serials})
 
 
 def _refused(

@@ -1,8 +1,9 @@
 """Who may set each vehicle in motion. The only writer of `VehicleControl.authority`.
 
 Taking over is explicit, and the pilot at the remote control always has priority. Nothing here
-sends anything to a vehicle. What a vehicle was commanded to do goes on until its new holder orders
-something else, but setpoint streams end at once (`stream_ends` compares the holder at each packet).
+sends anything to a vehicle, and what waits unsent is withdrawn. What a vehicle was commanded to do
+goes on until its new holder orders something else, but setpoint streams end at once (`stream_ends`
+compares the holder at each packet).
 """
 
 from dataclasses import replace
@@ -12,10 +13,11 @@ from recon.model.command import Command, Phase, Refusal
 from recon.model.control import AuthorityHolder, ControlAuthority, Intent
 from recon.model.event import AuthorityTaken
 from recon.station.control import intents
+from recon.station.control.withdrawal import withdraw
 from recon.station.state import alarm_book, orders
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Station
-from recon.station.state.steps import Output, WithdrawMotion
+from recon.station.state.steps import Output, Stepped, WithdrawMotion
 from recon.station.steering import neutral_setpoint, stream_ends
 from recon.station.steering.stream_ends import StreamUpdate
 
@@ -38,13 +40,23 @@ def refusal(station: Station, event: AuthorityTaken) -> Refusal | None:
     return None
 
 
-def take(station: Station, event: AuthorityTaken, now_ns: int) -> Station:
-    """Return the station with authority over a vehicle transferred, unless that is refused."""
+def take(station: Station, event: AuthorityTaken, now_ns: int) -> Stepped:
+    """Return the station with authority over a vehicle transferred, unless that is refused.
+
+    A new holder gets nothing of the old one: what waits unsent is withdrawn; before a pilot gets
+    the vehicle, stops that are still repeated too. A setpoint stream ends by `stream_ends`.
+    """
     if refusal(station, event) is not None:
-        return station
+        return station, ()
+    before = station.control(event.serial).authority
     given = "taken over by" if event.holder is AuthorityHolder.OPERATOR else "given by"
     authority = ControlAuthority(event.holder, event.by, now_ns, f"{given} {event.by}")
-    return _with_authority(station, event.serial, authority)
+    station = _with_authority(station, event.serial, authority)
+    if event.holder is before.holder:
+        return station, ()
+    is_pilots = event.holder is AuthorityHolder.PILOT
+    why = f"control given to the {event.holder.value} by {event.by}"
+    return withdraw(station, event.serial, why, now_ns, with_stops=is_pilots)
 
 
 def after_stop(station: Station, command: Command, now_ns: int) -> Station:

@@ -86,7 +86,13 @@ def _send_next(
 ) -> Stepped:
     following = replace(flown, index=flown.index + 1)
     expires_at_ns = now_ns + seconds_to_ns(station.settings.order_expiry_s)
-    order = replace(record.command, issued_at_ns=now_ns, expires_at_ns=expires_at_ns, takeoff=False)
+    order = replace(
+        record.command,
+        issued_at_ns=now_ns,
+        expires_at_ns=expires_at_ns,
+        takeoff=False,
+        given_at_ns=None,
+    )
     judged = ask(station, present_part(order, following))
     if isinstance(judged, Refusal):
         refused = replace(record, refusal=judged)

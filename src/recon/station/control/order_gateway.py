@@ -13,8 +13,15 @@ from recon.model.command import STEERED_BODIES, Command, Phase, Refusal
 from recon.model.event import CommandAnswered, CommandDropped, CommandSent, OperatorOrder
 from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
-from recon.safety import approve, judge
-from recon.station.control import authority, intents, missions, mode_tracking, order_timeouts
+from recon.safety import ApprovedCommand, approve, judge
+from recon.station.control import (
+    authority,
+    intents,
+    missions,
+    mode_tracking,
+    order_timeouts,
+    takeoff_stops,
+)
 from recon.station.control.order_records import (
     may_wait,
     put,
@@ -27,6 +34,7 @@ from recon.station.control.order_records import (
     waiting_record,
 )
 from recon.station.control.situation_builder import command_of, situation
+from recon.station.control.withdrawal import withdraw
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
@@ -42,6 +50,8 @@ def submit(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     """Judge an order; send it if the gate approves it, record the refusal if not."""
     command = command_of(station, order, now_ns)
     station = authority.after_stop(station, command, now_ns)
+    if command.is_emergency and not command.takeoff:
+        return _stop(station, command, now_ns)
     if isinstance(command.body, STEERED_BODIES):
         return _steer(station, order, command, now_ns)
     flight_plan = missions.plan(station, command)
@@ -49,10 +59,6 @@ def submit(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     first = missions.present_part(command, flight_plan)
     judged = missions.refusal_of_whole(command, flight_plan, facts) or approve(first, facts)
     if isinstance(judged, Refusal):
-        if may_wait(command, judged):
-            station = release_stream(station, command.serial, now_ns)
-            station = replace_older_orders(station, command, now_ns)
-            return put(station, waiting_record(station, command, judged, now_ns)), ()
         refused = replace(refused_record(station, command, judged, now_ns), plan=flight_plan)
         return _end_stream_for(put(station, refused), command, now_ns)
     if lane_of(command) is not Lane.CAMERA:
@@ -61,6 +67,35 @@ def submit(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     station = replace_older_orders(station, command, now_ns)
     queued = replace(queued_record(station, command, judged, now_ns), plan=flight_plan)
     return put(station, queued), (SendCommand(judged),)
+
+
+def _stop(station: Station, command: Command, now_ns: int) -> Stepped:
+    """Give a hold, landing or return; whatever the gate answers, what waits unsent ends first."""
+    takeoff = takeoff_stops.takeoff_under_way(station, command, now_ns)
+    withdrawn: tuple[Output, ...] = ()
+    if command.serial is not None:
+        why = f"{command.name.replace('_', ' ')}, order {command.id}"
+        station, withdrawn = withdraw(station, command.serial, why, now_ns)
+    judged = approve(command, situation(station, command, now_ns))
+    sent: tuple[Output, ...] = ()
+    if takeoff is not None:
+        record = takeoff_stops.following_record(station, command, takeoff, now_ns)
+    elif isinstance(judged, ApprovedCommand):
+        record = queued_record(station, command, judged, now_ns)
+        sent = (SendCommand(judged),)
+    elif may_wait(command, judged):
+        record = waiting_record(station, command, judged, now_ns)
+    else:
+        refused = refused_record(station, command, judged, now_ns)
+        station, ended = _end_stream_for(put(station, refused), command, now_ns)
+        return station, (*withdrawn, *ended)
+    station = neutral_setpoint.cancel(station, command.serial)
+    station = release_stream(station, command.serial, now_ns)
+    station = replace_older_orders(station, command, now_ns)
+    station = put(station, record)
+    if takeoff is not None:
+        station, sent = _update_order(station, record, now_ns)
+    return station, (*withdrawn, *sent)
 
 
 def dry_run(
@@ -234,10 +269,10 @@ def _update_order(station: Station, record: OrderRecord, now_ns: int) -> Stepped
     seen = (
         Progress.UNSEEN if is_flown else order_timeouts.progress_of(station, record, target, now_ns)
     )
+    seen = takeoff_stops.shown_so_far(record, seen, now_ns)
     updated = orders.shown(orders.stick_over(record, now_ns), seen, now_ns)
     if updated.is_tracked:
-        settings = station.settings
-        updated = order_timeouts.timed_out_by_now(updated, target, seen, settings, now_ns)
+        updated = order_timeouts.after_time(station, updated, target, seen, now_ns)
     if updated.next_repeat_ns is not None and now_ns >= updated.next_repeat_ns:
         updated, outputs = order_timeouts.repeat(station, updated, _judge_at(now_ns), now_ns)
     if updated is not record:

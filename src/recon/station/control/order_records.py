@@ -59,7 +59,10 @@ def queued_record(
     """Return the record of an order that the gate approved."""
     settings = station.settings
     repeat_ns = now_ns + seconds_to_ns(settings.emergency_repeat_s)
-    note = _return_home_note(command.body, target_of(station, command))
+    target = target_of(station, command)
+    note = _return_home_note(command.body, target)
+    is_blind = isinstance(command.body, Hover) and not command.takeoff
+    is_blind = is_blind and is_stale(station, target, now_ns)
     return OrderRecord(
         command=command,
         vehicle_name=_name(station, command),
@@ -67,8 +70,15 @@ def queued_record(
         altitudes=describe_altitudes(command.body, approved.altitude_offset_m),
         next_repeat_ns=repeat_ns if command.is_emergency else None,
         repeats_left=settings.emergency_repeats if command.is_emergency else 0,
+        waits_for_telemetry=is_blind,
         waiting_link_ids=approved.link_ids,
     )
+
+
+def is_stale(station: Station, vehicle: VehicleState | None, now_ns: int) -> bool:
+    """Return whether telemetry no longer shows whether a vehicle flies."""
+    age_s = None if vehicle is None else vehicle.is_flying.age_s(now_ns)
+    return age_s is None or age_s > station.settings.safety.fresh_telemetry_s
 
 
 def steered_record(station: Station, command: Command, now_ns: int) -> OrderRecord:

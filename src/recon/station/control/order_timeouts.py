@@ -12,7 +12,9 @@ Theory of operation. A record passes through these phases; a final one is never 
   telemetry shows its beginning. Shown, then no telemetry for `telemetry_lost_s`: *failed*.
 - An emergency order (hold, land, return) is repeated every 0.7 s, three times at most, until
   telemetry shows it. The gate judges each repeat anew, and a repeat never allows takeoff. A stop
-  refused only because telemetry is stale waits, and is judged again at each packet of its vehicle.
+  refused only because telemetry is stale waits, and is judged again at each packet of its vehicle;
+  one sent without telemetry is sent anew when it returns. A stop of a vehicle that is about to take
+  off follows it (`takeoff_stops`).
 - A newer order to the same vehicle ends it as *superseded*; so does its pilot. From *started* on
   `mode_tracking` finds the end of a mission, and a setpoint stream reports that of a steered order.
 - Telemetry that shows an ended order late is noted and ends its alarm, but not its phase.
@@ -24,8 +26,8 @@ from recon.model.command import CAMERA_BODIES, FlyMission, Phase, Refusal, Virtu
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.station.control import missions, mode_tracking
-from recon.station.control.order_records import target_of
+from recon.station.control import missions, mode_tracking, takeoff_stops
+from recon.station.control.order_records import is_stale, target_of
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
 from recon.station.state.settings import StationSettings
@@ -72,14 +74,46 @@ def with_intent_of(
     return station
 
 
-def timed_out_by_now(
+def after_time(
+    station: Station, record: OrderRecord, target: VehicleState, seen: Progress, now_ns: int
+) -> OrderRecord:
+    """Return the record after its timeouts."""
+    settings = station.settings
+    if record.follows is not None:
+        return takeoff_stops.updated(station, record, target, settings, now_ns)
+    if record.waits_for_telemetry and record.sent is not None:
+        return _after_blind_stop(record, target, settings, now_ns)
+    return _timed_out_by_now(record, target, seen, settings, now_ns)
+
+
+def _after_blind_stop(
+    record: OrderRecord, target: VehicleState, settings: StationSettings, now_ns: int
+) -> OrderRecord:
+    """A stop sent without telemetry: sent anew when that returns, and else an alarm."""
+    assert record.sent is not None
+    if (target.core_received_at_ns or 0) > record.sent.sent_at_ns:
+        note = "telemetry is back: sent again until it shows the vehicle hovering"
+        expires_at_ns = now_ns + seconds_to_ns(settings.order_expiry_s)
+        return replace(
+            orders.changed(record, Phase.QUEUED, now_ns, note),
+            command=replace(record.command, expires_at_ns=expires_at_ns),
+            sent=None,
+            waits_for_telemetry=False,
+            next_repeat_ns=now_ns,
+            repeats_left=settings.emergency_repeats,
+        )
+    if now_ns - record.sent.sent_at_ns < seconds_to_ns(settings.stop_waits_s):
+        return record
+    return orders.timed_out(record, now_ns, settings.stop_waits_s)
+
+
+def _timed_out_by_now(
     record: OrderRecord,
     target: VehicleState,
     seen: Progress,
     settings: StationSettings,
     now_ns: int,
 ) -> OrderRecord:
-    """Return the record after its timeouts."""
     received_ns = target.core_received_at_ns or record.command.issued_at_ns
     if _is_confirmed(record) and now_ns - received_ns > seconds_to_ns(settings.telemetry_lost_s):
         return orders.ended(record, Phase.FAILED, now_ns, "telemetry lost: outcome unknown")
@@ -103,6 +137,9 @@ def repeat(
 
     One that was never sent uses up no repeat: it is judged again until it expires.
     """
+    target = target_of(station, record.command)
+    if target is None or not takeoff_stops.may_go(record, target):
+        return replace(record, next_repeat_ns=now_ns), ()
     left = record.repeats_left - (record.sent is not None)
     later_ns = now_ns + seconds_to_ns(station.settings.emergency_repeat_s)
     record = replace(record, repeats_left=left, next_repeat_ns=later_ns if left > 0 else None)
@@ -112,10 +149,12 @@ def repeat(
         command = replace(command, takeoff=False)
     judged = judge(station, command)
     if isinstance(judged, Refusal):
-        waits = record.waits_for_telemetry and record.sent is None
+        waits = (record.waits_for_telemetry or record.follows is not None) and record.sent is None
         return (replace(record, next_repeat_ns=now_ns) if waits else record), ()
     waiting = tuple(dict.fromkeys((*record.waiting_link_ids, *judged.link_ids)))
-    return replace(record, waiting_link_ids=waiting), (SendCommand(judged),)
+    waits = record.waits_for_telemetry and is_stale(station, target, now_ns)
+    record = replace(record, waiting_link_ids=waiting, waits_for_telemetry=waits)
+    return record, (SendCommand(judged),)
 
 
 def _is_confirmed(record: OrderRecord) -> bool:

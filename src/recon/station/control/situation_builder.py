@@ -23,6 +23,7 @@ def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
         link_id=order.link_id,
         takeoff=order.takeoff,
         role=order.role,
+        given_at_ns=order.given_at_ns,
     )
 
 
@@ -43,6 +44,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         settings=station.settings.safety,
         airspace=station.airspace,
         authority=control.authority,
+        stop_latch=station.stop_latch,
         intent=control.intent,
         stick_height_above_takeoff_m=_stick_height_m(control),
         traffic=_traffic(station, command, serial, now_ns) if command.moves else (),

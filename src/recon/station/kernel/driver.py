@@ -12,6 +12,8 @@ from recon.link.server import LinkServer
 from recon.model.errors import describe_fault
 from recon.model.event import ClockGap, ClockRead, Event, SetpointsDue, StationFaulted, Tick
 from recon.model.units import NS_PER_S
+from recon.safety import ApprovedCommand
+from recon.station.control import dispatch
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.fault_isolation import after_fault
 from recon.station.kernel.step import TICK_PARTS, step
@@ -76,6 +78,10 @@ class AsyncioDriver:
     def handle(self, event: Event) -> None:
         """Queue an event and step by it; events caused by its outputs are queued behind it."""
         self._queue.put(event)
+
+    def objection(self, approved: ApprovedCommand) -> str | None:
+        """Return why an approved order may not be sent at this moment, else None."""
+        return dispatch.objection(self.station, approved, self.now_ns())
 
     def handle_from_thread(self, event: Event) -> None:
         """Queue an event from another thread."""

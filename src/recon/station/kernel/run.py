@@ -127,6 +127,7 @@ async def _start_links_and_worker(
         stack.callback(capture.close)
     driver.worker = worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
     driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
+    links.objection = driver.objection
     service.link_addresses = await _listen_for_links(links, config)
     stack.push_async_callback(links.stop)
     worker.start()

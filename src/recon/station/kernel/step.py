@@ -10,6 +10,7 @@ from typing import Any
 from recon.fleet import step as fleet_step
 from recon.model.event import (
     AlarmAcknowledged,
+    AllStopped,
     AuditFailed,
     AuthorityTaken,
     ClockGap,
@@ -30,6 +31,7 @@ from recon.model.event import (
     SeparationHoldSwitched,
     SetpointsDue,
     StationFaulted,
+    StopReleased,
     Tick,
 )
 from recon.model.replacing import replace
@@ -37,7 +39,7 @@ from recon.model.report import CoreReport, ImageReport, MessageReport
 from recon.model.vehicle import VehicleState
 from recon.station.alarms import event_alarms
 from recon.station.alarms.conditions import raise_alarms
-from recon.station.control import authority, order_gateway, preflight
+from recon.station.control import authority, order_gateway, preflight, stop_latch
 from recon.station.imaging import frames
 from recon.station.kernel import fault_isolation
 from recon.station.kernel.fault_isolation import TickPart
@@ -195,7 +197,9 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(CommandSent, order_gateway.on_link_event),
         changing(CommandAnswered, order_gateway.on_link_event),
         changing(CommandDropped, order_gateway.on_link_event),
-        changing(AuthorityTaken, authority.take),
+        on(AllStopped, stop_latch.latch),
+        changing(StopReleased, stop_latch.release),
+        on(AuthorityTaken, authority.take),
         changing(OwnerConnected, _owner_connected),
         on(OwnerDisconnected, _owner_disconnected),
         changing(HazardDismissed, known_traffic.dismiss),

@@ -13,8 +13,18 @@ from typing import Protocol
 from recon.fleet.step import CloseLink
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
-from recon.model.event import ClockRead, Event, LinkClosed, LinkOpened, SetpointsDue, Tick
+from recon.model.event import (
+    ClockRead,
+    CommandDropped,
+    Event,
+    LinkClosed,
+    LinkOpened,
+    SetpointsDue,
+    Tick,
+)
 from recon.model.units import seconds_to_ns
+from recon.safety import ApprovedCommand
+from recon.station.control import dispatch
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
@@ -206,7 +216,13 @@ class VirtualDriver:
             self._pump(wire)
 
     def _pump(self, wire: _Wire) -> None:
-        while (outgoing := wire.session.next_packet(self.now_ns)) is not None:
+        def objection(approved: ApprovedCommand) -> str | None:
+            return dispatch.objection(self.station, approved, self.now_ns)
+
+        while (outgoing := wire.session.next_packet(self.now_ns, objection)) is not None:
+            if isinstance(outgoing, CommandDropped):
+                self.handle(outgoing)
+                continue
             self.handle(outgoing.event)
             if not wire.link.is_dead:
                 self._post_to_app(wire, outgoing.data)

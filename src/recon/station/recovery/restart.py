@@ -6,6 +6,7 @@ Theory of operation. A snapshot of the last run is read before the first event. 
 - authority: a pilot keeps it; guidance passes it to the operator, for surveys end with the run;
 - vehicles in flight: lost vehicles, with alarm and hazard area, until their telemetry returns or
   an operator dismisses them. A snapshot older than 90 minutes, or from the future, restores none;
+- an all stop in force: it stays in force, however old the snapshot, until a person releases it;
 - open orders: failed, with an alarm for each vehicle, because their outcome is unknown.
 
 Nothing is sent. For `settle_s` the apps reconnect and one alarm lists the vehicles that are still
@@ -23,13 +24,13 @@ import msgspec
 from recon.fleet.airborne import flown
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import BODY_NAMES, Body, Command, Phase
-from recon.model.control import ControlAuthority
+from recon.model.control import ControlAuthority, StopLatch
 from recon.model.geo import LatLon
 from recon.model.trust import Trust
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
-from recon.station.control import authority
+from recon.station.control import authority, stop_latch
 from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
@@ -80,6 +81,7 @@ def restored(station: Station, last_run: LastRun, now_ns: int) -> Station:
     if snapshot is None:
         return station
     settings = station.settings.restart
+    station = stop_latch.restore(station, _stop_latch(snapshot))
     station = _with_interrupted(station, snapshot, now_ns)
     gone_s = ns_to_seconds(now_ns - snapshot.taken_at_ns)
     if not 0.0 <= gone_s <= settings.forgotten_after_s:
@@ -105,6 +107,11 @@ def restored(station: Station, last_run: LastRun, now_ns: int) -> Station:
         restored_at_ns=now_ns,
         watchdog_state=replace(station.watchdog_state, lost=_lost(snapshot, now_ns, settings)),
     )
+
+
+def _stop_latch(snapshot: RecoverySnapshot) -> StopLatch | None:
+    saved = snapshot.stop_latch
+    return None if saved is None else StopLatch(saved.by, saved.at_ns, frozenset(saved.released))
 
 
 def restart_entries(station: Station) -> Iterator[AuditEntry]:

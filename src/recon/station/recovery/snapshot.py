@@ -44,6 +44,16 @@ class AuthoritySnapshot(msgspec.Struct, frozen=True):
     holder_name: str = ""
 
 
+class StopLatchSnapshot(msgspec.Struct, frozen=True):
+    """The all stop in force."""
+
+    by: str
+    at_ns: int
+    released: Annotated[list[str], msgspec.Meta(max_length=MAX_VEHICLES)] = msgspec.field(
+        default_factory=list
+    )
+
+
 class OrderSnapshot(msgspec.Struct, frozen=True, kw_only=True):
     """An order that has not ended. `body` is the command body as JSON, typed by `order`."""
 
@@ -68,6 +78,8 @@ class RecoverySnapshot(msgspec.Struct, frozen=True, kw_only=True):
     taken_at_ns: int
     last_order_id: Annotated[int, msgspec.Meta(ge=0, le=MAX_ID)] = 0
     next_own_id: Annotated[int, msgspec.Meta(ge=-MAX_ID, le=-1)] = -1
+    stop_latch: StopLatchSnapshot | None = None
+    """Absent in files of version 1."""
     authorities: Annotated[dict[str, AuthoritySnapshot], msgspec.Meta(max_length=MAX_VEHICLES)] = (
         msgspec.field(default_factory=dict)
     )
@@ -112,6 +124,7 @@ def take_snapshot(station: Station, now_ns: int, last_order_id: int = 0) -> Reco
         taken_at_ns=now_ns,
         last_order_id=max(last_order_id, *station.orders.records, *station.surveys.records, 0),
         next_own_id=station.next_own_id,
+        stop_latch=_stop_latch(station),
         authorities=dict(islice(_authorities(station), MAX_VEHICLES)),
         vehicles={serial: vehicle_snapshot(vehicle) for serial, vehicle in flying[:MAX_VEHICLES]},
         unidentified={name: vehicle_snapshot(vehicle) for name, vehicle in kept.items()},
@@ -156,6 +169,15 @@ def _unidentified(station: Station, now_ns: int) -> Iterable[tuple[str, VehicleS
             continue
         if not identity_grace.may_yet_report_serial(station, state, now_ns):
             yield lost_name(link.id), state
+
+
+def _stop_latch(station: Station) -> StopLatchSnapshot | None:
+    """A release beyond the limit is left out: that vehicle is latched again."""
+    latch = station.stop_latch
+    if latch is None:
+        return None
+    released = sorted(latch.released)[:MAX_VEHICLES]
+    return StopLatchSnapshot(latch.by[:MAX_TEXT], latch.at_ns, released)
 
 
 def _authorities(station: Station) -> Iterator[tuple[str, AuthoritySnapshot]]:

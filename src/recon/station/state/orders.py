@@ -92,7 +92,10 @@ class OrderRecord:
     next_repeat_ns: int | None = None
     repeats_left: int = 0
     waits_for_telemetry: bool = False
-    """A stop refused because telemetry is stale: judged again at each packet of its vehicle."""
+    """A stop refused because telemetry is stale, judged again at each packet of its vehicle; or one
+    sent without it, and sent again when telemetry returns and does not show it obeyed."""
+    follows: int | None = None
+    """Of a stop: the order to take off that it follows (`control/takeoff_stops`)."""
     waiting_link_ids: tuple[int, ...] = ()
     """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""
     is_refused_by_app: bool = False
@@ -114,6 +117,11 @@ class OrderRecord:
         return self.history[-1].note
 
     @property
+    def is_withdrawn(self) -> bool:
+        """Whether it has ended unsent, and waits in no queue."""
+        return self.phase.is_final and self.times_sent == 0 and not self.waiting_link_ids
+
+    @property
     def is_tracked(self) -> bool:
         """Whether time and telemetry still change it: it is open, or its alarm is."""
         return not self.phase.is_final or self.alarm is not None
@@ -129,6 +137,17 @@ class OrderBook:
 
     records: Mapping[int, OrderRecord] = field(default_factory=dict)
     tracked: tuple[OrderRecord, ...] = ()
+
+
+def interrupted_mission(book: OrderBook, serial: str) -> OrderRecord | None:
+    """Return a vehicle's newest order to move, if it is a mission that was sent and ended early."""
+    for record in reversed(tuple(book.records.values())):
+        if record.command.serial != serial or not record.command.moves:
+            continue
+        is_early = record.phase in (Phase.SUPERSEDED, Phase.FAILED, Phase.TIMED_OUT)
+        is_mission = isinstance(record.command.body, FlyMission)
+        return record if is_mission and is_early and record.times_sent else None
+    return None
 
 
 def changed(record: OrderRecord, phase: Phase, at_ns: int, note: str = "") -> OrderRecord:
@@ -266,7 +285,7 @@ def on_sent(record: OrderRecord, event: CommandSent, context: SentContext) -> Or
     if record.sent is not None:
         return noted(again, context.sent_at_ns, f"sent again, on link {event.link_id}")
     if record.phase.is_final:
-        return again
+        return replace(again, sent=context)
     return changed(replace(again, sent=context), Phase.SENT, context.sent_at_ns)
 
 
@@ -291,8 +310,13 @@ def on_answered(record: OrderRecord, event: CommandAnswered, now_ns: int) -> Ord
 
 
 def on_dropped(record: OrderRecord, event: CommandDropped, now_ns: int) -> OrderRecord:
-    """It left a queue unsent. That ends it only when no other link can send it, nor has."""
+    """It left a queue unsent. That ends it only when no other link can send it, nor has.
+
+    A stop that the gate refused at its sending is judged again with its next repeat.
+    """
     record = no_longer_waiting(record, event.link_id)
+    if event.phase is Phase.REFUSED_BY_STATION and record.next_repeat_ns is not None:
+        return record
     if record.phase is not Phase.QUEUED or record.waiting_link_ids:
         return record
     return unsent(record, event.phase, now_ns, event.reason)

@@ -65,6 +65,10 @@ class StationSettings:
     """A hover refused because telemetry is stale or the connection lost waits this long for
     telemetry: a stop must not be lost in a gap."""
 
+    takeoff_stop_s: float = 30.0
+    """A stop follows a takeoff under way this long: motors, climb and the upload of a mission take
+    20 s at most (`mission_takeoff_s`), and some more for an app that is late."""
+
     emergency_repeat_s: float = 0.7
     emergency_repeats: int = 3
     """Decisions on the ICD, 16: every 0.7 s, three at most, until telemetry confirms."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Unpack
 
 from recon.fleet.state import Fleet
+from recon.model.control import StopLatch
 from recon.model.imagery import Frame
 from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
@@ -80,6 +81,8 @@ class Station:
     """The number of the next command the station gives by itself; see `take_id`."""
     owners: frozenset[str] = frozenset()
     """Open API streams that steered orders may depend on."""
+    stop_latch: StopLatch | None = None
+    """The all stop in force. Writer: `control/stop_latch.py`."""
     fleet_return: FleetReturn | None = None
     """The newest fleet return of this run."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
@@ -122,6 +125,10 @@ class Station:
             streaming=tuple(serial for serial in self.streaming if serial not in gone),
             neutral_pending=tuple(s for s in self.neutral_pending if s not in gone),
         )
+
+    def is_stopped(self, serial: str | None) -> bool:
+        """Return whether an all stop holds a vehicle, or a link without a serial."""
+        return self.stop_latch is not None and self.stop_latch.holds(serial)
 
     def streams(self) -> Iterator[tuple[str, SetpointStream]]:
         """Yield the setpoint streams with their vehicles' serials, the oldest first."""

@@ -9,6 +9,7 @@ from recon.model.event import Event, FleetReturnOrdered, OperatorOrder
 from recon.record.audit import AuditEntry
 from recon.safety.datum import frame_for
 from recon.station.control import order_gateway
+from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.operations.fleet_return.progress import is_still_left
 from recon.station.state.fleet_return_record import ENDED, FleetReturn, ReturningVehicle, Stage
 from recon.station.state.station import Station
@@ -54,6 +55,8 @@ def refusal(station: Station, serial: str) -> Refusal | None:
     name, vehicle = _name(station, serial), station.fleet.vehicles.get(serial)
     if vehicle is not None and frame_for(station.airspace, vehicle) is None:
         return Refusal(RULE, f"{name}: no position received; hold it, or land it")
+    if station.is_stopped(serial):
+        return Refusal(STOP_RULE, f"{name} is held by an all stop; release its stop first")
     authority = station.control(serial).authority
     if authority.holder is AuthorityHolder.PILOT:
         return Refusal(

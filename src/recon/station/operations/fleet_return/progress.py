@@ -75,6 +75,8 @@ def is_still_left(station: Station, member: ReturningVehicle) -> bool:
 
 def _taken(station: Station, member: ReturningVehicle, now_ns: int) -> ReturningVehicle | None:
     """The vehicle released or left out, if another holder or a newer order controls it."""
+    if station.is_stopped(member.serial):
+        return member.at(Stage.RELEASED, now_ns, "it is held by an all stop")
     authority = station.control(member.serial).authority
     if authority.holder is not member.role:
         words = f"it is controlled by {authority.holder.value} now ({authority.reason})"

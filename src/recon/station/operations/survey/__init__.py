@@ -12,7 +12,7 @@ from recon.station.operations.survey.commands import start_survey, stop_survey
 from recon.station.operations.survey.conditions import conditions
 from recon.station.operations.survey.execution import advance, on_position, on_shade
 from recon.station.operations.survey.planning import request_survey
-from recon.station.state.steps import changing, on
+from recon.station.state.steps import on
 
 SURVEY = Operation(
     name="survey",
@@ -20,7 +20,7 @@ SURVEY = Operation(
     conditions=conditions,
     commands=(
         on(SurveyRequested, request_survey),
-        changing(SurveyStarted, start_survey),
+        on(SurveyStarted, start_survey),
         on(SurveyStopped, stop_survey),
     ),
     audit=survey_entries,

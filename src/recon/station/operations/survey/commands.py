@@ -14,6 +14,7 @@ from recon.model.event import (
     SurveyStopped,
 )
 from recon.station.control import authority, order_gateway
+from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.operations.survey.availability import is_flown
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.fleet_return_record import ENDED
@@ -37,21 +38,23 @@ def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusa
     return None
 
 
-def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Station:
+def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Stepped:
     """Start a survey, and give the named vehicles to guidance.
 
     For a running survey the named vehicles join it, or fly for it again. Nothing changes if any of
     them is refused.
     """
     if start_refusal(station, event, now_ns) is not None:
-        return station
+        return station, ()
     record = station.surveys.records[event.survey_id]
     state = _started(record, event, now_ns)
     assert isinstance(state, SurveyState)  # or it was refused
     serials = dict.fromkeys(event.serials)
+    outputs: tuple[Output, ...] = ()
     for serial in serials:
         taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, event.by)
-        station = authority.take(station, taken, now_ns)
+        station, withdrawn = authority.take(station, taken, now_ns)
+        outputs += withdrawn
     named = {
         serial: replace(
             record.members.get(serial, SurveyMember(serial)),
@@ -75,7 +78,7 @@ def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Station
         step_due_ns=now_ns,
     )
     surveys = station.surveys.without_pending(event.survey_id)
-    return replace(station, surveys=surveys.put(record))
+    return replace(station, surveys=surveys.put(record)), outputs
 
 
 def stop_refusal(station: Station, event: SurveyStopped, now_ns: int) -> Refusal | None:
@@ -170,6 +173,8 @@ def _vehicle_refusal(
     if given is not None:
         return given
     name = station.fleet.vehicles[serial].display_name
+    if station.is_stopped(serial):
+        return Refusal(STOP_RULE, f"{name} is held by an all stop; release its stop first")
     if serial == station.imaging.imager_serial:
         return Refusal(RULE, f"{name} is the imaging drone and cannot join a survey")
     other = station.surveys.running_with(serial)

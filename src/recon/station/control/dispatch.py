@@ -1,0 +1,26 @@
+"""The last question before a packet leaves: may this order still be sent?
+
+An approval judges a snapshot. An order that had to wait may leave in another situation: its order
+was withdrawn, telemetry or traffic changed, another holder has control, an all stop is in force. So
+the gate is asked again at the moment of sending, about anything that has waited.
+"""
+
+from recon.model.units import seconds_to_ns
+from recon.safety import ApprovedCommand, judge
+from recon.station.control.situation_builder import situation
+from recon.station.state.station import Station
+
+SAME_MOMENT_S = 0.05
+"""What leaves within a tick of its approval was judged by the facts of that moment."""
+
+
+def objection(station: Station, approved: ApprovedCommand, now_ns: int) -> str | None:
+    """Return why an approved order may not be sent now, else None."""
+    command = approved.command
+    record = station.orders.records.get(command.id)
+    if record is not None and record.phase.is_final:
+        return f"not sent: its order has ended ({record.note})"
+    if now_ns - approved.approved_at_ns <= seconds_to_ns(SAME_MOMENT_S):
+        return None
+    refusal = judge(command, situation(station, command, now_ns))
+    return None if refusal is None else f"not sent, the situation has changed: {refusal.reason}"
