@@ -15,6 +15,7 @@ import { OrderBar } from "./panels/orders/OrderBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
 import { StationPanel } from "./panels/station/StationPanel";
+import { StopBanner } from "./panels/stop/StopLatch";
 import { SunPanel } from "./panels/sun/SunPanel";
 import { SurveyPanel } from "./panels/survey/SurveyPanel";
 import { VehicleList } from "./panels/vehicles/VehicleList";
@@ -58,6 +59,7 @@ export function App() {
       <TopBar onHelp={() => setHelpOpen(!isHelpOpen())} />
       <div class="banners">
         <ConnectionBanner />
+        <StopBanner />
         <SeparationBanner />
       </div>
       <aside class="side side-vehicles" aria-label="Vehicles">

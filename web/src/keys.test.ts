@@ -23,6 +23,13 @@ function press(init: KeyboardEventInit, target?: HTMLElement) {
   };
 }
 
+function input(type: string): HTMLInputElement {
+  const field = document.createElement("input");
+  field.type = type;
+  document.body.append(field);
+  return field;
+}
+
 describe("keyboard shortcuts", () => {
   it.each([
     [{ key: "?", code: "Slash", shiftKey: true }, ["help"]],
@@ -45,6 +52,41 @@ describe("keyboard shortcuts", () => {
     { key: "S", code: "KeyS", shiftKey: true, repeat: true },
   ])("ignore %j", (init) => {
     expect(press(init)).toEqual({ isHandled: false, called: [] });
+  });
+
+  it.each(["radio", "range", "number", "checkbox"])("stop all with a %s in focus", (type) => {
+    const field = input(type);
+    expect(press({ key: "S", code: "KeyS", shiftKey: true }, field).called).toEqual([["allStop"]]);
+    expect(press({ key: "Escape", code: "Escape" }, field).called).toEqual([["clear"]]);
+    field.remove();
+  });
+
+  it("select vehicles with a radio in focus, and leave digits to a number field", () => {
+    const radio = input("radio");
+    expect(press({ key: "3", code: "Digit3" }, radio).called).toEqual([["selectOnly", 3]]);
+    radio.remove();
+    const number = input("number");
+    expect(press({ key: "3", code: "Digit3" }, number).isHandled).toBe(false);
+    expect(press({ key: "a", code: "KeyA", ctrlKey: true }, number).isHandled).toBe(false);
+    number.remove();
+  });
+
+  it.each(["text", "search", "password"])(
+    "type an S into a %s field, and stop all with Alt",
+    (type) => {
+      const field = input(type);
+      expect(press({ key: "S", code: "KeyS", shiftKey: true }, field).isHandled).toBe(false);
+      expect(press({ key: "3", code: "Digit3" }, field).isHandled).toBe(false);
+      const chord = { key: "Í", code: "KeyS", shiftKey: true, altKey: true };
+      expect(press(chord, field)).toEqual({ isHandled: true, called: [["allStop"]] });
+      field.remove();
+    },
+  );
+
+  it("stop all by the letter on another keyboard layout, and only once while held", () => {
+    expect(press({ key: "S", code: "Semicolon", shiftKey: true }).called).toEqual([["allStop"]]);
+    const held = { key: "S", code: "KeyS", shiftKey: true, altKey: true, repeat: true };
+    expect(press(held).called).toEqual([]);
   });
 
   it("ignore keys typed into text fields", () => {

@@ -1,8 +1,9 @@
-import { isTyping } from "./panels/orders/shortcuts";
+import { isEditingNumber, isTyping } from "./panels/orders/shortcuts";
 
 /** Keyboard shortcuts as listed in the help. */
 export const SHORTCUTS: readonly { readonly keys: string; readonly action: string }[] = [
   { keys: "Shift + S", action: "ALL STOP: all flying vehicles hold position" },
+  { keys: "Alt + Shift + S", action: "ALL STOP from everywhere, also while typing text" },
   { keys: "Hold Shift + H", action: "Hover the selected vehicles (0.4 s)" },
   { keys: "Hold Shift + R", action: "Return the selected vehicles home (1.5 s)" },
   { keys: "Hold Shift + L", action: "Land the selected vehicles (1.5 s)" },
@@ -34,7 +35,6 @@ export interface KeyActions {
 
 /** Runs the action of a key press; returns false for a key without one. */
 export function actOnKey(event: KeyboardEvent, actions: KeyActions): boolean {
-  if (isTyping(event) || event.altKey) return false;
   const action = actionOf(event, actions);
   if (action === null) return false;
   event.preventDefault();
@@ -42,7 +42,20 @@ export function actOnKey(event: KeyboardEvent, actions: KeyActions): boolean {
   return true;
 }
 
+/**
+ * All stop works whatever has the focus. Only where letters are typed Shift+S types an S, and Alt is
+ * added: a chord with a modifier more is the usual way past a text field.
+ */
+function isAllStop(event: KeyboardEvent): boolean {
+  const isS = event.code === "KeyS" || event.key.toLowerCase() === "s";
+  if (!isS || !event.shiftKey || event.ctrlKey || event.metaKey || event.repeat) return false;
+  return event.altKey || !isTyping(event);
+}
+
 function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void) | null {
+  if (isAllStop(event)) return actions.allStop;
+  if (isTyping(event) || event.altKey) return null;
+  if (isEditingNumber(event) && !isForPage(event)) return null;
   if (event.ctrlKey || event.metaKey) {
     return event.code === "KeyA" && !event.shiftKey ? actions.selectAll : null;
   }
@@ -53,8 +66,13 @@ function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void) | nul
   if (number !== null) {
     return () => (event.shiftKey ? actions.toggle(number) : actions.selectOnly(number));
   }
-  if (event.shiftKey) return event.code === "KeyS" ? actions.allStop : null;
+  if (event.shiftKey) return null;
   return plainAction(event, actions);
+}
+
+/** Keys that mean nothing to a number field; digits and Ctrl+A are its own. */
+function isForPage(event: KeyboardEvent): boolean {
+  return !event.ctrlKey && !event.metaKey && digitOf(event.code) === null;
 }
 
 function plainAction(event: KeyboardEvent, actions: KeyActions): (() => void) | null {

@@ -9,7 +9,8 @@ import type {
 
 /** A station inside the browser: answers requests and sends the states a test provides. */
 export class FakeStation {
-  readonly orders: OrderRequest[] = [];
+  /** Orders, without the times at which they were given. */
+  readonly orders: Omit<OrderRequest, "given_at_unix_ms">[] = [];
   readonly acknowledged: number[] = [];
   allStops = 0;
   /** All other requests: path and body. */
@@ -79,7 +80,7 @@ export class FakeStation {
       return this.checkOrder(JSON.parse(body ?? "{}") as OrderRequest);
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
     if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
-    const isControlRequest = /\/(authority|override)$/.test(path);
+    const isControlRequest = /\/(authority|override|release)$/.test(path);
     if (isControlRequest || path === "/api/fleet-return") {
       this.requests.push([path + search, JSON.parse(body ?? "{}")]);
       return {
@@ -104,7 +105,8 @@ export class FakeStation {
   }
 
   private order(request: OrderRequest) {
-    this.orders.push(request);
+    const { given_at_unix_ms: _given, ...order } = request;
+    this.orders.push(order);
     return { json: { results: this.results(request) } };
   }
 

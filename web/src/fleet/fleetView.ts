@@ -9,6 +9,7 @@ import type {
   ShadeLineView,
   SiteView,
   StationView,
+  StopLatchView,
   SurveyView,
   VehicleView,
 } from "../protocol";
@@ -27,6 +28,8 @@ interface FleetData {
   commands: CommandView[];
   alarms: AlarmView[];
   station: StationView | null;
+  /** The all stop in force. */
+  stopLatch: StopLatchView | null;
   site: SiteView | null;
   groundImage: GroundImageView | null;
   fleetReturn: FleetReturnView | null;
@@ -41,6 +44,7 @@ const NO_DATA: FleetData = {
   commands: [],
   alarms: [],
   station: null,
+  stopLatch: null,
   site: null,
   groundImage: null,
   fleetReturn: null,
@@ -68,6 +72,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("commands", reconcile([...state.commands], { key: "id" }));
     setView("alarms", reconcile([...state.alarms], { key: "id" }));
     setView("station", reconcile(state.station));
+    setView("stopLatch", reconcile(state.stop_latch));
     setView("site", reconcile(state.site));
     setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
     setView("shade", reconcile(state.shade));

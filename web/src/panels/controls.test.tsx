@@ -4,6 +4,7 @@ import { hazard, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
 import { VehicleDetail } from "./detail/VehicleDetail";
 import { SeparationBanner, SeparationSwitch } from "./separation/SeparationHold";
+import { StopBanner } from "./stop/StopLatch";
 
 let page: RenderedPage;
 const show = (part: Parameters<typeof renderPage>[0], state: StationState) => {
@@ -161,6 +162,41 @@ describe("a hazard area", () => {
     page.clock.advance(600);
     await settled();
     expect(page.requests).toEqual([{ clearedHazard: "link-7" }]);
+  });
+});
+
+describe("the all stop in force", () => {
+  const latch = { by: "api 127.0.0.1", age_s: 75, released: ["SN-002"] };
+  const stopped = station([vehicle(1, { is_stopped: true }), vehicle(2)], { stop_latch: latch });
+
+  it("is a banner that names who stopped, when, and the vehicles it holds", () => {
+    const root = show(StopBanner, station([vehicle(1)]));
+    expect(root.textContent).toBe("");
+    page.receive(stopped);
+    expect(root.textContent).toContain("ALL STOP in force by api 127.0.0.1");
+    expect(root.textContent).toContain("Alder");
+    expect(root.textContent).not.toContain("Birch");
+  });
+
+  it("is released for all by a long press only", async () => {
+    show(StopBanner, stopped);
+    button("Release the all stop for").click();
+    await hold("Release the all stop for", 1400);
+    expect(page.requests).toEqual([]);
+    page.clock.advance(200);
+    await settled();
+    expect(page.requests).toEqual([{ releasedStop: null }]);
+  });
+
+  it("is released for one vehicle in its details, and its refusal is shown", async () => {
+    const root = show(VehicleDetail, stopped);
+    page.shared.selection.only(2);
+    expect(root.textContent).not.toContain("Release this vehicle");
+    page.shared.selection.only(1);
+    page.answerRequestsWith({ accepted: false, rule: "stop_latch", reason: "not in force" });
+    await hold("Release the all stop for", 1600);
+    expect(page.requests).toEqual([{ releasedStop: ["SN-001"] }]);
+    expect(root.textContent).toContain("not in force");
   });
 });
 

@@ -8,6 +8,7 @@ type Schemas = components["schemas"];
 
 export type StationState = Schemas["StationState"];
 export type StationView = Schemas["StationView"];
+export type StopLatchView = Schemas["StopLatchView"];
 export type SiteView = Schemas["SiteView"];
 export type VehicleView = Schemas["VehicleView"];
 export type LinkView = Schemas["LinkView"];

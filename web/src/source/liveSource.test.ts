@@ -89,6 +89,31 @@ describe("the live source", () => {
     expect(bodies.map(({ owner }) => owner)).toEqual(["02".repeat(16), "02".repeat(16), undefined]);
   });
 
+  it("states when an order was given, in the station's time", async () => {
+    const { source, sockets, requests, clock } = setUp(() => json({ results: [] }));
+    await source.order({ serials: ["A"], order: { kind: "hover" } });
+    sockets[0]?.deliver(station([vehicle(1)], { time_ns: 1_780_000_000e9 }));
+    clock.advance(400);
+    await source.order({ serials: ["A"], order: { kind: "hover" } });
+    const bodies = await Promise.all(requests.map((request) => request.json()));
+    expect(bodies.map(({ given_at_unix_ms }) => given_at_unix_ms)).toEqual([
+      null,
+      1_780_000_000_400,
+    ]);
+  });
+
+  it("releases an all stop for named vehicles or for all", async () => {
+    const { source, requests } = setUp(() => json({ accepted: true, rule: null, reason: null }));
+    await source.releaseStop(["A"]);
+    await source.releaseStop(null);
+    expect(requests.map(({ url }) => new URL(url).pathname)).toEqual([
+      "/api/all-stop/release",
+      "/api/all-stop/release",
+    ]);
+    const bodies = await Promise.all(requests.map((request) => request.json()));
+    expect(bodies).toEqual([{ serials: ["A"] }, { serials: null }]);
+  });
+
   it("encodes the serial in requests about one vehicle", async () => {
     const response = { accepted: false, rule: "stale", reason: "no telemetry" };
     const { source, requests } = setUp(() => json(response));
@@ -123,6 +148,7 @@ describe("the live source", () => {
       serials: ["A", "B"],
       order: { kind: "land" },
       takeoff: false,
+      given_at_unix_ms: null,
     });
   });
 

@@ -29,10 +29,12 @@ export class LiveSource implements StationSource {
   private readonly lag = new StreamLag();
   private readonly stream: Stream;
   private readonly requests: Requests;
+  private readonly clock: Clock;
   private owner = "";
 
   constructor(options: LiveSourceOptions) {
     const { clock, origin, token } = options;
+    this.clock = clock;
     const [state, setState] = createSignal<StationState | null>(null, { equals: false });
     const [connection, setConnection] = createSignal<Connection>({ kind: "connecting" });
     this.state = state;
@@ -72,11 +74,24 @@ export class LiveSource implements StationSource {
   }
 
   order(order: NamedOrder) {
-    return this.requests.order(order, this.owner);
+    return this.requests.order(order, this.owner, this.stationNowMs());
   }
 
   check(order: NamedOrder) {
-    return this.requests.check(order, this.owner);
+    return this.requests.check(order, this.owner, this.stationNowMs());
+  }
+
+  /** The station's present time by its newest state, Unix milliseconds; null before the first. */
+  private stationNowMs(): number | null {
+    const state = this.state();
+    const behindS = this.lag.behindS(this.clock.now());
+    return state === null || behindS === null
+      ? null
+      : Math.round(state.time_ns / 1e6 + behindS * 1000);
+  }
+
+  releaseStop(serials: readonly string[] | null) {
+    return this.requests.releaseStop(serials);
   }
 
   fleetReturn(serials: readonly string[] | null) {

@@ -31,17 +31,28 @@ export class Requests {
     this.client = createClient<paths>({ baseUrl: origin, headers: this.headers, fetch });
   }
 
-  /** `owner` is the stream a steered order depends on; other orders carry none. */
-  order(named: NamedOrder, owner: string): Promise<Outcome<readonly OrderResult[]>> {
-    const body = orderBody(named, owner);
+  /**
+   * `owner` is the stream a steered order depends on; other orders carry none. `givenAtMs` is when the
+   * order was given, in the station's time: an order to move that arrives long after is refused.
+   */
+  order(
+    named: NamedOrder,
+    owner: string,
+    givenAtMs: number | null,
+  ): Promise<Outcome<readonly OrderResult[]>> {
+    const body = orderBody(named, owner, givenAtMs);
     return answered(
       () => this.client.POST("/api/orders", { body, signal: timeout() }),
       (data) => data.results,
     );
   }
 
-  check(named: NamedOrder, owner: string): Promise<Outcome<readonly OrderResult[]>> {
-    const body = orderBody(named, owner);
+  check(
+    named: NamedOrder,
+    owner: string,
+    givenAtMs: number | null,
+  ): Promise<Outcome<readonly OrderResult[]>> {
+    const body = orderBody(named, owner, givenAtMs);
     return answered(
       () => this.client.POST("/api/orders/check", { body, signal: timeout() }),
       (data) => data.results,
@@ -124,6 +135,14 @@ export class Requests {
     );
   }
 
+  releaseStop(named: readonly string[] | null): Promise<Outcome<ActionResponse>> {
+    const body = { serials: named === null ? null : [...named] };
+    return answered(
+      () => this.client.POST("/api/all-stop/release", { body, signal: timeout() }),
+      identity,
+    );
+  }
+
   acknowledge(alarm_id: number): Promise<Outcome<null>> {
     const options = { params: { path: { alarm_id } }, signal: timeout() };
     return withoutBody(() => this.client.POST("/api/alarms/{alarm_id}/acknowledge", options));
@@ -160,8 +179,8 @@ function frameIdOf(response: Response): number | null {
 /** Orders executed by virtual stick for as long as the page's stream lasts. */
 const STEERED: readonly string[] = ["goto", "nudge", "hold_position"];
 
-function orderBody({ serials, order }: NamedOrder, owner: string) {
-  const body = { serials: [...serials], order, takeoff: false };
+function orderBody({ serials, order }: NamedOrder, owner: string, given_at_unix_ms: number | null) {
+  const body = { serials: [...serials], order, takeoff: false, given_at_unix_ms };
   return STEERED.includes(order.kind) ? { ...body, owner } : body;
 }
 

@@ -48,8 +48,10 @@ export interface StationSource {
   behindS(now: Instant): number | null;
   /** Sends an order, always without takeoff. */
   order(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
-  /** Makes every flying vehicle hold position; motors stay on. */
+  /** Makes every flying vehicle hold position, and latches all; motors stay on. */
   allStop(): Promise<Outcome<readonly OrderResult[]>>;
+  /** Releases vehicles from the all stop in force; null means all, also those that connect later. */
+  releaseStop(serials: readonly string[] | null): Promise<Outcome<ActionResponse>>;
   /** Checks an order with the safety gate without sending it. */
   check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Returns vehicles home with landing missions at separate heights; null means all in reach. */

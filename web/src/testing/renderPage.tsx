@@ -51,6 +51,7 @@ export type PageRequest =
   | { readonly override: string; readonly serial: string }
   | { readonly clearedHazard: string }
   | { readonly separationHold: boolean }
+  | { readonly releasedStop: readonly string[] | null }
   | { readonly fleetReturn: readonly string[] | null }
   | { readonly plannedSurvey: NewSurvey }
   | {
@@ -162,6 +163,10 @@ function fakeSource(
     allStop: async () => {
       recorded.allStops += 1;
       return { kind: "answered", value: [] };
+    },
+    releaseStop: async (releasedStop) => {
+      recorded.requests.push({ releasedStop });
+      return { kind: "answered", value: recorded.response };
     },
     check: async (order) => {
       recorded.checks.push(order);

@@ -10,6 +10,7 @@ import { AuthoritySection } from "../authority/AuthoritySection";
 import { HazardSection } from "../hazard/HazardSection";
 import { Panel } from "../Panel";
 import { PreflightSection } from "../preflight/PreflightSection";
+import { StopSection } from "../stop/StopLatch";
 import { CameraControl } from "./CameraControl";
 import { CameraFrame } from "./CameraFrame";
 import { type Fact, factsOf } from "./facts";
@@ -68,6 +69,9 @@ function ControlSections(props: { serial: string; vehicle: VehicleView }) {
   const label = () => vehicleLabel(props.vehicle);
   return (
     <>
+      <Show when={props.vehicle.is_stopped}>
+        <StopSection serial={props.serial} name={label()} />
+      </Show>
       <AuthoritySection serial={props.serial} name={label()} authority={props.vehicle.authority} />
       <PreflightSection serial={props.serial} name={label()} />
     </>

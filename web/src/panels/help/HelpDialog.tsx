@@ -36,7 +36,8 @@ export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
         confirm; the vehicle holds the target while this page stays open and stops if it closes.
       </p>
       <p>
-        ALL STOP takes one press. All flying vehicles hold position; motors stay on. The pilot's
+        ALL STOP takes one press. All flying vehicles hold position; motors stay on. It stays in
+        force: only hover, return and land are sent until the vehicles are released. The pilot's
         sticks always override the station.
       </p>
       <button type="button" class="button" onClick={() => props.onClose()}>

@@ -35,9 +35,28 @@ export function holdByKey(page: Window, keys: readonly HeldKey[]): () => void {
   };
 }
 
-/** Whether the event is input to a text field. */
+/** Input types into which no letters are typed. */
+const NO_LETTERS = [
+  "button",
+  "checkbox",
+  "color",
+  "file",
+  "number",
+  "radio",
+  "range",
+  "reset",
+  "submit",
+];
+
+/** Whether the event is input to a field in which letters are typed. */
 export function isTyping(event: KeyboardEvent): boolean {
   const target = event.target;
   if (!(target instanceof HTMLElement)) return false;
-  return target.isContentEditable || target.matches("textarea, input:not([type=checkbox])");
+  if (target.isContentEditable || target instanceof HTMLTextAreaElement) return true;
+  return target instanceof HTMLInputElement && !NO_LETTERS.includes(target.type);
+}
+
+/** Whether the event is input to a number field. */
+export function isEditingNumber(event: KeyboardEvent): boolean {
+  return event.target instanceof HTMLInputElement && event.target.type === "number";
 }

@@ -53,6 +53,11 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
               IMAGER
             </span>
           </Show>
+          <Show when={vehicle().is_stopped}>
+            <span class="tag tag-stopped" title="Held by an all stop">
+              STOPPED
+            </span>
+          </Show>
           <span class={`severity push tone-${status().severity ?? "good"}`}>
             <Show when={status().severity}>
               {(severity) => <SeverityMark severity={severity()} />}

@@ -1,0 +1,66 @@
+import { createSignal, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { StopLatchView } from "../../protocol";
+import { listNames, responseProblem, vehicleLabel } from "../../text/names";
+import { formatAge } from "../../text/quantities";
+import { GUARD_MS, GuardButton } from "../guard/GuardButton";
+import { Problem } from "../Panel";
+import { SeverityMark } from "../SeverityMark";
+import "./stop.css";
+
+/** Shown while an all stop is in force: who stopped when, which vehicles it holds, and the release. */
+export function StopBanner() {
+  const { fleet } = useConsole();
+  return <Show when={fleet.stopLatch}>{(latch) => <StopInForce latch={latch()} />}</Show>;
+}
+
+function StopInForce(props: { latch: StopLatchView }) {
+  const { fleet, source, behindS } = useConsole();
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const held = () => fleet.vehicles.filter((vehicle) => vehicle.is_stopped).map(vehicleLabel);
+  const names = () => (held().length > 0 ? listNames(held()) : "vehicles that connect later");
+  const release = async () => setProblem(responseProblem(await source.releaseStop(null)));
+  return (
+    <div class="stop-latch" role="alert">
+      <SeverityMark severity="critical" size={26} />
+      <p>
+        <strong>ALL STOP in force</strong> by {props.latch.by},{" "}
+        {formatAge(props.latch.age_s + behindS())} ago. Only hover, return and land are sent to{" "}
+        {names()}.
+      </p>
+      <GuardButton
+        label="Release all"
+        name={`Release the all stop for ${names()}`}
+        class="guard-grave"
+        hold_ms={GUARD_MS}
+        subject={`${props.latch.by} ${names()}`}
+        onConfirm={() => void release()}
+      />
+      <Problem text={problem()} />
+    </div>
+  );
+}
+
+/** The release of one vehicle from the all stop. */
+export function StopSection(props: { serial: string; name: string }) {
+  const { source } = useConsole();
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const release = async () => setProblem(responseProblem(await source.releaseStop([props.serial])));
+  return (
+    <section class="section" aria-label="All stop">
+      <p>
+        <strong class="tone-critical">Stopped.</strong> An all stop holds this vehicle. A release
+        sends nothing, and nothing resumes.
+      </p>
+      <GuardButton
+        label="Release this vehicle"
+        name={`Release the all stop for ${props.name}`}
+        class="guard-grave"
+        hold_ms={GUARD_MS}
+        subject={props.serial}
+        onConfirm={() => void release()}
+      />
+      <Problem text={problem()} />
+    </section>
+  );
+}
