@@ -70,6 +70,7 @@ def hovering_row(count: int, pads: list[Pad], up_m: float = 30.0) -> list[Called
 @settings(max_examples=examples(200), deadline=None)
 @given(scene=scenes())
 @example(scene=drawn_scene(671, 2, 1, 30.0, 4, is_fenced=False, hovers_apart=False))
+@example(scene=drawn_scene(8840, 18, 17, 45.0, 1))  # begins 0.27 m from a corner of its detour
 def test_plans_of_drawn_scenes(scene: Scene) -> None:
     """One plan per scene, as planning takes most of the time; the checks follow below."""
     plan = scene.plan()

@@ -299,7 +299,7 @@ class TestEnds:
         s.run_until(lambda: s.stream is None, 2.0)
         seen_s = s.now_s
         assert s.phase(order) is Phase.SUPERSEDED
-        assert s.note(order).startswith("the pilot has taken over")
+        assert s.note(order) == "pilot-only flight mode selected"
         assert s.w.driver.station.control(SERIAL).authority.holder is AuthorityHolder.PILOT
         assert s.refusal_rule(s.goto(50.0)) == "authority"
         s.run_for(10.0)

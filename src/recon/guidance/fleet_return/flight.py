@@ -209,6 +209,10 @@ class ReturnPlan:
 LEAST_LEG_M = 1.0
 """DJI refuses waypoints nearer than 0.5 m; over its pad a vehicle sinks by this much instead."""
 
+LEAST_CORNER_M = 0.6
+"""A corner nearer than this to the waypoint before it is left out, or DJI would refuse the flight.
+The way moves by no more than that: less than `detour_slack_m`, which it keeps from all limits."""
+
 
 def mission_of(
     flight: ReturnFlight,
@@ -222,9 +226,9 @@ def mission_of(
     The first waypoint is over that place, so that the aircraft climbs or sinks on the spot, however
     its app flies to a first waypoint.
     """
-    way_m = [place_m[:2], *flight.way_m[1:]]
+    way_m = _without_short_legs([place_m[:2], *flight.way_m[1:]])
     up_m = [flight.layer_up_m] * len(way_m)
-    if hypot(way_m[0][0] - way_m[-1][0], way_m[0][1] - way_m[-1][1]) < LEAST_LEG_M:
+    if _apart_m(way_m[0], way_m[-1]) < LEAST_LEG_M:
         up_m[-1] -= LEAST_LEG_M
     flat_m = np.column_stack([np.array(way_m), np.zeros(len(way_m))])
     latitude_deg, longitude_deg, _ = geo_from_enu(frame, flat_m)
@@ -237,3 +241,16 @@ def mission_of(
         land_at_end=True,
         purpose=f"fleet return: to {flight.pad.name}",
     )
+
+
+def _without_short_legs(way_m: Sequence[EastNorth]) -> list[EastNorth]:
+    """Leave out the corners that are too near; where the way begins and ends stays."""
+    kept = [way_m[0]]
+    for corner in way_m[1:-1]:
+        if _apart_m(kept[-1], corner) >= LEAST_CORNER_M <= _apart_m(corner, way_m[-1]):
+            kept.append(corner)
+    return [*kept, way_m[-1]]
+
+
+def _apart_m(one: EastNorth, other: EastNorth) -> float:
+    return hypot(one[0] - other[0], one[1] - other[1])
