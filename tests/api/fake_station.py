@@ -157,9 +157,17 @@ class FakeStation:
         return self.service.survey(survey_id)
 
     def start_survey(
-        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+        self,
+        survey_id: int,
+        serials: list[str],
+        *,
+        takeoff: bool,
+        by: str,
+        given_at_ns: int | None = None,
     ) -> SurveyResponse:
-        return self.service.start_survey(survey_id, serials, takeoff=takeoff, by=by)
+        return self.service.start_survey(
+            survey_id, serials, takeoff=takeoff, by=by, given_at_ns=given_at_ns
+        )
 
     def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> SurveyResponse:
         return self.service.stop_survey(survey_id, is_aborted=is_aborted, by=by)

@@ -103,6 +103,14 @@ class TestWords:
         assert "Z is unknown" in answer["reason"]
         assert client.get(f"/api/surveys/{number}").json()["phase"] == "created"
 
+    def test_a_start_by_a_wrong_clock_is_refused_and_nothing_starts(
+        self, client: Client, number: int
+    ) -> None:
+        start = {"serials": ["A"], "takeoff": True, "given_at_unix_ms": 10_000}
+        refused = client.post(f"/api/surveys/{number}/start", json=start).json()
+        assert (refused["accepted"], refused["rule"]) == (False, "not_expired")
+        assert client.get(f"/api/surveys/{number}").json()["phase"] != "running"
+
     def test_a_start_without_vehicles_is_malformed(self, client: Client, number: int) -> None:
         assert client.post(f"/api/surveys/{number}/start", json={"serials": []}).status_code == 422
 

@@ -11,7 +11,7 @@ from fastapi import FastAPI, HTTPException, Request
 
 from recon.api import schema
 from recon.api.port import StationPort
-from recon.api.responses import PROBLEMS, client_name, found
+from recon.api.responses import PROBLEMS, client_name, found, given_at_ns
 from recon.api.schema import requests
 from recon.model.command import (
     Body,
@@ -49,7 +49,7 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
             takeoff=asked.takeoff,
             issued_by=client_name(request),
             owner=asked.owner,
-            given_at_ns=_given_at_ns(asked),
+            given_at_ns=given_at_ns(asked.given_at_unix_ms),
         )
 
     @app.post("/api/orders/check")
@@ -61,7 +61,7 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
             takeoff=asked.takeoff,
             issued_by=client_name(request),
             owner=asked.owner,
-            given_at_ns=_given_at_ns(asked),
+            given_at_ns=given_at_ns(asked.given_at_unix_ms),
         )
 
     @app.post("/api/all-stop")
@@ -145,10 +145,6 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
         Reason and client are written to the audit.
         """
         return port.override_preflight(serial, asked.reason, client_name(request))
-
-
-def _given_at_ns(asked: schema.OrderRequest) -> int | None:
-    return None if asked.given_at_unix_ms is None else asked.given_at_unix_ms * 1_000_000
 
 
 def to_body(order: schema.AnyOrder) -> Body:

@@ -124,7 +124,13 @@ class StationPort(Protocol):
         """Return a survey as it stands."""
 
     def start_survey(
-        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+        self,
+        survey_id: int,
+        serials: list[str],
+        *,
+        takeoff: bool,
+        by: str,
+        given_at_ns: int | None = None,
     ) -> SurveyResponse:
         """Start a survey with these vehicles, or add them; guidance gets control authority."""
 

@@ -8,7 +8,7 @@ from fastapi import FastAPI, Request, Response
 from recon.api import pictures, schema
 from recon.api.picture_routes import Form
 from recon.api.port import StationPort
-from recon.api.responses import PNG, PROBLEMS, client_name, found, png
+from recon.api.responses import PNG, PROBLEMS, client_name, found, given_at_ns, png
 from recon.model.survey import unknown_survey
 
 PLANNED_WITHIN_S = 10.0
@@ -40,7 +40,13 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
         On a running survey the vehicles join, or resume.
         """
         by = client_name(request)
-        return port.start_survey(survey_id, asked.serials, takeoff=asked.takeoff, by=by)
+        return port.start_survey(
+            survey_id,
+            asked.serials,
+            takeoff=asked.takeoff,
+            by=by,
+            given_at_ns=given_at_ns(asked.given_at_unix_ms),
+        )
 
     @app.post("/api/surveys/{survey_id}/{command}")
     async def stop(

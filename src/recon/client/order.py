@@ -224,11 +224,11 @@ class OrderApi:
             "serials": list(serials),
             "order": order,
             "takeoff": takeoff,
-            "given_at_unix_ms": self._station_time_ms(),
+            "given_at_unix_ms": self.station_time_ms(),
         }
         return {**request, "owner": self._owner()} if isinstance(body, STEERED_BODIES) else request
 
-    def _station_time_ms(self) -> int | None:
+    def station_time_ms(self) -> int | None:
         """Return the station's time now, by its newest state; None without one.
 
         An order to move that arrives long after this is refused. No two clocks are compared: it is

@@ -41,7 +41,7 @@ class Station:
         self._http = Http(self.address, answer_within_s)
         self._order_api = OrderApi(self._http, self._stream)
         self.fleet = FleetCommands(self._order_api)
-        self.surveys = SurveyCommands(self._http)
+        self.surveys = SurveyCommands(self._http, self._order_api.station_time_ms)
 
     async def __aenter__(self) -> "Station":
         """Open the stream and wait for the first state; raises `ClientError`."""

@@ -1,6 +1,6 @@
 """Commands to surveys, and their status."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
@@ -78,8 +78,9 @@ class _SiteMessage(msgspec.Struct, frozen=True):
 class SurveyCommands:
     """Survey commands to a station."""
 
-    def __init__(self, http: "Http") -> None:
+    def __init__(self, http: "Http", station_time_ms: Callable[[], int | None]) -> None:
         self._http = http
+        self._station_time_ms = station_time_ms
 
     async def create(
         self,
@@ -110,7 +111,11 @@ class SurveyCommands:
 
         `takeoff` allows each one to take off for this start.
         """
-        request = {"serials": list(serials), "takeoff": takeoff}
+        request = {
+            "serials": list(serials),
+            "takeoff": takeoff,
+            "given_at_unix_ms": self._station_time_ms(),
+        }
         return await self._post(f"/api/surveys/{survey_id}/start", request)
 
     async def pause(self, survey_id: int) -> SurveyStatus | Refusal:

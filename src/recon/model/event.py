@@ -200,13 +200,15 @@ class SurveyRequested:
 class SurveyStarted:
     """A survey starts with these vehicles, which gives guidance control authority over them.
 
-    `takeoff` allows each vehicle to leave the ground, for this start only.
+    `takeoff` allows each vehicle to leave the ground, for this start only. `given_at_ns` is when
+    its person gave the command, in station time; None if not stated.
     """
 
     survey_id: int
     serials: tuple[str, ...]
     by: str
     takeoff: bool = False
+    given_at_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -71,6 +71,18 @@ def test_what_leaves_within_a_tick_is_not_judged_twice() -> None:
     assert dispatch.objection(latched, scene.handed[0], soon_ns) is None
 
 
+@pytest.mark.parametrize(("body", "is_sent"), [(Hover(), True), (mission(), False)])
+def test_a_fault_in_judging_again_holds_back_what_moves_and_no_stop(
+    body: Body, is_sent: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise RuntimeError("broken")
+
+    scene = waiting(body)
+    monkeypatch.setattr(dispatch, "situation", fails)
+    assert (objection(scene) is None) is is_sent
+
+
 def test_a_stop_that_was_refused_at_its_sending_is_judged_again() -> None:
     scene = waiting(Hover())
     scene.happens(CommandDropped(1, 1, Phase.REFUSED_BY_STATION, "on the ground"))

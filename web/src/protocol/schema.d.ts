@@ -1268,7 +1268,7 @@ export interface components {
         OrderRequest: {
             /**
              * Given At Unix Ms
-             * @description when its person gave the order, in the station's time (a state's `time_ns` and the time since then) or by a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
+             * @description when its person gave it, in Unix milliseconds of the station's time (a state's `time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
              */
             given_at_unix_ms?: number | null;
             /** Order */
@@ -1918,6 +1918,11 @@ export interface components {
          *     `takeoff` explicitly allows each to leave the ground once, for this start.
          */
         SurveyStartRequest: {
+            /**
+             * Given At Unix Ms
+             * @description when its person gave it, in Unix milliseconds of the station's time (a state's `time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
+             */
+            given_at_unix_ms?: number | null;
             /** Serials */
             serials: string[];
             /**

@@ -145,7 +145,7 @@ export class LiveSource implements StationSource {
   }
 
   startSurvey(id: number, serials: readonly string[], allowTakeoff: boolean) {
-    return this.requests.startSurvey(id, serials, allowTakeoff);
+    return this.requests.startSurvey(id, serials, allowTakeoff, this.stationNowMs());
   }
 
   stopSurvey(id: number, word: "pause" | "abort") {

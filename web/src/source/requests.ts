@@ -92,8 +92,9 @@ export class Requests {
     survey_id: number,
     serials: readonly string[],
     takeoff: boolean,
+    given_at_unix_ms: number | null,
   ): Promise<Outcome<SurveyResponse>> {
-    const body = { serials: [...serials], takeoff };
+    const body = { serials: [...serials], takeoff, given_at_unix_ms };
     const options = { params: { path: { survey_id } }, body, signal: timeout() };
     return answered(
       () => this.client.POST("/api/surveys/{survey_id}/start", options),

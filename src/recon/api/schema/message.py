@@ -1,6 +1,21 @@
 """The base classes of all messages, and the responses that every room uses."""
 
+from typing import Annotated
+
 from pydantic import BaseModel, ConfigDict, Field
+
+GivenAt = Annotated[
+    int | None,
+    Field(
+        ge=0,
+        le=2**53,
+        description=(
+            "when its person gave it, in Unix milliseconds of the station's time (a state's "
+            "`time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a "
+            "vehicle is refused when given more than 5 s ago or in the future; stops are never late"
+        ),
+    ),
+]
 
 
 class Message(BaseModel):

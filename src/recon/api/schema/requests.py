@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from recon.api.schema.message import StrictMessage
+from recon.api.schema.message import GivenAt, StrictMessage
 from recon.api.schema.vehicles import HolderName
 
 
@@ -129,16 +129,7 @@ class OrderRequest(StrictMessage):
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=256)
     order: AnyOrder
     takeoff: bool = False
-    given_at_unix_ms: int | None = Field(
-        default=None,
-        ge=0,
-        le=2**53,
-        description=(
-            "when its person gave the order, in the station's time (a state's `time_ns` and the "
-            "time since then) or by a clock set by NTP; null: now. What moves a vehicle is refused "
-            "when given more than 5 s ago or in the future; stops are never late"
-        ),
-    )
+    given_at_unix_ms: GivenAt = None
     owner: Annotated[str, Field(max_length=64)] | None = None
 
     @model_validator(mode="after")

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from recon.api.schema.message import Message, StrictMessage
+from recon.api.schema.message import GivenAt, Message, StrictMessage
 
 SurveyPhaseName = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 
@@ -67,6 +67,7 @@ class SurveyStartRequest(StrictMessage):
 
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=64)
     takeoff: bool = False
+    given_at_unix_ms: GivenAt = None
 
 
 class SurveyFiguresView(Message):

@@ -2,6 +2,7 @@
 
 from recon.model.command import Command, Refusal
 from recon.model.units import ns_to_seconds
+from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation
 
 RULE = "not_expired"
@@ -19,9 +20,16 @@ def not_expired(command: Command, situation: Situation) -> Refusal | None:
             f"Order expired {ns_to_seconds(late_ns):.1f} s ago; give it again if still wanted",
             parameters={"late_s": ns_to_seconds(late_ns), "max_s": 0.0},
         )
-    if command.given_at_ns is None or not command.moves:
+    if not command.moves:
         return None
-    limits, age_s = situation.settings, ns_to_seconds(situation.now_ns - command.given_at_ns)
+    return given_refusal(command.given_at_ns, situation.now_ns, situation.settings)
+
+
+def given_refusal(given_at_ns: int | None, now_ns: int, limits: SafetySettings) -> Refusal | None:
+    """Return why an order to move, given at that time by its person, comes too late, else None."""
+    if given_at_ns is None:
+        return None
+    age_s = ns_to_seconds(now_ns - given_at_ns)
     parameters = {"age_s": age_s, "max_s": limits.given_at_most_s}
     if age_s > limits.given_at_most_s:
         return Refusal(

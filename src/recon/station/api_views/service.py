@@ -231,10 +231,18 @@ class Service:
         return self._surveys.view(survey_id)
 
     def start_survey(
-        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+        self,
+        survey_id: int,
+        serials: list[str],
+        *,
+        takeoff: bool,
+        by: str,
+        given_at_ns: int | None = None,
     ) -> schema.SurveyResponse:
         """Start a survey with these vehicles, or add them."""
-        return self._surveys.start(survey_id, serials, takeoff=takeoff, by=by)
+        return self._surveys.start(
+            survey_id, serials, takeoff=takeoff, by=by, given_at_ns=given_at_ns
+        )
 
     def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> schema.SurveyResponse:
         """Pause or abort a survey."""

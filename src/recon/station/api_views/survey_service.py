@@ -37,10 +37,16 @@ class SurveyService:
         return self._taken(number)
 
     def start(
-        self, survey_id: int, serials: list[str], *, takeoff: bool, by: str
+        self,
+        survey_id: int,
+        serials: list[str],
+        *,
+        takeoff: bool,
+        by: str,
+        given_at_ns: int | None = None,
     ) -> schema.SurveyResponse:
         """Start a survey, unless that is refused; the audit has the refusal too."""
-        event = SurveyStarted(survey_id, tuple(dict.fromkeys(serials)), by, takeoff)
+        event = SurveyStarted(survey_id, tuple(dict.fromkeys(serials)), by, takeoff, given_at_ns)
         refusal = start_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
         return self._taken(survey_id) if refusal is None else _refused(refusal)

@@ -22,5 +22,9 @@ def objection(station: Station, approved: ApprovedCommand, now_ns: int) -> str |
         return f"not sent: its order has ended ({record.note})"
     if now_ns - approved.approved_at_ns <= seconds_to_ns(SAME_MOMENT_S):
         return None
-    refusal = judge(command, situation(station, command, now_ns))
+    try:
+        refusal = judge(command, situation(station, command, now_ns))
+    except Exception as fault:  # in the station's own code: it must not keep a stop from going out
+        is_stop = command.is_emergency and not command.takeoff
+        return None if is_stop else f"not sent: it could not be judged again ({fault})"
     return None if refusal is None else f"not sent, the situation has changed: {refusal.reason}"

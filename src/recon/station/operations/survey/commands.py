@@ -13,6 +13,7 @@ from recon.model.event import (
     SurveyStarted,
     SurveyStopped,
 )
+from recon.safety.rules.not_expired import given_refusal
 from recon.station.control import authority, order_gateway
 from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.operations.survey.availability import is_flown
@@ -28,6 +29,9 @@ def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusa
     record = station.surveys.records.get(event.survey_id)
     if record is None:
         return _unknown(station, event.survey_id)
+    late = given_refusal(event.given_at_ns, now_ns, station.settings.safety)
+    if late is not None:
+        return late
     started = _started(record, event, now_ns)
     if isinstance(started, Refusal):
         return started
