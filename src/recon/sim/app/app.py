@@ -8,7 +8,7 @@ Theory of operation
 The app is a timetable. Each kind of work has the time at which it is due next: commands that were
 acknowledged and wait for the SDK call, one-off faults, slow reads, core telemetry (10 Hz), extended
 telemetry (2 Hz), frames to take, rendered frames to send. Every call first runs all that is due up
-to `now_ns`, in order of time (ties: in the order of `_timetable`), and moves the aircraft to each
+to `now_ns`, in order of time (ties: in the order of `_next_work`), and moves the aircraft to each
 of these times. So the result does not depend on when the driver calls, only on what it passed in:
 the same seed and commands give the same bytes.
 
@@ -60,6 +60,8 @@ CORE_PERIOD_NS = 100_000_000
 EXTENDED_PERIOD_NS = 500_000_000
 ACTION_DELAY_NS = 120_000_000
 """From the acknowledgment to the effect: the duration of a call of DJI's SDK."""
+
+NEVER_NS = 2**63 - 1
 
 HELLO = b"recon-sim simulated vehicle"
 MESSAGE_INFO = 1
@@ -192,9 +194,12 @@ class SimulatedApp:
     @property
     def next_due_ns(self) -> int:
         """When `advance` has work next, if nothing is received before."""
-        held = (link.outbox.next_after_ns(self._now_ns) for link in self._links.values())
-        dues = [due_ns for due_ns, _ in self._timetable()]
-        return min([*dues, *(due_ns for due_ns in held if due_ns is not None)])
+        due_ns, _ = self._next_work()
+        for link in self._links.values():
+            held_until_ns = link.outbox.next_after_ns(self._now_ns)
+            if held_until_ns is not None and held_until_ns < due_ns:
+                due_ns = held_until_ns
+        return due_ns
 
     def take_shots(self) -> list[Shot]:
         """Return frames taken but not rendered (unless rendered inline); see `add_image`."""
@@ -234,40 +239,56 @@ class SimulatedApp:
             motion.roll_deg,
         )
 
-    def _timetable(self) -> list[tuple[int, Callable[[int], None]]]:
-        """Return (due time, action) of each kind of work; on a tie the earlier row runs first."""
-        rows: list[tuple[int, Callable[[int], None]]] = []
+    def _next_work(self) -> tuple[int, Callable[[int], None]]:
+        """Return when work is due next, and which; on a tie the kind named first here.
+
+        Compared one by one, without a list of them all: it is asked for with every packet.
+        """
+        due_ns, work = NEVER_NS, self._send_core
         if self._pending:
-            rows.append((self._pending[0][0], self._execute))
-        if self._fault_events:
-            rows.append((self._fault_events[0][0], self._run_fault_event))
+            due_ns, work = self._pending[0][0], self._execute
+        if self._fault_events and self._fault_events[0][0] < due_ns:
+            due_ns, work = self._fault_events[0][0], self._run_fault_event
         for number, link in self._links.items():
-            if link.inbox.next_read_ns is not None:
-                rows.append((link.inbox.next_read_ns, partial(self._read_on, number)))
-        rows.append((self._next_core_ns, self._send_core))
-        rows.append((self._next_extended_ns, self._send_extended))
+            read_ns = link.inbox.next_read_ns
+            if read_ns is not None and read_ns < due_ns:
+                due_ns, work = read_ns, partial(self._read_on, number)
+        if self._next_core_ns < due_ns:
+            due_ns, work = self._next_core_ns, self._send_core
+        if self._next_extended_ns < due_ns:
+            due_ns, work = self._next_extended_ns, self._send_extended
+        return self._next_camera_work(due_ns, work)
+
+    def _next_camera_work(
+        self, due_ns: int, work: Callable[[int], None]
+    ) -> tuple[int, Callable[[int], None]]:
         feed = self.feed
-        if feed is not None and feed.is_on and MAIN_LINK in self._links:
-            rows.append((feed.next_shot_ns, partial(self._take_picture, feed)))
-        if feed is not None and feed.next_send_ns is not None:
-            rows.append((feed.next_send_ns, partial(self._send_images, feed)))
-        return rows
+        if feed is None:
+            return due_ns, work
+        if feed.is_on and MAIN_LINK in self._links and feed.next_shot_ns < due_ns:
+            due_ns, work = feed.next_shot_ns, partial(self._take_picture, feed)
+        if feed.next_send_ns is not None and feed.next_send_ns < due_ns:
+            due_ns, work = feed.next_send_ns, partial(self._send_images, feed)
+        return due_ns, work
 
     def _run_until(self, now_ns: int) -> None:
         while True:
-            due_ns, action = min(self._timetable(), key=_DUE_NS)
+            due_ns, work = self._next_work()
             if due_ns > now_ns:
                 break
             self._advance_aircraft(due_ns)
-            action(due_ns)
+            work(due_ns)
         self._now_ns = max(self._now_ns, now_ns)
         self._advance_aircraft(now_ns)
 
     def _advance_aircraft(self, now_ns: int) -> None:
-        mode = self.aircraft.flight_mode
-        self.aircraft.advance(now_ns)
-        if self.aircraft.flight_mode is not mode:
-            self._log.append(f"mode {self.aircraft.flight_mode.name}")
+        aircraft = self.aircraft
+        if now_ns < aircraft.next_tick_ns:
+            return
+        mode = aircraft.flight_mode
+        aircraft.advance(now_ns)
+        if aircraft.flight_mode is not mode:
+            self._log.append(f"mode {aircraft.flight_mode.name}")
 
     def _read_on(self, link: int, now_ns: int) -> None:
         """Read a few of the waiting bytes, or all of them once the fault is over."""

@@ -98,9 +98,10 @@ class Aircraft:
     @property
     def is_flying(self) -> bool:
         """The flight controller's in-air flag: lifted off, and motors not stopped since."""
-        if isinstance(self.active_mode, TakeOff):
+        mode = self.active_mode
+        if isinstance(mode, TakeOff):
             return self.motion.height_m > FLYING_ABOVE_M
-        return not self.is_on_ground
+        return not isinstance(mode, Grounded)
 
     @property
     def flight_mode(self) -> FlightMode:
@@ -129,6 +130,11 @@ class Aircraft:
     def accepts_app_control(self) -> bool:
         """Whether missions and sticks are accepted: GNSS available, pilot not in control."""
         return self.has_gnss and not self.has_pilot_control
+
+    @property
+    def next_tick_ns(self) -> int:
+        """When it moves next; before that `advance` changes nothing."""
+        return self.now_ns + TICK_NS
 
     def advance(self, now_ns: int) -> None:
         """Advance in whole ticks, up to `now_ns`."""
