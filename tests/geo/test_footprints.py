@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.geo import Footprints, Polygon
+from recon.geo import Box, Footprints, Polygon
 from recon.model.airspace import Region
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
@@ -138,3 +138,21 @@ def test_a_place_in_the_middle_and_places_near_the_edge() -> None:
     triangles_m = np.array([[place] * 3 for place in places])
     held = Polygon(Region(square)).holds(Footprints(triangles_m), 2.0)
     assert held.tolist() == [True, True, False, False, False]
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 2e8])
+@pytest.mark.parametrize("coordinate", range(6))
+def test_the_box_round_footprints_is_unbounded_if_any_number_of_one_is_no_place(
+    coordinate: int, bad: float
+) -> None:
+    triangles_m = np.array([[(1.0, 2.0), (3.0, 4.0), (5.0, 0.0)]] * 3)
+    assert Footprints(triangles_m).box == Box(1.0, 0.0, 5.0, 4.0)
+    triangles_m[1].flat[coordinate] = bad
+    footprints = Footprints(triangles_m)
+    assert footprints.box == Box(-np.inf, -np.inf, np.inf, np.inf)
+    assert footprints.is_finite.tolist() == [True, False, True]
+    assert footprints.only(np.array([0, 2])).box == Box(1.0, 0.0, 5.0, 4.0)
+
+
+def test_the_box_round_no_footprint_is_unbounded() -> None:
+    assert Footprints(np.zeros((0, 3, 2))).box == Box(-np.inf, -np.inf, np.inf, np.inf)

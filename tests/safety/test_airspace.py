@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from tests.examples import examples
 from tests.safety.traffic import FRAME
 
-from recon.geo import Footprints
+from recon.geo import Box, Footprints
 from recon.model.airspace import Airspace, ElevationModel, Region, Zone, ZoneKind
 from recon.model.geo import GroundGrid
 from recon.safety import PreparedAirspace
-from recon.safety.airspace import Cylinder
+from recon.safety.airspace import OPEN_AIRSPACE, Cylinder
 
 
 def square(name: str, east_m: float) -> Zone:
@@ -94,3 +94,37 @@ def test_sure_heights_keep_the_limits_over_all_ground_below(
         lowest_m, highest_m = SLOPE.ground_within_up_m((offsets_m + middle_m)[np.newaxis])
         assert low_m - highest_m[0] >= limits.min_height_above_ground_m
         assert low_m + thick_m - lowest_m[0] <= limits.max_height_above_ground_m
+
+
+@settings(max_examples=examples(200))
+@given(
+    st.tuples(st.floats(-120.0, 120.0), st.floats(-120.0, 120.0)),
+    st.floats(0.0, 60.0),
+    st.floats(-20.0, 150.0),
+    st.floats(-50.0, 120.0),
+)
+def test_what_is_surely_above_or_below_is_so_over_all_ground_below(
+    corner_m: tuple[float, float], wide_m: float, up_m: float, height_m: float
+) -> None:
+    west_m, south_m = corner_m
+    box = Box(west_m, south_m, west_m + wide_m, south_m + wide_m)
+    triangle_m = np.array([[(west_m, south_m), (box.east_m, south_m), (west_m, box.north_m)]])
+    lowest_m, highest_m = SLOPE.ground_within_up_m(triangle_m)
+    if SLOPE.is_surely_above(box, up_m, height_m):
+        assert up_m - height_m >= highest_m[0]
+    if SLOPE.is_surely_below(box, up_m, height_m):
+        assert up_m - height_m <= lowest_m[0]
+
+
+def test_heights_over_a_box_are_sure_only_over_known_ground() -> None:
+    inside, outside = Box(-20.0, -20.0, 20.0, 20.0), Box(-20.0, -20.0, 2_000.0, 20.0)
+    assert SLOPE.is_surely_above(inside, 36.0, 5.0)
+    assert not SLOPE.is_surely_above(inside, 34.0, 5.0)
+    assert not SLOPE.is_surely_above(outside, 36.0, 5.0)
+    assert SLOPE.is_surely_below(inside, 119.0, 120.0)
+    assert not SLOPE.is_surely_below(inside, 121.0, 120.0)
+    assert not SLOPE.is_surely_below(outside, 119.0, 120.0)
+    assert OPEN_AIRSPACE.is_surely_above(outside, 5.0, 5.0)
+    assert not OPEN_AIRSPACE.is_surely_above(outside, 4.0, 5.0)
+    assert OPEN_AIRSPACE.is_surely_below(outside, 120.0, 120.0)
+    assert not OPEN_AIRSPACE.is_surely_below(outside, 121.0, 120.0)

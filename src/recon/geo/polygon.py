@@ -4,6 +4,7 @@ Input that is not finite or not on earth gets the safe answer: neither inside no
 shapely) does the geometry, so that touching and grazing are decided in one place.
 """
 
+from functools import cached_property
 from math import hypot, inf
 from typing import NamedTuple
 
@@ -47,57 +48,80 @@ class Box(NamedTuple):
         )
 
 
+UNBOUNDED = Box(-inf, -inf, inf, inf)
+
+
 class Footprints:
     """Each of N footprints is the hull of three points, given as (N, 3, 2) east-north metres.
 
-    The same point twice makes a leg, three times a point. `least_m` and `most_m` (N, 2) are the
-    bounding boxes. `is_finite` (N,) is False for a footprint with a point that is not finite or not
-    on earth; its other values are meaningless.
+    The same point twice makes a leg, three times a point. `is_finite` (N,) is False for a footprint
+    with a point that is not finite or not on earth; its other values are meaningless. Everything is
+    worked out when it is asked for: of most paths, the box alone.
     """
 
     def __init__(self, triangles_m: npt.ArrayLike) -> None:
-        points, is_finite = finite_points(triangles_m)
-        corners = points.reshape(-1, 3, 2)
-        self.is_finite: BoolArray = np.asarray(is_finite.reshape(-1, 3).all(axis=1))
-        self._corners = corners
+        self._triangles_m = np.asarray(triangles_m, dtype=np.float64).reshape(-1, 3, 2)
         self._shapes: ShapeArray | None = None
-        self.least_m: FloatArray = corners.min(axis=1)
-        self.most_m: FloatArray = corners.max(axis=1)
-        self._box: Box | None = None
 
     def only(self, which: BoolArray | IntArray) -> "Footprints":
         """Return the footprints of a mask (N,), or at these indices."""
-        chosen = Footprints.__new__(Footprints)
-        chosen.is_finite, chosen._corners = self.is_finite[which], self._corners[which]
+        chosen = Footprints(self._triangles_m[which])
         chosen._shapes = None if self._shapes is None else self._shapes[which]
-        chosen._box = None
-        chosen.least_m, chosen.most_m = self.least_m[which], self.most_m[which]
         return chosen
 
     def __len__(self) -> int:
-        return len(self._corners)
+        return len(self._triangles_m)
 
-    @property
+    @cached_property
     def box(self) -> Box:
         """The box round all footprints; unbounded where one is not finite, and for no footprint.
 
         Most paths are small, and far from an edge as a whole: four numbers show it soonest.
         """
-        if self._box is None:
-            self._box = self._around_all()
-        return self._box
+        if len(self) == 0:
+            return UNBOUNDED
+        points_m = self._triangles_m.reshape(-1, 2)
+        # What is not finite is in the least or the most of all: NaN spreads.
+        west_m, south_m = points_m.min(axis=0).tolist()
+        east_m, north_m = points_m.max(axis=0).tolist()
+        is_finite = (
+            west_m >= -FARTHEST_M
+            and south_m >= -FARTHEST_M
+            and east_m <= FARTHEST_M
+            and north_m <= FARTHEST_M
+        )
+        return Box(west_m, south_m, east_m, north_m) if is_finite else UNBOUNDED
 
-    def _around_all(self) -> Box:
-        if len(self) == 0 or not self.is_finite.all():
-            return Box(-inf, -inf, inf, inf)
-        return Box(*self.least_m.min(axis=0).tolist(), *self.most_m.max(axis=0).tolist())
+    @cached_property
+    def is_finite(self) -> BoolArray:
+        """Which footprints (N,) have three points that are finite and on earth."""
+        # NaN compares as false.
+        near: BoolArray = np.abs(self._triangles_m).max(axis=(1, 2), initial=0.0) <= FARTHEST_M
+        return near
+
+    @cached_property
+    def _corners_m(self) -> FloatArray:
+        """The triangles, with zeros for those that are not finite."""
+        return np.where(self.is_finite[:, np.newaxis, np.newaxis], self._triangles_m, 0.0)
+
+    @cached_property
+    def least_m(self) -> FloatArray:
+        """West and south limits of each footprint, (N, 2)."""
+        least_m: FloatArray = self._corners_m.min(axis=1)
+        return least_m
+
+    @cached_property
+    def most_m(self) -> FloatArray:
+        """East and north limits of each footprint, (N, 2)."""
+        most_m: FloatArray = self._corners_m.max(axis=1)
+        return most_m
 
     @property
     def shapes(self) -> ShapeArray:
         """The footprints (N,) as GEOS geometries, made at first use: most queries do without."""
         shapes = self._shapes
         if shapes is None:
-            self._shapes = shapes = shapely.convex_hull(shapely.multipoints(self._corners))
+            self._shapes = shapes = shapely.convex_hull(shapely.multipoints(self._corners_m))
         return shapes
 
 

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo.polygon import Box
 from recon.model.geo import GroundGrid
 
 FloatArray = npt.NDArray[np.float64]
@@ -75,14 +76,14 @@ class Surface:
             return np.ones(len(heights_m), dtype=np.bool_)
         return self._bottom.is_below(self._triangle_nodes(triangles_m), -heights_m)
 
-    def covers_circle(self, east_m: float, north_m: float, radius_m: float) -> bool:
-        """Return whether the box round a circle lies on the surface."""
-        (west_m, south_m), (most_east_m, most_north_m) = self._bounds_m
+    def covers(self, box: Box) -> bool:
+        """Return whether a box lies on the surface."""
+        (west_m, south_m), (east_m, north_m) = self._bounds_m
         return (
-            east_m - radius_m >= west_m
-            and north_m - radius_m >= south_m
-            and east_m + radius_m <= most_east_m
-            and north_m + radius_m <= most_north_m
+            box.west_m >= west_m
+            and box.south_m >= south_m
+            and box.east_m <= east_m
+            and box.north_m <= north_m
         )
 
     @property

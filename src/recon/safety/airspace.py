@@ -32,6 +32,12 @@ class Cylinder(NamedTuple):
     low_m: float
     high_m: float
 
+    @property
+    def box(self) -> Box:
+        """The box round the circle."""
+        east_m, north_m, radius_m = self[:3]
+        return Box(east_m - radius_m, north_m - radius_m, east_m + radius_m, north_m + radius_m)
+
 
 class PreparedAirspace:
     """An airspace whose polygons and ground are prepared once; build one for each site, keep it.
@@ -86,8 +92,21 @@ class PreparedAirspace:
         east_m, north_m, radius_m = cylinder[:3]
         if not isfinite(east_m + north_m + radius_m):
             return True
-        around = Box(east_m - radius_m, north_m - radius_m, east_m + radius_m, north_m + radius_m)
+        around = cylinder.box
         return any(around.meets(box, 0.0) for kind in kinds for box in self._boxes[kind])
+
+    def is_surely_above(self, box: Box, low_m: float, height_m: float) -> bool:
+        """Return whether what is in a box, and no lower than `low_m`, is nowhere less than a height
+        above ground, whatever ground of the site is below it: in doubt not."""
+        if self._ground is None:
+            return low_m - height_m >= 0.0
+        return self._ground.covers(box) and low_m - height_m >= self._ground.highest_of_all_m
+
+    def is_surely_below(self, box: Box, high_m: float, height_m: float) -> bool:
+        """Return the same of what is no higher than `high_m`, and nowhere more above ground."""
+        if self._ground is None:
+            return high_m - height_m <= 0.0
+        return self._ground.covers(box) and high_m - height_m <= self._ground.lowest_of_all_m
 
     def is_surely_between_heights(self, cylinder: Cylinder) -> bool:
         """Return whether a cylinder keeps the height limits whatever ground of the site is below
@@ -95,7 +114,7 @@ class PreparedAirspace:
         limits, ground = self.airspace.limits, self._ground
         lowest_m = highest_m = 0.0
         if ground is not None:
-            if not ground.covers_circle(*cylinder[:3]):
+            if not ground.covers(cylinder.box):
                 return False
             lowest_m, highest_m = ground.lowest_of_all_m, ground.highest_of_all_m
         return (

@@ -36,6 +36,9 @@ def max_height(command: Command, situation: Situation) -> Refusal | None:
     settings = situation.settings.fences
     limit_m = situation.airspace.airspace.limits.max_height_above_ground_m
     most_m = limit_m + (settings.stop_slack_m if stops else 0.0)
+    highest_m = float(path.pieces.high_m.max())
+    if situation.airspace.is_surely_below(path.footprints.box, highest_m, most_m):
+        return None
     high = _higher(path, path.held_to_heights, situation, most_m)
     if len(high) == 0:
         return None

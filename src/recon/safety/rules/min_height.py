@@ -32,6 +32,9 @@ def min_height(command: Command, situation: Situation) -> Refusal | None:
     slack_m = situation.settings.fences.stop_slack_m if stops else 0.0
     least_m = situation.airspace.airspace.limits.min_height_above_ground_m - slack_m
     pieces = path.pieces
+    lowest_m = float(pieces.low_m.min())
+    if situation.airspace.is_surely_above(path.footprints.box, lowest_m, least_m):
+        return None
     judged = path.held_to_heights
     is_high_enough = stays_above(
         situation.airspace, pieces.triangles_m[judged], pieces.low_m[judged], least_m
