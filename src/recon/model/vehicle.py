@@ -133,6 +133,13 @@ class VehicleProfile:
     """In a conflict of two vehicles, the one with the lower number is held first."""
     packet_gap_s: float = 0.1
     """Least time between two packets to the app; some apps read one packet per segment."""
+    pad_place: LatLon | None = field(init=False, repr=False, compare=False)
+    """The pad's place alone, made once: every prediction asks where home is."""
+
+    def __post_init__(self) -> None:
+        pad = self.pad
+        place = None if pad is None else LatLon(pad.latitude_deg, pad.longitude_deg)
+        object.__setattr__(self, "pad_place", place)
 
     @property
     def display_name(self) -> str:

@@ -68,8 +68,7 @@ def home(vehicle: VehicleState) -> LatLon | None:
         return vehicle.position.value
     if vehicle.takeoff_point is not None:
         return vehicle.takeoff_point
-    pad = None if vehicle.profile is None else vehicle.profile.pad
-    return None if pad is None else LatLon(pad.latitude_deg, pad.longitude_deg)
+    return None if vehicle.profile is None else vehicle.profile.pad_place
 
 
 def takeoff_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | None:

@@ -1,7 +1,6 @@
 """One look of a watchdog at vehicles in metres; `traffic` has the vehicles."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from tests.safety.traffic import AIR, NOW, S, aircraft
 
@@ -49,7 +48,7 @@ def looks(
 
 def in_context(state: VehicleState, **changes: object) -> WatchedVehicle:
     """A vehicle and what the station knows beside its state."""
-    return replace(WatchedVehicle(state), **changes)  # type: ignore[arg-type]
+    return WatchedVehicle(state, **changes)  # type: ignore[arg-type]
 
 
 def held(seconds_ago: float, speed_mps: float = 0.0) -> CommandedHold:

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 from recon.model.control import AuthorityHolder, Commanded, Intent
 from recon.model.geo import LatLon
@@ -68,8 +69,7 @@ def hold_outcome(held: CommandedHold | None, refused: str) -> str:
     return "" if held is None else "was ordered to hold"
 
 
-@dataclass(frozen=True, slots=True)
-class WatchedVehicle:
+class WatchedVehicle(NamedTuple):
     """A vehicle that flies or may, and what the station knows beside its state.
 
     `motion` is None while it has never reported a position; `hazard` is set while telemetry is
@@ -272,18 +272,7 @@ def _placed(
 ) -> WatchedVehicle:
     seen = vehicle_motion(one.state, airspace, plane, now_ns, settings.prediction)
     hazard = None if seen is None else hazard_area_of(seen, one.intent, settings.prediction)
-    # Written out, for `replace` takes longer than all the rest.
-    return WatchedVehicle(
-        one.state,
-        one.intent,
-        one.holder,
-        seen,
-        hazard,
-        one.held,
-        one.is_imager,
-        one.stick_quiet_s,
-        one.hold_refused,
-    )
+    return one._replace(motion=seen, hazard=hazard)
 
 
 def _next_rows(one: WatchedVehicle, picture: TrafficPicture) -> list[Row]:
