@@ -39,8 +39,8 @@ def waypoints_passed(
     if passed == 0 and since_s < GAP_S:
         return 0
     reach_m = NEAR_M + FASTEST_MPS * max(0.0, since_s)
-    passed = _onto_the_nearest_leg(points, passed, position, height_m, reach_m)
-    return _past_the_near_ones(points, passed, position, height_m)
+    on = _onto_the_nearest_leg(points, passed, position, height_m, reach_m)
+    return passed if on == passed else _past_the_near_ones(points, on, position, height_m)
 
 
 def distance_to_m(waypoint: Waypoint, position: LatLon, height_m: float | None) -> float:
@@ -64,28 +64,37 @@ def _onto_the_nearest_leg(
     reach_m: float,
 ) -> int:
     """Leg k leads from waypoint k - 1 to k: a vehicle on it has passed k waypoints."""
+    if passed == len(points):
+        return passed
     best_m = NEAR_M + CLEARLY_NEARER_M
-    if passed > 0 and passed < len(points):
-        best_m = _to_leg_m(points[passed - 1], points[passed], position, height_m)
+    end = _offset(position, height_m, points[passed])
+    if passed > 0:
+        best_m = _to_leg_m(_offset(position, height_m, points[passed - 1]), end)
     between_m, on = 0.0, passed
     for leg in range(passed + 1, len(points)):
         if between_m > reach_m:
             break
-        distance_m = _to_leg_m(points[leg - 1], points[leg], position, height_m)
+        start, end = end, _offset(position, height_m, points[leg])
+        distance_m = _to_leg_m(start, end)
         if distance_m < best_m - CLEARLY_NEARER_M:
             best_m, on = distance_m, leg
         between_m += _length_m(points[leg - 1], points[leg])
     return on
 
 
-def _to_leg_m(start: Waypoint, end: Waypoint, position: LatLon, height_m: float | None) -> float:
-    a, b = _offset(position, height_m, start), _offset(position, height_m, end)
-    along = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+def _to_leg_m(start: Point, end: Point) -> float:
+    """How far a leg is from here; its ends are offsets from here."""
+    along = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     length_squared = _dot(along, along)
     if length_squared < 1e-9:
-        return _norm(a)
-    share = max(0.0, min(1.0, -_dot(a, along) / length_squared))
-    return _norm((a[0] + share * along[0], a[1] + share * along[1], a[2] + share * along[2]))
+        return _norm(start)
+    share = max(0.0, min(1.0, -_dot(start, along) / length_squared))
+    nearest = (
+        start[0] + share * along[0],
+        start[1] + share * along[1],
+        start[2] + share * along[2],
+    )
+    return _norm(nearest)
 
 
 def _dot(a: Point, b: Point) -> float:

@@ -49,21 +49,27 @@ def _gnss(vehicle: VehicleState, settings: StationSettings) -> Iterator[FlightCo
     count, level = vehicle.gnss_satellite_count.value, vehicle.gnss_signal_level.value
     if vehicle.extended_received_at_ns is None:
         return
-    satellites = "an unknown number of satellites" if count is None else f"{count} satellites"
-    signal = "signal level unknown" if level is None else f"signal level {level} of 5"
-    facts = f"{satellites}, {signal}"
     is_lost = vehicle.position.value is None or level == 0
     if is_lost:
-        text = f"GNSS lost ({facts}): it drifts with the wind; its pilot must steer it"
+        text = (
+            f"GNSS lost ({_reception(count, level)}): it drifts with the wind; its pilot must "
+            "steer it"
+        )
         yield FlightCondition("gnss", Severity.CRITICAL, text, after_s)
     elif (count is not None and count < limits.min_satellites) or (
         level is not None and level < limits.min_gnss_level
     ):
         text = (
-            f"GNSS poor ({facts}), at least {limits.min_satellites} satellites and level "
-            f"{limits.min_gnss_level} are needed: watch its position, and be ready to steer it"
+            f"GNSS poor ({_reception(count, level)}), at least {limits.min_satellites} satellites "
+            f"and level {limits.min_gnss_level} are needed: watch its position, and be "
+            "ready to steer it"
         )
         yield FlightCondition("gnss", Severity.ERROR, text, after_s)
+
+
+def _reception(count: int | None, level: int | None) -> str:
+    satellites = "an unknown number of satellites" if count is None else f"{count} satellites"
+    return f"{satellites}, signal level {'unknown' if level is None else f'{level} of 5'}"
 
 
 def _height(vehicle: VehicleState, limits: FlightAlarmSettings) -> Iterator[FlightCondition]:

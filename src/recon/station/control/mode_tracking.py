@@ -149,12 +149,13 @@ def _track(station: Station, serial: str, now_ns: int, judge: Judge) -> Stepped:
 
 def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | None:
     """Return what the newest mode means, None while there is no newer one or no newer place."""
-    intent, tracking = station.control(serial).intent, tracking_of(station, serial)
+    intent, tracking = _tracked(station, serial)
     instruction, mode = intents.instruction_of(intent, tracking.has_begun), vehicle.flight_mode
     if instruction in _UNCONFIRMED_EMERGENCY or mode.value is None or mode.received_at_ns is None:
         return None
     core_ns = vehicle.core_received_at_ns
-    is_new = mode.received_at_ns > tracking.since_ns and mode != tracking.read
+    is_read = mode is tracking.read or mode == tracking.read
+    is_new = not is_read and mode.received_at_ns > tracking.since_ns
     if not is_new or core_ns is None or core_ns < mode.received_at_ns:
         return None
     level = vehicle.gnss_signal_level.value
@@ -289,7 +290,7 @@ def _detect_manual_flight(
 
     In other modes the flight table shows its pilot; a hover shows nothing.
     """
-    intent, tracking = station.control(serial).intent, tracking_of(station, serial)
+    intent, tracking = _tracked(station, serial)
     if intent.commanded is not Commanded.NOTHING or vehicle.is_flying.value is None:
         return station
     if vehicle.is_flying.value is False:
@@ -310,7 +311,7 @@ def _moves_in_position_mode(vehicle: VehicleState) -> bool:
 
 def _count_passed(station: Station, serial: str, vehicle: VehicleState) -> Station:
     """Return the station with the waypoints counted that a vehicle has passed by now."""
-    intent, tracking = station.control(serial).intent, tracking_of(station, serial)
+    intent, tracking = _tracked(station, serial)
     core_at_ns, position = vehicle.core_received_at_ns, vehicle.position.value
     if intent.mission is None or not tracking.has_begun or position is None:
         return station
@@ -349,6 +350,12 @@ def _command_nothing(
 
 def _forget(station: Station, serial: str) -> Station:
     return intents.with_intent(station, serial, NO_INTENT).with_control(serial, tracking=None)
+
+
+def _tracked(station: Station, serial: str) -> tuple[Intent, Tracking]:
+    """What a vehicle was last commanded, and how far telemetry has confirmed it."""
+    control = station.control(serial)
+    return control.intent, control.tracking or _NOT_TRACKED
 
 
 def _with_tracking(station: Station, serial: str, tracking: Tracking) -> Station:

@@ -165,13 +165,15 @@ class VirtualDriver:
 
     def _next_step_ns(self) -> int:
         """Return the next step at which anything is due."""
+        due_ns = (self.now_ns // TICK_EVERY_NS + 1) * TICK_EVERY_NS
+        if self._due and self._due[0][0] < due_ns:
+            due_ns = self._due[0][0]
         sticks_ns = next_due_ns(self.station)
-        due_ns = min(
-            (self.now_ns // TICK_EVERY_NS + 1) * TICK_EVERY_NS,
-            self._due[0][0] if self._due else FAR_NS,
-            FAR_NS if sticks_ns is None else sticks_ns,
-            *(wire.peer_due_ns for wire in self._wires.values()),
-        )
+        if sticks_ns is not None and sticks_ns < due_ns:
+            due_ns = sticks_ns
+        for wire in self._wires.values():
+            if wire.peer_due_ns < due_ns:
+                due_ns = wire.peer_due_ns
         return max(_step_from(due_ns), self.now_ns + STEP_NS)
 
     def _advance(self, now_ns: int, *, asks_all: bool) -> None:

@@ -89,13 +89,17 @@ def start_stream(
 
 def next_due_ns(station: Station) -> int | None:
     """Return when the next setpoint of any stream is due."""
-    return min((stream.next_due_ns for _, stream in station.streams()), default=None)
+    if not station.streaming:
+        return None  # asked for at every event, and mostly no vehicle is steered
+    return min(stream.next_due_ns for _, stream in station.streams())
 
 
 def due_serials(
     station: Station, now_ns: int, serials: Collection[str] | None = None
 ) -> tuple[str, ...]:
     """Return the vehicles whose next setpoint is due, of these vehicles; None: of all."""
+    if not station.streaming:
+        return ()
     return tuple(
         serial
         for serial, stream in station.streams()
