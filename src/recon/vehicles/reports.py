@@ -39,10 +39,11 @@ def printable(raw: bytes, limit_chars: int = 1000) -> str:
     direction overrides) appear as backslash escapes; a backslash is doubled, so that two different
     inputs within the limit never look the same. Longer text ends with an ellipsis.
     """
-    text = "".join(
-        f"\\x{ord(c) - 0xDC00:02x}" if 0xDC80 <= ord(c) <= 0xDCFF else _escape(c)
-        for c in raw[: 4 * limit_chars].decode("utf-8", errors="surrogateescape")
-    )
+    text = raw[: 4 * limit_chars].decode("utf-8", errors="surrogateescape")
+    if not text.isprintable() or "\\" in text:
+        text = "".join(
+            f"\\x{ord(c) - 0xDC00:02x}" if 0xDC80 <= ord(c) <= 0xDCFF else _escape(c) for c in text
+        )
     return text if len(text) <= limit_chars else text[:limit_chars] + "…"
 
 

@@ -154,8 +154,9 @@ def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | 
     if instruction in _UNCONFIRMED_EMERGENCY or mode.value is None or mode.received_at_ns is None:
         return None
     core_ns = vehicle.core_received_at_ns
-    is_read = mode is tracking.read or mode == tracking.read
-    is_new = not is_read and mode.received_at_ns > tracking.since_ns
+    if mode is tracking.read or mode == tracking.read:
+        return None
+    is_new = mode.received_at_ns > tracking.since_ns
     if not is_new or core_ns is None or core_ns < mode.received_at_ns:
         return None
     level = vehicle.gnss_signal_level.value

@@ -179,6 +179,8 @@ def _judge_at(now_ns: int) -> Judge:
 
 def _with_intents(update: StreamUpdate, now_ns: int) -> StreamUpdate:
     """Set the intents of released vehicles: the gate judges the next setpoint by them."""
+    if not update.released:
+        return update
     station = update.station
     for serial, command_id, commanded in update.released:
         station = intents.after_stream(station, serial, command_id, commanded, now_ns)

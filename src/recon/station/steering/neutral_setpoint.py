@@ -77,6 +77,8 @@ def _stands(station: Station, serial: str, body: VirtualStick) -> bool:
 
 def drop_overdue(station: Station, now_ns: int) -> Station:
     """Return the station without the neutral setpoints that were not needed in time."""
+    if not station.neutral_pending:
+        return station
     wait_ns = seconds_to_ns(station.settings.neutral_setpoint_waits_s)
     for serial, neutral in pending(station):
         if now_ns >= neutral.due_at_ns + wait_ns:

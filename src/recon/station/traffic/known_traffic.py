@@ -32,8 +32,11 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
     With it the serial that is claimed for it: a link in conflict claims another vehicle's. A
     dismissed hazard area is left out until new telemetry arrives.
     """
+    dismissed = station.watchdog_state.dismissed
     for serial, vehicle in station.fleet.vehicles.items():
-        if vehicle.is_flying.value is not False and not is_dismissed(station, vehicle):
+        if vehicle.is_flying.value is False:
+            continue
+        if not dismissed or not is_dismissed(station, vehicle):
             yield vehicle, serial
     for link in station.fleet.unbound_links():
         if link.own_state.is_flying.value is True:
