@@ -68,6 +68,13 @@ class TestWithoutTakeoff:
         assert refused_by(approve(command(body), situation(lost))) == "flying"
 
 
+def test_a_report_on_the_ground_without_a_landing_seen_is_uncertain() -> None:
+    uncertain = vehicle(flying=None, reported_is_flying=False)
+    judged = flying(command(Hover()), situation(uncertain))
+    assert judged is not None
+    assert "it reports on the ground, and no landing was seen" in judged.reason
+
+
 class TestWithTakeoff:
     @pytest.mark.parametrize("body", [Hover(), mission(), STICK])
     def test_the_operator_may_order_a_takeoff(self, body: Body) -> None:
