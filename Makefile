@@ -95,7 +95,7 @@ fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nig
 			-- -max_total_time=$(FUZZ_SECONDS) -max_len=4096 || exit 1; \
 	done
 
-study: setup ## Long runs: the sky against measurements, random fences, fleets and whole stations, 100,000 simulated seconds, mutants (an hour)
+study: setup ## Long runs: the sky against measurements, random fences, fleets and closed loops, 100,000 simulated seconds, mutants (an hour)
 	$(RUN) python -m studies.sky_statistics
 	$(RUN) python -m studies.fences --scenes 10000
 	$(RUN) python -m studies.fleets --scenes 10000
