@@ -117,8 +117,10 @@ class FakeStation:
     def release_stop(self, serials: list[str] | None, by: str) -> ActionResponse:
         return self.service.release_stop(serials, by)
 
-    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
-        return self.service.fleet_return(serials, issued_by)
+    def fleet_return(
+        self, serials: list[str] | None, issued_by: str, given_at_ns: int | None = None
+    ) -> OrderResponse:
+        return self.service.fleet_return(serials, issued_by, given_at_ns)
 
     def dismiss_hazard(self, name: str, by: str) -> bool:
         return self.service.dismiss_hazard(name, by)

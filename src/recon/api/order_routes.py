@@ -87,7 +87,8 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
 
         Each result is the hold that it starts with; `fleet_return` in the state shows the progress.
         """
-        return port.fleet_return(asked.serials, client_name(request))
+        given_ns = given_at_ns(asked.given_at_unix_ms)
+        return port.fleet_return(asked.serials, client_name(request), given_ns)
 
 
 def _add_hazards(app: FastAPI, port: StationPort) -> None:

@@ -78,7 +78,9 @@ class StationPort(Protocol):
     def release_stop(self, serials: list[str] | None, by: str) -> ActionResponse:
         """Release vehicles from the all stop in force; None: all."""
 
-    def fleet_return(self, serials: list[str] | None, issued_by: str) -> OrderResponse:
+    def fleet_return(
+        self, serials: list[str] | None, issued_by: str, given_at_ns: int | None = None
+    ) -> OrderResponse:
         """Return vehicles home in layers; None: every vehicle that is or may be in flight.
 
         Each result is the hold that the return starts with; the state shows waves and heights.

@@ -204,7 +204,8 @@ class OrderApi:
 
     async def fleet_return(self, serials: Sequence[str] | None) -> tuple[VehicleAnswer, ...]:
         """Start a return in layers; None means all vehicles that fly or may fly."""
-        request = {"serials": None if serials is None else list(serials)}
+        named = None if serials is None else list(serials)
+        request = {"serials": named, "given_at_unix_ms": self.station_time_ms()}
         return await self._send_to_fleet("/api/fleet-return", request, "results of a fleet return")
 
     async def _send_to_fleet(

@@ -180,12 +180,14 @@ class FleetReturnOrdered:
     """Vehicles return home in height layers, as landing missions.
 
     The initial holds take the ids from `first_command_id` on, in the order of `serials`; the
-    missions that follow take ids of the station's own.
+    missions that follow take ids of the station's own. `given_at_ns` is when its person gave the
+    command, in station time; None if not stated.
     """
 
     first_command_id: int
     serials: tuple[str, ...]
     by: str
+    given_at_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

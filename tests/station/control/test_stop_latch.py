@@ -65,6 +65,11 @@ class TestTheLatch:
         scene = stopped().happens(FleetReturnOrdered(80, ("A",), "Ann"))
         assert scene.refusal_rule(80) == "stop_latch"
 
+    def test_a_fleet_return_given_long_ago_is_refused(self) -> None:
+        scene = released(stopped()).passes(30.0)
+        scene.happens(FleetReturnOrdered(80, ("A",), "Ann", scene.now_ns - 25 * 1_000_000_000))
+        assert scene.refusal_rule(80) == "not_expired"
+
     def test_guidance_has_nothing_to_resume_with(self) -> None:
         scene = CommandedStation().opens(1, *HOVERING).keeps_receiving(1, *HOVERING).passes(0.5)
         scene.happens(AuthorityTaken("A", AuthorityHolder.GUIDANCE, "Ann"))

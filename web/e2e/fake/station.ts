@@ -13,7 +13,7 @@ export class FakeStation {
   readonly orders: Omit<OrderRequest, "given_at_unix_ms">[] = [];
   readonly acknowledged: number[] = [];
   allStops = 0;
-  /** All other requests: path and body. */
+  /** All other requests: path and body, likewise. */
   readonly requests: [path: string, body: unknown][] = [];
   /** The gate's result for checked orders. */
   checkResult: Partial<OrderResult> = {};
@@ -82,7 +82,8 @@ export class FakeStation {
     if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
     const isControlRequest = /\/(authority|override|release)$/.test(path);
     if (isControlRequest || path === "/api/fleet-return") {
-      this.requests.push([path + search, JSON.parse(body ?? "{}")]);
+      const { given_at_unix_ms: _given, ...asked } = JSON.parse(body ?? "{}") as OrderRequest;
+      this.requests.push([path + search, asked]);
       return {
         json: isControlRequest ? { accepted: true, rule: null, reason: null } : { results: [] },
       };

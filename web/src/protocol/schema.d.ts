@@ -909,6 +909,11 @@ export interface components {
          * @description Vehicles to return home in layers; null: every vehicle that is or may be in flight.
          */
         FleetReturnRequest: {
+            /**
+             * Given At Unix Ms
+             * @description when its person gave it, in Unix milliseconds of the station's time (a state's `time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
+             */
+            given_at_unix_ms?: number | null;
             /** Serials */
             serials?: string[] | null;
         };

@@ -95,7 +95,7 @@ export class LiveSource implements StationSource {
   }
 
   fleetReturn(serials: readonly string[] | null) {
-    return this.requests.fleetReturn(serials);
+    return this.requests.fleetReturn(serials, this.stationNowMs());
   }
 
   setAuthority(serial: string, holder: AuthorityHolder) {

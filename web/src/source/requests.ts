@@ -59,8 +59,11 @@ export class Requests {
     );
   }
 
-  fleetReturn(named: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>> {
-    const body = { serials: named === null ? null : [...named] };
+  fleetReturn(
+    named: readonly string[] | null,
+    given_at_unix_ms: number | null,
+  ): Promise<Outcome<readonly OrderResult[]>> {
+    const body = { serials: named === null ? null : [...named], given_at_unix_ms };
     return answered(
       () => this.client.POST("/api/fleet-return", { body, signal: timeout() }),
       (data) => data.results,

@@ -157,6 +157,7 @@ class FleetReturnRequest(StrictMessage):
     serials: list[Annotated[str, Field(max_length=2048)]] | None = Field(
         default=None, min_length=1, max_length=256
     )
+    given_at_unix_ms: GivenAt = None
 
 
 class StopReleaseRequest(StrictMessage):

@@ -161,10 +161,14 @@ class Service:
         event = StopReleased(named, by)
         return self._command(event, stop_latch.refusal(self.driver.station, event))
 
-    def fleet_return(self, serials: list[str] | None, issued_by: str) -> schema.OrderResponse:
+    def fleet_return(
+        self, serials: list[str] | None, issued_by: str, given_at_ns: int | None = None
+    ) -> schema.OrderResponse:
         """Return vehicles home in layers; None: every vehicle that is or may be in flight."""
         called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
-        return schema.OrderResponse(results=[self._call_one(s, issued_by) for s in called])
+        return schema.OrderResponse(
+            results=[self._call_one(s, issued_by, given_at_ns) for s in called]
+        )
 
     def dismiss_hazard(self, name: str, by: str) -> bool:
         """Dismiss the hazard area of a lost vehicle."""
@@ -283,10 +287,10 @@ class Service:
         self.driver.handle(order)
         return self._outcome(order.command_id, order.serial)
 
-    def _call_one(self, serial: str, issued_by: str) -> schema.OrderResult:
+    def _call_one(self, serial: str, issued_by: str, given_at_ns: int | None) -> schema.OrderResult:
         """Add one vehicle to the return; it is planned at the next tick."""
         command_id = self._ids()
-        self.driver.handle(FleetReturnOrdered(command_id, (serial,), issued_by))
+        self.driver.handle(FleetReturnOrdered(command_id, (serial,), issued_by, given_at_ns))
         return self._outcome(command_id, serial)
 
     def _outcome(self, command_id: int, serial: str | None) -> schema.OrderResult:

@@ -8,6 +8,7 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import Event, FleetReturnOrdered, OperatorOrder
 from recon.record.audit import AuditEntry
 from recon.safety.datum import frame_for
+from recon.safety.rules.not_expired import given_refusal
 from recon.station.control import order_gateway
 from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.operations.fleet_return.progress import is_still_left
@@ -27,7 +28,8 @@ def call_home(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepp
     outputs: list[Output] = []
     for command_id, serial in enumerate(event.serials, event.first_command_id):
         order = OperatorOrder(command_id, Hover(), f"{event.by}: fleet return", serial=serial)
-        why = refusal(station, serial)
+        why = given_refusal(event.given_at_ns, now_ns, station.settings.safety)
+        why = why or refusal(station, serial)
         if why is not None:
             station = order_gateway.record_refusal(station, order, why, now_ns)
             continue
