@@ -20,7 +20,7 @@ physics
     The station has had telemetry of a vehicle of it for less than 8 s (or was started less than 8 s
     ago): what both need to stop from 15 m/s, one after the other. Or, within the last 8 s, wind
     pushed a vehicle of it by more than 1 m/s off what it was commanded to fly. A takeoff counts
-    when the aircraft had landed less than a link's delay and 0.3 s before it received the packet.
+    when the aircraft had landed less than 1 s before it.
 person
     A person's order that is always sent took the vehicle there (land, return: never judged by
     places), an operator had switched the separation holds off, or left a vehicle in the air
@@ -28,6 +28,9 @@ person
 station
     Everything else.
 
-A hold that arrived late is a fault when the downlink died meanwhile or the station had no telemetry
-for 3 s (a hover must not start a takeoff, so it waits for telemetry), else the station's.
+A hold that arrived late is a fault when within the last second the vehicle was without telemetry at
+the station for 1 s, or without a living downlink, or obeyed nothing; else the station's.
+
+What this leaves out: the simulator's ground is the plane of a vehicle's first takeoff, so on a slope
+heights of a vehicle that came down elsewhere count as wrong (fault) from then on.
 """
