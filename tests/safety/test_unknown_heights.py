@@ -51,6 +51,8 @@ def test_the_watchdog_counts_none_either() -> None:
         found = looks(separation, in_context(a), in_context(b))
         assert [finding.rule for finding in found] == ["separation"]
     assert looks(separation, *map(in_context, with_pads(*pair(70.0, 40.0)))) == []
+    (level,) = looks(separation, *map(in_context, with_pads(*pair(43.0, 40.0))))
+    assert "3 m in height" in level.text
 
 
 def test_takeoffs_at_one_place_have_one_height() -> None:
