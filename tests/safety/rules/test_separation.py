@@ -257,6 +257,15 @@ class TestLeadingApart:
         refused(judged(back, rushing, aircraft("B", (32.0, 0.0))), "from B")
         assert judged(back, rushing, aircraft("B", (65.0, 0.0))) is None
 
+    @pytest.mark.parametrize("other_m", [0.1, 3.0, 7.0])
+    def test_one_on_the_ground_does_not_take_off_beside_another(self, other_m: float) -> None:
+        up_and_away = route((0.0, 0.0, 40.0), (0.0, -60.0, 40.0))
+        beside = aircraft("B", (10.0, 0.0), other_m)
+        standing = aircraft("A", height_m=0.0, flying=False)
+        refused(judged(up_and_away, standing, beside), "from B")
+        assert judged(up_and_away, standing, aircraft("B", (10.0, 0.0), 60.0)) is None
+        assert judged(up_and_away, standing, aircraft("B", (60.0, 0.0), other_m)) is None
+
 
 class TestUnseen:
     def test_a_hazard_area_is_kept_clear_of_as_wide_as_it_may_grow(self) -> None:

@@ -18,6 +18,7 @@ from tests.station.flown import (
 
 from recon.model.command import Body, Hover, LandNow, Phase, ReturnHome
 from recon.model.control import AuthorityHolder, Commanded
+from recon.model.event import AuthorityTaken
 from recon.model.vehicle import FlightMode
 
 HOME, LANDING, SPORT = FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.GPS_SPORT
@@ -241,6 +242,27 @@ class TestOtherOrders:
         scene.passes(1.0).keeps_receiving(1, *at(north_m, mode)).passes(1.3)
         assert holder(scene) is AuthorityHolder.PILOT
         assert commanded(scene) is Commanded.NOTHING
+
+    def test_an_order_between_the_pilots_mode_and_the_next_place_hides_no_takeover(self) -> None:
+        scene = hovering()
+        scene.order(Hover())
+        scene.passes(1.0).keeps_receiving(1, *at(0.0, GPS)).passes(1.0)
+        core, extended = at(0.0, SPORT)
+        scene.keeps_receiving(1).passes(0.08).receives(1, extended)
+        order = scene.order(mission())
+        assert scene.phase(order) is Phase.SENT
+        scene.keeps_receiving(1, core, extended).passes(0.5)
+        assert holder(scene) is AuthorityHolder.PILOT
+        assert commanded(scene) is Commanded.NOTHING
+
+    def test_an_order_against_a_pilots_mode_that_is_known_is_no_new_takeover(self) -> None:
+        scene = hovering()
+        scene.keeps_receiving(1, *at(0.0, SPORT)).passes(1.0)
+        assert holder(scene) is AuthorityHolder.PILOT
+        scene.happens(AuthorityTaken("A", AuthorityHolder.OPERATOR, "test"))
+        scene.order(mission())
+        scene.passes(0.5)
+        assert holder(scene) is AuthorityHolder.OPERATOR
 
     def test_a_place_that_wanders_without_gnss_does_not_blame_the_pilot(self) -> None:
         scene = hovering()

@@ -46,11 +46,14 @@ def first_conflict(
     others: Sequence[Trajectory],
     need: SeparationMinima,
     settings: PredictionSettings,
+    *,
+    may_lead_apart: bool = True,
 ) -> Conflict | None:
     """Return where `own` first comes nearer than `need` to any other trajectory; None if it does
     not.
 
-    To another that is too near already, for the first seconds only coming nearer counts.
+    To another that is too near already, for the first seconds only coming nearer counts, if `own`
+    `may_lead_apart`: one that stands on the ground is not in the air yet, and stays there.
     """
     if not others:
         return None
@@ -66,7 +69,9 @@ def first_conflict(
     now = _now(own, others, theirs, need)
     comes_nearer = apart_m < now.apart_m[pairs.trajectory] - CLOSER_M
     comes_nearer |= _comes_up_or_down_to(mine, pairs, now)
-    is_conflict = is_near & (comes_nearer | ~_is_leaving(mine, settings)[pairs.own])
+    is_conflict = is_near
+    if may_lead_apart:
+        is_conflict = is_near & (comes_nearer | ~_is_leaving(mine, settings)[pairs.own])
     if not is_conflict.any():
         return None
     met = _kept(pairs, is_conflict)

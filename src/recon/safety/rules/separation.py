@@ -10,7 +10,8 @@ some seconds), and a mission that has not begun may begin 8 s late.
 A conflict is a pair of volumes that overlap in time and are nearer than the gate's minima both
 horizontally and vertically (`separation_minima.py`: more than the watchdog's, so an order that
 passes is not held a second later). Two vehicles that violate the minima already may be led apart:
-for `escape_s` only volumes nearer than now count.
+for `escape_s` only volumes nearer than now count. That is for vehicles in the air: one on the
+ground is apart as long as it stays there, and takes off when the other is out of the way.
 
 A vehicle whose telemetry is lost is a hazard area about its last position and along its way home;
 one that was sent a mission may also still fly it.
@@ -70,7 +71,8 @@ def separation(command: Command, situation: Situation) -> Refusal | None:
     others = _others(own, trajectory, plane, situation)
     if isinstance(others, Refusal):
         return others
-    conflict = first_conflict(trajectory, others, minima, prediction)
+    may_lead_apart = vehicle.is_flying.value is not False
+    conflict = first_conflict(trajectory, others, minima, prediction, may_lead_apart=may_lead_apart)
     if conflict is None:
         return None
     return _conflict(own, conflict, others[conflict.other], minima)

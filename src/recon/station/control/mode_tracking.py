@@ -332,7 +332,15 @@ def _is_steered(station: Station, serial: str) -> bool:
 
 
 def _start(station: Station, serial: str, intent: Intent, mode: FlightMode | None) -> Station:
-    """Return the station with a vehicle's intent, tracked anew; `mode` is no news of it."""
+    """Return the station with a vehicle's intent, tracked anew; `mode` is no news of it.
+
+    Unless it is its pilot's and not read yet: an order between the mode's packet and the next place
+    must not hide that the pilot took over.
+    """
+    before = tracking_of(station, serial)
+    known = before.mode_before if before.read is None else before.read.value
+    if mode is not None and kind_of(mode, None) is ModeKind.PILOT:
+        mode = known
     station = intents.with_intent(station, serial, intent)
     tracking = Tracking(since_ns=intent.since_ns, command_id=intent.command_id, mode_before=mode)
     return _with_tracking(station, serial, tracking)
