@@ -59,7 +59,7 @@ class TestState:
         assert client.get("/api/commands").json() == []
 
     @pytest.mark.parametrize(
-        "path", ["/api/vehicles/none", "/api/commands/3", "/api/nothing", "/nothing.js"]
+        "path", ["/api/vehicle?serial=none", "/api/commands/3", "/api/nothing", "/nothing.js"]
     )
     def test_what_is_not_there_is_one_sentence(self, client: Client, path: str) -> None:
         response = client.get(path)
@@ -367,9 +367,9 @@ class TestConsole:
 class TestPictures:
     def test_a_raw_frame_comes_as_jpeg(self, client: Client, station: FakeStation) -> None:
         station.frames["A/ü <b>"] = rgb_frame("A")
-        assert client.get("/api/vehicles/B/frame.jpg").status_code == 404
+        assert client.get("/api/vehicle/frame.jpg?serial=B").status_code == 404
         station.frames["A"] = rgb_frame("A")
-        response = client.get("/api/vehicles/A/frame.jpg")
+        response = client.get("/api/vehicle/frame.jpg?serial=A")
         assert response.headers["content-type"] == "image/jpeg"
         assert response.headers["x-frame-id"] == "7"
         bgr = cv2.imdecode(np.frombuffer(response.content, np.uint8), cv2.IMREAD_COLOR)
@@ -381,7 +381,7 @@ class TestPictures:
     def test_an_apps_own_jpeg_is_passed_on(self, client: Client, station: FakeStation) -> None:
         """Even if it is something else: the browser must not guess."""
         station.frames["A"] = Frame(1, "A", 0, 0, 0.25, jpeg=b"<script>")
-        response = client.get("/api/vehicles/A/frame.jpg")
+        response = client.get("/api/vehicle/frame.jpg?serial=A")
         assert response.content == b"<script>"
         assert response.headers["content-type"] == "image/jpeg"
         assert response.headers["x-content-type-options"] == "nosniff"
@@ -445,7 +445,7 @@ class TestFleetReturn:
 
 class TestWatching:
     def test_only_a_hazard_area_can_be_dismissed(self, client: Client) -> None:
-        response = client.post("/api/vehicles/A/hazard/dismiss")
+        response = client.post("/api/vehicle/hazard/dismiss?serial=A")
         assert response.status_code == 404
         assert "No hazard area" in response.json()["error"]
 

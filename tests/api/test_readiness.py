@@ -29,13 +29,13 @@ def client(station: FakeStation) -> Client:
 
 
 def vehicle(client: Client) -> dict[str, Any]:
-    found: dict[str, Any] = client.get("/api/vehicles/A").json()
+    found: dict[str, Any] = client.get("/api/vehicle?serial=A").json()
     return found
 
 
 class TestAuthority:
     def take(self, client: Client, holder: str, serial: str = "A") -> dict[str, Any]:
-        response = client.post(f"/api/vehicles/{serial}/authority", json={"holder": holder})
+        response = client.post(f"/api/vehicle/authority?serial={serial}", json={"holder": holder})
         assert response.status_code == 200
         answer: dict[str, Any] = response.json()
         return answer
@@ -78,12 +78,12 @@ class TestAuthority:
 
     @pytest.mark.parametrize("body", [{}, {"holder": "cat"}, {"holder": "pilot", "by": "me"}])
     def test_another_form_is_not_taken(self, client: Client, body: dict[str, str]) -> None:
-        assert client.post("/api/vehicles/A/authority", json=body).status_code == 422
+        assert client.post("/api/vehicle/authority?serial=A", json=body).status_code == 422
 
 
 class TestPreflight:
     def test_the_list_shows_each_point_that_is_missing(self, client: Client) -> None:
-        response = client.get("/api/vehicles/A/preflight")
+        response = client.get("/api/vehicle/preflight?serial=A")
         checklist = schema.PreflightView.model_validate_json(response.text)
         assert (checklist.serial, checklist.name, checklist.is_passed, checklist.override) == (
             "A",
@@ -97,23 +97,23 @@ class TestPreflight:
         assert "endurance_min" in points["endurance"].to_do
 
     def test_an_unknown_vehicle_has_no_checklist(self, client: Client) -> None:
-        response = client.get("/api/vehicles/X/preflight")
+        response = client.get("/api/vehicle/preflight?serial=X")
         assert response.status_code == 404
         assert response.json() == {"error": "No vehicle with serial 'X'"}
 
     def test_an_override_is_shown_everywhere(self, client: Client) -> None:
         assert vehicle(client)["preflight_override"] is None
-        path = "/api/vehicles/A/preflight/override"
+        path = "/api/vehicle/preflight/override?serial=A"
         answer = client.post(path, json={"reason": "a test flight indoors"}).json()
         assert answer == {"accepted": True, "rule": None, "reason": None}
         given = {"by": "api 127.0.0.1", "reason": "a test flight indoors", "age_s": 0.0}
         assert vehicle(client)["preflight_override"] == given
-        checklist = client.get("/api/vehicles/A/preflight").json()
+        checklist = client.get("/api/vehicle/preflight?serial=A").json()
         assert checklist["override"] == given
         assert checklist["is_passed"] is False
 
     def test_no_reason_is_no_override(self, client: Client) -> None:
-        path = "/api/vehicles/A/preflight/override"
+        path = "/api/vehicle/preflight/override?serial=A"
         answer = client.post(path, json={"reason": "  "}).json()
         assert (answer["accepted"], answer["rule"]) == (False, "preflight_override")
         assert "needs a reason" in answer["reason"]

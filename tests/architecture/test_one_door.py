@@ -142,7 +142,7 @@ class TestLinksSendNothingElse:
                     assert node.func.attr not in senders, (path, node.lineno)
                     if node.func.attr == "write":
                         writes.append(f"{name_of(path)}: {ast.unparse(node)}")
-        assert writes == ["link/server.py: self._transport.write(outgoing.data)"]
+        assert writes == ["link/connection.py: self._transport.write(outgoing.data)"]
 
     def test_outgoing_bytes_are_made_in_the_session_alone(self) -> None:
         makers = {

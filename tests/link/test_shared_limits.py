@@ -8,8 +8,8 @@ from tests.link.harness import LOOPS, Listening, close, listening, run_on
 from tests.link.test_server import write_for_ever
 from tests.link.test_session_patience import READ, UHD, damaged_image, head
 
-from recon.link.server import MEMORY, PLACES
 from recon.link.settings import MIB, LinkSettings
+from recon.link.shared_limits import MEMORY, PLACES
 from recon.model.event import LinkLimitReached, LinkOpened
 
 
@@ -174,7 +174,7 @@ class TestEnd:
                 assert len(station.reports(hostile_id)) < count
                 await station.until(lambda: station.closed_reason(hostile_id) is not None)
                 assert len(station.reports(hostile_id)) == count
-                assert not station.server.ending
+                assert set(station.server.unfinished) == {good_id}
                 await close(good)
 
         run_on(loop, main)

@@ -62,7 +62,6 @@ def _add_state_routes(app: FastAPI, port: StationPort) -> None:
         return port.state().vehicles
 
     @app.get("/api/vehicle", responses=PROBLEMS)
-    @app.get("/api/vehicles/{serial}", responses=PROBLEMS, include_in_schema=False)
     async def vehicle(serial: str) -> schema.VehicleView:
         """One vehicle."""
         known = next((v for v in port.state().vehicles if v.serial == serial), None)

@@ -7,15 +7,17 @@ after `PING_S` and as long again, whatever fits into the kernel's buffers.
 """
 
 import asyncio
-import fcntl
 import sys
-import termios
 from collections.abc import Callable, Hashable
 from typing import ClassVar, cast
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+if sys.platform != "win32":
+    import fcntl
+    import termios
 
 PATIENCE_S = 10.0
 """A request of 1 MiB takes this long at 0.8 Mbit/s."""
@@ -138,7 +140,12 @@ def _reader(transport: asyncio.Transport) -> Hashable:
 
 
 def _in_kernel_bytes(transport: asyncio.Transport) -> int:
-    """Return how much the peer has not acknowledged; the kernel takes more in large steps only."""
+    """Return how much the peer has not acknowledged; the kernel takes more in large steps only.
+
+    Windows does not tell: there a reader counts by what leaves the transport alone.
+    """
+    if sys.platform == "win32":
+        return 0
     sock = transport.get_extra_info("socket")
     try:
         queued = fcntl.ioctl(sock.fileno(), termios.TIOCOUTQ, bytes(4))

@@ -1,8 +1,7 @@
 """Routes for orders and operator commands: orders, fleet return, hazards, authority, preflight.
 
 A serial may be any text, also `..` and `A/B`, which no path carries unchanged through every client
-and server: it is a query parameter. In requests by hand, a serial of letters, digits and dashes may
-also stand in the path, as in `/api/vehicles/SIM-1/preflight`.
+and server: it is a query parameter.
 """
 
 from typing import Literal
@@ -93,12 +92,6 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
 
 def _add_hazards(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/vehicle/hazard/dismiss", responses=PROBLEMS, status_code=204)
-    @app.post(
-        "/api/vehicles/{serial}/hazard/dismiss",
-        responses=PROBLEMS,
-        status_code=204,
-        include_in_schema=False,
-    )
     async def dismiss_hazard(serial: str, request: Request) -> None:
         """Dismiss the hazard area of a lost vehicle that has been located.
 
@@ -123,7 +116,6 @@ def _add_hazards(app: FastAPI, port: StationPort) -> None:
 
 def _add_readiness(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/vehicle/authority")
-    @app.post("/api/vehicles/{serial}/authority", include_in_schema=False)
     async def authority(
         serial: str, asked: schema.AuthorityRequest, request: Request
     ) -> schema.ActionResponse:
@@ -131,13 +123,11 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
         return port.take_authority(serial, AuthorityHolder(asked.holder), client_name(request))
 
     @app.get("/api/vehicle/preflight", responses=PROBLEMS)
-    @app.get("/api/vehicles/{serial}/preflight", responses=PROBLEMS, include_in_schema=False)
     async def preflight(serial: str) -> schema.PreflightView:
         """A vehicle's preflight checklist as of now."""
         return found(port.preflight(serial), f"No vehicle with serial {serial!r}")
 
     @app.post("/api/vehicle/preflight/override")
-    @app.post("/api/vehicles/{serial}/preflight/override", include_in_schema=False)
     async def override_preflight(
         serial: str, asked: schema.PreflightOverrideRequest, request: Request
     ) -> schema.ActionResponse:

@@ -28,7 +28,6 @@ def _add_camera(app: FastAPI, port: StationPort) -> None:
     tiff: dict[int | str, dict[str, object]] = {200: {"content": {"image/tiff": {}}}}
 
     @app.get("/api/vehicle/frame.jpg", response_class=Response, responses=PROBLEMS | jpeg)
-    @app.get("/api/vehicles/{serial}/frame.jpg", response_class=Response, include_in_schema=False)
     async def frame(serial: str) -> Response:
         """A vehicle's newest camera frame, unchanged."""
         newest = found(port.frame(serial), f"No frame received from {serial!r}")

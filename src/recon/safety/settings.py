@@ -111,8 +111,8 @@ class BlindStopSettings:
     height_error_m: float = 5.0
     """A barometer's error, and what stands or grows on the ground."""
 
-    fastest_mps: float = 25.0
-    """How far it may have come over higher ground: in strong wind none is faster."""
+    fastest_mps: float = DJI.fastest_mps
+    """How far it may have come over higher ground."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+import time
 
 import pytest
 from tests.fleet.reports import core
@@ -120,6 +121,18 @@ class TestAsyncioDriver:
         assert events[-2:] == [ClockGap(pytest.approx(60.05)), waited]
         link = driver.station.fleet.links[1]
         assert link.own_state.core_received_at_ns is None
+
+    @pytest.mark.parametrize(
+        "missing", [(), ("CLOCK_BOOTTIME",), ("CLOCK_BOOTTIME", "CLOCK_MONOTONIC")]
+    )
+    def test_every_system_has_a_clock(
+        self, monkeypatch: pytest.MonkeyPatch, missing: tuple[str, ...]
+    ) -> None:
+        """Linux, macOS, Windows."""
+        for name in missing:
+            monkeypatch.delattr(time, name, raising=False)
+        now_ns = station_clock()
+        assert abs(now_ns() - time.time_ns()) < 60 * NS_PER_S
 
     def test_the_clock_begins_at_utc_and_never_runs_back(self) -> None:
         now_ns = station_clock()

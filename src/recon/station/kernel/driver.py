@@ -5,6 +5,7 @@ import gc
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 from recon.fleet.step import CloseLink
@@ -39,9 +40,17 @@ def station_clock() -> Callable[[], int]:
     It counts while the computer sleeps, so that orders expire and telemetry ages: Linux has a clock
     of its own for that, elsewhere the monotonic clock does.
     """
-    clock = getattr(time, "CLOCK_BOOTTIME", time.CLOCK_MONOTONIC)
-    offset_ns = time.time_ns() - time.clock_gettime_ns(clock)
-    return lambda: offset_ns + time.clock_gettime_ns(clock)
+    counted_ns = _sleep_counting_ns()
+    offset_ns = time.time_ns() - counted_ns()
+    return lambda: offset_ns + counted_ns()
+
+
+def _sleep_counting_ns() -> Callable[[], int]:
+    """Windows has one monotonic clock without a name."""
+    for name in ("CLOCK_BOOTTIME", "CLOCK_MONOTONIC"):
+        if hasattr(time, name):
+            return partial(time.clock_gettime_ns, getattr(time, name))
+    return time.monotonic_ns
 
 
 def freeze_loaded_objects() -> None:
