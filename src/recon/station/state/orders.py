@@ -150,6 +150,13 @@ def interrupted_mission(book: OrderBook, serial: str) -> OrderRecord | None:
     return None
 
 
+def mission_end_text(record: OrderRecord) -> str:
+    """Return how a mission ended that was not flown to its end, and why."""
+    if record.phase is Phase.SUPERSEDED:
+        return f"mission stopped: {record.note}"
+    return f"mission {record.phase.value.replace('_', ' ')}: {record.note}"
+
+
 def changed(record: OrderRecord, phase: Phase, at_ns: int, note: str = "") -> OrderRecord:
     """Return the record after a change of phase. A final phase stays: then it is a note only."""
     kept = record.phase if record.phase.is_final else phase

@@ -8,7 +8,7 @@ from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.operations.settings import ReturnSettings
 from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, ReturningVehicle, Stage
-from recon.station.state.orders import OrderRecord
+from recon.station.state.orders import OrderRecord, mission_end_text
 from recon.station.state.station import Station
 from recon.station.steering import neutral_setpoint
 
@@ -138,8 +138,7 @@ def _under_way(
     if vehicle.is_flying.value is False and (vehicle.core_received_at_ns or 0) > member.since_ns:
         return member.at(Stage.LANDED, now_ns)
     if record is not None and record.phase in _NOT_FLOWN:
-        words = record.phase.value.replace("_", " ")
-        return member.at(Stage.LEFT_OUT, now_ns, f"its mission {words}: {record.note}")
+        return member.at(Stage.LEFT_OUT, now_ns, f"its {mission_end_text(record)}")
     if member.stage is not Stage.ORDERED:
         return _still_flying(member, vehicle, settings, now_ns)
     is_flown = record is not None and record.phase in _FLOWN

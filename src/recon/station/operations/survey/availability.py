@@ -12,7 +12,7 @@ from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import frame_for, home_enu_m, vehicle_enu_m
 from recon.safety.energy import consumption
 from recon.safety.settings import EnergySettings
-from recon.station.state.orders import OrderRecord
+from recon.station.state.orders import OrderRecord, mission_end_text
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
@@ -83,9 +83,7 @@ def after_mission(
         return member, None
     if order.phase is Phase.DONE:
         return member, None
-    words = order.phase.value.replace("_", " ")
-    why = f"mission {words}: {order.note}"
-    return replace(member, stop_reason=why), order
+    return replace(member, stop_reason=mission_end_text(order)), order
 
 
 def time_left_s(
