@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import partial
 from random import Random
 
 from recon import wire
@@ -18,6 +19,8 @@ OnPacket = Callable[[str, wire.Packet, float], None]
 """A packet that reached an app: serial, packet, the link's longest delay then in seconds."""
 OnCore = Callable[[str, tuple[float, float]], None]
 """Core telemetry that left an app: serial, latitude and longitude."""
+OnDamage = Callable[[str], None]
+"""Bytes of a vehicle were changed on their way to the station: its serial."""
 
 
 @dataclass(slots=True)
@@ -110,6 +113,7 @@ class LinkedApps:
     is_bad: bool
     on_packet: OnPacket
     on_core: OnCore
+    on_damage: OnDamage
     serial_of_link: dict[int, str] = field(default_factory=dict)
     is_out: bool = False
     """While the station is down nothing reconnects."""
@@ -187,7 +191,7 @@ class LinkedApps:
         joined = self._joined[serial]
         if self.is_out or (number == MAIN_LINK and joined.link_id is not None):
             return
-        link = self._link()
+        link = self._link(serial)
         splits = Random(self.rng.random()) if self.is_bad else None
         joined.app.connected(self.driver.now_ns, number)
         connection = TappedConnection(
@@ -201,13 +205,22 @@ class LinkedApps:
         else:
             self._after(self.rng.uniform(3.0, 30.0), lambda: self._end_second(serial, link_id))
 
-    def _link(self) -> FakeLink:
+    def _link(self, serial: str) -> FakeLink:
         seed = self.rng.getrandbits(32)
         if not self.is_bad:
             return FakeLink(self.rng.uniform(0.01, 0.05), 0.02, seed=seed)
         delay_s, jitter_s = self.rng.uniform(0.02, 0.15), self.rng.uniform(0.0, 0.15)
-        damage = _damage if self.rng.random() < 0.3 else None
+        damage = partial(self._damage, serial) if self.rng.random() < 0.3 else None
         return FakeLink(delay_s, jitter_s, damage, seed=seed)
+
+    def _damage(self, serial: str, chunk: bytes, rng: Random) -> bytes:
+        """One chunk in a hundred is damaged, one in two hundred is lost."""
+        luck = rng.random()
+        if luck < 0.01 and chunk:
+            self.on_damage(serial)
+            place = rng.randrange(len(chunk))
+            return chunk[:place] + bytes([chunk[place] ^ 0x10]) + chunk[place + 1 :]
+        return b"" if luck < 0.015 else chunk
 
     def _carry_out(self, serial: str, order: LinkOrder) -> None:
         joined = self._joined[serial]
@@ -252,12 +265,3 @@ class LinkedApps:
 
     def _after(self, seconds: float, action: Callable[[], None]) -> None:
         self._later.append((self.driver.now_ns + seconds_to_ns(seconds), action))
-
-
-def _damage(chunk: bytes, rng: Random) -> bytes:
-    """One chunk in a hundred is damaged, one in two hundred is lost."""
-    luck = rng.random()
-    if luck < 0.01 and chunk:
-        place = rng.randrange(len(chunk))
-        return chunk[:place] + bytes([chunk[place] ^ 0x10]) + chunk[place + 1 :]
-    return b"" if luck < 0.015 else chunk

@@ -35,6 +35,7 @@ class Mark(Enum):
     LYING = "its heights were wrong"
     SELF_WILLED = "it landed or fell by itself"
     PUSHED = "wind pushed it"
+    DAMAGED = "bytes of it were changed on their way"
 
 
 @dataclass(slots=True)
@@ -86,6 +87,8 @@ def classify(
     """Return the class of a violation that begins now, and the reason."""
     if breach.kind in ("pilot's vehicle", "shown age", "code fault"):
         return ViolationClass.STATION, "no excuse"
+    if breach.kind == "shown place":
+        return _of_shown_place(vehicles[0], now_s)
     if breach.kind == "takeoff":
         return _of_takeoff(vehicles, now_s)
     if breach.kind == "hold":
@@ -124,6 +127,12 @@ def _of_takeoff(vehicles: Sequence[VehicleMarks], now_s: float) -> tuple[Violati
     if vehicle.landed_s is not None and now_s - vehicle.landed_s < 1.0:
         return ViolationClass.PHYSICS, "it had landed only just"
     return ViolationClass.STATION, "nothing else explains it"
+
+
+def _of_shown_place(vehicle: VehicleMarks, now_s: float) -> tuple[ViolationClass, str]:
+    if vehicle.was(Mark.DAMAGED, now_s, FAULT_S):
+        return ViolationClass.FAULT, f"{Mark.DAMAGED.value} ({vehicle.why[Mark.DAMAGED]})"
+    return ViolationClass.STATION, "no excuse"
 
 
 def _of_hold(vehicles: Sequence[VehicleMarks], now_s: float) -> tuple[ViolationClass, str]:

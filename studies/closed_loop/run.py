@@ -36,7 +36,7 @@ from recon.station.recovery.restart import LastRun, restored
 from recon.station.recovery.snapshot import decode_snapshot, encode_snapshot, take_snapshot
 from recon.station.state.station import Station
 from studies.closed_loop.links import LinkedApps
-from studies.closed_loop.marks import StationMarks, VehicleMarks
+from studies.closed_loop.marks import Mark, StationMarks, VehicleMarks
 from studies.closed_loop.parties import BATTERY_RULES, Parties
 from studies.closed_loop.pilots import Pilot
 from studies.closed_loop.scene import Scene, draw
@@ -68,7 +68,12 @@ class ClosedLoopRun:
         self.guard, self.ages = PilotGuard(), ShownAges()
         settings, random = self.scene.settings, Random(f"{seed}/links")
         self.links = LinkedApps(
-            self.driver, random, settings.has_bad_links, self._packet_arrived, self._core_made
+            self.driver,
+            random,
+            settings.has_bad_links,
+            self._packet_arrived,
+            self._core_made,
+            self._damaged,
         )
         self.fleet = TrueFleet(
             self.scene, self.apps, self.links, self.book, self.stops, self.permits
@@ -200,6 +205,9 @@ class ClosedLoopRun:
 
     def _core_made(self, serial: str, place: tuple[float, float]) -> None:
         self.ages.made(serial, self.now_s, place)
+
+    def _damaged(self, serial: str) -> None:
+        self.marks[serial].mark(Mark.DAMAGED, self.now_s, "the protocol has no checksum")
 
     def _observe(self, _before: Station, after: Station, event: Event) -> None:
         if not isinstance(event, PacketReceived):

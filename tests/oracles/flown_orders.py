@@ -143,7 +143,7 @@ class ShownAges:
             word = "live" if shown_age_s < LIVE_S else "younger"
             text = f"shown {word} at an age of {shown_age_s:.2f} s; it is {true_age_s:.2f} s old"
             return Breach("shown age", (serial,), "", excess_s, text)
-        return Breach("shown age", (serial,), "", 0.0, "a place is shown that was never sent")
+        return Breach("shown place", (serial,), "", 0.0, "a place is shown that was never sent")
 
 
 ALARM_RULES: dict[str, tuple[str, ...]] = {

@@ -104,3 +104,10 @@ def test_takeoffs_and_holds() -> None:
     hold = Breach("hold", ("A",), "", 0.0, "")
     assert class_of(hold, marked(Mark.DEAF, 0.5)) is ViolationClass.FAULT
     assert class_of(hold, known()) is ViolationClass.STATION
+
+
+def test_a_place_never_sent_is_a_fault_only_of_damaged_bytes() -> None:
+    shown = Breach("shown place", ("A",), "", 0.0, "a place is shown that was never sent")
+    assert class_of(shown, known()) is ViolationClass.STATION
+    assert class_of(shown, marked(Mark.DAMAGED, 1.0)) is ViolationClass.FAULT
+    assert class_of(shown, marked(Mark.DAMAGED, 13.0)) is ViolationClass.STATION
