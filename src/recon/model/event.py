@@ -6,6 +6,7 @@ from recon.model.command import Body, Phase
 from recon.model.control import AuthorityHolder
 from recon.model.report import Report
 from recon.model.survey import Survey
+from recon.model.temporary_zone import DrawnZone
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +177,22 @@ class SeparationHoldSwitched:
 
 
 @dataclass(frozen=True, slots=True)
+class ZoneDrawn:
+    """A person draws a temporary zone; it acts at once."""
+
+    drawn: DrawnZone
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class ZoneEnded:
+    """A person ends a temporary zone."""
+
+    zone_id: int
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
 class FleetReturnOrdered:
     """Vehicles return home in height layers, as landing missions.
 
@@ -280,6 +297,8 @@ Event = (
     | PreflightOverridden
     | HazardDismissed
     | SeparationHoldSwitched
+    | ZoneDrawn
+    | ZoneEnded
     | FleetReturnOrdered
     | SurveyRequested
     | SurveyStarted

@@ -1,7 +1,8 @@
 """A site's air made ready for many questions."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import NamedTuple
 
@@ -23,6 +24,11 @@ class PreparedZone:
     polygon: Polygon
 
 
+def prepared_zone(zone: Zone) -> PreparedZone:
+    """Return a zone prepared for many questions; raises `ValueError` for an invalid polygon."""
+    return PreparedZone(zone, Polygon(zone.region))
+
+
 class Cylinder(NamedTuple):
     """A circle on the ground and a band of heights, up_m of the frame."""
 
@@ -42,6 +48,8 @@ class Cylinder(NamedTuple):
 class PreparedAirspace:
     """An airspace whose polygons and ground are prepared once; build one for each site, keep it.
 
+    It does not change: `with_temporary_zones` returns another one, which shares what is prepared.
+
     Heights of the ground are up_m: ellipsoidal, minus that of the frame's origin. Without an
     elevation model the ground is flat at 0; with one, ground outside it is NaN, the
     highest of it +inf and the lowest -inf.
@@ -57,10 +65,35 @@ class PreparedAirspace:
         self.airspace = airspace
         boundary = airspace.boundary
         self.boundary = None if boundary is None else Polygon(boundary)
-        self.zones = tuple(PreparedZone(zone, Polygon(zone.region)) for zone in airspace.zones)
-        self._zones = {kind: _boxed(self.zones, kind) for kind in ZoneKind}
-        self._boxes = {kind: _box_values(*boxed[1:]) for kind, boxed in self._zones.items()}
+        self._site_zones = tuple(prepared_zone(zone) for zone in airspace.zones)
+        self._take_zones(self._site_zones)
         self._ground = _ground(airspace)
+
+    def with_temporary_zones(self, zones: Iterable[PreparedZone]) -> "PreparedAirspace":
+        """Return the site's airspace with these zones beside its own, and no others.
+
+        Boundary, ground and the site's zones are shared, not prepared again. Raises `ValueError`
+        for zones without the frame whose metres they are in.
+        """
+        temporary = tuple(zones)
+        if temporary and self.airspace.frame is None:
+            raise ValueError("expected a frame for temporary zones, got none")
+        changed = copy(self)
+        own = tuple(prepared.zone for prepared in self._site_zones)
+        added = tuple(prepared.zone for prepared in temporary)
+        changed.airspace = replace(self.airspace, zones=(*own, *added))
+        changed._take_zones((*self._site_zones, *temporary))
+        return changed
+
+    @property
+    def temporary_zones(self) -> tuple[PreparedZone, ...]:
+        """The zones beside the site's own."""
+        return self.zones[len(self._site_zones) :]
+
+    def _take_zones(self, zones: tuple[PreparedZone, ...]) -> None:
+        self.zones = zones
+        self._zones = {kind: _boxed(zones, kind) for kind in ZoneKind}
+        self._boxes = {kind: _box_values(*boxed[1:]) for kind, boxed in self._zones.items()}
 
     @property
     def origin_height_m(self) -> float:

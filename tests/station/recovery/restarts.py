@@ -28,7 +28,7 @@ def restored_from(
 def restart(here: World, snapshot: RecoverySnapshot | None = None) -> Station:
     """The station as another run begins with it now, without any link."""
     old, now_ns = here.driver.station, here.driver.now_ns
-    fresh = replace(Station(settings=old.settings), airspace=old.airspace)
+    fresh = replace(Station(settings=old.settings), airspace=old.airspace.with_temporary_zones(()))
     fresh = replace(fresh, fleet=replace(fresh.fleet, profiles=old.fleet.profiles))
     return restored_from(snapshot or saved(old, now_ns), now_ns, fresh)
 

@@ -15,6 +15,7 @@ waits for the pilot. After a restart the vehicles that are not back yet share on
 """
 
 from collections.abc import Iterator
+from math import ceil
 
 from recon.fleet.settings import FleetSettings
 from recon.fleet.state import LinkRecord, staleness
@@ -33,6 +34,9 @@ from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
 from recon.station.state.steps import Stepped
 from recon.station.traffic import identity_grace, known_traffic
+
+ZONE_ENDS_SOON_S = 60.0
+"""Long enough to ask whether the person has left, and to draw the zone again."""
 
 MAX_NAMES = 8
 """An alarm about many vehicles names this many and counts the rest."""
@@ -78,6 +82,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     yield from _watchdogs(station)
     yield from frames.conditions(station)
     yield from _stop_latch(station)
+    yield from _temporary_zones(station, now_ns)
     yield from _audit(station)
     for limit, problem in station.link_limits.items():
         yield Condition(f"link_limit:{limit}", Severity.ERROR, "link_limit", "", problem)
@@ -206,6 +211,20 @@ def _stop_latch(station: Station) -> Iterator[Condition]:
         "person releases it"
     )
     yield Condition("all_stop", Severity.WARNING, "all_stop", "", text)
+
+
+def _temporary_zones(station: Station, now_ns: int) -> Iterator[Condition]:
+    """Each zone in force: other operators must see it; shortly before its end all the more."""
+    for zone in station.temporary_zones.in_force.values():
+        severity, until = Severity.INFO, "until a person ends it"
+        if zone.ends_at_ns is not None:
+            left_s = ns_to_seconds(zone.ends_at_ns - now_ns)
+            until = f"for the next {max(1, ceil(left_s / 60.0))} min"
+            if left_s <= ZONE_ENDS_SOON_S:
+                severity = Severity.WARNING
+                until = "it ends within a minute: draw it again if it is still needed"
+        text = f"temporary zone {zone.name} by {zone.by}: {zone.drawn.reason}; {until}"
+        yield Condition(f"temporary_zone:{zone.id}", severity, "temporary_zone", "", text)
 
 
 def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:

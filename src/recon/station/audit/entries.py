@@ -28,13 +28,15 @@ from recon.model.event import (
     SeparationHoldSwitched,
     StopReleased,
     Tick,
+    ZoneDrawn,
+    ZoneEnded,
 )
 from recon.record.audit import AuditEntry
 from recon.station.audit.alarm_entries import AlarmsLogged, acknowledged_entry, alarm_entries
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
-from recon.station.control import authority, preflight, stop_latch
+from recon.station.control import authority, preflight, stop_latch, temporary_zones
 from recon.station.operations import OPERATIONS
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import VehicleControl
@@ -67,6 +69,7 @@ def audit(
     changed = after.controls_changed_since(before)
     entries += _authorities(before, after, changed)
     entries += _overrides(before, after, changed)
+    entries += _temporary_zones(before, event, after)
     orders = memory.orders
     if after.orders is not before.orders:
         orders, new = order_entries(orders, before.orders, after.orders, now_ns)
@@ -95,6 +98,10 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
             yield AuditEntry("all_stop.latched", text, by)
         case StopReleased():
             yield _released(before, event)
+        case ZoneDrawn(by=by):
+            yield from _zone_refused(temporary_zones.draw_refusal(before, event), by)
+        case ZoneEnded(by=by):
+            yield from _zone_refused(temporary_zones.end_refusal(before, event), by)
         case HazardDismissed(serial, by):
             name = known_traffic.lost_key(before, serial) or serial
             yield _about(before, "hazard.dismissed", "hazard area dismissed", by, name)
@@ -161,6 +168,27 @@ def _overrides(before: Station, after: Station, changed: Changed) -> Iterator[Au
         else:
             text = "preflight override ended"
             yield _about(after, "preflight.override_ended", text, "station", serial)
+
+
+def _temporary_zones(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
+    """Zones drawn and ended, by a person or by their time."""
+    old, new = before.temporary_zones.in_force, after.temporary_zones.in_force
+    if old is new:
+        return
+    yield from (
+        temporary_zones.entry("drawn", zone, zone.by) for key, zone in new.items() if key not in old
+    )
+    by = event.by if isinstance(event, ZoneEnded) else "station"
+    yield from (
+        temporary_zones.entry("ended", zone, by) for key, zone in old.items() if key not in new
+    )
+
+
+def _zone_refused(refusal: Refusal | None, by: str) -> Iterator[AuditEntry]:
+    if refusal is not None:
+        details = {"rule": refusal.rule, "reason": refusal.reason}
+        text = f"refused: {refusal.reason}"
+        yield AuditEntry("temporary_zone.refused", text, by, details=details)
 
 
 def _about(

@@ -33,13 +33,21 @@ from recon.model.event import (
     StationFaulted,
     StopReleased,
     Tick,
+    ZoneDrawn,
+    ZoneEnded,
 )
 from recon.model.replacing import replace
 from recon.model.report import CoreReport, ImageReport, MessageReport
 from recon.model.vehicle import VehicleState
 from recon.station.alarms import event_alarms
 from recon.station.alarms.conditions import raise_alarms
-from recon.station.control import authority, order_gateway, preflight, stop_latch
+from recon.station.control import (
+    authority,
+    order_gateway,
+    preflight,
+    stop_latch,
+    temporary_zones,
+)
 from recon.station.imaging import frames
 from recon.station.kernel import fault_isolation
 from recon.station.kernel.fault_isolation import TickPart
@@ -169,6 +177,7 @@ def _pass_time(station: Station, now_ns: int) -> Stepped:
 
 TICK_PARTS: tuple[TickPart, ...] = (
     TickPart("measuring the links' silence", _pass_time),
+    TickPart("ending temporary zones", temporary_zones.end_due),
     TickPart(
         "driving the setpoint streams",
         order_gateway.update_streams,
@@ -199,6 +208,8 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(CommandDropped, order_gateway.on_link_event),
         on(AllStopped, stop_latch.latch),
         changing(StopReleased, stop_latch.release),
+        changing(ZoneDrawn, temporary_zones.draw),
+        changing(ZoneEnded, temporary_zones.end),
         on(AuthorityTaken, authority.take),
         changing(OwnerConnected, _owner_connected),
         on(OwnerDisconnected, _owner_disconnected),

@@ -7,6 +7,7 @@ Theory of operation. A snapshot of the last run is read before the first event. 
 - vehicles in flight: lost vehicles, with alarm and hazard area, until their telemetry returns or
   an operator dismisses them. A snapshot older than 90 minutes, or from the future, restores none;
 - an all stop in force: it stays in force, however old the snapshot, until a person releases it;
+- temporary zones: likewise, until a person ends them or their time is over;
 - open orders: failed, with an alarm for each vehicle, because their outcome is unknown.
 
 Nothing is sent. For `settle_s` the apps reconnect and one alarm lists the vehicles that are still
@@ -30,8 +31,8 @@ from recon.model.trust import Trust
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
-from recon.station.control import authority, stop_latch
-from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot
+from recon.station.control import authority, stop_latch, temporary_zones
+from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot, restored_zone
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
@@ -82,6 +83,8 @@ def restored(station: Station, last_run: LastRun, now_ns: int) -> Station:
         return station
     settings = station.settings.restart
     station = stop_latch.restore(station, _stop_latch(snapshot))
+    zones = tuple(restored_zone(saved) for saved in snapshot.temporary_zones)
+    station = temporary_zones.restore(station, zones, snapshot.next_zone_id, now_ns)
     station = _with_interrupted(station, snapshot, now_ns)
     gone_s = ns_to_seconds(now_ns - snapshot.taken_at_ns)
     if not 0.0 <= gone_s <= settings.forgotten_after_s:
@@ -135,6 +138,8 @@ def restart_entries(station: Station) -> Iterator[AuditEntry]:
         }
         text = f"{name}: authority: {held.holder.value}: {held.reason}"
         yield AuditEntry("authority.taken", text, "station", serial, name, details)
+    for zone in station.temporary_zones.in_force.values():
+        yield temporary_zones.entry("restored", zone, "station")
     for record in station.orders.records.values():
         command, name = record.command, record.vehicle_name
         text = f"{name}: {command.name.replace('_', ' ')}: failed ({record.note})"

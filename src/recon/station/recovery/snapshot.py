@@ -13,7 +13,15 @@ import msgspec
 from recon.model.command import LIVING_PHASES, Phase, VirtualStick
 from recon.model.control import AuthorityHolder
 from recon.model.geo import LatLon
+from recon.model.temporary_zone import (
+    Circle,
+    DrawnZone,
+    Outline,
+    TemporaryZone,
+    TemporaryZoneKind,
+)
 from recon.model.vehicle import VehicleState
+from recon.safety.temporary_zones import MOST_CORNERS, MOST_ZONES
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import (
@@ -54,6 +62,28 @@ class StopLatchSnapshot(msgspec.Struct, frozen=True):
     )
 
 
+class PlaceSnapshot(msgspec.Struct, frozen=True):
+    """A place on the globe."""
+
+    latitude_deg: Annotated[float, msgspec.Meta(ge=-90.0, le=90.0)]
+    longitude_deg: Annotated[float, msgspec.Meta(ge=-180.0, le=180.0)]
+
+
+class TemporaryZoneSnapshot(msgspec.Struct, frozen=True, kw_only=True):
+    """A temporary zone in force: a circle of `radius_m` round its one corner, or an outline."""
+
+    id: Annotated[int, msgspec.Meta(ge=1, le=MAX_ID)]
+    kind: TemporaryZoneKind
+    corners: Annotated[list[PlaceSnapshot], msgspec.Meta(min_length=1, max_length=MOST_CORNERS)]
+    radius_m: float | None = None
+    floor_m: float | None = None
+    ceiling_m: float | None = None
+    reason: str
+    by: str
+    drawn_at_ns: int
+    ends_at_ns: int | None = None
+
+
 class OrderSnapshot(msgspec.Struct, frozen=True, kw_only=True):
     """An order that has not ended. `body` is the command body as JSON, typed by `order`."""
 
@@ -80,6 +110,10 @@ class RecoverySnapshot(msgspec.Struct, frozen=True, kw_only=True):
     next_own_id: Annotated[int, msgspec.Meta(ge=-MAX_ID, le=-1)] = -1
     stop_latch: StopLatchSnapshot | None = None
     """Absent in files of version 1."""
+    temporary_zones: Annotated[list[TemporaryZoneSnapshot], msgspec.Meta(max_length=MOST_ZONES)] = (
+        msgspec.field(default_factory=list)
+    )
+    next_zone_id: Annotated[int, msgspec.Meta(ge=1, le=MAX_ID)] = 1
     authorities: Annotated[dict[str, AuthoritySnapshot], msgspec.Meta(max_length=MAX_VEHICLES)] = (
         msgspec.field(default_factory=dict)
     )
@@ -125,6 +159,8 @@ def take_snapshot(station: Station, now_ns: int, last_order_id: int = 0) -> Reco
         last_order_id=max(last_order_id, *station.orders.records, *station.surveys.records, 0),
         next_own_id=station.next_own_id,
         stop_latch=_stop_latch(station),
+        temporary_zones=[zone_snapshot(zone) for zone in station.temporary_zones.in_force.values()],
+        next_zone_id=station.temporary_zones.next_id,
         authorities=dict(islice(_authorities(station), MAX_VEHICLES)),
         vehicles={serial: vehicle_snapshot(vehicle) for serial, vehicle in flying[:MAX_VEHICLES]},
         unidentified={name: vehicle_snapshot(vehicle) for name, vehicle in kept.items()},
@@ -178,6 +214,32 @@ def _stop_latch(station: Station) -> StopLatchSnapshot | None:
         return None
     released = sorted(latch.released)[:MAX_VEHICLES]
     return StopLatchSnapshot(latch.by[:MAX_TEXT], latch.at_ns, released)
+
+
+def zone_snapshot(zone: TemporaryZone) -> TemporaryZoneSnapshot:
+    """Return a temporary zone for the snapshot."""
+    drawn, shape = zone.drawn, zone.drawn.shape
+    corners = (shape.centre,) if isinstance(shape, Circle) else shape.corners
+    return TemporaryZoneSnapshot(
+        id=zone.id,
+        kind=drawn.kind,
+        corners=[PlaceSnapshot(each.latitude_deg, each.longitude_deg) for each in corners],
+        radius_m=shape.radius_m if isinstance(shape, Circle) else None,
+        floor_m=drawn.floor_m,
+        ceiling_m=drawn.ceiling_m,
+        reason=drawn.reason,
+        by=zone.by[:MAX_TEXT],
+        drawn_at_ns=zone.drawn_at_ns,
+        ends_at_ns=zone.ends_at_ns,
+    )
+
+
+def restored_zone(saved: TemporaryZoneSnapshot) -> TemporaryZone:
+    """Return the temporary zone of a snapshot; whether it can be used is for `restore` to judge."""
+    corners = tuple(LatLon(each.latitude_deg, each.longitude_deg) for each in saved.corners)
+    shape = Outline(corners) if saved.radius_m is None else Circle(corners[0], saved.radius_m)
+    drawn = DrawnZone(saved.kind, shape, saved.reason, saved.floor_m, saved.ceiling_m)
+    return TemporaryZone(saved.id, drawn, saved.by, saved.drawn_at_ns, saved.ends_at_ns)
 
 
 def _authorities(station: Station) -> Iterator[tuple[str, AuthoritySnapshot]]:

@@ -17,6 +17,7 @@ from recon.station.state.orders import OrderBook
 from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.settings import StationSettings
 from recon.station.state.survey_record import Surveys
+from recon.station.state.temporary_zones import TemporaryZones
 from recon.station.state.vehicle_control import NO_CONTROL, ControlChanges, VehicleControl
 from recon.station.state.watchdog_state import WatchdogState
 
@@ -62,6 +63,9 @@ class Station:
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
     airspace: PreparedAirspace = field(default=OPEN_AIRSPACE, repr=False)
+    """The site's, with the temporary zones in force."""
+    temporary_zones: TemporaryZones = field(default_factory=TemporaryZones)
+    """Writer: `control/temporary_zones.py`."""
     controls: Mapping[str, VehicleControl] = field(default_factory=dict)
     """By serial; read with `control`, changed with `with_control` only."""
     streaming: tuple[str, ...] = ()
