@@ -17,6 +17,7 @@ from recon.safety import ApprovedCommand, approve, judge
 from recon.station.control import (
     authority,
     intents,
+    late_starts,
     missions,
     mode_tracking,
     order_timeouts,
@@ -37,7 +38,7 @@ from recon.station.control.situation_builder import command_of, situation
 from recon.station.control.withdrawal import withdraw
 from recon.station.state import orders
 from recon.station.state.orders import OrderRecord
-from recon.station.state.station import Station
+from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Judge, Output, SendCommand, Stepped
 from recon.station.steering import neutral_setpoint, setpoint_streams, stream_ends
 from recon.station.steering.stream_ends import StreamUpdate
@@ -246,6 +247,10 @@ def update_orders(station: Station, now_ns: int, serials: tuple[str, ...] | None
     tracked = (
         mode_tracking.without_recent_telemetry(station, now_ns) if serials is None else serials
     )
+    for stop in late_starts.stops_again(station, tracked, now_ns):
+        station, number = take_id(station)
+        station, sent = submit(station, replace(stop, command_id=number), now_ns)
+        outputs += sent
     station, sent = mode_tracking.track(station, tracked, now_ns, _judge_at(now_ns))
     outputs += sent
     station, neutrals = neutral_setpoint.due(station, now_ns)

@@ -41,11 +41,16 @@ def takeoff_under_way(station: Station, command: Command, now_ns: int) -> OrderR
     for record in reversed(tuple(station.orders.records.values())):
         if record.command.serial != command.serial or not record.command.takeoff:
             continue
-        if any(change.phase in _SHOWN for change in record.history):
+        if was_shown(record):
             return None
         is_recent = record.sent is not None and record.sent.sent_at_ns >= late_ns
         return record if is_recent or record.waiting_link_ids else None
     return None
+
+
+def was_shown(record: OrderRecord) -> bool:
+    """Return whether telemetry has ever shown an order confirmed, begun or carried out."""
+    return any(change.phase in _SHOWN for change in record.history)
 
 
 def following_record(
