@@ -1,10 +1,13 @@
 """Two missions ordered at once are separated before telemetry shows either vehicle flying."""
 
+from dataclasses import replace
+
 from tests.fleet.reports import PLACE, core, extended
 from tests.station.commanded import CommandedStation
 
 from recon.geo.distance import moved_m
-from recon.model.command import FlyMission, Phase
+from recon.model.command import FlyMission, Hover, Phase
+from recon.model.event import CommandSent
 from recon.model.mission import Mission, Waypoint
 
 
@@ -55,3 +58,28 @@ def test_a_vehicles_earlier_mission_is_no_traffic_to_itself() -> None:
     scene = two_on_the_ground()
     for _ in range(2):
         assert not refused(scene, scene.order(over_the_field(20.0, 0.0), "A", takeoff=True))
+
+
+def test_a_takeoff_into_a_hover_counts_while_it_is_queued_and_while_it_may_happen() -> None:
+    scene = two_on_the_ground()
+    scene.is_stuck = True
+    over_a = over_the_field(0.0, 40.0)
+    assert not refused(scene, scene.order(over_a, "B", takeoff=True))
+    takeoff = scene.order(Hover(), "A", takeoff=True)
+    assert refused(scene, takeoff)  # B's waits, and comes over A
+
+
+def test_a_mission_past_a_vehicle_that_takes_off_into_a_hover_is_refused() -> None:
+    scene = two_on_the_ground()
+    low = over_the_field(0.0, 40.0)
+    low = FlyMission(
+        Mission(tuple(replace(p, height_above_takeoff_m=5.0) for p in low.mission.waypoints))
+    )
+    scene.is_stuck = True
+    takeoff = scene.order(Hover(), "A", takeoff=True)
+    assert refused(scene, scene.order(low, "B", takeoff=True))
+    scene.is_stuck = False
+    scene.happens(CommandSent(1, takeoff)).passes(3.0)
+    assert refused(scene, scene.order(low, "B", takeoff=True))
+    scene.passes(10.0)
+    assert not refused(scene, scene.order(low, "B", takeoff=True))

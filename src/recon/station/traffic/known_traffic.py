@@ -16,6 +16,7 @@ from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety.prediction import HazardArea, hazard_area_of, vehicle_motion
 from recon.safety.watchdogs import plane_of
+from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.traffic import identity_grace
 
@@ -46,24 +47,38 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
 
 
 def about_to_fly(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, Intent]]:
-    """Yield each vehicle about to fly a mission that telemetry does not show yet, and its intent.
+    """Yield each vehicle about to fly as telemetry does not show yet, and its intent.
 
-    Its mission is queued; or it is on the ground, was sent one a moment ago, and may be taking off.
+    Its mission or takeoff is queued; or it is on the ground, was sent one a moment ago, and may be
+    taking off.
     """
     for record in station.orders.tracked:
-        body, serial = record.command.body, record.command.serial
-        vehicle = station.fleet.vehicles.get(serial or "")
-        if vehicle is not None and isinstance(body, FlyMission) and record.phase is Phase.QUEUED:
-            issued_at_ns, number = record.command.issued_at_ns, record.command.id
-            yield vehicle, Intent(Commanded.MISSION, issued_at_ns, number, mission=body.mission)
+        vehicle = station.fleet.vehicles.get(record.command.serial or "")
+        intent = _queued_flight(record) if record.phase is Phase.QUEUED else None
+        if vehicle is not None and intent is not None:
+            yield vehicle, intent
     starts_ns = seconds_to_ns(station.settings.safety.prediction.start_delay_s)
     for serial, control in station.controls.items():
         intent = control.intent
-        if intent.commanded is not Commanded.MISSION or now_ns - intent.since_ns > starts_ns:
+        if intent.commanded is Commanded.NOTHING or now_ns - intent.since_ns > starts_ns:
             continue
         vehicle = station.fleet.vehicles.get(serial)
-        if vehicle is not None and vehicle.is_flying.value is False:
+        if vehicle is None or vehicle.is_flying.value is not False:
+            continue
+        order = station.orders.records.get(intent.command_id or 0)
+        takes_off = order is not None and order.command.takeoff
+        if takes_off or intent.commanded is Commanded.MISSION:
             yield vehicle, intent
+
+
+def _queued_flight(record: OrderRecord) -> Intent | None:
+    """Return what an order makes its vehicle fly; None for one that starts no flight."""
+    command, body = record.command, record.command.body
+    mission = body.mission if isinstance(body, FlyMission) else None
+    if mission is None and not command.takeoff:
+        return None
+    commanded = Commanded.HOLD if mission is None else Commanded.MISSION
+    return Intent(commanded, command.issued_at_ns, command.id, mission=mission)
 
 
 def hazard(station: Station, vehicle: VehicleState, now_ns: int) -> HazardArea | None:
