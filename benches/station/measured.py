@@ -14,6 +14,7 @@ from recon import wire
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.event import CommandSent, Event, LinkClosed, PacketReceived
+from recon.model.person import Person, Role
 from recon.model.report import CoreReport, ExtendedReport, ImageReport
 from recon.site import default_site
 from recon.station.api_views.service import Service
@@ -116,7 +117,7 @@ async def measure_station(load: Load) -> Outcome:
         while received.core < load.apps * load.seconds * 5 and not sending.done():
             await asyncio.sleep(0.01)
     ordered_at_s = time.monotonic()
-    results = service.all_stop("bench").results
+    results = service.all_stop(Person("bench", Role.OPERATOR)).results
     sent = await sending
     cpu_share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
     ran_ns, waited_ns = (b - a for a, b in zip(scheduled, ran_and_waited_ns(), strict=True))

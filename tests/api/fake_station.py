@@ -23,6 +23,7 @@ from recon.api.security import Access
 from recon.model.command import Body
 from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
+from recon.model.person import Person
 from recon.model.shade import ShadeMap, SunForecast
 from recon.site import Site, default_site
 from recon.station.api_views.service import Service
@@ -69,7 +70,7 @@ class FakeStation:
         body: Body,
         *,
         takeoff: bool,
-        issued_by: str,
+        by: Person,
         owner: str | None = None,
         given_at_ns: int | None = None,
     ) -> OrderResponse:
@@ -78,7 +79,7 @@ class FakeStation:
             serials,
             body,
             takeoff=takeoff,
-            issued_by=issued_by,
+            by=by,
             owner=owner,
             given_at_ns=given_at_ns,
         )
@@ -89,7 +90,7 @@ class FakeStation:
         body: Body,
         *,
         takeoff: bool,
-        issued_by: str,
+        by: Person,
         owner: str | None = None,
         given_at_ns: int | None = None,
     ) -> OrderResponse:
@@ -97,7 +98,7 @@ class FakeStation:
             serials,
             body,
             takeoff=takeoff,
-            issued_by=issued_by,
+            by=by,
             owner=owner,
             given_at_ns=given_at_ns,
         )
@@ -111,33 +112,33 @@ class FakeStation:
     def owner_disconnected(self, owner: str) -> None:
         self.service.owner_disconnected(owner)
 
-    def all_stop(self, issued_by: str) -> OrderResponse:
-        return self.service.all_stop(issued_by)
+    def all_stop(self, by: Person) -> OrderResponse:
+        return self.service.all_stop(by)
 
-    def release_stop(self, serials: list[str] | None, by: str) -> ActionResponse:
+    def release_stop(self, serials: list[str] | None, by: Person) -> ActionResponse:
         return self.service.release_stop(serials, by)
 
     def fleet_return(
-        self, serials: list[str] | None, issued_by: str, given_at_ns: int | None = None
+        self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
     ) -> OrderResponse:
-        return self.service.fleet_return(serials, issued_by, given_at_ns)
+        return self.service.fleet_return(serials, by, given_at_ns)
 
-    def dismiss_hazard(self, name: str, by: str) -> bool:
+    def dismiss_hazard(self, name: str, by: Person) -> bool:
         return self.service.dismiss_hazard(name, by)
 
-    def switch_separation_hold(self, is_on: bool, by: str) -> None:
+    def switch_separation_hold(self, is_on: bool, by: Person) -> None:
         self.service.switch_separation_hold(is_on, by)
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> ActionResponse:
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: Person) -> ActionResponse:
         return self.service.take_authority(serial, holder, by)
 
     def preflight(self, serial: str) -> PreflightView | None:
         return self.service.preflight(serial)
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> ActionResponse:
+    def override_preflight(self, serial: str, reason: str, by: Person) -> ActionResponse:
         return self.service.override_preflight(serial, reason, by)
 
-    def acknowledge(self, alarm_id: int, by: str) -> bool:
+    def acknowledge(self, alarm_id: int, by: Person) -> bool:
         return self.service.acknowledge(alarm_id, by)
 
     def frame(self, serial: str) -> Frame | None:
@@ -152,7 +153,7 @@ class FakeStation:
     def forecast(self) -> tuple[int, SunForecast] | None:
         return self.service.forecast()
 
-    def request_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
+    def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
         return self.service.request_survey(asked, by)
 
     def survey(self, survey_id: int) -> SurveyView | None:
@@ -164,14 +165,14 @@ class FakeStation:
         serials: list[str],
         *,
         takeoff: bool,
-        by: str,
+        by: Person,
         given_at_ns: int | None = None,
     ) -> SurveyResponse:
         return self.service.start_survey(
             survey_id, serials, takeoff=takeoff, by=by, given_at_ns=given_at_ns
         )
 
-    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> SurveyResponse:
+    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: Person) -> SurveyResponse:
         return self.service.stop_survey(survey_id, is_aborted=is_aborted, by=by)
 
     def survey_ways(self, survey_id: int) -> SurveyWays | None:

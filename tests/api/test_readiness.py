@@ -9,6 +9,7 @@ from tests.link.approved import core, extended
 
 from recon import wire
 from recon.api import schema
+from recon.api.security import LOCAL_PERSON
 from recon.model.control import AuthorityHolder
 from recon.model.event import LinkOpened, PacketReceived
 from recon.vehicles.reports import to_report
@@ -57,12 +58,12 @@ class TestAuthority:
         authority = station.driver.station.control("A").authority
         assert (authority.holder, authority.holder_name) == (
             AuthorityHolder(holder),
-            "api 127.0.0.1",
+            LOCAL_PERSON.label,
         )
         authority = vehicle(client)["authority"]
         assert (authority["holder"], authority["holder_name"], authority["age_s"]) == (
             holder,
-            "api 127.0.0.1",
+            LOCAL_PERSON.label,
             0.0,
         )
 
@@ -106,7 +107,7 @@ class TestPreflight:
         path = "/api/vehicle/preflight/override?serial=A"
         answer = client.post(path, json={"reason": "a test flight indoors"}).json()
         assert answer == {"accepted": True, "rule": None, "reason": None}
-        given = {"by": "api 127.0.0.1", "reason": "a test flight indoors", "age_s": 0.0}
+        given = {"by": LOCAL_PERSON.label, "reason": "a test flight indoors", "age_s": 0.0}
         assert vehicle(client)["preflight_override"] == given
         checklist = client.get("/api/vehicle/preflight?serial=A").json()
         assert checklist["override"] == given

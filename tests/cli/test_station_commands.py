@@ -9,6 +9,8 @@ import pytest
 from tests.cli.processes import started
 from tests.cli.station_process import StationProcess, addresses, run_options, station_process
 
+from recon.station.kernel.run import local_person
+
 
 @pytest.fixture(scope="module")
 def station(tmp_path_factory: pytest.TempPathFactory) -> Iterator[StationProcess]:
@@ -59,7 +61,7 @@ class TestOnTheGround:
         self, station: StationProcess, mission: Path
     ) -> None:
         assert station.recon("all-stop").code == 0
-        assert "ALL STOP by api 127.0.0.1" in station.recon("status").out
+        assert f"ALL STOP by {local_person().label}" in station.recon("status").out
         refused = station.recon("fly", "SIM-1", mission, "--takeoff", "--dry-run")
         assert "would be refused (stop_latch): " in refused.out
         assert station.recon("release-stop").code == 2
@@ -183,7 +185,7 @@ class TestAudit:
     def test_it_names_the_client_and_verifies(self, station: StationProcess) -> None:
         shown = station.recon("audit", "show", station.audit, "--kind", "order.")
         assert shown.code == 0
-        assert "api 127.0.0.1" in shown.out
+        assert local_person().label in shown.out
         of_one = station.recon("audit", "show", station.audit, "--vehicle", "SIM-2", "--json")
         assert {json.loads(line)["serial"] for line in of_one.out.splitlines()} == {"SIM-2"}
         verdict = station.recon("audit", "verify", station.audit)

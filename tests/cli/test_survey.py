@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 from tests.cli.station_process import StationProcess, station_process
 
+from recon.station.kernel.run import local_person
+
 FLOWN = ("--height", "40", "--speed", "5")
 
 
@@ -146,7 +148,7 @@ class TestStart:
         assert station.recon("survey", "start", number, "SIM-1").code == 1
         entries = audited(station)
         kinds = {entry["kind"]: entry for entry in entries}
-        assert kinds["survey.started"]["by"] == "api 127.0.0.1"
+        assert kinds["survey.started"]["by"] == local_person().label
         assert kinds["survey.started"]["details"]["serials"] == ["SIM-1"]
         assert kinds["survey.aborted"]["details"]["id"] == number
         assert kinds["survey.refused"]["details"]["asked"] == "started"

@@ -7,6 +7,7 @@ from contextlib import asynccontextmanager
 from functools import partial
 
 import uvloop
+from tests.persons import ANN
 from tests.ready import ready_site
 
 from recon.fleet.state import staleness
@@ -36,7 +37,7 @@ class Field:
         return self.driver.station.fleet.vehicles.get(serial)
 
     def order(self, serial: str, body: Body) -> int:
-        (result,) = self.service.order([serial], body, takeoff=False, issued_by="test").results
+        (result,) = self.service.order([serial], body, takeoff=False, by=ANN).results
         assert result.accepted, result
         return result.command_id
 

@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Annotated, Any
 
-from fastapi import FastAPI, Query, Request, Response, WebSocket
+from fastapi import Depends, FastAPI, Query, Request, Response, WebSocket
 from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException as AnyHTTPException
 
 from recon.api import schema
 from recon.api.order_routes import add_order_routes
+from recon.api.permissions import require_listed_role
 from recon.api.picture_routes import add_picture_routes
 from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, found
@@ -38,7 +39,13 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
 
     `console` is the folder with the built console; without one a page describes how to build it.
     """
-    app = FastAPI(title="Recon", version=version, docs_url=None, redoc_url=None)
+    app = FastAPI(
+        title="Recon",
+        version=version,
+        docs_url=None,
+        redoc_url=None,
+        dependencies=[Depends(require_listed_role)],
+    )
     _add_state_routes(app, port)
     _add_audit_and_streams(app, port)
     add_order_routes(app, port)

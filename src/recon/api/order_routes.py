@@ -9,9 +9,11 @@ from typing import Literal
 from fastapi import FastAPI, HTTPException, Request
 
 from recon.api import schema
+from recon.api.permissions import authority_role, order_role, require, separation_hold_role
 from recon.api.port import StationPort
-from recon.api.responses import PROBLEMS, client_name, found, given_at_ns
+from recon.api.responses import PROBLEMS, found, given_at_ns
 from recon.api.schema import requests
+from recon.api.security import person_of
 from recon.model.command import (
     Body,
     FlyMission,
@@ -42,11 +44,12 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/orders")
     async def order(asked: schema.OrderRequest, request: Request) -> schema.OrderResponse:
         """Give one order to each named vehicle; refusals are among the results."""
+        require(person_of(request), order_role(asked.order.kind))
         return port.order(
             asked.serials,
             to_body(asked.order),
             takeoff=asked.takeoff,
-            issued_by=client_name(request),
+            by=person_of(request),
             owner=asked.owner,
             given_at_ns=given_at_ns(asked.given_at_unix_ms),
         )
@@ -54,11 +57,12 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/orders/check")
     async def check(asked: schema.OrderRequest, request: Request) -> schema.OrderResponse:
         """Return what the gate would answer to an order now. Nothing is sent; each id is 0."""
+        require(person_of(request), order_role(asked.order.kind))
         return port.check(
             asked.serials,
             to_body(asked.order),
             takeoff=asked.takeoff,
-            issued_by=client_name(request),
+            by=person_of(request),
             owner=asked.owner,
             given_at_ns=given_at_ns(asked.given_at_unix_ms),
         )
@@ -69,14 +73,14 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
 
         Until released, no order sets a vehicle in motion, not one by guidance either.
         """
-        return port.all_stop(client_name(request))
+        return port.all_stop(person_of(request))
 
     @app.post("/api/all-stop/release")
     async def release_stop(
         asked: schema.StopReleaseRequest, request: Request
     ) -> schema.ActionResponse:
         """Release vehicles from the all stop. Nothing is sent to them, and nothing resumes."""
-        return port.release_stop(asked.serials, client_name(request))
+        return port.release_stop(asked.serials, person_of(request))
 
     @app.post("/api/fleet-return")
     async def fleet_return(
@@ -87,7 +91,7 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
         Each result is the hold that it starts with; `fleet_return` in the state shows the progress.
         """
         given_ns = given_at_ns(asked.given_at_unix_ms)
-        return port.fleet_return(asked.serials, client_name(request), given_ns)
+        return port.fleet_return(asked.serials, person_of(request), given_ns)
 
 
 def _add_hazards(app: FastAPI, port: StationPort) -> None:
@@ -97,7 +101,7 @@ def _add_hazards(app: FastAPI, port: StationPort) -> None:
 
         A vehicle without a serial is named by its hazard area's `dismissal_name`.
         """
-        if not port.dismiss_hazard(serial, client_name(request)):
+        if not port.dismiss_hazard(serial, person_of(request)):
             raise HTTPException(
                 404, f"No hazard area for {serial!r}: it is connected, landed or unknown"
             )
@@ -105,12 +109,13 @@ def _add_hazards(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/separation-hold/{switch}", status_code=204)
     async def separation_hold(switch: Literal["on", "off"], request: Request) -> None:
         """Switch the separation holds of the watchdogs on or off; off, an alarm stays active."""
-        port.switch_separation_hold(switch == "on", client_name(request))
+        require(person_of(request), separation_hold_role(switch))
+        port.switch_separation_hold(switch == "on", person_of(request))
 
     @app.post("/api/alarms/{alarm_id}/acknowledge", responses=PROBLEMS, status_code=204)
     async def acknowledge(alarm_id: int, request: Request) -> None:
         """Acknowledge an alarm; it stays until its cause ends."""
-        if not port.acknowledge(alarm_id, client_name(request)):
+        if not port.acknowledge(alarm_id, person_of(request)):
             raise HTTPException(404, f"Alarm {alarm_id} not found")
 
 
@@ -120,7 +125,8 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
         serial: str, asked: schema.AuthorityRequest, request: Request
     ) -> schema.ActionResponse:
         """Transfer control authority: from now on only `holder` may set the vehicle in motion."""
-        return port.take_authority(serial, AuthorityHolder(asked.holder), client_name(request))
+        require(person_of(request), authority_role(asked.holder))
+        return port.take_authority(serial, AuthorityHolder(asked.holder), person_of(request))
 
     @app.get("/api/vehicle/preflight", responses=PROBLEMS)
     async def preflight(serial: str) -> schema.PreflightView:
@@ -135,7 +141,7 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
 
         Reason and client are written to the audit.
         """
-        return port.override_preflight(serial, asked.reason, client_name(request))
+        return port.override_preflight(serial, asked.reason, person_of(request))
 
 
 def to_body(order: schema.AnyOrder) -> Body:

@@ -20,6 +20,7 @@ from recon.api.schema import (
 from recon.model.command import Body
 from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
+from recon.model.person import Person
 from recon.model.shade import ShadeMap, SunForecast
 
 
@@ -44,7 +45,7 @@ class StationPort(Protocol):
         body: Body,
         *,
         takeoff: bool,
-        issued_by: str,
+        by: Person,
         owner: str | None = None,
         given_at_ns: int | None = None,
     ) -> OrderResponse:
@@ -60,7 +61,7 @@ class StationPort(Protocol):
         body: Body,
         *,
         takeoff: bool,
-        issued_by: str,
+        by: Person,
         owner: str | None = None,
         given_at_ns: int | None = None,
     ) -> OrderResponse:
@@ -72,36 +73,36 @@ class StationPort(Protocol):
     def owner_disconnected(self, owner: str) -> None:
         """Report that it has closed or is silent: its steered orders end."""
 
-    def all_stop(self, issued_by: str) -> OrderResponse:
+    def all_stop(self, by: Person) -> OrderResponse:
         """Hold every link that may be in flight, identified or not; latched until released."""
 
-    def release_stop(self, serials: list[str] | None, by: str) -> ActionResponse:
+    def release_stop(self, serials: list[str] | None, by: Person) -> ActionResponse:
         """Release vehicles from the all stop in force; None: all."""
 
     def fleet_return(
-        self, serials: list[str] | None, issued_by: str, given_at_ns: int | None = None
+        self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
     ) -> OrderResponse:
         """Return vehicles home in layers; None: every vehicle that is or may be in flight.
 
         Each result is the hold that the return starts with; the state shows waves and heights.
         """
 
-    def dismiss_hazard(self, name: str, by: str) -> bool:
+    def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle; False when it has none."""
 
-    def switch_separation_hold(self, is_on: bool, by: str) -> None:
+    def switch_separation_hold(self, is_on: bool, by: Person) -> None:
         """Switch the separation holds of the watchdogs on or off."""
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: str) -> ActionResponse:
+    def take_authority(self, serial: str, holder: AuthorityHolder, by: Person) -> ActionResponse:
         """Transfer control authority; refusals are results, not errors."""
 
     def preflight(self, serial: str) -> PreflightView | None:
         """Return a vehicle's checklist as of now; None for an unknown vehicle."""
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> ActionResponse:
+    def override_preflight(self, serial: str, reason: str, by: Person) -> ActionResponse:
         """Allow missions although the checklist is not passed."""
 
-    def acknowledge(self, alarm_id: int, by: str) -> bool:
+    def acknowledge(self, alarm_id: int, by: Person) -> bool:
         """Acknowledge an alarm; False when it does not exist."""
 
     def audit(self, after: int, at_most: int) -> AuditPage:
@@ -119,7 +120,7 @@ class StationPort(Protocol):
     def forecast(self) -> tuple[int, SunForecast] | None:
         """Return the newest forecast and its number."""
 
-    def request_survey(self, asked: SurveyRequest, by: str) -> SurveyResponse:
+    def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
         """Request a survey; it is planned in the background, see `survey`."""
 
     def survey(self, survey_id: int) -> SurveyView | None:
@@ -131,12 +132,12 @@ class StationPort(Protocol):
         serials: list[str],
         *,
         takeoff: bool,
-        by: str,
+        by: Person,
         given_at_ns: int | None = None,
     ) -> SurveyResponse:
         """Start a survey with these vehicles, or add them; guidance gets control authority."""
 
-    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> SurveyResponse:
+    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: Person) -> SurveyResponse:
         """Pause or abort a survey; its vehicles hold."""
 
     def survey_ways(self, survey_id: int) -> SurveyWays | None:

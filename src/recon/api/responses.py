@@ -2,7 +2,7 @@
 
 from typing import TypeVar
 
-from fastapi import HTTPException, Request, Response
+from fastapi import HTTPException, Response
 
 from recon.api import schema
 
@@ -17,11 +17,6 @@ def found(value: _T | None, sentence: str) -> _T:
     if value is None:
         raise HTTPException(404, sentence)
     return value
-
-
-def client_name(request: Request) -> str:
-    """Return the name of the client, for `issued_by` and the audit."""
-    return f"api {request.client.host}" if request.client is not None else "api"
 
 
 def given_at_ns(unix_ms: int | None) -> int | None:

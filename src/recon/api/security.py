@@ -10,9 +10,12 @@ from hashlib import sha256
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
+from starlette.requests import HTTPConnection
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from recon.model.person import THIS_COMPUTER, Person, Role
 
 PROTOCOL = "recon.v1"
 TOKEN_PROTOCOL_PREFIX = "recon.token."
@@ -27,6 +30,9 @@ MAX_REASON_BYTES = 123
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 
+LOCAL_PERSON = Person("local-operator", Role.ADMIN, THIS_COMPUTER)
+_PERSON = "recon.person"
+
 
 @dataclass(frozen=True, slots=True)
 class Access:
@@ -34,12 +40,14 @@ class Access:
 
     host_names: frozenset[str] = LOOPBACK_NAMES
     token_sha256: bytes | None = None
+    local: Person = LOCAL_PERSON
+    """The person of every request; requests over loopback need no login."""
 
     @classmethod
-    def make(cls, bound_host: str, token: str | None) -> "Access":
+    def make(cls, bound_host: str, token: str | None, local: Person = LOCAL_PERSON) -> "Access":
         """Return the access rules for an address; with a token any host name is accepted."""
         names = LOOPBACK_NAMES | {bound_host}
-        return cls(names, None if token is None else sha256(token.encode()).digest())
+        return cls(names, None if token is None else sha256(token.encode()).digest(), local)
 
     def is_token(self, token: str | None) -> bool:
         """Return whether a token is right; none is needed when none is set."""
@@ -63,7 +71,7 @@ class AccessCheck:
             return
         status, sentence = self._refusal(scope)
         if sentence is None:
-            await self.app(scope, receive, send)
+            await self.app({**scope, _PERSON: self.access.local}, receive, send)
         elif scope["type"] == "websocket":
             await refuse_stream(WebSocket(scope, receive, send), POLICY_VIOLATION, sentence)
         else:
@@ -88,6 +96,13 @@ class AccessCheck:
         if self.access.token_sha256 is not None:
             return True
         return _name_of(host) in self.access.host_names
+
+
+def person_of(connection: HTTPConnection) -> Person:
+    """Return the authenticated person of a request or stream that `AccessCheck` let in."""
+    person = connection.scope[_PERSON]
+    assert isinstance(person, Person)
+    return person
 
 
 async def accept_stream(socket: WebSocket) -> None:

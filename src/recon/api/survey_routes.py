@@ -8,7 +8,8 @@ from fastapi import FastAPI, Request, Response
 from recon.api import pictures, schema
 from recon.api.picture_routes import Form
 from recon.api.port import StationPort
-from recon.api.responses import PNG, PROBLEMS, client_name, found, given_at_ns, png
+from recon.api.responses import PNG, PROBLEMS, found, given_at_ns, png
+from recon.api.security import person_of
 from recon.model.survey import unknown_survey
 
 PLANNED_WITHIN_S = 10.0
@@ -26,7 +27,7 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/surveys")
     async def ask(asked: schema.SurveyRequest, request: Request) -> schema.SurveyResponse:
         """Plan a survey of a region. Responds when its rows are planned; nothing flies."""
-        answer = port.request_survey(asked, client_name(request))
+        answer = port.request_survey(asked, person_of(request))
         if answer.survey is None:
             return answer
         return _planned(await _until_planned(port, answer.survey))
@@ -39,7 +40,7 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
 
         On a running survey the vehicles join, or resume.
         """
-        by = client_name(request)
+        by = person_of(request)
         return port.start_survey(
             survey_id,
             asked.serials,
@@ -53,7 +54,7 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
         survey_id: int, command: Literal["pause", "abort"], request: Request
     ) -> schema.SurveyResponse:
         """Pause a survey, or abort it for good. Its vehicles hold where they are."""
-        return port.stop_survey(survey_id, is_aborted=command == "abort", by=client_name(request))
+        return port.stop_survey(survey_id, is_aborted=command == "abort", by=person_of(request))
 
 
 def _add_views(app: FastAPI, port: StationPort) -> None:

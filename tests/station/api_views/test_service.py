@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from tests.link.approved import core, extended
+from tests.persons import ANN, BOB
 from tests.ready import ready_profile, ready_site
 from tests.safety.cases import mission, waypoint
 
@@ -57,7 +58,7 @@ class TestAllStop:
         bench.open(3, core())
         bench.open(4, core(is_flying=0))
         bench.open(5, extended(b"00000"), core())
-        results = bench.service.all_stop("test").results
+        results = bench.service.all_stop(ANN).results
         accepted = {(r.serial, r.link_id): r.accepted for r in results}
         assert accepted == {("A", None): True, ("B", None): False, (None, 3): True, (None, 5): True}
         refused = next(r for r in results if r.serial == "B")
@@ -66,7 +67,7 @@ class TestAllStop:
     def test_no_vehicle_is_ordered_twice(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
         bench.open(2, extended(b"A"), core())
-        results = bench.service.all_stop("test").results
+        results = bench.service.all_stop(ANN).results
         assert [r.serial for r in results] == ["A"]
 
     def test_a_vehicle_that_flew_when_its_link_closed_is_stopped_when_it_is_back(
@@ -74,32 +75,32 @@ class TestAllStop:
     ) -> None:
         bench.open(1, extended(b"A"), core())
         bench.driver.handle(LinkClosed(1, "gone"))
-        (result,) = bench.service.all_stop("test").results
+        (result,) = bench.service.all_stop(ANN).results
         assert result.accepted
         assert "waits for telemetry" in (result.reason or "")
 
     def test_it_stays_in_force_until_a_person_releases_it(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
-        bench.service.all_stop("Ann")
+        bench.service.all_stop(ANN)
         bench.now_ns += 3 * NS_PER_S
         bench.open(2, extended(b"B"), core())
         latch = bench.state().stop_latch
         assert latch is not None
         assert (latch.by, latch.age_s, latch.released) == ("Ann", 3.0, [])
         assert [v.is_stopped for v in bench.state().vehicles] == [True, True]
-        (refused,) = bench.service.order(["B"], mission(), takeoff=False, issued_by="t").results
+        (refused,) = bench.service.order(["B"], mission(), takeoff=False, by=ANN).results
         assert refused.rule == "stop_latch"
-        assert bench.service.release_stop(["A"], "Bob").accepted
+        assert bench.service.release_stop(["A"], BOB).accepted
         assert [v.is_stopped for v in bench.state().vehicles] == [False, True]
-        assert bench.service.release_stop(None, "Bob").accepted
+        assert bench.service.release_stop(None, BOB).accepted
         assert bench.state().stop_latch is None
-        assert not bench.service.release_stop(None, "Bob").accepted
+        assert not bench.service.release_stop(None, BOB).accepted
 
 
 class TestOrders:
     def test_results_carry_names_and_numbers(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
-        results = bench.service.order(["A", "Z"], LandNow(), takeoff=False, issued_by="t").results
+        results = bench.service.order(["A", "Z"], LandNow(), takeoff=False, by=ANN).results
         assert [(r.serial, r.accepted, r.vehicle_name) for r in results] == [
             ("A", True, "Anna"),
             ("Z", False, "Z"),
@@ -112,13 +113,13 @@ class TestOrders:
     ) -> None:
         bench.open(1, extended(b"A"), core())
         body = mission(*(waypoint(10.0 * n, speed_mps=20.0) for n in range(120)))
-        (result,) = bench.service.order(["A"], body, takeoff=False, issued_by="t").results
+        (result,) = bench.service.order(["A"], body, takeoff=False, by=ANN).results
         assert (result.accepted, result.parts) == (False, 2)
         assert [text.split(": ")[0] for text in result.repairs] == [
             "waypoints 1 to 120",
             "flown in 2 parts (waypoints 1 to 99, 99 to 120)",
         ]
-        (landed,) = bench.service.order(["A"], LandNow(), takeoff=False, issued_by="t").results
+        (landed,) = bench.service.order(["A"], LandNow(), takeoff=False, by=ANN).results
         assert (landed.repairs, landed.parts) == ([], 0)
 
     def test_one_to_move_that_was_given_long_ago_is_refused_and_a_stop_is_not(
@@ -130,7 +131,7 @@ class TestOrders:
         given_ns = bench.now_ns - 25 * NS_PER_S
         for body, rule in ((mission(), "not_expired"), (Hover(), None)):
             (result,) = bench.service.order(
-                ["A"], body, takeoff=False, issued_by="t", given_at_ns=given_ns
+                ["A"], body, takeoff=False, by=ANN, given_at_ns=given_ns
             ).results
             assert result.rule == rule
 
@@ -138,7 +139,7 @@ class TestOrders:
         ids = [
             r.command_id
             for _ in range(20)
-            for r in bench.service.order(["A", "B"], Hover(), takeoff=False, issued_by="t").results
+            for r in bench.service.order(["A", "B"], Hover(), takeoff=False, by=ANN).results
         ]
         assert len(set(ids)) == 40
 
@@ -200,7 +201,7 @@ class TestView:
     def test_commands_are_shown_newest_first_with_their_life(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
         for _ in range(60):
-            bench.service.order(["A"], Hover(), takeoff=False, issued_by="t")
+            bench.service.order(["A"], Hover(), takeoff=False, by=ANN)
         commands = bench.state().commands
         assert len(commands) == 50
         assert [c.id for c in commands] == sorted((c.id for c in commands), reverse=True)
@@ -221,8 +222,8 @@ class TestView:
         bench.open(1, extended(b"A"), core(), warning)
         (alarm,) = bench.state().alarms
         assert "\x1b" not in alarm.text
-        assert not bench.service.acknowledge(alarm.id + 1, "t")
-        assert bench.service.acknowledge(alarm.id, "t")
+        assert not bench.service.acknowledge(alarm.id + 1, ANN)
+        assert bench.service.acknowledge(alarm.id, ANN)
         assert all(a.is_acknowledged for a in bench.state().alarms)
 
 

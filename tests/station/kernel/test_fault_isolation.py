@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from tests.link.approved import core, extended
+from tests.persons import ANN
 from tests.station.api_views.test_service import Bench
 from tests.station.commanded import CommandedStation, flying
 from tests.station.steered_world import steered
@@ -231,7 +232,7 @@ class TestAnEvent:
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setitem(step.HANDLERS, OperatorOrder, failing)  # type: ignore[arg-type]
-        (result,) = bench.service.all_stop("test").results
+        (result,) = bench.service.all_stop(ANN).results
         assert (result.accepted, result.rule, result.serial) == (False, "station_fault", "A")
         assert fault_alarms(bench.driver.station)
 

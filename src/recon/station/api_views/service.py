@@ -24,6 +24,7 @@ from recon.model.event import (
     StopReleased,
 )
 from recon.model.imagery import Frame, GroundImage
+from recon.model.person import Person
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
@@ -79,7 +80,7 @@ class Service:
         body: Body,
         *,
         takeoff: bool,
-        issued_by: str,
+        by: Person,
         owner: str | None = None,
         given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
@@ -88,7 +89,7 @@ class Service:
             OperatorOrder(
                 self._ids(),
                 body,
-                issued_by,
+                by.label,
                 serial=serial,
                 takeoff=takeoff,
                 owner=owner,
@@ -104,7 +105,7 @@ class Service:
         body: Body,
         *,
         takeoff: bool,
-        issued_by: str,
+        by: Person,
         owner: str | None = None,
         given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
@@ -113,7 +114,7 @@ class Service:
             OperatorOrder(
                 DRY_RUN_ID,
                 body,
-                issued_by,
+                by.label,
                 serial=serial,
                 takeoff=takeoff,
                 owner=owner,
@@ -135,13 +136,13 @@ class Service:
         """Remove an owner; its steered orders end."""
         self.driver.handle(OwnerDisconnected(owner))
 
-    def all_stop(self, issued_by: str) -> schema.OrderResponse:
+    def all_stop(self, by: Person) -> schema.OrderResponse:
         """Latch every vehicle, then hold every link that may be in flight, identified or not.
 
         Vehicles on the ground or without a connection are in the results with the gate's refusal:
         no vehicle that may be in flight is omitted.
         """
-        self.driver.handle(AllStopped(issued_by))
+        self.driver.handle(AllStopped(by.label))
         fleet = self.driver.station.fleet
         serials = self._within_reach()
         links = [
@@ -151,57 +152,57 @@ class Service:
             and link.own_state.core_received_at_ns is not None
             and link.own_state.is_flying.value is not False
         ]
-        orders = [OperatorOrder(self._ids(), Hover(), issued_by, serial=s) for s in serials]
-        orders += [OperatorOrder(self._ids(), Hover(), issued_by, link_id=i) for i in links]
+        orders = [OperatorOrder(self._ids(), Hover(), by.label, serial=s) for s in serials]
+        orders += [OperatorOrder(self._ids(), Hover(), by.label, link_id=i) for i in links]
         return self._give(orders)
 
-    def release_stop(self, serials: list[str] | None, by: str) -> schema.ActionResponse:
+    def release_stop(self, serials: list[str] | None, by: Person) -> schema.ActionResponse:
         """Release vehicles from the all stop in force; None: all."""
         named = None if serials is None else tuple(dict.fromkeys(serials))
-        event = StopReleased(named, by)
+        event = StopReleased(named, by.label)
         return self._command(event, stop_latch.refusal(self.driver.station, event))
 
     def fleet_return(
-        self, serials: list[str] | None, issued_by: str, given_at_ns: int | None = None
+        self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
     ) -> schema.OrderResponse:
         """Return vehicles home in layers; None: every vehicle that is or may be in flight."""
         called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
         return schema.OrderResponse(
-            results=[self._call_one(s, issued_by, given_at_ns) for s in called]
+            results=[self._call_one(s, by.label, given_at_ns) for s in called]
         )
 
-    def dismiss_hazard(self, name: str, by: str) -> bool:
+    def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle."""
         if not is_dismissible(self.driver.station, name, self.driver.now_ns()):
             return False
-        self.driver.handle(HazardDismissed(name, by))
+        self.driver.handle(HazardDismissed(name, by.label))
         return True
 
-    def switch_separation_hold(self, is_on: bool, by: str) -> None:
+    def switch_separation_hold(self, is_on: bool, by: Person) -> None:
         """Switch the separation holds of the watchdogs on or off."""
-        self.driver.handle(SeparationHoldSwitched(is_on, by))
+        self.driver.handle(SeparationHoldSwitched(is_on, by.label))
 
     def take_authority(
-        self, serial: str, holder: AuthorityHolder, by: str
+        self, serial: str, holder: AuthorityHolder, by: Person
     ) -> schema.ActionResponse:
         """Transfer control authority."""
-        event = AuthorityTaken(serial, holder, by)
+        event = AuthorityTaken(serial, holder, by.label)
         return self._command(event, authority.refusal(self.driver.station, event))
 
     def preflight(self, serial: str) -> schema.PreflightView | None:
         """Return a vehicle's checklist as of now."""
         return preflight_view(self.driver.station, serial, self.driver.now_ns())
 
-    def override_preflight(self, serial: str, reason: str, by: str) -> schema.ActionResponse:
+    def override_preflight(self, serial: str, reason: str, by: Person) -> schema.ActionResponse:
         """Allow missions although the checklist is not passed."""
-        event = PreflightOverridden(serial, by, reason)
+        event = PreflightOverridden(serial, by.label, reason)
         return self._command(event, preflight.refusal(self.driver.station, event))
 
-    def acknowledge(self, alarm_id: int, by: str) -> bool:
+    def acknowledge(self, alarm_id: int, by: Person) -> bool:
         """Acknowledge an alarm."""
         if alarm_id not in self.driver.station.alarms.alarms:
             return False
-        self.driver.handle(AlarmAcknowledged(alarm_id, by))
+        self.driver.handle(AlarmAcknowledged(alarm_id, by.label))
         return True
 
     def audit(self, after: int, at_most: int) -> schema.AuditPage:
@@ -226,9 +227,9 @@ class Service:
         line = self.driver.station.shade
         return None if line.sun is None else (line.number, line.sun)
 
-    def request_survey(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
+    def request_survey(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey."""
-        return self._surveys.ask(asked, by)
+        return self._surveys.ask(asked, by.label)
 
     def survey(self, survey_id: int) -> schema.SurveyView | None:
         """Return a survey as it stands."""
@@ -240,17 +241,17 @@ class Service:
         serials: list[str],
         *,
         takeoff: bool,
-        by: str,
+        by: Person,
         given_at_ns: int | None = None,
     ) -> schema.SurveyResponse:
         """Start a survey with these vehicles, or add them."""
         return self._surveys.start(
-            survey_id, serials, takeoff=takeoff, by=by, given_at_ns=given_at_ns
+            survey_id, serials, takeoff=takeoff, by=by.label, given_at_ns=given_at_ns
         )
 
-    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: str) -> schema.SurveyResponse:
+    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: Person) -> schema.SurveyResponse:
         """Pause or abort a survey."""
-        return self._surveys.stop(survey_id, is_aborted=is_aborted, by=by)
+        return self._surveys.stop(survey_id, is_aborted=is_aborted, by=by.label)
 
     def survey_ways(self, survey_id: int) -> schema.SurveyWays | None:
         """Return a survey's planned rows and flown paths."""
@@ -287,10 +288,10 @@ class Service:
         self.driver.handle(order)
         return self._outcome(order.command_id, order.serial)
 
-    def _call_one(self, serial: str, issued_by: str, given_at_ns: int | None) -> schema.OrderResult:
+    def _call_one(self, serial: str, by: str, given_at_ns: int | None) -> schema.OrderResult:
         """Add one vehicle to the return; it is planned at the next tick."""
         command_id = self._ids()
-        self.driver.handle(FleetReturnOrdered(command_id, (serial,), issued_by, given_at_ns))
+        self.driver.handle(FleetReturnOrdered(command_id, (serial,), by, given_at_ns))
         return self._outcome(command_id, serial)
 
     def _outcome(self, command_id: int, serial: str | None) -> schema.OrderResult:

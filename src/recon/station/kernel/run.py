@@ -2,6 +2,7 @@
 
 import asyncio
 import errno
+import getpass
 import signal
 import socket
 from collections.abc import Awaitable, Callable, Iterator
@@ -14,12 +15,13 @@ import uvicorn
 from recon import version
 from recon.api.app import create_app
 from recon.api.connections import PING_S, HttpConnection, StreamConnection
-from recon.api.security import LOOPBACK_NAMES, Access
+from recon.api.security import LOCAL_PERSON, LOOPBACK_NAMES, Access
 from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.errors import ReconError, RecordError
 from recon.model.event import Event
+from recon.model.person import THIS_COMPUTER, Person, Role, is_name
 from recon.model.units import ns_to_seconds
 from recon.site import Site
 from recon.site.reading import site_digest
@@ -311,7 +313,7 @@ def _stopped_by_signals(server: uvicorn.Server) -> Iterator[None]:
 
 
 def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
-    access = Access.make(config.http_host, config.token)
+    access = Access.make(config.http_host, config.token, local_person())
     app = create_app(service, access, config.console, version())
     return _HttpServer(
         uvicorn.Config(
@@ -329,6 +331,18 @@ def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
             lifespan="off",
         )
     )
+
+
+def local_person() -> Person:
+    """Return the person of requests over loopback: the user of this computer.
+
+    An administrator: programs of this user can end the station and write its files anyway.
+    """
+    try:
+        name = getpass.getuser()
+    except (OSError, KeyError, ImportError):
+        return LOCAL_PERSON
+    return Person(name, Role.ADMIN, THIS_COMPUTER) if is_name(name) else LOCAL_PERSON
 
 
 def _started(

@@ -1,0 +1,91 @@
+"""Which role each request needs: the one place that decides, and SECURITY.md prints it.
+
+A route of the API without a row is an administrator's, and a test fails for it. Every role may
+order an all stop; pilots what brings single vehicles to rest or down; operators what sets one in
+motion; administrators what switches a protection off.
+"""
+
+from typing import Any
+
+from fastapi import HTTPException
+from starlette.requests import HTTPConnection
+
+from recon.api.security import person_of
+from recon.model.person import Person, Role
+
+FORBIDDEN = 403
+STREAM = "STREAM"
+"""Stands for the method of a WebSocket."""
+
+STOP_ORDERS = frozenset({"hover", "land", "return_home"})
+
+LEAST_ROLE: dict[tuple[str, str], Role] = {
+    ("GET", "/api/state"): Role.OBSERVER,
+    ("GET", "/api/vehicles"): Role.OBSERVER,
+    ("GET", "/api/vehicle"): Role.OBSERVER,
+    ("GET", "/api/vehicle/frame.jpg"): Role.OBSERVER,
+    ("GET", "/api/vehicle/preflight"): Role.OBSERVER,
+    ("GET", "/api/commands"): Role.OBSERVER,
+    ("GET", "/api/commands/{command_id}"): Role.OBSERVER,
+    ("GET", "/api/audit"): Role.OBSERVER,
+    ("GET", "/api/ground-image.png"): Role.OBSERVER,
+    ("GET", "/api/ground-image.tif"): Role.OBSERVER,
+    ("GET", "/api/shade.png"): Role.OBSERVER,
+    ("GET", "/api/forecast.png"): Role.OBSERVER,
+    ("GET", "/api/surveys"): Role.OBSERVER,
+    ("GET", "/api/surveys/{survey_id}"): Role.OBSERVER,
+    ("GET", "/api/surveys/{survey_id}/ways"): Role.OBSERVER,
+    ("GET", "/api/surveys/{survey_id}/cells.png"): Role.OBSERVER,
+    (STREAM, "/api/stream"): Role.OBSERVER,
+    (STREAM, "/api/audit/stream"): Role.OBSERVER,
+    ("POST", "/api/all-stop"): Role.OBSERVER,
+    # By kind: see `order_role` and `authority_role`.
+    ("POST", "/api/orders"): Role.PILOT,
+    ("POST", "/api/orders/check"): Role.PILOT,
+    ("POST", "/api/vehicle/authority"): Role.PILOT,
+    # Pause and abort hold the survey's vehicles.
+    ("POST", "/api/surveys/{survey_id}/{command}"): Role.PILOT,
+    ("POST", "/api/alarms/{alarm_id}/acknowledge"): Role.OPERATOR,
+    ("POST", "/api/all-stop/release"): Role.OPERATOR,
+    ("POST", "/api/fleet-return"): Role.OPERATOR,
+    ("POST", "/api/surveys"): Role.OPERATOR,
+    ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,
+    # Finding a lost vehicle is routine; the operators talk to those who look for it.
+    ("POST", "/api/vehicle/hazard/dismiss"): Role.OPERATOR,
+    # On is the operators', off the administrators': see `separation_hold_role`.
+    ("POST", "/api/separation-hold/{switch}"): Role.OPERATOR,
+    ("POST", "/api/vehicle/preflight/override"): Role.ADMIN,
+}
+
+
+def order_role(kind: str) -> Role:
+    """Return the role that an order of a kind needs."""
+    return Role.PILOT if kind in STOP_ORDERS else Role.OPERATOR
+
+
+def authority_role(holder: str) -> Role:
+    """Return the role that giving control authority to a holder needs."""
+    return Role.PILOT if holder == "pilot" else Role.OPERATOR
+
+
+def separation_hold_role(switch: str) -> Role:
+    """Return the role that switching the separation holds needs."""
+    return Role.OPERATOR if switch == "on" else Role.ADMIN
+
+
+async def require_listed_role(connection: HTTPConnection) -> None:
+    """Refuse a request whose route needs a higher role; runs before every route."""
+    path: Any = getattr(connection.scope.get("route"), "path", "")
+    method = connection.scope.get("method", STREAM)
+    if path.startswith("/api/"):
+        require(person_of(connection), LEAST_ROLE.get((method, path), Role.ADMIN))
+
+
+def require(person: Person, needed: Role) -> None:
+    """Raise 403 when a person's role does not include the one needed."""
+    if not person.role.includes(needed):
+        raise HTTPException(
+            FORBIDDEN,
+            f"{person.name} has the role {person.role.value}; this needs {needed.value}. Nothing "
+            "was sent. All stop is open to every role",
+        )
