@@ -281,7 +281,10 @@ class WatchdogSettings:
     helps_s: float = 0.25
     """A hold helps if it puts the conflict off by this, or away..."""
     helps_share: float = 0.05
-    """... or widens the least distance by this share of what must be kept."""
+    """... or widens the least distance by this share of what must be kept..."""
+    helps_height_m: float = 1.0
+    """... or, equally near, keeps the one this much less deep in the heights that the other may
+    come to: a landing vehicle's are all below it."""
 
     near_s: float = 5.0
     """A conflict this near is critical."""

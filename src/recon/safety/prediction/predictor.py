@@ -2,6 +2,7 @@
 
 from math import hypot
 
+from recon.fleet.airborne import LANDING_MODES
 from recon.model.control import Commanded, Intent
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
@@ -165,6 +166,9 @@ class Predictor:
     def return_home(self) -> None:
         """Climb to the go-home height unless higher, fly home, sink."""
         motion, writer, settings = self.motion, self.writer, self.settings
+        if motion.state.flight_mode.value in LANDING_MODES:
+            self.land()  # it has come home, and does not climb again
+            return
         if motion.home_m is None:
             writer.widens(-ALL_HEIGHTS_M, ALL_HEIGHTS_M)
             writer.grows(

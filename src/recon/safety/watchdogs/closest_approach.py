@@ -6,6 +6,7 @@ and its vertical gap over the vertical one. Below 1 both are violated.
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf
 
 import numpy as np
 import numpy.typing as npt
@@ -23,12 +24,17 @@ DEPTH_WEIGHT = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """How a pair comes near: when it first is too near (None: never), and its least closeness."""
+    """How a pair comes near: when it first is too near (None: never), and its least closeness.
+
+    `height_gap_m` is the least gap between the two bands of heights while it is too near, negative
+    by how far they overlap; infinite if it never is.
+    """
 
     in_s: float | None
     least: float
     horizontal_m: float
     vertical_m: float
+    height_gap_m: float = inf
 
 
 def near_pairs(
@@ -118,6 +124,7 @@ def approach(
         float(close[nearest]),
         max(0.0, float(horizontal_m[nearest])),
         max(0.0, float(vertical_m[nearest])),
+        float(vertical_m[is_too_near].min(initial=inf)),
     )
 
 

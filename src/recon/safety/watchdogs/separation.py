@@ -6,15 +6,16 @@ Pairs whose reach within the horizon cannot bring them below the minima are drop
 computed, in shares of the minima: below 1 both the horizontal and the vertical one are violated.
 
     no conflict -> predicted: alarm -> lasted `confirm_s`, and the time left is what both need to
-    stop and `hold_margin_s`: the yielding vehicle is held -> still predicted after `effect_s`, or
-    the other's own time to stop runs out: the other vehicle is held too
+    stop and `hold_margin_s`: the one whose hold keeps them farther apart is held (`resolution`) ->
+    still predicted after `effect_s`, or the other's own time to stop runs out: the other vehicle is
+    held too, if that helps
 
-The order of yielding: a vehicle in contact before a lost one; one that lands or returns last, for
-its battery may not last; then the lower `priority` of the profile first, then any vehicle before
-the imaging drone, then one under guidance before one under operator control, then the later serial.
-A vehicle is held only if that helps: not one in front of a faster one, nor one leaving a hazard
-area. A vehicle of a pilot is never held. Lost vehicles are hazard areas, and may continue a
-mission.
+The order of yielding, among what keeps them equally far apart: a vehicle in contact before a lost
+one; one that lands or returns last, for its battery may not last; then the lower `priority` of the
+profile first, then any vehicle before the imaging drone, then one under guidance before one under
+operator control, then the later serial. A vehicle is held only if that helps: not one in front of a
+faster one, nor one leaving a hazard area. A vehicle of a pilot is never held. Lost vehicles are
+hazard areas, and may continue a mission.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,13 +28,19 @@ from recon.safety.prediction import BoolArray, HazardArea, unknown_heights
 from recon.safety.separation_minima import SeparationMinima
 from recon.safety.watchdogs.closest_approach import (
     Approach,
-    IntArray,
     approach,
     closeness,
     hazard_closeness,
     near_pairs,
 )
 from recon.safety.watchdogs.reach import near_each_other
+from recon.safety.watchdogs.resolution import (
+    PairConflict,
+    can_be_held,
+    is_better,
+    speed_mps,
+    vehicle_to_hold,
+)
 from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture, WatchedVehicle
 
 RULE = "separation"
@@ -93,19 +100,15 @@ def _pair(
     picture: TrafficPicture, one: int, other: int, found: Approach, need: SeparationMinima
 ) -> Finding:
     both = picture.predicted[one], picture.predicted[other]
-    yielding, second = in_order_of_yielding(*both)
-    indices = {id(both[0]): one, id(both[1]): other}
+    ordered = in_order_of_yielding(*both)
+    yielding, second = ordered
+    indices = (one, other) if yielding is both[0] else (other, one)
     keys = sorted((yielding.key, second.key))
     key = f"{RULE}:{keys[0]}:{keys[1]}"
     held = None
     if _is_due(picture, key, found, yielding, second):
-        for candidate, stays in ((yielding, second), (second, yielding)):
-            pair = np.array([indices[id(candidate)]]), np.array([indices[id(stays)]])
-            if _may_wait(picture, candidate, stays, found):
-                break
-            if _can_be_held(picture, candidate) and _helps(picture, pair, found, need):
-                held = candidate
-                break
+        unknown = _unknown_heights(picture.predicted)
+        held = vehicle_to_hold(picture, PairConflict(ordered, indices, found, need, unknown))
     text = f"{_text(found, second.name + _lost_text(second))}{_outcome(picture, *both)}"
     return _finding(picture, key, yielding, text, found, held)
 
@@ -125,8 +128,8 @@ def _hazard(
         instead = approach(if_held[0][row], if_held[1][row], if_held[2][row], ahead.times_s)
         key = f"{RULE}:{watched.key}:hazard area of {hazard.name}"
         is_due = _is_due(picture, key, found, watched)
-        can = is_due and _can_be_held(picture, watched) and _is_better(picture, found, instead)
-        held = watched if can else None
+        can = is_due and can_be_held(picture, watched)
+        held = watched if can and is_better(picture.settings, found, instead) else None
         where = f"the hazard area of {hazard.name}, telemetry lost for {hazard.age_s:.0f} s"
         text = f"{_text(found, where)}{_outcome(picture, watched)}"
         yield _finding(picture, key, watched, text, found, held)
@@ -138,56 +141,8 @@ def _is_due(picture: TrafficPicture, key: str, found: Approach, *both: WatchedVe
     settings, prediction = picture.settings, picture.prediction
     assert found.in_s is not None
     stop_s = prediction.reaction_s + settings.hold_margin_s
-    stop_s += sum(_speed_mps(watched) for watched in both) / prediction.braking_mps2
+    stop_s += sum(speed_mps(watched) for watched in both) / prediction.braking_mps2
     return picture.lasted_s(key) >= settings.confirm_s and found.in_s <= stop_s
-
-
-def _may_wait(
-    picture: TrafficPicture, candidate: WatchedVehicle, stays: WatchedVehicle, found: Approach
-) -> bool:
-    """Whether a hold just given may still show before the other one has to stop too."""
-    settings, prediction = picture.settings, picture.prediction
-    if not candidate.was_held_within_s(picture.now_ns, settings.effect_s):
-        return False
-    assert found.in_s is not None
-    needs_s = prediction.reaction_s + _speed_mps(stays) / prediction.braking_mps2
-    return found.in_s > needs_s + 0.5 * settings.hold_margin_s
-
-
-def _can_be_held(picture: TrafficPicture, candidate: WatchedVehicle) -> bool:
-    if not picture.is_hold_on or not candidate.may_be_held:
-        return False
-    return not candidate.was_held_within_s(picture.now_ns, picture.settings.hold_again_s)
-
-
-def _helps(
-    picture: TrafficPicture,
-    pair: tuple[IntArray, IntArray],
-    found: Approach,
-    need: SeparationMinima,
-) -> bool:
-    """Whether the first of the pair, held, comes less near to the second, which flies on."""
-    ahead, unknown = picture.ahead, _unknown_heights(picture.predicted)
-    close, horizontal_m, vertical_m = closeness(
-        ahead.if_held, pair[0], ahead.as_it_flies, pair[1], need, unknown
-    )
-    instead = approach(close[0], horizontal_m[0], vertical_m[0], ahead.times_s)
-    return _is_better(picture, found, instead)
-
-
-def _is_better(picture: TrafficPicture, found: Approach, instead: Approach) -> bool:
-    settings = picture.settings
-    if instead.in_s is None:
-        return True
-    assert found.in_s is not None
-    if instead.in_s >= found.in_s + settings.helps_s:
-        return True
-    is_no_sooner = instead.in_s >= found.in_s
-    return is_no_sooner and instead.least >= found.least + settings.helps_share
-
-
-def _speed_mps(watched: WatchedVehicle) -> float:
-    return 0.0 if watched.motion is None else watched.motion.speed_mps
 
 
 def _text(found: Approach, what: str) -> str:
