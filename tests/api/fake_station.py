@@ -18,6 +18,7 @@ from recon.api.schema import (
     SurveyResponse,
     SurveyView,
     SurveyWays,
+    TemporaryZoneResponse,
 )
 from recon.api.security import Access
 from recon.model.command import Body
@@ -25,6 +26,7 @@ from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
 from recon.model.person import Person
 from recon.model.shade import ShadeMap, SunForecast
+from recon.model.temporary_zone import DrawnZone
 from recon.site import Site, default_site
 from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
@@ -114,6 +116,12 @@ class FakeStation:
 
     def all_stop(self, by: Person) -> OrderResponse:
         return self.service.all_stop(by)
+
+    def draw_zone(self, drawn: DrawnZone, by: Person) -> TemporaryZoneResponse:
+        return self.service.draw_zone(drawn, by)
+
+    def end_zone(self, zone_id: int, by: Person) -> ActionResponse:
+        return self.service.end_zone(zone_id, by)
 
     def release_stop(self, serials: list[str] | None, by: Person) -> ActionResponse:
         return self.service.release_stop(serials, by)

@@ -20,6 +20,11 @@ NUDGE = {
     "order": {"kind": "nudge", "north_m": 1.0},
     "owner": "a-name-of-a-owner-01",
 }
+ZONE = {
+    "kind": "person",
+    "circle": {"latitude_deg": 42.0, "longitude_deg": -93.6, "radius_m": 20.0},
+    "reason": "checks a sprinkler",
+}
 START = {"serials": ["A"], "takeoff": False}
 
 BODIES: dict[str, tuple[str, object, Role]] = {
@@ -36,6 +41,8 @@ BODIES: dict[str, tuple[str, object, Role]] = {
     "to guidance": ("/api/vehicle/authority?serial=A", {"holder": "guidance"}, Role.OPERATOR),
     "pause": ("/api/surveys/1/pause", None, Role.PILOT),
     "abort": ("/api/surveys/1/abort", None, Role.PILOT),
+    "draw a zone": ("/api/zones", ZONE, Role.PILOT),
+    "end a zone": ("/api/zones/1/end", None, Role.OPERATOR),
     "start": ("/api/surveys/1/start", START, Role.OPERATOR),
     "release": ("/api/all-stop/release", {"serials": None}, Role.OPERATOR),
     "fleet return": ("/api/fleet-return", {"serials": None}, Role.OPERATOR),

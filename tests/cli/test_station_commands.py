@@ -72,6 +72,35 @@ class TestOnTheGround:
         again = station.recon("release-stop", "--all")
         assert (again.code, "refused (stop_latch)" in again.out) == (1, True)
 
+    def test_a_temporary_zone_is_added_listed_and_ended(self, station: StationProcess) -> None:
+        (first, *_) = station.recon("status", "--json").json
+        place = first["position"]
+        at = f"{place['latitude_deg'] + 0.002:.6f},{place['longitude_deg']:.6f}"
+        person = ("--kind", "person", "--reason", "checks a sprinkler")
+        circle = ("--at", at, "--radius-m", "20")
+        added = station.recon("zone", "add", *person, *circle, "--minutes", "10")
+        assert added.code == 0
+        assert added.out == (
+            "zone 1 is in force: person 1 (temporary), from 0 m to 30 m above ground, ends in "
+            "10 min\n"
+        )
+        listed = station.recon("zone", "list")
+        assert "person  radius 20 m" in listed.out
+        assert "1 temporary zones in force" in listed.out
+        assert station.recon("zone", "list", "--json").json[0]["radius_m"] == 20.0
+        assert station.recon("zone", "end", "1").out == "zone 1 has ended (audited)\n"
+        again = station.recon("zone", "end", "1")
+        assert (again.code, "no temporary zone 1 is in force" in again.out) == (1, True)
+        large = station.recon("zone", "add", *person, "--at", at, "--radius-m", "5000")
+        assert (large.code, "1 to 2000 m are possible" in large.out) == (1, True)
+        for wrong in (
+            (),
+            ("--at", at),
+            ("--at", "here", "--radius-m", "9"),
+            (*circle, "--corner", at),
+        ):
+            assert station.recon("zone", "add", *person, *wrong).code == 2
+
     def test_a_dry_run_prints_the_refusal_and_sends_nothing(
         self, station: StationProcess, mission: Path
     ) -> None:

@@ -19,6 +19,7 @@ from recon.api.responses import PROBLEMS, found
 from recon.api.security import POLICY_VIOLATION, Access, AccessCheck, refuse_stream
 from recon.api.streams import MAX_ENTRIES, AuditStream, StateStream
 from recon.api.survey_routes import add_survey_routes
+from recon.api.zone_routes import add_zone_routes
 
 CONSOLE_MISSING = """<!doctype html><title>Recon</title><p>The console is not built.
 Run <code>make web</code> in the project's folder, then start the station again.
@@ -51,6 +52,7 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
     add_order_routes(app, port)
     add_picture_routes(app, port)
     add_survey_routes(app, port)
+    add_zone_routes(app, port)
     _add_console(app, console)
     _add_errors_and_headers(app)
     app.add_middleware(AccessCheck, access=access)

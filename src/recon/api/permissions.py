@@ -36,6 +36,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/surveys/{survey_id}"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/ways"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/cells.png"): Role.OBSERVER,
+    ("GET", "/api/zones"): Role.OBSERVER,
     (STREAM, "/api/stream"): Role.OBSERVER,
     (STREAM, "/api/audit/stream"): Role.OBSERVER,
     ("POST", "/api/all-stop"): Role.OBSERVER,
@@ -45,6 +46,9 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/vehicle/authority"): Role.PILOT,
     # Pause and abort hold the survey's vehicles.
     ("POST", "/api/surveys/{survey_id}/{command}"): Role.PILOT,
+    # Drawing a zone brings to rest what comes near; a pilot in the field sees a person first.
+    ("POST", "/api/zones"): Role.PILOT,
+    ("POST", "/api/zones/{zone_id}/end"): Role.OPERATOR,
     ("POST", "/api/alarms/{alarm_id}/acknowledge"): Role.OPERATOR,
     ("POST", "/api/all-stop/release"): Role.OPERATOR,
     ("POST", "/api/fleet-return"): Role.OPERATOR,

@@ -16,12 +16,14 @@ from recon.api.schema import (
     SurveyResponse,
     SurveyView,
     SurveyWays,
+    TemporaryZoneResponse,
 )
 from recon.model.command import Body
 from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
 from recon.model.person import Person
 from recon.model.shade import ShadeMap, SunForecast
+from recon.model.temporary_zone import DrawnZone
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,6 +80,12 @@ class StationPort(Protocol):
 
     def release_stop(self, serials: list[str] | None, by: Person) -> ActionResponse:
         """Release vehicles from the all stop in force; None: all."""
+
+    def draw_zone(self, drawn: DrawnZone, by: Person) -> TemporaryZoneResponse:
+        """Draw a temporary zone; refusals are results, not errors."""
+
+    def end_zone(self, zone_id: int, by: Person) -> ActionResponse:
+        """End a temporary zone; refusals are results, not errors."""
 
     def fleet_return(
         self, serials: list[str] | None, by: Person, given_at_ns: int | None = None

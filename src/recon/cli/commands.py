@@ -57,6 +57,10 @@ COMMANDS = {
     "survey": CommandSource(
         "survey:survey_app", "Survey a region: create, start, pause, abort, status."
     ),
+    "zone": CommandSource(
+        "zone:zone_app",
+        "Keep drones out of a place at once: add, end and list temporary zones.",
+    ),
     "take": CommandSource("authority:take_command", "Take control authority for the operator."),
     "release": CommandSource(
         "authority:release_command", "Hand control authority to the pilot or to guidance."

@@ -40,6 +40,7 @@ from recon.client.telemetry import (
     Velocity,
 )
 from recon.client.vehicle import Vehicle
+from recon.client.zones import TemporaryZoneStatus, ZoneCommands
 from recon.model.command import Phase, Refusal, StickFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import Staleness
@@ -79,10 +80,12 @@ __all__ = [
     "SurveyStatus",
     "SurveyVehicle",
     "Telemetry",
+    "TemporaryZoneStatus",
     "Vehicle",
     "VehicleAnswer",
     "VehicleReturn",
     "Velocity",
     "WaitTimeoutError",
     "Waypoint",
+    "ZoneCommands",
 ]

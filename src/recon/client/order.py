@@ -275,7 +275,7 @@ class OrderApi:
 def order_json(body: Body) -> dict[str, Any] | Refusal:
     """Return an order as JSON values, or a refusal if it contains NaN or infinity."""
     order = {"kind": BODY_NAMES[type(body)], **_details(body)}
-    fault = _not_finite(order, "")
+    fault = not_finite(order, "")
     return order if fault is None else Refusal("finite_numbers", fault)
 
 
@@ -304,7 +304,7 @@ def _details(body: Body) -> dict[str, Any]:
             return {}
 
 
-def _not_finite(value: object, name: str) -> str | None:
+def not_finite(value: object, name: str) -> str | None:
     """Return a sentence about the first NaN or infinity, with its path; None without any."""
     if isinstance(value, float) and not isfinite(value):
         return f"{name} is {value}: a finite number is needed"
@@ -313,7 +313,7 @@ def _not_finite(value: object, name: str) -> str | None:
         parts = list(value.items())
     elif isinstance(value, list):
         parts = list(enumerate(value, start=1))
-    faults = (_not_finite(part, f"{name} {key}".strip()) for key, part in parts)
+    faults = (not_finite(part, f"{name} {key}".strip()) for key, part in parts)
     return next((fault for fault in faults if fault is not None), None)
 
 

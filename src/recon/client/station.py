@@ -19,6 +19,7 @@ from recon.client.order import OrderApi, VehicleAnswer
 from recon.client.surveys import SurveyCommands
 from recon.client.telemetry import Telemetry
 from recon.client.vehicle import Vehicle
+from recon.client.zones import ZoneCommands
 from recon.model.command import Body, Hover, LandNow, Refusal, ReturnHome
 
 OPEN_WITHIN_S = 5.0
@@ -41,6 +42,7 @@ class Station:
         self._http = Http(self.address, answer_within_s)
         self._order_api = OrderApi(self._http, self._stream)
         self.fleet = FleetCommands(self._order_api)
+        self.zones = ZoneCommands(self._http)
         self.surveys = SurveyCommands(self._http, self._order_api.station_time_ms)
 
     async def __aenter__(self) -> "Station":

@@ -579,6 +579,52 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/zones": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Zones
+         * @description The temporary zones in force, the oldest first.
+         */
+        get: operations["zones_api_zones_get"];
+        put?: never;
+        /**
+         * Draw
+         * @description Draw a temporary zone; everything is kept out of it at once.
+         *
+         *     Vehicles about to enter it are held. One that is in it raises an alarm and may be led out.
+         */
+        post: operations["draw_api_zones_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/zones/{zone_id}/end": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * End
+         * @description End a temporary zone. Nothing is sent, and nothing that was held resumes.
+         */
+        post: operations["end_api_zones__zone_id__end_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -815,6 +861,18 @@ export interface components {
             text: string;
             /** To Do */
             to_do: string;
+        };
+        /**
+         * CircleRequest
+         * @description A circle on the ground.
+         */
+        CircleRequest: {
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /** Radius M */
+            radius_m: number;
         };
         /**
          * CommandView
@@ -1382,6 +1440,16 @@ export interface components {
             phase: "queued" | "sent" | "acknowledged" | "confirmed" | "started" | "done" | "refused_by_station" | "refused_by_app" | "timed_out" | "superseded" | "expired" | "failed";
         };
         /**
+         * PlaceRequest
+         * @description A place on the ground, in WGS84.
+         */
+        PlaceRequest: {
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+        };
+        /**
          * PositionView
          * @description A vehicle's position (WGS84).
          */
@@ -1604,6 +1672,8 @@ export interface components {
             stop_latch: components["schemas"]["StopLatchView"] | null;
             /** Surveys */
             surveys: components["schemas"]["SurveyView"][];
+            /** Temporary Zones */
+            temporary_zones: components["schemas"]["TemporaryZoneView"][];
             /** Time Ns */
             time_ns: number;
             /** Vehicles */
@@ -2021,6 +2091,104 @@ export interface components {
             ][][];
             /** Survey Id */
             survey_id: number;
+        };
+        /**
+         * TemporaryZoneRequest
+         * @description A temporary zone to draw: a circle or an outline.
+         *
+         *     Everything is kept out of it at once; what cannot be drawn is refused with a sentence.
+         */
+        TemporaryZoneRequest: {
+            /**
+             * Ceiling M
+             * @description above ground; null: 30 m for a person or a tractor, all heights for a crewed aircraft
+             */
+            ceiling_m?: number | null;
+            circle?: components["schemas"]["CircleRequest"] | null;
+            /**
+             * Floor M
+             * @description above ground; null: from the ground
+             */
+            floor_m?: number | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "person" | "tractor" | "crewed_aircraft";
+            /**
+             * Lasts S
+             * @description null: until a person ends it
+             */
+            lasts_s?: number | null;
+            /**
+             * Outline
+             * @description corners; the last one is joined to the first
+             */
+            outline?: components["schemas"]["PlaceRequest"][] | null;
+            /**
+             * Reason
+             * @description for those who see the alarm
+             */
+            reason: string;
+        };
+        /**
+         * TemporaryZoneResponse
+         * @description The zone as it was drawn, or why it was not.
+         */
+        TemporaryZoneResponse: {
+            /** Accepted */
+            accepted: boolean;
+            /** Reason */
+            reason: string | null;
+            /** Rule */
+            rule: string | null;
+            zone: components["schemas"]["TemporaryZoneView"] | null;
+        };
+        /**
+         * TemporaryZoneView
+         * @description A temporary zone in force.
+         */
+        TemporaryZoneView: {
+            /** Age S */
+            age_s: number;
+            /** By */
+            by: string;
+            /**
+             * Ceiling M
+             * @description above ground, as the floor; null: all heights
+             */
+            ceiling_m: number | null;
+            /**
+             * Ends In S
+             * @description null: until a person ends it
+             */
+            ends_in_s: number | null;
+            /** Floor M */
+            floor_m: number | null;
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "person" | "tractor" | "crewed_aircraft";
+            /** Name */
+            name: string;
+            /**
+             * Radius M
+             * @description of a circle; null for an outline
+             */
+            radius_m: number | null;
+            /** Reason */
+            reason: string;
+            /**
+             * Ring
+             * @description the closed outline, (longitude, latitude)
+             */
+            ring: [
+                number,
+                number
+            ][];
         };
         /** ValidationError */
         ValidationError: {
@@ -3110,6 +3278,90 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["VehicleView"][];
+                };
+            };
+        };
+    };
+    zones_api_zones_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TemporaryZoneView"][];
+                };
+            };
+        };
+    };
+    draw_api_zones_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TemporaryZoneRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TemporaryZoneResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    end_api_zones__zone_id__end_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                zone_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ActionResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };

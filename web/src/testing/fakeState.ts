@@ -211,6 +211,7 @@ export function station(
     commands: [],
     alarms: [],
     stop_latch: null,
+    temporary_zones: [],
     ground_image: null,
     fleet_return: null,
     shade: null,

@@ -83,6 +83,11 @@ from recon.api.schema.vehicles import (
     VehicleView,
     VelocityView,
 )
+from recon.api.schema.zones import (
+    TemporaryZoneRequest,
+    TemporaryZoneResponse,
+    TemporaryZoneView,
+)
 
 __all__ = [
     "ActionResponse",
@@ -146,6 +151,9 @@ __all__ = [
     "SurveyWay",
     "SurveyWays",
     "SurveyingView",
+    "TemporaryZoneRequest",
+    "TemporaryZoneResponse",
+    "TemporaryZoneView",
     "VehicleView",
     "VelocityView",
     "WaypointOrder",

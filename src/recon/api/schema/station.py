@@ -9,6 +9,7 @@ from recon.api.schema.orders import AlarmView, CommandView
 from recon.api.schema.site import GroundImageView, ShadeLineView, SiteView
 from recon.api.schema.surveys import SurveyView
 from recon.api.schema.vehicles import VehicleView
+from recon.api.schema.zones import TemporaryZoneView
 
 
 class StopLatchView(Message):
@@ -94,6 +95,7 @@ class StationState(Message):
     commands: list[CommandView]
     alarms: list[AlarmView]
     stop_latch: StopLatchView | None
+    temporary_zones: list[TemporaryZoneView]
     ground_image: GroundImageView | None
     fleet_return: FleetReturnView | None
     shade: ShadeLineView | None

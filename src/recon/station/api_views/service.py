@@ -22,10 +22,13 @@ from recon.model.event import (
     PreflightOverridden,
     SeparationHoldSwitched,
     StopReleased,
+    ZoneDrawn,
+    ZoneEnded,
 )
 from recon.model.imagery import Frame, GroundImage
 from recon.model.person import Person
 from recon.model.shade import ShadeMap, SunForecast
+from recon.model.temporary_zone import DrawnZone
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
 from recon.record.audit import NumberedEntry, harmless
@@ -37,7 +40,8 @@ from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.api_views.vehicle_views import preflight_view
-from recon.station.control import authority, preflight, stop_latch
+from recon.station.api_views.zone_views import zone_views
+from recon.station.control import authority, preflight, stop_latch, temporary_zones
 from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
@@ -162,6 +166,23 @@ class Service:
         event = StopReleased(named, by.label)
         return self._command(event, stop_latch.refusal(self.driver.station, event))
 
+    def draw_zone(self, drawn: DrawnZone, by: Person) -> schema.TemporaryZoneResponse:
+        """Draw a temporary zone; return it as it is in force."""
+        event = ZoneDrawn(drawn, by.label)
+        refusal = temporary_zones.draw_refusal(self.driver.station, event)
+        answer = self._command(event, refusal)
+        zone = (
+            None
+            if refusal is not None
+            else zone_views(self.driver.station, self.driver.now_ns())[-1]
+        )
+        return schema.TemporaryZoneResponse(**answer.model_dump(), zone=zone)
+
+    def end_zone(self, zone_id: int, by: Person) -> schema.ActionResponse:
+        """End a temporary zone."""
+        event = ZoneEnded(zone_id, by.label)
+        return self._command(event, temporary_zones.end_refusal(self.driver.station, event))
+
     def fleet_return(
         self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
     ) -> schema.OrderResponse:
@@ -272,7 +293,9 @@ class Service:
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
 
     def _command(
-        self, event: AuthorityTaken | PreflightOverridden | StopReleased, refusal: Refusal | None
+        self,
+        event: AuthorityTaken | PreflightOverridden | StopReleased | ZoneDrawn | ZoneEnded,
+        refusal: Refusal | None,
     ) -> schema.ActionResponse:
         """Handle an operator command, unless it is refused."""
         if refusal is not None:

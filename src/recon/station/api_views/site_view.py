@@ -119,14 +119,14 @@ def _area(area: _Area, frame: LocalFrame) -> schema.AreaView:
     return schema.AreaView(
         kind=area.kind,
         name=area.name,
-        rings=[_lon_lat(ring, frame) for ring in area.rings_m],
+        rings=[lon_lat_ring(ring, frame) for ring in area.rings_m],
         floor_m=None if zone is None else zone.floor_m,
         ceiling_m=None if zone is None else zone.ceiling_m,
         datum=None if zone is None or zone.datum is None else zone.datum.value,
     )
 
 
-def _lon_lat(ring_m: FloatArray, frame: LocalFrame) -> list[tuple[float, float]]:
+def lon_lat_ring(ring_m: FloatArray, frame: LocalFrame) -> list[tuple[float, float]]:
     """Return the ring closed: its first corner again at the end, as GeoJSON has it."""
     closed_m = np.vstack([ring_m, ring_m[:1]])
     latitude_deg, longitude_deg, _ = geo_from_enu(

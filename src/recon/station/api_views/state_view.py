@@ -21,6 +21,7 @@ from recon.station.api_views.vehicle_views import (
     override_view,
     steering_view,
 )
+from recon.station.api_views.zone_views import zone_views
 from recon.station.state.alarm_book import Alarm
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
@@ -49,6 +50,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         commands=_commands(station, now_ns),
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
         stop_latch=_stop_latch(station.stop_latch, now_ns),
+        temporary_zones=zone_views(station, now_ns),
         ground_image=ground_image_view(station, now_ns),
         fleet_return=fleet_return_view(station, now_ns),
         shade=shade_view(station, now_ns),

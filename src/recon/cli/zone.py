@@ -1,0 +1,168 @@
+"""`recon zone`: temporary zones round a person, a tractor or a crewed aircraft."""
+
+from typing import Annotated
+
+import msgspec
+import typer
+
+from recon.cli.commands import new_app
+from recon.cli.connection import (
+    DEFAULT_ADDRESS,
+    DONE,
+    REFUSED,
+    AddressOption,
+    JsonOption,
+    TokenOption,
+    run_at_station,
+)
+from recon.cli.output import print_json, print_line, print_table, refused
+from recon.client import ClientError, Refusal, Station, TemporaryZoneStatus
+from recon.model.geo import LatLon
+from recon.model.temporary_zone import Circle, TemporaryZoneKind
+
+zone_app = new_app(
+    help="Keep drones out of a place at once: add, end and list temporary zones.",
+    no_args_is_help=True,
+)
+
+
+class ZoneShapeError(ClientError):
+    """The options name no place, or two."""
+
+
+@zone_app.command("add")
+def add_command(
+    kind: Annotated[TemporaryZoneKind, typer.Option("--kind", help="What is kept clear.")],
+    reason: Annotated[str, typer.Option("--reason", help="For those who see the alarm; audited.")],
+    at: Annotated[
+        str | None, typer.Option("--at", metavar="LAT,LON", help="Centre of a circle.")
+    ] = None,
+    radius: Annotated[
+        float | None, typer.Option("--radius-m", help="Radius of the circle, metres.")
+    ] = None,
+    corners: Annotated[
+        list[str] | None,
+        typer.Option("--corner", metavar="LAT,LON", help="A corner of an outline; repeat it."),
+    ] = None,
+    floor: Annotated[
+        float | None, typer.Option("--floor-m", help="Metres above ground; default: the ground.")
+    ] = None,
+    ceiling: Annotated[
+        float | None,
+        typer.Option(
+            "--ceiling-m",
+            help="Metres above ground; default: 30, of a crewed aircraft all heights.",
+        ),
+    ] = None,
+    minutes: Annotated[
+        float | None, typer.Option("--minutes", help="Default: until a person ends it.")
+    ] = None,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Draw a zone that everything is kept out of at once.
+
+    Drones about to enter it are held. One that is in it raises an alarm and may be led out.
+    """
+    shape = _shape(at, radius, corners or [])
+
+    async def work(station: Station) -> int:
+        zone = await station.zones.draw(
+            kind,
+            shape,
+            reason,
+            floor_m=floor,
+            ceiling_m=ceiling,
+            lasts_s=None if minutes is None else 60.0 * minutes,
+        )
+        if isinstance(zone, Refusal):
+            print_line(refused(zone))
+            return REFUSED
+        if as_json:
+            print_json(msgspec.to_builtins(zone))
+        else:
+            print_line(f"zone {zone.id} is in force: {zone.name}, {_heights(zone)}, {_until(zone)}")
+        return DONE
+
+    run_at_station(address, token_file, work)
+
+
+@zone_app.command("end")
+def end_command(
+    number: Annotated[int, typer.Argument(metavar="ID", help="The zone's number.")],
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """End a zone.
+
+    Nothing is sent, and nothing that was held resumes by itself.
+    """
+
+    async def work(station: Station) -> int:
+        refusal = await station.zones.end(number)
+        print_line(f"zone {number} has ended (audited)" if refusal is None else refused(refusal))
+        return DONE if refusal is None else REFUSED
+
+    run_at_station(address, token_file, work)
+
+
+@zone_app.command("list")
+def list_command(
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Show the temporary zones in force."""
+
+    async def work(station: Station) -> int:
+        zones = await station.zones.in_force()
+        if as_json:
+            print_json(msgspec.to_builtins(zones))
+            return DONE
+        columns = ("id", "kind", "size", "heights", "by", "reason", "end")
+        print_table("temporary zones", columns, [_row(zone) for zone in zones])
+        print_line(f"{len(zones)} temporary zones in force")
+        return DONE
+
+    run_at_station(address, token_file, work)
+
+
+def _shape(at: str | None, radius_m: float | None, corners: list[str]) -> Circle | list[LatLon]:
+    is_circle = at is not None and radius_m is not None
+    if is_circle is bool(corners) or (at is None) is not (radius_m is None):
+        raise ZoneShapeError(
+            "Name a circle (--at LAT,LON --radius-m METRES) or an outline (--corner LAT,LON, three "
+            "times or more)"
+        )
+    if at is not None and radius_m is not None:
+        return Circle(_place(at), radius_m)
+    return [_place(corner) for corner in corners]
+
+
+def _place(text: str) -> LatLon:
+    try:
+        latitude_deg, longitude_deg = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ZoneShapeError(f"expected LAT,LON in degrees, got {text!r}") from None
+    return LatLon(latitude_deg, longitude_deg)
+
+
+def _row(zone: TemporaryZoneStatus) -> tuple[str, ...]:
+    is_circle = zone.radius_m is not None
+    size = f"radius {zone.radius_m:g} m" if is_circle else f"{len(zone.ring) - 1} corners"
+    kind = zone.kind.value.replace("_", " ")
+    return (str(zone.id), kind, size, _heights(zone), zone.by, zone.reason, _until(zone))
+
+
+def _heights(zone: TemporaryZoneStatus) -> str:
+    if zone.floor_m is None and zone.ceiling_m is None:
+        return "all heights"
+    top = "up" if zone.ceiling_m is None else f"to {zone.ceiling_m:g} m above ground"
+    return f"from {zone.floor_m or 0.0:g} m {top}"
+
+
+def _until(zone: TemporaryZoneStatus) -> str:
+    if zone.ends_in_s is None:
+        return "until a person ends it"
+    return f"ends in {zone.ends_in_s / 60.0:.0f} min"
