@@ -1,5 +1,6 @@
 """One run: the station, its apps and all parties in virtual time, and the oracles at every step."""
 
+from collections import deque
 from dataclasses import replace
 from random import Random
 from time import process_time
@@ -45,6 +46,8 @@ from studies.closed_loop.violations import Casebook, RunResult
 
 DOWN_S = 3.0
 """From a station's death to the next one's start."""
+ARRIVALS_KEPT = 400
+"""Packets of 40 s; what is shown for longer is judged by the link's delay now."""
 CODE_FAULT, RULE_FAULT = "station_fault", "rule_fault"
 """What the station says of a fault in its own code: an alarm, and a refusal."""
 
@@ -83,6 +86,10 @@ class ClosedLoopRun:
         self.parties = Parties(self.scene, random, self._handle, place, is_flying)
         self.pilots = self._pilots() if settings.has_pilots else {}
         self._next_link_s = {serial: self.rng.uniform(8.0, 120.0) for serial in self.apps}
+        self._arrivals: dict[str, deque[tuple[int, float]]] = {
+            serial: deque(maxlen=ARRIVALS_KEPT) for serial in self.apps
+        }
+        """When core telemetry arrived, and its link's longest delay then."""
         self._alarm_ids: set[int] = set()
         self._died_s: float | None = None
         self._snapshot = b""
@@ -218,6 +225,8 @@ class ClosedLoopRun:
         now_s, marks = self.now_s, self.marks[serial]
         if isinstance(event.report, CoreReport):
             self.fleet.core_s[serial] = now_s
+            arrival = event.received_at_ns(self.driver.now_ns), self.links.delay_s(serial)
+            self._arrivals[serial].append(arrival)
             if marks.known_since_s is None and serial in after.fleet.vehicles:
                 marks.known_since_s = now_s
         elif isinstance(event.report, ExtendedReport):
@@ -280,10 +289,15 @@ class ClosedLoopRun:
             if age_s is None or self.marks[serial].known_since_s is None:
                 continue
             where = place.value.latitude_deg, place.value.longitude_deg
-            delay_s = self.links.delay_s(serial)
+            delay_s = self._delay_at_arrival_s(serial, place.received_at_ns)
             found = self.ages.shown(serial, now_s, where, age_s, delay_s)
             if found is not None:
                 self.book.found(found)
+
+    def _delay_at_arrival_s(self, serial: str, received_at_ns: int | None) -> float:
+        """The link's longest delay when a packet arrived; the link may have recovered since."""
+        delays_s = (d for at_ns, d in self._arrivals[serial] if at_ns == received_at_ns)
+        return max(delays_s, default=self.links.delay_s(serial))
 
     def _check_alarms(self, station: Station, now_s: float) -> None:
         if self._died_s is not None or now_s - self.book.station_marks.started_s < 12.0:
