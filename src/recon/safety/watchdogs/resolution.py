@@ -6,7 +6,7 @@ ahead and compared by their closest approach:
     the hold just given may still show in time for the other to stop -> wait
     holds that are better than doing nothing -> the one that keeps them farther apart;
                                                 alike: in the order of yielding
-    none is better                           -> hold nobody: the alarm stays
+    none is better                           -> no hold: the alarm stays
 
 Both are held one after the other: once the first brakes, holding the second is judged against that.
 No option is taken whose closest approach is predicted to be nearer than that of doing nothing. A
