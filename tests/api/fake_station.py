@@ -126,6 +126,16 @@ class FakeStation:
     def release_stop(self, serials: list[str] | None, by: Person) -> ActionResponse:
         return self.service.release_stop(serials, by)
 
+    def admit_app(
+        self, link_id: int, serial: str, *, is_for_good: bool, any_address: bool, by: Person
+    ) -> ActionResponse:
+        return self.service.admit_app(
+            link_id, serial, is_for_good=is_for_good, any_address=any_address, by=by
+        )
+
+    def refuse_app(self, link_id: int, by: Person) -> ActionResponse:
+        return self.service.refuse_app(link_id, by)
+
     def fleet_return(
         self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
     ) -> OrderResponse:

@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException as AnyHTTPException
 
 from recon.api import schema
 from recon.api.order_routes import add_order_routes
+from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
 from recon.api.picture_routes import add_picture_routes
 from recon.api.port import StationPort
@@ -50,6 +51,7 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
     _add_state_routes(app, port)
     _add_audit_and_streams(app, port)
     add_order_routes(app, port)
+    add_pairing_routes(app, port)
     add_picture_routes(app, port)
     add_survey_routes(app, port)
     add_zone_routes(app, port)

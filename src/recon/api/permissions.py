@@ -51,6 +51,9 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/zones/{zone_id}/end"): Role.OPERATOR,
     ("POST", "/api/alarms/{alarm_id}/acknowledge"): Role.OPERATOR,
     ("POST", "/api/all-stop/release"): Role.OPERATOR,
+    # A drone that got another address in flight must be admitted by who flies it.
+    ("POST", "/api/apps/admit"): Role.OPERATOR,
+    ("POST", "/api/apps/refuse"): Role.OPERATOR,
     ("POST", "/api/fleet-return"): Role.OPERATOR,
     ("POST", "/api/surveys"): Role.OPERATOR,
     ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,

@@ -87,6 +87,14 @@ class StationPort(Protocol):
     def end_zone(self, zone_id: int, by: Person) -> ActionResponse:
         """End a temporary zone; refusals are results, not errors."""
 
+    def admit_app(
+        self, link_id: int, serial: str, *, is_for_good: bool, any_address: bool, by: Person
+    ) -> ActionResponse:
+        """Admit the app that waits on a link; refusals are results, not errors."""
+
+    def refuse_app(self, link_id: int, by: Person) -> ActionResponse:
+        """Refuse the app that waits on a link: it is closed, and again for a while."""
+
     def fleet_return(
         self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
     ) -> OrderResponse:

@@ -65,6 +65,10 @@ COMMANDS = {
     "release": CommandSource(
         "authority:release_command", "Hand control authority to the pilot or to guidance."
     ),
+    "pair": CommandSource(
+        "pairing:pair_command",
+        "List the apps that wait to be admitted; admit or refuse one.",
+    ),
     "preflight": CommandSource("authority:preflight_command", "Show a vehicle's checklist."),
     "dismiss": CommandSource("authority:dismiss_command", "Clear a lost vehicle's hazard area."),
     "separation-hold": CommandSource(

@@ -14,6 +14,7 @@ from recon.cli.foreground import print_now, run_in_loop
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
 from recon.site import Site, default_site, load_site, site_report
+from recon.site.app_list import APPS_FILE, read_app_list
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
 from recon.station.kernel.build import first_state
@@ -52,11 +53,18 @@ def run_command(
         Path | None,
         typer.Option(help="Folder of the audit; default: one per link port."),
     ] = None,
+    apps: Annotated[
+        Path | None,
+        typer.Option(
+            help="List of admitted apps; default: apps.toml in the site's folder, if any."
+        ),
+    ] = None,
     garbage_limit: Annotated[
         int, typer.Option(min=1024, help="Close a link after this many bytes without a packet.")
     ] = LinkSettings().garbage_limit_bytes,
 ) -> None:
     """Run the station until Ctrl+C."""
+    apps_file = apps or apps_file_of(site)
     config = RunConfig(
         site=default_site() if site is None else load_site(site),
         link_host=link_host,
@@ -69,6 +77,8 @@ def run_command(
         token=None if token_file is None else read_token(token_file),
         console=console_folder(),
         link=LinkSettings(garbage_limit_bytes=garbage_limit),
+        apps_file=apps_file,
+        apps=None if apps_file is None else read_app_list(apps_file),
     )
     describe(config.site)
     run_in_loop(run(config, _announce))
@@ -78,6 +88,12 @@ async def _announce(started: Started) -> None:
     announce(started)
 
 
+def apps_file_of(site: Path | None) -> Path | None:
+    """Return the list of apps in a site's folder; None without one."""
+    path = None if site is None else site / APPS_FILE
+    return path if path is not None and path.exists() else None
+
+
 def describe(site: Site) -> None:
     """Print how well the control points fit, and the site's warnings."""
     for line in site_report(site):
@@ -85,9 +101,11 @@ def describe(site: Site) -> None:
 
 
 def announce(started: Started) -> None:
-    """Print every address the station listens on."""
+    """Print every address the station listens on, and which apps it admits."""
     for address in started.link_addresses:
         print_now(f"companion apps: {address}")
+    if started.apps_listed is not None:
+        print_now(f"apps admitted: {started.apps_listed} entries; others wait, see recon pair")
     print_now(f"audit: {started.audit_folder}")
     if started.taken_up:
         print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")

@@ -19,6 +19,7 @@ from recon.client.messages import (
     AlarmStatus,
     AuditLogPage,
     AuditRecord,
+    LinkStatus,
     OrderStatus,
     PhaseReport,
     Preflight,
@@ -27,6 +28,7 @@ from recon.client.messages import (
     StopAnswer,
     StopLatchStatus,
     VehicleReturn,
+    WaitingAppStatus,
 )
 from recon.client.order import Order, VehicleAnswer
 from recon.client.station import FleetCommands, Station
@@ -57,6 +59,7 @@ __all__ = [
     "ConnectionLostError",
     "EulerAngles",
     "FleetCommands",
+    "LinkStatus",
     "MaybeSentError",
     "Mission",
     "Order",
@@ -86,6 +89,7 @@ __all__ = [
     "VehicleReturn",
     "Velocity",
     "WaitTimeoutError",
+    "WaitingAppStatus",
     "Waypoint",
     "ZoneCommands",
 ]

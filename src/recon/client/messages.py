@@ -195,6 +195,7 @@ class StationMessage(msgspec.Struct, frozen=True):
     """The station itself."""
 
     uptime_s: float
+    apps_listed: int | None = None
 
 
 class StopLatchStatus(msgspec.Struct, frozen=True):
@@ -203,6 +204,23 @@ class StopLatchStatus(msgspec.Struct, frozen=True):
     by: str
     age_s: float
     released: tuple[str, ...]
+
+
+class WaitingAppStatus(msgspec.Struct, frozen=True):
+    """Why an app waits to be admitted; `serial` None: not reported yet."""
+
+    serial: str | None
+    age_s: float
+    reason: str
+    is_flying: bool | None
+
+
+class LinkStatus(msgspec.Struct, frozen=True):
+    """One connection of a companion app; `waiting` None: it does not wait to be admitted."""
+
+    id: int
+    remote_address: str
+    waiting: WaitingAppStatus | None = None
 
 
 class StateMessage(msgspec.Struct, frozen=True):
@@ -215,6 +233,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     alarms: tuple[AlarmStatus, ...]
     fleet_return: FleetReturnMessage | None = None
     stop_latch: StopLatchStatus | None = None
+    links: tuple[LinkStatus, ...] = ()
 
     @property
     def run_started_ns(self) -> int:

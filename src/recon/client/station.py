@@ -7,7 +7,9 @@ from recon.client.address import parse_address
 from recon.client.errors import StationUnreachableError, WaitTimeoutError
 from recon.client.messages import (
     AlarmStatus,
+    AnswerMessage,
     AuditLogPage,
+    LinkStatus,
     OrderStatus,
     StateMessage,
     StopAnswer,
@@ -121,6 +123,39 @@ class Station:
     async def stop_in_force(self) -> StopLatchStatus | None:
         """Return the all stop in force; None without one."""
         return (await self._state()).stop_latch
+
+    async def waiting_apps(self) -> tuple[LinkStatus, ...] | None:
+        """Return the links whose app waits to be admitted; None: the station has no list."""
+        state = await self._state()
+        if state.station.apps_listed is None:
+            return None
+        return tuple(link for link in state.links if link.waiting is not None)
+
+    async def admit_app(
+        self,
+        link_id: int,
+        serial: str,
+        *,
+        is_for_good: bool = True,
+        any_address: bool = False,
+    ) -> Refusal | None:
+        """Admit the app that waits on a link as the vehicle with this serial; None on success."""
+        lasting = "always" if is_for_good else "session"
+        request = {
+            "link_id": link_id,
+            "serial": serial,
+            "lasting": lasting,
+            "any_address": any_address,
+        }
+        return await self._decide("/api/apps/admit", request)
+
+    async def refuse_app(self, link_id: int) -> Refusal | None:
+        """Refuse the app that waits on a link, for 5 minutes; None on success."""
+        return await self._decide("/api/apps/refuse", {"link_id": link_id})
+
+    async def _decide(self, path: str, request: dict[str, object]) -> Refusal | None:
+        answer = await self._http.post(path, request, AnswerMessage, "an answer about an app")
+        return answer.refusal
 
     async def all_stop_at_once(self) -> tuple[StopAnswer, ...]:
         """Hold all flying vehicles with a single request.

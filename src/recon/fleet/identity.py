@@ -36,12 +36,16 @@ def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
     link = fleet.links[link_id]
     if link.claimed_serial == serial:
         return fleet
-    if link.claimed_serial is not None:
-        # Telemetry under the old serial belongs to the old vehicle.
-        fleet = release(fleet, replace(link, own_state=_blank(link)), now_ns)
+    fleet = leave(fleet, link_id, now_ns)
     known = fleet.vehicles.get(serial)
     if known is None and has_no_room(fleet):
-        unknown = replace(fleet.links[link_id], claimed_serial=None, rejected_serial=serial)
+        unknown = replace(
+            fleet.links[link_id],
+            claimed_serial=None,
+            rejected_serial=serial,
+            waiting_serial=None,
+            waits_since_ns=None,
+        )
         return _put_link(fleet, unknown)
     is_bound = known is not None and known.link_id is not None
     fleet = _put_link(
@@ -50,11 +54,24 @@ def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
             fleet.links[link_id],
             claimed_serial=serial,
             rejected_serial=None,
+            waiting_serial=None,
+            waits_since_ns=None,
             rival_since_ns=now_ns if is_bound else None,
             in_conflict=False,
         ),
     )
     return _mark_rivals(fleet, serial) if is_bound else _bind(fleet, link_id, serial)
+
+
+def leave(fleet: Fleet, link_id: int, now_ns: int) -> Fleet:
+    """Return the fleet after a link ceased to claim a serial; nothing without one.
+
+    Telemetry under the old serial belongs to the old vehicle.
+    """
+    link = fleet.links[link_id]
+    if link.claimed_serial is None:
+        return fleet
+    return release(fleet, replace(link, own_state=_blank(link)), now_ns)
 
 
 def packet_received(fleet: Fleet, link_id: int, received_at_ns: int) -> Fleet:

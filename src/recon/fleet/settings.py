@@ -110,5 +110,16 @@ class FleetSettings:
     closed_links_kept: int = 32
     """Closed links kept for display with the reason they closed."""
 
+    waiting_links_kept: int = 64
+    """A quarter of the link server's places: apps that are not admitted must not fill them."""
+
+    refusal_s: float = 300.0
+    """An app reconnects every few seconds; a refusal must outlast the person's look at it."""
+
+    refusals_kept: int = 64
+    refused_serial_wait_s: float = 2.0
+    """Extended telemetry, with the serial, comes at 1 to 2 Hz: until then a link from a refused
+    host may be another aircraft behind the same address."""
+
     trust: TrustSettings = field(default_factory=TrustSettings)
     airborne: AirborneSettings = field(default_factory=AirborneSettings)

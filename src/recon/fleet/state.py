@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from recon.fleet.admission import ANY_APP, Admission
 from recon.fleet.settings import FleetSettings
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import Staleness, VehicleProfile, VehicleState, staleness_at
@@ -21,6 +22,9 @@ class LinkRecord:
     claimed_serial: str | None = None
     rejected_serial: str | None = None
     """The serial it reports while the limit of vehicles is reached."""
+    waiting_serial: str | None = None
+    """The serial it reports while the list of apps does not admit it (`fleet.pairing`)."""
+    waits_since_ns: int | None = None
     last_packet_at_ns: int | None = None
     rival_since_ns: int | None = None
     """When it reported a serial that another open link is bound to."""
@@ -35,6 +39,16 @@ class LinkRecord:
         """Whether the connection is open."""
         return self.closed_at_ns is None
 
+    @property
+    def is_waiting(self) -> bool:
+        """Whether it is open and waits to be admitted."""
+        return self.is_open and self.waits_since_ns is not None
+
+    @property
+    def reported_serial(self) -> str | None:
+        """The serial it claims, admitted or waiting."""
+        return self.claimed_serial or self.waiting_serial
+
 
 @dataclass(frozen=True)
 class Fleet:
@@ -47,6 +61,7 @@ class Fleet:
     profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
     links: Mapping[int, LinkRecord] = field(default_factory=dict)
     vehicles: Mapping[str, VehicleState] = field(default_factory=dict)
+    admission: Admission = ANY_APP
 
     def vehicle_of_link(self, link_id: int) -> VehicleState | None:
         """Return the state that a link's reports update: its vehicle's, or its own if unbound."""
@@ -63,6 +78,16 @@ class Fleet:
             return ()
         own = () if vehicle.link_id is None else (vehicle.link_id,)
         return own + vehicle.rival_link_ids
+
+    def link_ids_waiting(self, serial: str) -> tuple[int, ...]:
+        """Return the open links that report `serial` and wait to be admitted."""
+        if not self.admission.is_in_force:
+            return ()
+        return tuple(
+            link.id
+            for link in self.links.values()
+            if link.is_waiting and link.waiting_serial == serial
+        )
 
     def unbound_links(self) -> tuple[LinkRecord, ...]:
         """Return the open links not bound to a vehicle: unidentified or rivals."""

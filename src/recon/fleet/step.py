@@ -2,11 +2,20 @@
 
 from dataclasses import dataclass
 
-from recon.fleet import identity
+from recon.fleet import identity, pairing
 from recon.fleet.state import Fleet, LinkRecord
 from recon.fleet.telemetry import fold_core, fold_extended
 from recon.fleet.trust import after_gap
-from recon.model.event import ClockGap, Event, LinkClosed, LinkOpened, PacketReceived, Tick
+from recon.model.event import (
+    AppAdmitted,
+    AppRefused,
+    ClockGap,
+    Event,
+    LinkClosed,
+    LinkOpened,
+    PacketReceived,
+    Tick,
+)
 from recon.model.replacing import replace
 from recon.model.report import (
     CoreReport,
@@ -42,8 +51,14 @@ def step(fleet: Fleet, event: Event, now_ns: int) -> tuple[Fleet, tuple[CloseLin
         case ClockGap():
             return _after_gap(fleet, now_ns), ()
         case Tick():
-            settled, closing = identity.settle(fleet, now_ns)
-            return settled, tuple(CloseLink(*item) for item in closing)
+            fleet, silent = identity.settle(fleet, now_ns)
+            fleet, waiting = pairing.settle(fleet, now_ns)
+            return fleet, tuple(CloseLink(*item) for item in (*silent, *waiting))
+        case AppAdmitted():
+            return identity.forget_vehicles(pairing.admit(fleet, event, now_ns)), ()
+        case AppRefused():
+            fleet, refused = pairing.refuse(fleet, event, now_ns)
+            return fleet, tuple(CloseLink(*item) for item in refused)
     return fleet, ()
 
 
@@ -73,6 +88,7 @@ def _opened(fleet: Fleet, link_id: int, remote_address: str, now_ns: int) -> Fle
         opened_at_ns=now_ns,
         own_state=VehicleState(serial=None, link_id=link_id),
     )
+    link = pairing.opened(link, fleet, now_ns)
     return replace(fleet, links={**fleet.links, link_id: link})
 
 
@@ -100,7 +116,7 @@ def _received(
     fleet = _count(fleet, link_id, report, received_at_ns)
     fleet = identity.packet_received(fleet, link_id, received_at_ns)
     if isinstance(report, ExtendedReport) and report.serial is not None:
-        fleet = identity.claim(fleet, link_id, report.serial, now_ns)
+        fleet = pairing.report_serial(fleet, link_id, report.serial, now_ns)
         fleet = identity.forget_vehicles(fleet)
     return _fold(fleet, link_id, report, received_at_ns)
 

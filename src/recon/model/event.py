@@ -116,6 +116,36 @@ class AuthorityTaken:
 
 
 @dataclass(frozen=True, slots=True)
+class AppAdmitted:
+    """A person admits the app that waits on a link as the vehicle with this serial.
+
+    `is_for_good`: on the list, else for this run only. `any_address`: wherever it connects from,
+    else from its present address only.
+    """
+
+    link_id: int
+    serial: str
+    by: str
+    is_for_good: bool = True
+    any_address: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class AppRefused:
+    """A person refuses the app that waits on a link: it is closed, and again for a while."""
+
+    link_id: int
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class AppListFailed:
+    """The list of apps cannot be written; `problem` is None when it is written again."""
+
+    problem: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class AllStopped:
     """A person stopped every vehicle. It stays in force until released; the holds are orders."""
 
@@ -289,6 +319,9 @@ Event = (
     | SetpointsDue
     | OperatorOrder
     | AuthorityTaken
+    | AppAdmitted
+    | AppRefused
+    | AppListFailed
     | AllStopped
     | StopReleased
     | OwnerConnected

@@ -79,12 +79,14 @@ class Situation:
     there is neither. `claiming_links` are its open links, its own first; more than one while its
     identity is unsettled. `stick_height_above_takeoff_m` is what its newest stick asked for.
     `traffic` are the other vehicles in the air, lost ones included. `stop_latch` is the all stop in
-    force.
+    force. `waiting_link_ids` are links that report the command's serial and are not admitted; to a
+    stop they are claiming links as well.
     """
 
     now_ns: int
     vehicle: VehicleState | None
     claiming_links: tuple[ClaimingLink, ...]
+    waiting_link_ids: tuple[int, ...] = ()
     settings: SafetySettings = SafetySettings()
     airspace: PreparedAirspace = OPEN_AIRSPACE
     authority: ControlAuthority = ControlAuthority()

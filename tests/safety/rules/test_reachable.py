@@ -39,3 +39,27 @@ def test_a_vehicle_without_a_connection(flying: bool | None, is_stale: bool) -> 
 
 def test_one_that_is_connected() -> None:
     assert reachable(LAND, situation()) is None
+
+
+@pytest.mark.parametrize(
+    ("known", "reason"),
+    [
+        (
+            True,
+            "A: its app waits to be admitted (link 3, 4); admit it first. Until then only hold, "
+            "land and return are sent to it",
+        ),
+        (
+            False,
+            "A: its app waits to be admitted (link 3, 4); admit it first. Until then only an all "
+            "stop reaches it",
+        ),
+    ],
+)
+def test_a_serial_whose_app_waits_to_be_admitted(known: bool, reason: str) -> None:
+    waits = Situation(NOW, vehicle() if known else None, (), waiting_link_ids=(3, 4))
+    assert reachable(LAND, waits) == Refusal("reachable", reason)
+
+
+def test_a_waiting_app_changes_nothing_for_a_vehicle_that_is_connected() -> None:
+    assert reachable(LAND, replace(situation(), waiting_link_ids=(3,))) is None

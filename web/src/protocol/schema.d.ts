@@ -66,6 +66,50 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/apps/admit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Admit App
+         * @description Admit the app that waits on a link as the vehicle with this serial.
+         *
+         *     `serial` is what the person saw: an app that reports another one meanwhile is not admitted.
+         */
+        post: operations["admit_app_api_apps_admit_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/apps/refuse": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Refuse App
+         * @description Close the app that waits on a link, and again for 5 minutes whenever it connects.
+         *
+         *     What it reported in flight stays a hazard area until it is dismissed.
+         */
+        post: operations["refuse_app_api_apps_refuse_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/audit": {
         parameters: {
             query?: never;
@@ -640,6 +684,29 @@ export interface components {
             reason: string | null;
             /** Rule */
             rule: string | null;
+        };
+        /**
+         * AdmitAppRequest
+         * @description The app that waits on a link, with the serial that its person saw.
+         */
+        AdmitAppRequest: {
+            /**
+             * Any Address
+             * @description admit this serial from any address, not the present one only
+             * @default false
+             */
+            any_address: boolean;
+            /**
+             * Lasting
+             * @description always: on the list; session: until the station stops
+             * @default always
+             * @enum {string}
+             */
+            lasting: "always" | "session";
+            /** Link Id */
+            link_id: number;
+            /** Serial */
+            serial: string;
         };
         /**
          * AgedFlag
@@ -1254,9 +1321,10 @@ export interface components {
              * Status
              * @enum {string}
              */
-            status: "identified" | "unidentified" | "conflict" | "closed";
+            status: "identified" | "unidentified" | "waiting" | "conflict" | "closed";
             /** Unknown Pid */
             unknown_pid: number;
+            waiting: components["schemas"]["WaitingAppView"] | null;
         };
         /**
          * MissionOrder
@@ -1493,6 +1561,14 @@ export interface components {
             error: string;
         };
         /**
+         * RefuseAppRequest
+         * @description The app that waits on a link.
+         */
+        RefuseAppRequest: {
+            /** Link Id */
+            link_id: number;
+        };
+        /**
          * ReturnHomeOrder
          * @description Return at the aircraft's own go-home height and land.
          */
@@ -1684,6 +1760,11 @@ export interface components {
          * @description The station itself.
          */
         StationView: {
+            /**
+             * Apps Listed
+             * @description entries of the list of admitted apps; null: no list, any app is admitted
+             */
+            apps_listed: number | null;
             /** Capture Dropped Bytes */
             capture_dropped_bytes: number;
             /** Capture Folder */
@@ -2288,6 +2369,23 @@ export interface components {
             north_mps: number | null;
         };
         /**
+         * WaitingAppView
+         * @description An app that the list does not admit: watched as traffic, stopped, but not moved.
+         */
+        WaitingAppView: {
+            /** Age S */
+            age_s: number;
+            /** Is Flying */
+            is_flying: boolean | null;
+            /** Reason */
+            reason: string;
+            /**
+             * Serial
+             * @description null: not reported yet
+             */
+            serial: string | null;
+        };
+        /**
          * WaypointOrder
          * @description One waypoint; null `loiter_s` or `gimbal_pitch_deg` means no action.
          */
@@ -2387,6 +2485,72 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["StopReleaseRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ActionResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    admit_app_api_apps_admit_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AdmitAppRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ActionResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    refuse_app_api_apps_refuse_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RefuseAppRequest"];
             };
         };
         responses: {

@@ -25,11 +25,13 @@ from recon.api.schema.orders import (
     Severity,
 )
 from recon.api.schema.requests import (
+    AdmitAppRequest,
     AnyOrder,
     AuthorityRequest,
     FleetReturnRequest,
     OrderRequest,
     PreflightOverrideRequest,
+    RefuseAppRequest,
     StopReleaseRequest,
     WaypointOrder,
 )
@@ -51,6 +53,7 @@ from recon.api.schema.station import (
     StationState,
     StationView,
     StopLatchView,
+    WaitingAppView,
 )
 from recon.api.schema.surveys import (
     SurveyBudgetRequest,
@@ -91,6 +94,7 @@ from recon.api.schema.zones import (
 
 __all__ = [
     "ActionResponse",
+    "AdmitAppRequest",
     "AgedFlag",
     "AgedNumber",
     "AgedText",
@@ -127,6 +131,7 @@ __all__ = [
     "PreflightOverrideRequest",
     "PreflightView",
     "Problem",
+    "RefuseAppRequest",
     "ReturningView",
     "Severity",
     "ShadeLineView",
@@ -156,5 +161,6 @@ __all__ = [
     "TemporaryZoneView",
     "VehicleView",
     "VelocityView",
+    "WaitingAppView",
     "WaypointOrder",
 ]

@@ -118,6 +118,25 @@ AnyOrder = Annotated[
 ]
 
 
+class AdmitAppRequest(StrictMessage):
+    """The app that waits on a link, with the serial that its person saw."""
+
+    link_id: int
+    serial: str = Field(min_length=1, max_length=256)
+    lasting: Literal["always", "session"] = Field(
+        default="always", description="always: on the list; session: until the station stops"
+    )
+    any_address: bool = Field(
+        default=False, description="admit this serial from any address, not the present one only"
+    )
+
+
+class RefuseAppRequest(StrictMessage):
+    """The app that waits on a link."""
+
+    link_id: int
+
+
 class OrderRequest(StrictMessage):
     """An order to named vehicles. `takeoff` explicitly allows them to leave the ground.
 

@@ -20,13 +20,23 @@ class StopLatchView(Message):
     released: list[str] = Field(description="serials released since; every other one is latched")
 
 
+class WaitingAppView(Message):
+    """An app that the list does not admit: watched as traffic, stopped, but not moved."""
+
+    serial: str | None = Field(description="null: not reported yet")
+    age_s: float
+    reason: str
+    is_flying: bool | None
+
+
 class LinkView(Message):
     """One TCP connection of a companion app, with its error counters."""
 
     id: int
     remote_address: str
-    status: Literal["identified", "unidentified", "conflict", "closed"]
+    status: Literal["identified", "unidentified", "waiting", "conflict", "closed"]
     claimed_serial: str | None
+    waiting: WaitingAppView | None
     opened_age_s: float
     last_packet_age_s: float | None
     closed_reason: str | None
@@ -54,6 +64,9 @@ class StationView(Message):
     capture_folder: str | None
     capture_dropped_bytes: int
     connections_refused: int
+    apps_listed: int | None = Field(
+        description="entries of the list of admitted apps; null: no list, any app is admitted"
+    )
     separation_hold_on: bool = Field(
         description="whether the watchdogs hold vehicles; if not, they only raise alarms"
     )

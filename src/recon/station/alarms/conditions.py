@@ -24,7 +24,7 @@ from recon.model.control import AuthorityHolder, Commanded
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
-from recon.station.alarms import event_alarms, flight_conditions
+from recon.station.alarms import app_conditions, event_alarms, flight_conditions
 from recon.station.imaging import frames
 from recon.station.operations import OPERATIONS
 from recon.station.state import alarm_book, orders
@@ -83,6 +83,7 @@ def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
     yield from frames.conditions(station)
     yield from _stop_latch(station)
     yield from _temporary_zones(station, now_ns)
+    yield from app_conditions.conditions(station)
     yield from _audit(station)
     for limit, problem in station.link_limits.items():
         yield Condition(f"link_limit:{limit}", Severity.ERROR, "link_limit", "", problem)
@@ -228,7 +229,7 @@ def _temporary_zones(station: Station, now_ns: int) -> Iterator[Condition]:
 
 
 def _unidentified(link: LinkRecord, after_s: float) -> Iterator[Condition]:
-    if link.claimed_serial is None and link.own_state.is_flying.value is True:
+    if link.reported_serial is None and link.own_state.is_flying.value is True:
         text = f"in flight without a serial ({link.remote_address}): check its companion app"
         yield _about(link.own_state, "unidentified", Severity.WARNING, text, after_s)
 

@@ -8,11 +8,14 @@ from itertools import count
 from recon import version
 from recon.api import schema
 from recon.api.port import SurveyCellStates
+from recon.fleet import pairing
 from recon.model.command import Body, Hover, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AlarmAcknowledged,
     AllStopped,
+    AppAdmitted,
+    AppRefused,
     AuthorityTaken,
     FleetReturnOrdered,
     HazardDismissed,
@@ -183,6 +186,18 @@ class Service:
         event = ZoneEnded(zone_id, by.label)
         return self._command(event, temporary_zones.end_refusal(self.driver.station, event))
 
+    def admit_app(
+        self, link_id: int, serial: str, *, is_for_good: bool, any_address: bool, by: Person
+    ) -> schema.ActionResponse:
+        """Admit the app that waits on a link; the audit has a refusal too."""
+        event = AppAdmitted(link_id, serial, by.label, is_for_good, any_address)
+        return self._decided(event, pairing.refusal_to_admit(self.driver.station.fleet, event))
+
+    def refuse_app(self, link_id: int, by: Person) -> schema.ActionResponse:
+        """Refuse the app that waits on a link."""
+        event = AppRefused(link_id, by.label)
+        return self._decided(event, pairing.refusal_to_refuse(self.driver.station.fleet, event))
+
     def fleet_return(
         self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
     ) -> schema.OrderResponse:
@@ -303,6 +318,15 @@ class Service:
         self.driver.handle(event)
         return schema.ActionResponse(accepted=True, rule=None, reason=None)
 
+    def _decided(
+        self, event: AppAdmitted | AppRefused, refusal: Refusal | None
+    ) -> schema.ActionResponse:
+        """Handle a decision about a waiting app; a refused one changes nothing but the audit."""
+        self.driver.handle(event)
+        if refusal is not None:
+            return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
+        return schema.ActionResponse(accepted=True, rule=None, reason=None)
+
     def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
         return schema.OrderResponse(results=[self._give_one(order) for order in orders])
 
@@ -341,6 +365,7 @@ class Service:
     def _station_view(self, now_ns: int) -> schema.StationView:
         links = self.driver.links
         capture = None if links is None else links.capture
+        listed = self.driver.station.fleet.admission.listed
         return schema.StationView(
             version=version(),
             link_addresses=self.link_addresses,
@@ -350,6 +375,7 @@ class Service:
             capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
             separation_hold_on=self.driver.station.watchdog_state.is_hold_on,
             connections_refused=0 if links is None else links.refused_connections,
+            apps_listed=None if listed is None else len(listed),
         )
 
 

@@ -6,6 +6,7 @@ from enum import Enum
 from typing import Any
 
 from recon.api import schema
+from recon.fleet import pairing
 from recon.fleet.state import Fleet, LinkRecord, staleness
 from recon.link.session import Session
 from recon.model.control import StopLatch
@@ -180,6 +181,7 @@ def _link(fleet: Fleet, record: LinkRecord, around: DriverState, now_ns: int) ->
         remote_address=record.remote_address,
         status=_link_status(fleet, record),
         claimed_serial=record.claimed_serial,
+        waiting=_waiting(fleet, record, now_ns),
         opened_age_s=ns_to_seconds(now_ns - record.opened_at_ns),
         last_packet_age_s=_age_s(record.last_packet_at_ns, now_ns),
         closed_reason=record.closed_reason,
@@ -196,9 +198,22 @@ def _link(fleet: Fleet, record: LinkRecord, around: DriverState, now_ns: int) ->
     )
 
 
+def _waiting(fleet: Fleet, record: LinkRecord, now_ns: int) -> schema.WaitingAppView | None:
+    if not record.is_waiting or record.waits_since_ns is None:
+        return None
+    return schema.WaitingAppView(
+        serial=record.waiting_serial,
+        age_s=ns_to_seconds(now_ns - record.waits_since_ns),
+        reason=pairing.objection(fleet, record),
+        is_flying=record.own_state.is_flying.value,
+    )
+
+
 def _link_status(fleet: Fleet, record: LinkRecord) -> Any:
     if not record.is_open:
         return "closed"
+    if record.is_waiting:
+        return "waiting"
     if record.claimed_serial is None:
         return "unidentified"
     vehicle = fleet.vehicles.get(record.claimed_serial)

@@ -19,6 +19,9 @@ from recon.model.command import Refusal
 from recon.model.event import (
     AlarmAcknowledged,
     AllStopped,
+    AppAdmitted,
+    AppListFailed,
+    AppRefused,
     AuditFailed,
     AuthorityTaken,
     Event,
@@ -34,7 +37,7 @@ from recon.model.event import (
 from recon.record.audit import AuditEntry
 from recon.station.audit.alarm_entries import AlarmsLogged, acknowledged_entry, alarm_entries
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
-from recon.station.audit.link_entries import LinksLogged, link_entries
+from recon.station.audit.link_entries import LinksLogged, link_entries, pairing_entry
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
 from recon.station.control import authority, preflight, stop_latch, temporary_zones
 from recon.station.operations import OPERATIONS
@@ -93,6 +96,12 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
             yield from _refused(after, "authority", authority.refusal(before, event), by, serial)
         case PreflightOverridden(serial=serial, by=by):
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
+        case AppAdmitted() | AppRefused():
+            yield pairing_entry(before, event)
+        case AppListFailed(problem):
+            text = problem or "the list of apps is written again"
+            is_troubled = {"is_troubled": problem is not None}
+            yield AuditEntry("app.list_trouble", text, details=is_troubled)
         case AllStopped(by):
             text = "all stop: nothing moves a vehicle until a person releases it"
             yield AuditEntry("all_stop.latched", text, by)

@@ -7,7 +7,17 @@ the rest is written as a count.
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived, Tick
+from recon.fleet import pairing
+from recon.fleet.state import LinkRecord
+from recon.model.event import (
+    AppAdmitted,
+    AppRefused,
+    Event,
+    LinkClosed,
+    LinkOpened,
+    PacketReceived,
+    Tick,
+)
 from recon.model.report import ImageReport
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
@@ -53,6 +63,11 @@ def _changes(before: Station, event: Event, after: Station) -> Iterator[AuditEnt
             yield AuditEntry("link.opened", text, details=details)
         case LinkClosed(link_id, reason):
             yield _closed(before, link_id, reason)
+        case PacketReceived(link_id) if link_id in after.fleet.links:
+            link = after.fleet.links[link_id]
+            was = before.fleet.links.get(link_id)
+            if link.is_waiting and (was is None or was.waiting_serial != link.waiting_serial):
+                yield _waits(after, link)
     for serial in _serials_concerned(event, after):
         vehicle = after.fleet.vehicles.get(serial)
         if vehicle is not None:
@@ -69,6 +84,8 @@ def _serials_concerned(event: Event, after: Station) -> Iterable[str]:
             return () if link is None or link.claimed_serial is None else (link.claimed_serial,)
         case LinkClosed() | Tick():
             return after.fleet.vehicles
+        case AppAdmitted(serial=serial):
+            return (serial,)
     return ()
 
 
@@ -98,6 +115,38 @@ def _identity(old: VehicleState | None, vehicle: VehicleState) -> Iterator[Audit
         )
         rivals = {"link_id": vehicle.link_id, "rival_link_ids": list(vehicle.rival_link_ids)}
         yield AuditEntry(kind, f"{name}: {words}", "station", vehicle.serial, name, rivals)
+
+
+def _waits(station: Station, link: LinkRecord) -> AuditEntry:
+    why = pairing.objection(station.fleet, link)
+    text = f"app on link {link.id} from {link.remote_address} waits to be admitted: {why}"
+    details = {"link_id": link.id, "address": link.remote_address, "reason": why}
+    return AuditEntry("app.waits", text, "station", link.waiting_serial, "", details)
+
+
+def pairing_entry(before: Station, event: AppAdmitted | AppRefused) -> AuditEntry:
+    """Return the entry of what a person decided about a waiting app, or why that was refused."""
+    fleet = before.fleet
+    link = fleet.links.get(event.link_id)
+    address = None if link is None else link.remote_address
+    details: dict[str, object] = {"link_id": event.link_id, "address": address}
+    if isinstance(event, AppRefused):
+        serial = None if link is None else link.waiting_serial
+        refusal, done = pairing.refusal_to_refuse(fleet, event), "app.refused"
+        text = f"app on link {event.link_id} from {address} refused"
+    else:
+        serial = event.serial
+        refusal, done = pairing.refusal_to_admit(fleet, event), "app.admitted"
+        details |= {"is_for_good": event.is_for_good, "any_address": event.any_address}
+        place = "any address" if event.any_address else address
+        lasting = "for good" if event.is_for_good else "for this run"
+        text = f"app with serial {serial} admitted {lasting} from {place}"
+    if refusal is None:
+        return AuditEntry(done, text, event.by, serial, "", details)
+    details |= {"rule": refusal.rule, "reason": refusal.reason}
+    return AuditEntry(
+        "app.not_changed", f"not done: {refusal.reason}", event.by, serial, "", details
+    )
 
 
 def _many(count: int) -> AuditEntry:

@@ -41,6 +41,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         now_ns=now_ns,
         vehicle=target,
         claiming_links=_claiming_links(station, command),
+        waiting_link_ids=station.fleet.link_ids_waiting(command.serial or ""),
         settings=station.settings.safety,
         airspace=station.airspace,
         authority=control.authority,
@@ -82,6 +83,9 @@ def _claiming_links(station: Station, command: Command) -> tuple[ClaimingLink, .
     fleet = station.fleet
     if command.serial is not None:
         link_ids = fleet.link_ids_claiming(command.serial)
+        if command.is_emergency and not command.takeoff and command.serial in fleet.vehicles:
+            # It may be the aircraft: a stop reaches a false one without harm.
+            link_ids += fleet.link_ids_waiting(command.serial)
     else:
         target = station.target(None, command.link_id)
         link_ids = () if target is None or target.link_id is None else (target.link_id,)

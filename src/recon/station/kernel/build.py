@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from recon.fleet.admission import Admission, AllowedApp
 from recon.fleet.state import Fleet
 from recon.safety import PreparedAirspace
 from recon.site import Site
@@ -15,14 +16,18 @@ NEAR_AXIS_RAD = 0.3
 """Within this angle a fisheye's pixels per radian hardly change."""
 
 
-def first_state(site: Site, settings: StationSettings | None = None) -> Station:
-    """Return the station before its first event."""
+def first_state(
+    site: Site,
+    settings: StationSettings | None = None,
+    apps: tuple[AllowedApp, ...] | None = None,
+) -> Station:
+    """Return the station before its first event; `apps` None: without a list of apps."""
     chosen = _with_lens(settings or StationSettings(), site)
     marked = None if site.imager is None else site.imager.marked_frame
     return Station(
         settings=chosen,
         airspace=PreparedAirspace(site.airspace),
-        fleet=Fleet(settings=chosen.fleet, profiles=site.profiles),
+        fleet=Fleet(settings=chosen.fleet, profiles=site.profiles, admission=Admission(apps)),
         imaging=Imaging(
             imager_serial=None if site.imager is None else site.imager.serial,
             reference=marked,

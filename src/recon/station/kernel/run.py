@@ -16,6 +16,7 @@ from recon import version
 from recon.api.app import create_app
 from recon.api.connections import PING_S, HttpConnection, StreamConnection
 from recon.api.security import LOCAL_PERSON, LOOPBACK_NAMES, Access
+from recon.fleet.admission import AllowedApp
 from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
@@ -35,6 +36,7 @@ from recon.station.audit.start import (
     ended_entry,
     started_entry,
 )
+from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.worker import JobRunner, ThreadWorker
@@ -67,6 +69,10 @@ class RunConfig:
     token: str | None = None
     console: Path | None = None
     link: LinkSettings = field(default_factory=LinkSettings)
+    apps_file: Path | None = None
+    """The list of admitted apps; None: any app is admitted."""
+    apps: tuple[AllowedApp, ...] | None = None
+    """The entries of that file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +83,8 @@ class Started:
     link_port: int
     console_url: str
     audit_folder: str = ""
+    apps_listed: int | None = None
+    """Entries of the list of apps; None without a list."""
     taken_up: str = ""
     """What this run continues from the last one, in words; empty if nothing."""
 
@@ -95,7 +103,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
     async with AsyncExitStack() as stack:
         stack.callback(http_socket.close)
         clock = station_clock()
-        station = restored(first_state(config.site), last_run, clock())
+        station = restored(first_state(config.site, apps=config.apps), last_run, clock())
         auditor = _start_auditor(config, begun, last_run, clock, stack)
         auditor.put(restart_entries(station))
         driver = AsyncioDriver(station, clock, auditor.observe)
@@ -109,6 +117,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             driver.observe = _both(snapshots.observe, auditor.observe)
             snapshots.start(station)
             stack.callback(snapshots.close)
+        _write_app_list(config, driver, stack)
         service = Service.around(
             driver, config.site, _text(config.capture_folder), begun.log, last_run.first_ids[0]
         )
@@ -116,6 +125,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         started = replace(
             _started(config, service, links, http_socket),
             audit_folder=str(begun.log.folder),
+            apps_listed=None if config.apps is None else len(config.apps),
             taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
         )
         await _serve(config, driver, service, http_socket, lambda: on_start(started), stack)
@@ -161,6 +171,16 @@ async def _serve(
         task.result()
 
 
+def _write_app_list(config: RunConfig, driver: AsyncioDriver, stack: AsyncExitStack) -> None:
+    """Write pairings to the list's file while the station runs."""
+    if config.apps_file is None or driver.observe is None:
+        return
+    writer = AppListWriter(config.apps_file, driver.handle_from_thread)
+    driver.observe = _both(driver.observe, writer.observe)
+    writer.start()
+    stack.callback(writer.close)
+
+
 def _require_token(config: RunConfig) -> None:
     if config.http_host not in LOOPBACK_NAMES and config.token is None:
         raise StartError(
@@ -181,7 +201,8 @@ def _last_run(place: AuditPlace, begun: Begun) -> tuple[LastRun, bool]:
 
 
 def _both(first: Observe, second: Observe) -> Observe:
-    """Return an observer that calls two; the recovery snapshot comes before the audit."""
+    """Return an observer that calls two; the recovery snapshot comes before the audit, and both
+    before the list of apps."""
 
     def observe(before: Station, after: Station, event: Event) -> None:
         first(before, after, event)

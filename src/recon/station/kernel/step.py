@@ -7,10 +7,14 @@ operations from `OPERATIONS`: a new one changes nothing here.
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from recon.fleet import pairing
 from recon.fleet import step as fleet_step
 from recon.model.event import (
     AlarmAcknowledged,
     AllStopped,
+    AppAdmitted,
+    AppListFailed,
+    AppRefused,
     AuditFailed,
     AuthorityTaken,
     ClockGap,
@@ -85,6 +89,17 @@ def _clock_gap(station: Station, event: ClockGap, now_ns: int) -> Stepped:
 
 def _link_closed(station: Station, event: LinkClosed, now_ns: int) -> Stepped:
     return _fleet(known_traffic.keep_lost(station, event.link_id), event, now_ns)
+
+
+def _app_refused(station: Station, event: AppRefused, now_ns: int) -> Stepped:
+    """What flies on the link stays a hazard: a refusal does not state where it is."""
+    if pairing.refusal_to_refuse(station.fleet, event) is None:
+        station = known_traffic.keep_lost(station, event.link_id)
+    return _fleet(station, event, now_ns)
+
+
+def _app_list_failed(station: Station, event: AppListFailed, _now_ns: int) -> Station:
+    return replace(station, app_list_problem=event.problem)
 
 
 def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
@@ -206,6 +221,9 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(CommandSent, order_gateway.on_link_event),
         changing(CommandAnswered, order_gateway.on_link_event),
         changing(CommandDropped, order_gateway.on_link_event),
+        on(AppAdmitted, _fleet),
+        on(AppRefused, _app_refused),
+        changing(AppListFailed, _app_list_failed),
         on(AllStopped, stop_latch.latch),
         changing(StopReleased, stop_latch.release),
         changing(ZoneDrawn, temporary_zones.draw),

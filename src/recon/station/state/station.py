@@ -79,6 +79,8 @@ class Station:
     """When the last run's snapshot was restored; None without one."""
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
+    app_list_problem: str | None = None
+    """Why the list of apps cannot be written, while it cannot."""
     link_limits: Mapping[str, str] = field(default_factory=dict)
     """Limits that the link server has reached, with what it does about it."""
     next_own_id: int = -1

@@ -8,6 +8,7 @@ it, and newer telemetry brings it back.
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from recon.fleet import pairing
 from recon.fleet.identity import has_no_room, without
 from recon.model.command import FlyMission, Phase
 from recon.model.control import Commanded, Intent
@@ -30,8 +31,8 @@ MANY_LOST = "many-lost"
 def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
     """Yield every vehicle, and every link without one, that flies or was last known to.
 
-    With it the serial that is claimed for it: a link in conflict claims another vehicle's. A
-    dismissed hazard area is left out until new telemetry arrives.
+    With it the serial that is claimed for it: a link in conflict, or one that waits to be admitted,
+    claims another vehicle's. A dismissed hazard area is left out until new telemetry arrives.
     """
     dismissed = station.watchdog_state.dismissed
     for serial, vehicle in station.fleet.vehicles.items():
@@ -41,7 +42,7 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
             yield vehicle, serial
     for link in station.fleet.unbound_links():
         if link.own_state.is_flying.value is True:
-            yield link.own_state, link.claimed_serial
+            yield link.own_state, link.reported_serial
     for state in station.watchdog_state.lost.values():
         yield state, None
 
@@ -145,10 +146,13 @@ def _with_room(station: Station) -> Station:
 def keep_lost(station: Station, link_id: int) -> Station:
     """Return the station with the vehicle on a link that ends kept as lost.
 
-    Only one that flies, has never reported a serial, and is not connected by another link.
+    Only one that flies, is no vehicle by its serial, and is not connected by another link. What an
+    operator refused is kept once, when it is refused.
     """
     link = station.fleet.links.get(link_id)
     if link is None or link.claimed_serial is not None or not link.own_state.is_flying.value:
+        return station
+    if pairing.is_refused(station.fleet, link):
         return station
     if identity_grace.is_identified_elsewhere(station, link.own_state):
         return station

@@ -77,7 +77,7 @@ def switch_hold(station: Station, event: SeparationHoldSwitched, _now_ns: int) -
 def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
     watch, imager = station.watchdog_state, station.imaging.imager_serial
     for vehicle, claimed in in_the_air(station):
-        if vehicle.serial != claimed:
+        if vehicle.serial != claimed and _is_connected(station, claimed):
             continue  # a link in conflict: most likely telemetry of the same aircraft
         if identity_grace.is_in_grace(station, vehicle, now_ns):
             continue
@@ -95,6 +95,11 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
             stick_quiet_s=quiet_s,
             hold_refused="" if refused is None else refused.why,
         )
+
+
+def _is_connected(station: Station, serial: str | None) -> bool:
+    vehicle = station.fleet.vehicles.get(serial or "")
+    return vehicle is not None and vehicle.link_id is not None
 
 
 def _with_stick_counts(station: Station, now_ns: int) -> Station:
