@@ -13,6 +13,7 @@ import typer.core
 
 from recon.cli.commands import COMMANDS, app
 from recon.site import load_site
+from recon.site.app_list import read_app_list
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
@@ -72,11 +73,16 @@ def test_commands_and_options_exist(page: Path) -> None:
             assert named <= known, f"{page_id(page)}: recon {line}"
 
 
-def test_the_guides_vehicle_entry_is_a_valid_one(tmp_path: Path) -> None:
+def test_the_guides_entries_are_valid(tmp_path: Path) -> None:
     text = (ROOT / "docs/how-to/connect-an-app.md").read_text(encoding="utf-8")
     blocks = [block for language, block in FENCE.findall(text) if language == "toml"]
-    assert blocks
+    listing = [block for block in blocks if "[[apps]]" in block]
+    assert len(blocks) > len(listing) == 1
+    (tmp_path / "apps.toml").write_text(listing[0], encoding="utf-8")
+    assert len(read_app_list(tmp_path / "apps.toml")) == 2
     for block in blocks:
+        if block in listing:
+            continue
         (tmp_path / "site.toml").write_text(SITE_HEAD + block, encoding="utf-8")
         serials = [entry["serial"] for entry in tomllib.loads(block)["vehicles"]]
         assert list(load_site(tmp_path).profiles) == serials

@@ -51,7 +51,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/zones/{zone_id}/end"): Role.OPERATOR,
     ("POST", "/api/alarms/{alarm_id}/acknowledge"): Role.OPERATOR,
     ("POST", "/api/all-stop/release"): Role.OPERATOR,
-    # A drone that got another address in flight must be admitted by who flies it.
+    # A drone whose address changed in flight is admitted at once, by its operator.
     ("POST", "/api/apps/admit"): Role.OPERATOR,
     ("POST", "/api/apps/refuse"): Role.OPERATOR,
     ("POST", "/api/fleet-return"): Role.OPERATOR,

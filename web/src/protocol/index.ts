@@ -11,6 +11,7 @@ export type StationView = Schemas["StationView"];
 export type StopLatchView = Schemas["StopLatchView"];
 export type SiteView = Schemas["SiteView"];
 export type VehicleView = Schemas["VehicleView"];
+export type WaitingAppView = Schemas["WaitingAppView"];
 export type LinkView = Schemas["LinkView"];
 export type CommandView = Schemas["CommandView"];
 export type PhaseView = Schemas["PhaseView"];

@@ -114,6 +114,21 @@ describe("the live source", () => {
     expect(bodies).toEqual([{ serials: ["A"] }, { serials: null }]);
   });
 
+  it("admits or refuses the app of a link", async () => {
+    const { source, requests } = setUp(() => json({ accepted: true, rule: null, reason: null }));
+    await source.admitApp(7, "A", "session");
+    await source.refuseApp(7);
+    const bodies = await Promise.all(requests.map((request) => request.json()));
+    expect(requests.map(({ url }) => new URL(url).pathname)).toEqual([
+      "/api/apps/admit",
+      "/api/apps/refuse",
+    ]);
+    expect(bodies).toEqual([
+      { link_id: 7, serial: "A", lasting: "session", any_address: false },
+      { link_id: 7 },
+    ]);
+  });
+
   it("encodes the serial in requests about one vehicle", async () => {
     const response = { accepted: false, rule: "stale", reason: "no telemetry" };
     const { source, requests } = setUp(() => json(response));

@@ -90,6 +90,14 @@ export class LiveSource implements StationSource {
       : Math.round(state.time_ns / 1e6 + behindS * 1000);
   }
 
+  admitApp(linkId: number, serial: string, lasting: "always" | "session") {
+    return this.requests.admitApp(linkId, serial, lasting);
+  }
+
+  refuseApp(linkId: number) {
+    return this.requests.refuseApp(linkId);
+  }
+
   releaseStop(serials: readonly string[] | null) {
     return this.requests.releaseStop(serials);
   }

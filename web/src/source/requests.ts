@@ -147,6 +147,26 @@ export class Requests {
     );
   }
 
+  admitApp(
+    link_id: number,
+    serial: string,
+    lasting: "always" | "session",
+  ): Promise<Outcome<ActionResponse>> {
+    const body = { link_id, serial, lasting, any_address: false };
+    return answered(
+      () => this.client.POST("/api/apps/admit", { body, signal: timeout() }),
+      identity,
+    );
+  }
+
+  refuseApp(link_id: number): Promise<Outcome<ActionResponse>> {
+    const body = { link_id };
+    return answered(
+      () => this.client.POST("/api/apps/refuse", { body, signal: timeout() }),
+      identity,
+    );
+  }
+
   acknowledge(alarm_id: number): Promise<Outcome<null>> {
     const options = { params: { path: { alarm_id } }, signal: timeout() };
     return withoutBody(() => this.client.POST("/api/alarms/{alarm_id}/acknowledge", options));

@@ -52,6 +52,14 @@ export interface StationSource {
   allStop(): Promise<Outcome<readonly OrderResult[]>>;
   /** Releases vehicles from the all stop in force; null means all, also those that connect later. */
   releaseStop(serials: readonly string[] | null): Promise<Outcome<ActionResponse>>;
+  /** Admits the app that waits on a link as this vehicle, on the list or until the station stops. */
+  admitApp(
+    linkId: number,
+    serial: string,
+    lasting: "always" | "session",
+  ): Promise<Outcome<ActionResponse>>;
+  /** Closes the app that waits on a link, and again for some minutes. */
+  refuseApp(linkId: number): Promise<Outcome<ActionResponse>>;
   /** Checks an order with the safety gate without sending it. */
   check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Returns vehicles home with landing missions at separate heights; null means all in reach. */

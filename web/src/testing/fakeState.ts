@@ -81,6 +81,7 @@ export function link(id: number, changes: Partial<LinkView> = {}): LinkView {
     remote_address: `192.168.1.${20 + id}:5${id}312`,
     status: "identified",
     claimed_serial: `SN-00${id}`,
+    waiting: null,
     opened_age_s: 320,
     last_packet_age_s: 0.1,
     closed_reason: null,
@@ -179,6 +180,7 @@ export function station(
       capture_folder: null,
       capture_dropped_bytes: 0,
       connections_refused: 0,
+      apps_listed: null,
       separation_hold_on: true,
     },
     site: {

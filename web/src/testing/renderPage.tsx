@@ -52,6 +52,12 @@ export type PageRequest =
   | { readonly clearedHazard: string }
   | { readonly separationHold: boolean }
   | { readonly releasedStop: readonly string[] | null }
+  | {
+      readonly admittedLink: number;
+      readonly serial: string;
+      readonly lasting: "always" | "session";
+    }
+  | { readonly refusedLink: number }
   | { readonly fleetReturn: readonly string[] | null }
   | { readonly plannedSurvey: NewSurvey }
   | {
@@ -166,6 +172,14 @@ function fakeSource(
     },
     releaseStop: async (releasedStop) => {
       recorded.requests.push({ releasedStop });
+      return { kind: "answered", value: recorded.response };
+    },
+    admitApp: async (admittedLink, serial, lasting) => {
+      recorded.requests.push({ admittedLink, serial, lasting });
+      return { kind: "answered", value: recorded.response };
+    },
+    refuseApp: async (refusedLink) => {
+      recorded.requests.push({ refusedLink });
       return { kind: "answered", value: recorded.response };
     },
     check: async (order) => {

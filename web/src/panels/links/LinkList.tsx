@@ -5,17 +5,19 @@ import { agedBy, formatAge, formatBytes } from "../../text/quantities";
 import { Empty, Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./links.css";
+import { WaitingApp } from "./WaitingApp";
 
 const STATUS: Readonly<
   Record<LinkView["status"], { word: string; severity: Severity | null; rank: number }>
 > = {
+  waiting: { word: "Waits", severity: "error", rank: -1 },
   conflict: { word: "Conflict", severity: "error", rank: 0 },
   unidentified: { word: "Unidentified", severity: "warning", rank: 1 },
   identified: { word: "Identified", severity: null, rank: 2 },
   closed: { word: "Closed", severity: null, rank: 3 },
 };
 
-/** Connections of companion apps; conflicts and unidentified ones first. */
+/** Connections of companion apps; those that wait, conflicts and unidentified ones first. */
 export function LinkList() {
   const { fleet } = useConsole();
   const sorted = createMemo(() =>
@@ -36,7 +38,8 @@ export function LinkList() {
 function LinkRow(props: { link: LinkView }) {
   const { behindS } = useConsole();
   const status = () => STATUS[props.link.status];
-  const serial = () => props.link.claimed_serial ?? "no serial number yet";
+  const serial = () =>
+    props.link.claimed_serial ?? props.link.waiting?.serial ?? "no serial number yet";
   const lastAge = () => formatAge(agedBy(props.link.last_packet_age_s, behindS()));
   return (
     <li class="row link">
@@ -69,6 +72,15 @@ function LinkRow(props: { link: LinkView }) {
           {(reason) => <p class="wire-text">Closed: {reason()}</p>}
         </Show>
       </details>
+      <Show when={props.link.waiting}>
+        {(waiting) => (
+          <WaitingApp
+            linkId={props.link.id}
+            address={props.link.remote_address}
+            waiting={waiting()}
+          />
+        )}
+      </Show>
     </li>
   );
 }
