@@ -7,6 +7,7 @@ from math import radians, tan
 from types import MappingProxyType
 
 from recon.model.airspace import Region
+from recon.model.geo import LatLon
 from recon.model.mission import Mission
 
 
@@ -136,3 +137,6 @@ class MissionAssignment:
     mission: Mission
     length_m: float
     """From the first waypoint to the last."""
+    approach: tuple[LatLon, ...] = ()
+    """Corners on the way to the first waypoint, from where the vehicle was, round keep-out zones;
+    none where it is straight or none is known."""

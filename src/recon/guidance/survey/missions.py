@@ -17,7 +17,7 @@ from recon.geo import geo_from_enu
 from recon.guidance.survey.lattice import RowLattice
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.settings import SurveySettings
-from recon.model.geo import LocalFrame
+from recon.model.geo import LatLon, LocalFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.survey import Survey
 
@@ -25,6 +25,9 @@ FloatArray = npt.NDArray[np.float64]
 
 CLEARANCE_M = 0.25
 """Corners of a way stand this far off the edge, so that rounding never crosses it."""
+
+OFF_PLACE_M = 3.0
+"""A vehicle at the end of a row is no farther off it: GNSS and braking."""
 
 MOST_CORNERS = 400
 """Of the area; from there on it is taken a little smaller, with fewer corners."""
@@ -47,6 +50,19 @@ class RegionPaths:
         if self._is_open(np.array([start_m]), end_m)[0]:
             return ()
         return self._around(start_m, end_m)
+
+    def inside(self, place_m: Place) -> Place:
+        """Return the place, or the nearest one `CLEARANCE_M` inside the area if it is not far off.
+
+        Rows end on the edge, and a vehicle stops some way beyond it.
+        """
+        inner = shapely.buffer(self._area, -CLEARANCE_M)
+        place = shapely.Point(place_m)
+        if inner.is_empty or shapely.covers(inner, place):
+            return place_m
+        nearest = shapely.get_point(shapely.shortest_line(inner, place), 0)
+        is_far = shapely.distance(nearest, place) > OFF_PLACE_M
+        return place_m if is_far else (float(nearest.x), float(nearest.y))
 
     def _around(self, start_m: Place, end_m: Place) -> tuple[Place, ...] | None:
         """Dijkstra's search over the corners, from the start to the first that sees the end."""
@@ -151,6 +167,19 @@ def flight_time_s(
     stops = len(track.corners_m) + 1
     way_m = apart_m(start_m, track.corners_m[0]) + apart_m(track.corners_m[-1], home_m)
     return (track.length_m + way_m) / speed_mps + stops * speed_mps / settings.turning_mps2
+
+
+def approach_of(
+    track: Track, start_m: Place, ways: RegionPaths, frame: LocalFrame
+) -> tuple[LatLon, ...]:
+    """Return the corners on the way from a place to a track, as far as the ways' area has one."""
+    corners_m = ways.between(ways.inside(start_m), ways.inside(track.corners_m[0]))
+    if not corners_m:
+        return ()
+    flat_m = np.column_stack([np.array(corners_m), np.zeros(len(corners_m))])
+    latitude_deg, longitude_deg, _ = geo_from_enu(frame, flat_m)
+    places = zip(latitude_deg, longitude_deg, strict=True)
+    return tuple(LatLon(float(latitude), float(longitude)) for latitude, longitude in places)
 
 
 def mission_of(track: Track, survey: Survey, frame: LocalFrame, purpose: str) -> Mission:

@@ -28,7 +28,7 @@ from types import MappingProxyType
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from recon.guidance.survey.missions import Track, flight_time_s, mission_of, track_of
+from recon.guidance.survey.missions import Track, approach_of, flight_time_s, mission_of, track_of
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.route import Cost, Place, Route, between_m, route_of, shared
 from recon.guidance.survey.rows import Piece
@@ -167,7 +167,7 @@ def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Ste
             continue
         number = state.missions + 1
         flight = AssignedMission(number, route[:count], track.corners_m, track.length_m)
-        state, mission = _flying(state, serial, flight, route[count:])
+        state, mission = _flying(state, able[serial], flight, route[count:])
         missions.append(mission)
     return state, tuple(missions)
 
@@ -182,12 +182,13 @@ def _may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_
 
 
 def _flying(
-    state: SurveyState, serial: str, flight: AssignedMission, rest: Route
+    state: SurveyState, surveyor: Surveyor, flight: AssignedMission, rest: Route
 ) -> tuple[SurveyState, MissionAssignment]:
-    survey = state.plan.survey
+    survey, serial, frame = state.plan.survey, surveyor.serial, state.plan.frame
     purpose = f"survey {survey.name}: round {state.round}"
     track = Track(flight.corners_m)
-    mission = mission_of(track, survey, state.plan.frame, purpose)
+    mission = mission_of(track, survey, frame, purpose)
+    approach = approach_of(track, surveyor.place_m, state.plan.ways, frame)
     waiting = {**state.waiting, serial: rest}
     if not rest:
         del waiting[serial]
@@ -198,7 +199,7 @@ def _flying(
         missions=flight.number,
         flown_m=state.flown_m + flight.length_m,
     )
-    return state, MissionAssignment(serial, flight.number, mission, flight.length_m)
+    return state, MissionAssignment(serial, flight.number, mission, flight.length_m, approach)
 
 
 def _sortie(plan: SurveyPlan, route: Route, surveyor: Surveyor) -> tuple[Track | None, int]:

@@ -81,6 +81,8 @@ class FleetReturn:
     step_due_ns: int = 0
     planning_since_ns: int | None = None
     """When the plan that the worker makes now was requested; the job's id too."""
+    zone_changes: int = 0
+    """Of `TemporaryZones.changes`: after how many of them it was planned."""
 
     def put(self, member: ReturningVehicle) -> "FleetReturn":
         """Return it with one vehicle replaced."""

@@ -83,6 +83,10 @@ class SurveyRecord:
     """Why the newest step failed."""
     positions: NumberedBuffer[tuple[str, PositionSample]] = field(default_factory=NumberedBuffer)
     shade_maps: NumberedBuffer[ShadeMap] = field(default_factory=NumberedBuffer)
+    zone_changes: int = 0
+    """Of `TemporaryZones.changes`: after how many of them its rows were planned."""
+    is_shut: bool = False
+    """Whether zones have left it no row."""
     flown: Mapping[tuple[str, int], tuple[EastNorth, ...]] = field(
         default_factory=lambda: MappingProxyType({})
     )
@@ -114,13 +118,17 @@ class SurveyRecord:
 
 @dataclass(frozen=True, slots=True)
 class PendingStep:
-    """The step that the worker takes for one survey now, and up to which observations it counts."""
+    """The step that the worker takes for one survey now, and up to which observations it counts.
+
+    `is_replan`: it plans the rows anew, and counts none.
+    """
 
     job_id: int
     survey_id: int
     asked_at_ns: int
     positions_end: int
     shade_maps_end: int
+    is_replan: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

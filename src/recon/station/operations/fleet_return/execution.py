@@ -7,7 +7,8 @@ Each vehicle goes through stages (`Stage`); five times a second they are read an
   landing mission each. Then the first vehicle in turn begins whose layer, pad and path are free,
   and only one at a time, for each changes what others may do. A refusal of the gate that time may
   end (`WAITING_RULES`) is tried again every second, at most 30 s while no other flies. When all
-  that wait are blocked by something that does not end by itself, they are planned again.
+  that wait are blocked by something that does not end by itself, or temporary zones have changed,
+  they are planned again.
 - *Ordered*, then *flying*: its mission was approved; telemetry shows it.
 - Ends: *landed*; *released*, when its pilot or a newer order controls it; *left out*, when anything
   else went wrong, with an alarm and its reason. Nothing that went wrong is resumed by itself.
@@ -64,6 +65,7 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = RETURN_SET
     if running is None or running.is_over or now_ns < running.step_due_ns:
         return station, ()
     running = replace(running, step_due_ns=now_ns + seconds_to_ns(settings.step_every_s))
+    running = _with_zones_of_now(station, running)
     for member in running.members.values():
         running = running.put(updated(station, member, settings, now_ns))
     station, stops = _hold_late_starters(station, running, now_ns)
@@ -74,6 +76,16 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = RETURN_SET
         return replace(station, fleet_return=running), (*stops, *work)
     station, begun = _begin_one(station, running, settings, now_ns)
     return station, (*stops, *begun)
+
+
+def _with_zones_of_now(station: Station, running: FleetReturn) -> FleetReturn:
+    """Have all that wait planned again after temporary zones have changed."""
+    changes = station.temporary_zones.changes
+    if running.zone_changes == changes:
+        return running
+    for member in running.at(Stage.WAITING):
+        running = running.put(replace(member, flight=None))
+    return replace(running, planning_since_ns=None, zone_changes=changes)
 
 
 def _hand_back_ended(station: Station, now_ns: int) -> Station:

@@ -22,7 +22,8 @@ def conditions(station: Station) -> Iterator[Condition]:
     """Yield what an operator must see to: surveys that have stopped, vehicles that have stopped."""
     for record in station.surveys.records.values():
         state = record.state
-        if state is not None and state.phase is SurveyPhase.PAUSED and state.refusals:
+        is_paused = state is not None and state.phase is SurveyPhase.PAUSED
+        if is_paused and state is not None and (state.refusals or record.is_shut):
             text = f"survey {record.survey.name} has paused by itself: {state.reason}"
             key = f"{RULE}:{record.survey.id}"
             yield Condition(key, Severity.WARNING, RULE, "", f"{text}. Start it again, or abort it")

@@ -9,9 +9,10 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
 2. The worker counts the positions and shade maps since the last step, and decides which vehicle
    flies what next. One step at a time; after 30 s without an answer it counts as lost. A command
    to the survey meanwhile makes the answer count for nothing.
-3. Each mission is ordered under guidance, with an approach of its own. A refusal goes back to the
+3. After temporary zones have changed its rows are planned anew instead (`zone_changes`).
+4. Each mission is ordered under guidance, with an approach of its own. A refusal goes back to the
    planner, which tries other rows or another vehicle.
-4. A vehicle with a battery too low for any row, and every vehicle of a survey that is done, flies
+5. A vehicle with a battery too low for any row, and every vehicle of a survey that is done, flies
    home if the survey is to return. Those of a survey that is over, or has paused itself, otherwise
    hover and go back to the operator.
 """
@@ -43,6 +44,7 @@ from recon.station.operations.survey.return_to_home import (
     returns_home,
     send_home,
 )
+from recon.station.operations.survey.zone_changes import is_outdated, start_replan
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Job, JobKind, Output, Stepped
 from recon.station.state.survey_record import EastNorth, PendingStep, SurveyRecord
@@ -112,6 +114,9 @@ def advance(station: Station, now_ns: int, settings: SurveyTimes = SURVEY_TIMES)
     if not surveys.records:
         return station, ()
     pending = surveys.pending
+    outdated = next((r for r in surveys.records.values() if is_outdated(station, r)), None)
+    if outdated is not None and (pending is None or not pending.is_replan):
+        return start_replan(station, outdated, now_ns)
     if pending is not None:
         if now_ns - pending.asked_at_ns < seconds_to_ns(settings.answered_within_s):
             return station, ()

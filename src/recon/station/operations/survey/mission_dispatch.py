@@ -82,43 +82,55 @@ def _orders(
         takeoff=member.may_take_off and vehicle.is_flying.value is False,
         role=AuthorityHolder.GUIDANCE,
     )
-    missions = with_approaches(given.mission, vehicle, number, count, limits)
+    missions = with_approaches(given.mission, vehicle, number, count, limits, given.approach)
     return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
 
 
 def with_approaches(
-    mission: Mission, vehicle: VehicleState, number: int, count: int, limits: FlightLimits
+    mission: Mission,
+    vehicle: VehicleState,
+    number: int,
+    count: int,
+    limits: FlightLimits,
+    corners: tuple[LatLon, ...] = (),
 ) -> tuple[Mission, ...]:
     """Return the mission with each possible approach: straight up or down, across, onto the first
     row; and off the last row to the same height.
 
     One for each of the vehicle's heights, the nearest to the rows first. `number` counts the
     survey's `count` vehicles from 0: no two share a height, as long as there are enough; beyond,
-    they share the last one. Zones are left to the gate.
+    they share the last one. The way across turns at `corners`; zones are left to the gate.
     """
     rows_m = mission.waypoints[0].height_above_takeoff_m
     layers_m = _layers_m(rows_m, limits)
     own_m = layers_m[number::count] or layers_m[-1:]
-    flown = tuple(_with_approach(mission, vehicle, layer_m) for layer_m in own_m)
+    flown = tuple(_with_approach(mission, vehicle, layer_m, corners) for layer_m in own_m)
     if count > 1:
         flown = tuple(_with_end(each, layer_m) for each, layer_m in zip(flown, own_m, strict=True))
     return tuple(dict.fromkeys(flown))
 
 
-def _with_approach(mission: Mission, vehicle: VehicleState, layer_m: float) -> Mission:
+def _with_approach(
+    mission: Mission, vehicle: VehicleState, layer_m: float, corners: tuple[LatLon, ...]
+) -> Mission:
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
     if here is None or height_m is None:
         return mission
     first = mission.waypoints[0]
     far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
     is_level = abs(height_m - first.height_above_takeoff_m) < LEVEL_M
-    if far_m < NEAR_M and (is_level or far_m < 1.0):
+    is_near = far_m < NEAR_M and not corners
+    if is_near and (is_level or far_m < 1.0):
         return mission
     plain = replace(first, gimbal_pitch_deg=None)
-    above = replace(plain, latitude_deg=here.latitude_deg, longitude_deg=here.longitude_deg)
-    if far_m < NEAR_M:
+    above, *turns = (
+        replace(plain, latitude_deg=place.latitude_deg, longitude_deg=place.longitude_deg)
+        for place in (here, *corners)
+    )
+    if is_near:
         return replace(mission, waypoints=(above, *mission.waypoints))
-    approach = (replace(each, height_above_takeoff_m=layer_m) for each in (above, plain))
+    way = (above, *turns, plain)
+    approach = (replace(each, height_above_takeoff_m=layer_m) for each in way)
     return replace(mission, waypoints=(*approach, *mission.waypoints))
 
 

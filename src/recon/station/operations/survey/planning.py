@@ -83,7 +83,8 @@ def step_survey(work: StepSurvey) -> SurveyStepped:
 
 def request_survey(station: Station, event: SurveyRequested, now_ns: int) -> Stepped:
     """Record a requested survey, and start planning its rows unless it is refused."""
-    record = SurveyRecord(event.survey, event.by, now_ns)
+    changes = station.temporary_zones.changes
+    record = SurveyRecord(event.survey, event.by, now_ns, zone_changes=changes)
     refusal = refusal_of(station)
     if refusal is not None:
         return _put(station, replace(record, refusal=refusal)), ()
