@@ -11,7 +11,7 @@ ahead and compared by their closest approach:
 Both are held one after the other: once the first brakes, holding the second is judged against that.
 No option is taken whose closest approach is predicted to be nearer than that of doing nothing. A
 vehicle that lands or returns may be anywhere between its path and the ground. Options alike in
-closeness are told apart by how far the two may come into each other's heights, so that of two above
+closeness are ranked by how far the two may come into each other's heights, so that of two above
 each other the upper one is held, and the lower one leaves.
 """
 
