@@ -5,6 +5,7 @@ from math import isfinite
 from typing import Any
 
 from recon.fleet.airborne import AirborneBelief
+from recon.fleet.go_home import fold_go_home
 from recon.fleet.settings import FleetSettings
 from recon.fleet.trust import is_backlog, judge_battery, judge_core, merged_trust
 from recon.geo.distance import horizontal_distance_m
@@ -29,7 +30,7 @@ def fold_core(
     if belief is None:
         return state
     offset_m = _altitude_offset_m(report)
-    return replace(
+    state = replace(
         state,
         is_flying=Stamped(belief.is_flying, now_ns),
         reported_is_flying=Stamped(report.is_flying, now_ns),
@@ -44,6 +45,8 @@ def fold_core(
         core_received_at_ns=now_ns,
         track=_extend_track(state, report, now_ns, settings),
     )
+    flight = fold_go_home(state, now_ns)
+    return state if flight is state.go_home else replace(state, go_home=flight)
 
 
 def fold_extended(

@@ -180,6 +180,25 @@ class TrackPoint:
     height_above_takeoff_m: float | None
 
 
+@dataclass(frozen=True, slots=True)
+class GoHomeFlight:
+    """A flight home by the aircraft's own go-home, as telemetry has shown it since it began.
+
+    Begun in mode GO_HOME and until that or its landing ends. `nearest_m` is the least distance to
+    home so far, `highest_m` the greatest height above takeoff; `progress_at_ns` is when either last
+    grew better. `level_from` is where it set out level for home, None while it brakes and climbs.
+    None: never known.
+    """
+
+    since_ns: int
+    start_height_m: float | None
+    start_speed_mps: float
+    nearest_m: float | None
+    highest_m: float | None
+    progress_at_ns: int
+    level_from: LatLon | None = None
+
+
 @dataclass(frozen=True)
 class VehicleState:
     """Telemetry of one vehicle, each value with its receive time.
@@ -224,6 +243,7 @@ class VehicleState:
     """Whether the old link kept sending after a rival appeared: the operator must resolve it."""
     track: tuple[TrackPoint, ...] = field(default=())
     trust: Trust = NO_TRUST
+    go_home: GoHomeFlight | None = None
 
     @property
     def display_name(self) -> str:

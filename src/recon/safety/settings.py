@@ -241,6 +241,37 @@ class PredictionSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class GoHomeSettings:
+    """When a flight home by the aircraft's own go-home is not what the site asks for."""
+
+    near_home_m: float = 20.0
+    """Begun nearer to home, or come nearer, an aircraft may land without climbing. An assumption on
+    the careful side: DJI's manuals give 5 m to 20 m, by model and firmware."""
+
+    height_off_m: float = 3.0
+    """From the height that is asked: a barometer's drift of metres, and half a metre in a hover."""
+
+    climb_mps: float = 1.0
+    """Climbing slower than this, it no longer climbs."""
+    off_height_s: float = 1.5
+    """So long it is off its height before an alarm: go-home climbs at 2 m/s and more, and levels
+    within half a second."""
+
+    off_track_m: float = 10.0
+    """Beside the straight way home: half the width that others are kept from it (`corridor_m`)."""
+    off_track_deg: float = 40.0
+    """Between its velocity and the direction of home: a crosswind of 6 m/s at 10 m/s of airspeed
+    drifts one that does not correct it by 31 degrees."""
+    off_track_s: float = 2.0
+
+    no_progress_s: float = 10.0
+    """Neither nearer nor higher for so long. It turns and brakes from 15 m/s in 8 s."""
+
+    lands_within_m: float = 10.0
+    """Of home or its pad: both places by GNSS, 2.5 m off each, and precision of go-home."""
+
+
+@dataclass(frozen=True, slots=True)
 class WatchdogSettings:
     """Times in seconds, lengths in metres."""
 
@@ -388,6 +419,9 @@ class SafetySettings:
 
     prediction: PredictionSettings = field(default_factory=PredictionSettings)
     """How far and how surely vehicles' paths are predicted."""
+
+    go_home: GoHomeSettings = field(default_factory=GoHomeSettings)
+    """When a flight home is not what the site asks for."""
 
     watchdogs: WatchdogSettings = field(default_factory=WatchdogSettings)
     """Watchdog alarm and intervention thresholds."""

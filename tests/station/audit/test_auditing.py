@@ -14,6 +14,7 @@ from recon.model.command import (
     Hover,
     LandNow,
     Phase,
+    ReturnHome,
     StickFrame,
     VirtualStick,
 )
@@ -336,3 +337,13 @@ class TestNothing:
             return audited.entries
 
         assert run() == run()
+
+
+def test_a_flight_home_is_on_record_with_what_is_asked_of_it() -> None:
+    one = world(1)
+    audited = Audited(one)
+    one.run_for(2.0)
+    one.order("SIM-1", ReturnHome())
+    one.run_for(6.0)
+    (entry,) = audited.of("vehicle.goes_home")
+    assert entry.text == "SIM-1: goes home at 40 m asked, 0 m away"

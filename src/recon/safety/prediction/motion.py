@@ -13,6 +13,7 @@ from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import Failsafe, VehicleState, VelocityNed
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, is_takeoff_height_known, takeoff_up_m_at
+from recon.safety.go_home import seen_height_m
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
 from recon.safety.settings import PredictionSettings
 
@@ -43,8 +44,8 @@ class VehicleMotion(NamedTuple):
     """A vehicle at its last telemetry, `age_s` ago.
 
     `low_m` and `high_m` are equal but for a vehicle of unknown height. `velocity_mps` is
-    east, north, up. `go_home_up_m` is the height of its way home, None when it is not known;
-    `home_m` the place in the plane.
+    east, north, up. `go_home_up_m` is the height of its way home, as seen once that differs
+    from what is asked, None when it is not known; `home_m` the place in the plane.
     """
 
     state: VehicleState
@@ -102,7 +103,9 @@ def vehicle_motion(
     height_m = state.height_above_takeoff_m.value
     known = base_m is not None and height_m is not None
     up_m = base_m + height_m if base_m is not None and height_m is not None else 0.0
-    go_home_m = None if profile is None else profile.go_home_height_m
+    go_home_m = seen_height_m(state)
+    if go_home_m is None and profile is not None:
+        go_home_m = profile.go_home_height_m
     velocity_mps, speed_mps = _velocity(state, settings)
     east_m, north_m = plane.east_north_m(place)
     return VehicleMotion(

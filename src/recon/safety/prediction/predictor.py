@@ -6,6 +6,7 @@ from recon.fleet.airborne import LANDING_MODES
 from recon.model.control import Commanded, Intent
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
+from recon.safety.go_home import is_off_track
 from recon.safety.prediction.legs import (
     LEAST_M,
     STANDING_MPS,
@@ -28,7 +29,7 @@ UNDER_WAY_MPS = 2.0
 """A returning vehicle this fast towards its home is under way, at whatever height."""
 
 UNHOMED_RADIUS_M = 150.0
-"""Of a vehicle commanded to return while its home is unknown: hazard areas grow as far."""
+"""Of a vehicle that returns, its home unknown or not where it flies: hazard areas grow as far."""
 
 
 class Predictor:
@@ -169,7 +170,7 @@ class Predictor:
         if motion.state.flight_mode.value in LANDING_MODES:
             self.land()  # it has come home, and does not climb again
             return
-        if motion.home_m is None:
+        if motion.home_m is None or is_off_track(motion.state):
             writer.widens(-ALL_HEIGHTS_M, ALL_HEIGHTS_M)
             writer.grows(
                 UNHOMED_RADIUS_M, UNHOMED_RADIUS_M / settings.go_home_speed_mps, FlightPart.FREE

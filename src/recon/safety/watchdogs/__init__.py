@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterable
 from recon.safety.settings import WatchdogSettings
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.fences import fences
+from recon.safety.watchdogs.go_home import go_home
 from recon.safety.watchdogs.separation import separation
 from recon.safety.watchdogs.telemetry import heights, link, sticks
 from recon.safety.watchdogs.traffic_picture import (
@@ -38,6 +39,7 @@ WATCHDOGS: tuple[Watchdog, ...] = (
     separation,
     fences,
     battery_home,
+    go_home,
     link,
     heights,
     sticks,

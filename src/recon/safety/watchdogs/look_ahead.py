@@ -12,6 +12,7 @@ from recon.model.control import Commanded, Intent
 from recon.model.mission import DJI
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode
+from recon.safety.go_home import is_off_track
 from recon.safety.prediction import PredictionSettings, Predictor, VehicleMotion
 from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
 from recon.safety.prediction.trajectory import FlightPart, FloatArray, Row, Samples, sample
@@ -114,7 +115,7 @@ def _flies_as_commanded(
     mode = motion.state.flight_mode.value
     if mode is not None and mode not in _MODES[commanded]:
         return False
-    return not _flies_aside(motion, intent)
+    return not (_flies_aside(motion, intent) or is_off_track(motion.state))
 
 
 def _brakes(motion: VehicleMotion, braking: Braking, prediction: PredictionSettings) -> bool:

@@ -22,7 +22,7 @@ from recon.safety.prediction import (
 )
 from recon.safety.prediction.trajectory import CURVE, RADIUS_0, RADIUS_1, Row
 from recon.safety.separation_minima import SeparationMinima, watchdog_minima
-from recon.safety.settings import EnergySettings, SafetySettings, WatchdogSettings
+from recon.safety.settings import EnergySettings, GoHomeSettings, SafetySettings, WatchdogSettings
 from recon.safety.watchdogs.look_ahead import Braking, LookAhead, look_ahead, next_rows
 from recon.safety.watchdogs.reach import Reach, reach_of
 
@@ -170,6 +170,7 @@ class TrafficPicture:
     settings: WatchdogSettings = field(default_factory=WatchdogSettings)
     prediction: PredictionSettings = field(default_factory=PredictionSettings)
     energy: EnergySettings = field(default_factory=EnergySettings)
+    go_home: GoHomeSettings = field(default_factory=GoHomeSettings)
     since_ns: Mapping[str, int] = field(default_factory=dict)
     is_hold_on: bool = True
 
@@ -245,6 +246,7 @@ def build_traffic_picture(
         settings=settings.watchdogs,
         prediction=settings.prediction,
         energy=settings.energy,
+        go_home=settings.go_home,
         since_ns=since_ns,
         is_hold_on=is_hold_on,
     )

@@ -5,7 +5,14 @@ from math import nan
 from random import Random
 
 from recon.model.units import seconds_to_ns
-from recon.sim.app.faults import FAILED_CELL_FRACTION, STALE_BY_M, FaultKind, InjectedFault
+from recon.sim.app.faults import (
+    FAILED_CELL_FRACTION,
+    HOME_MOVED_BY_M,
+    LOW_GO_HOME_M,
+    STALE_BY_M,
+    FaultKind,
+    InjectedFault,
+)
 from recon.sim.app.telemetry import HomeAltitude
 from recon.sim.flight.air import Squall
 from recon.sim.flight.aircraft import Aircraft
@@ -83,6 +90,7 @@ class AircraftFaults:
         self._altitude = altitude
         self._headings = Random(f"{seed}/gusts")
         self._running: dict[FaultKind, int] = {}
+        go_home_height_m = aircraft.settings.go_home_height_m
         self._begins: dict[FaultKind, Callable[[], None]] = {
             FaultKind.PILOT_TAKES: aircraft.pilot_takes,
             FaultKind.LOW_BATTERY: lambda: aircraft.battery.lose_a_cell(FAILED_CELL_FRACTION),
@@ -91,6 +99,8 @@ class AircraftFaults:
             FaultKind.FALLS_SILENT: aircraft.crash,
             FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._set_altitude_fault(nan),
             FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._set_altitude_fault(STALE_BY_M),
+            FaultKind.GO_HOME_HEIGHT: lambda: aircraft.set_go_home_height(LOW_GO_HOME_M),
+            FaultKind.HOME_MOVED: lambda: aircraft.move_home_east(HOME_MOVED_BY_M),
         }
         self._ends: dict[FaultKind, Callable[[], None]] = {
             FaultKind.PILOT_TAKES: aircraft.pilot_releases,
@@ -98,6 +108,7 @@ class AircraftFaults:
             FaultKind.GUSTS: aircraft.air.end_squall,
             FaultKind.TAKEOFF_ALTITUDE_LOST: lambda: self._set_altitude_fault(0.0),
             FaultKind.TAKEOFF_ALTITUDE_STALE: lambda: self._set_altitude_fault(0.0),
+            FaultKind.GO_HOME_HEIGHT: lambda: aircraft.set_go_home_height(go_home_height_m),
         }
 
     def begin(self, kind: FaultKind) -> None:

@@ -80,6 +80,11 @@ class FaultKind(Enum):
     flies (mode ATTI) and drifts with the wind."""
     LOW_BATTERY = "low-battery"
     """A cell fails: from the start on at most 20 % of the charge is left. Permanent."""
+    GO_HOME_HEIGHT = "go-home-height"
+    """The go-home height set in the aircraft is 20 m, whatever its profile states, while active."""
+    HOME_MOVED = "home-moved"
+    """The home point set in the aircraft is 320 m east of where it was, from the start until the
+    next takeoff."""
 
 
 PLACEHOLDER_SERIAL = b"00000"
@@ -115,6 +120,8 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
     FaultKind.PILOT_TAKES: (5.0, inf),
     FaultKind.GNSS_LOSS: (5.0, inf),
     FaultKind.LOW_BATTERY: (5.0, inf),
+    FaultKind.GO_HOME_HEIGHT: (0.0, inf),
+    FaultKind.HOME_MOVED: (5.0, inf),
 }
 """Start and duration when the description leaves them out."""
 
@@ -128,10 +135,17 @@ AIRCRAFT_FAULTS = (
     FaultKind.FALLS_SILENT,
     FaultKind.TAKEOFF_ALTITUDE_LOST,
     FaultKind.TAKEOFF_ALTITUDE_STALE,
+    FaultKind.GO_HOME_HEIGHT,
+    FaultKind.HOME_MOVED,
 )
 """Faults that change the aircraft at their start and at their end."""
 STALE_BY_M = 47.0
 """Difference between two pads of one farm, in the valley and on the hill."""
+
+LOW_GO_HOME_M = 20.0
+"""The least that DJI's aircraft can be set to."""
+HOME_MOVED_BY_M = 320.0
+"""Home recorded anew at the controller, on the other side of a field."""
 
 JUMP_DEG = -60.0 / 111_070.0
 """In latitude: more than any flight between two packets."""

@@ -15,7 +15,7 @@ Land -> Grounded. Everything else changes the mode from outside:
 Home is set at each takeoff. `MissionID` counts missions started, and is 0 while none is flown.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import hypot
 
 from recon.model.units import NS_PER_S, seconds_to_ns
@@ -228,6 +228,14 @@ class Aircraft:
         self.has_gnss = True
         if self.flight_mode is FlightMode.ATTI:
             self.active_mode = PositionHold()
+
+    def set_go_home_height(self, height_m: float) -> None:
+        """Set another go-home height, as a person may in the aircraft's app."""
+        self.settings = replace(self.settings, go_home_height_m=height_m)
+
+    def move_home_east(self, distance_m: float) -> None:
+        """Record home elsewhere, as a person may in the aircraft's app."""
+        self.home_east_m += distance_m
 
     def crash(self) -> None:
         """Fall to the ground at once, and stay there."""

@@ -14,6 +14,7 @@ from recon.model.report import CoreReport
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.record.audit import AuditEntry
+from recon.safety.go_home import asked_height_m
 from recon.station.state.station import Station
 
 POSITION_KIND = "vehicle.position"
@@ -21,6 +22,7 @@ TOOK_OFF_KIND = "vehicle.took_off"
 LANDED_KIND = "vehicle.landed"
 FLYING_KIND = "vehicle.flying"
 HOME_KIND = "vehicle.home_set"
+GO_HOME_KIND = "vehicle.goes_home"
 DOUBT_KIND = "vehicle.doubted"
 DOUBT_ENDED_KIND = "vehicle.believed"
 
@@ -59,6 +61,7 @@ def _entries(
                 if kind:
                     yield _entry(kind, text, after, vehicle)
                 yield from _trust_entries(old, after, vehicle)
+                yield from _go_home_entries(old, after, vehicle)
         case LinkClosed(link_id):
             vehicle = before.fleet.vehicle_of_link(link_id)
             if vehicle is not None and vehicle.serial is not None and vehicle.is_flying.value:
@@ -112,6 +115,19 @@ def _trust_entries(
             yield _entry(DOUBT_KIND, doubt.text, station, vehicle)
     for text in known.values():
         yield _entry(DOUBT_ENDED_KIND, f"no longer: {text}", station, vehicle)
+
+
+def _go_home_entries(
+    old: VehicleState | None, station: Station, vehicle: VehicleState
+) -> Iterator[AuditEntry]:
+    """Yield an entry when the aircraft begins to go home: what it is asked, and what is seen."""
+    flight = vehicle.go_home
+    if flight is None or (old is not None and old.go_home is not None):
+        return
+    asked_m = asked_height_m(vehicle)
+    height = "at an unknown go-home height" if asked_m is None else f"at {asked_m:.0f} m asked"
+    far = "" if flight.nearest_m is None else f", {flight.nearest_m:.0f} m away"
+    yield _entry(GO_HOME_KIND, f"goes home {height}{far}", station, vehicle)
 
 
 def _without_figures(text: str) -> str:
