@@ -19,11 +19,12 @@ import { StopBanner } from "./panels/stop/StopLatch";
 import { SunPanel } from "./panels/sun/SunPanel";
 import { SurveyPanel } from "./panels/survey/SurveyPanel";
 import { VehicleList } from "./panels/vehicles/VehicleList";
+import { ZonesPanel } from "./panels/zones/ZonesPanel";
 import "./layout.css";
 
 /** The whole page. */
 export function App() {
-  const { source, fleet, selection, orderApi, theme, fit, flyHere } = useConsole();
+  const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -32,7 +33,7 @@ export function App() {
 
   const clear = () => {
     if (isHelpOpen()) setHelpOpen(false);
-    else if (!flyHere.clear()) selection.clear();
+    else if (!zoneDraft.clear() && !flyHere.clear()) selection.clear();
   };
 
   onMount(() => {
@@ -44,6 +45,7 @@ export function App() {
         selectAll: () => selection.all(keys()),
         clear,
         flyHere: flyHere.toggle,
+        drawZone: zoneDraft.toggle,
         fit,
         toggleTheme: theme.toggle,
         help: () => setHelpOpen(!isHelpOpen()),
@@ -71,6 +73,7 @@ export function App() {
       <OrderBar />
       <aside class="side side-events" aria-label="Alarms and commands">
         <AlarmList />
+        <ZonesPanel />
         <SurveyPanel />
         <SunPanel />
         <FleetReturn />

@@ -1,4 +1,12 @@
-import { type Accessor, createContext, createMemo, createSignal, useContext } from "solid-js";
+import {
+  type Accessor,
+  createContext,
+  createEffect,
+  createMemo,
+  createSignal,
+  untrack,
+  useContext,
+} from "solid-js";
 import { createFleetView, type FleetView } from "./fleet/fleetView";
 import { createSelection, type Selection, selectedVehicles } from "./fleet/selection";
 import type { LonLat } from "./map/localGrid";
@@ -6,6 +14,7 @@ import { createOverlay, type Overlay } from "./map/overlays";
 import { createFlyHere, type FlyHere } from "./orders/flyHere";
 import { createOrderApi, type OrderApi } from "./orders/orderApi";
 import { type Targets, targetsOf } from "./orders/targets";
+import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import type { SurveyView } from "./protocol";
 import type { Clock, Instant } from "./source/clock";
 import type { StationSource } from "./source/stationSource";
@@ -23,6 +32,7 @@ export interface Console {
   readonly targets: Accessor<Targets>;
   readonly orderApi: OrderApi;
   readonly flyHere: FlyHere;
+  readonly zoneDraft: ZoneDraft;
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
   /** Seconds to add to every age in the newest state; grows until the next state. */
@@ -30,7 +40,9 @@ export interface Console {
   readonly fitRequests: Accessor<number>;
   /** Zooms the map to show everything. */
   fit(): void;
-  /** Sets the fly-here target to the map centre, for operators using the keyboard. */
+  /** A press on the map: a place for the zone being drawn, or the fly-here target. */
+  aim(at: LonLat): void;
+  /** The same at the map centre, for operators using the keyboard. */
   aimAtCentre(): void;
   /** Registers a function that returns the map centre. */
   setMapCentre(centre: () => LonLat): void;
@@ -59,6 +71,15 @@ export function createConsole(
     return only === undefined || only.serial === null || others.length > 0 ? null : only;
   });
   const flyHere = createFlyHere(single, source, orderApi, clock);
+  const zoneDraft = createZoneDraft();
+  // A press on the map means one thing at a time.
+  createEffect(() => {
+    if (flyHere.isOn()) zoneDraft.leave();
+  });
+  createEffect(() => {
+    if (zoneDraft.isOn() && untrack(flyHere.isOn)) flyHere.toggle();
+  });
+  const aim = (at: LonLat) => (zoneDraft.isOn() ? zoneDraft : flyHere).aim(at);
   let centre: (() => LonLat) | null = null;
   return {
     source,
@@ -68,13 +89,15 @@ export function createConsole(
     targets,
     orderApi,
     flyHere,
+    zoneDraft,
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
     behindS,
     fitRequests,
     fit: () => setFitRequests((count) => count + 1),
+    aim,
     aimAtCentre: () => {
-      if (centre !== null) flyHere.aim(centre());
+      if (centre !== null) aim(centre());
     },
     setMapCentre: (of) => {
       centre = of;

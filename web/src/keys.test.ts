@@ -10,6 +10,7 @@ function press(init: KeyboardEventInit, target?: HTMLElement) {
     clear: vi.fn(),
     fit: vi.fn(),
     flyHere: vi.fn(),
+    drawZone: vi.fn(),
     toggleTheme: vi.fn(),
     help: vi.fn(),
   } satisfies KeyActions;

@@ -11,9 +11,11 @@ export const SHORTCUTS: readonly { readonly keys: string; readonly action: strin
   { keys: "Shift + 1 to 9", action: "Add that vehicle to the selection, or remove it" },
   { keys: "Ctrl + A", action: "Select all vehicles" },
   { keys: "G", action: "Fly here: set a target on the map for the selected vehicle" },
+  { keys: "Z", action: "Draw a temporary zone on the map: a person, a tractor, a crewed aircraft" },
   {
     keys: "Esc",
-    action: "Clear the target, leave fly here, clear the selection; cancels a held order",
+    action:
+      "Clear the target or the drawn zone, leave the mode, clear the selection; cancels a held order",
   },
   { keys: "F", action: "Show everything on the map" },
   { keys: "T", action: "High contrast for bright sun, on or off" },
@@ -29,6 +31,7 @@ export interface KeyActions {
   clear(): void;
   fit(): void;
   flyHere(): void;
+  drawZone(): void;
   toggleTheme(): void;
   help(): void;
 }
@@ -83,6 +86,8 @@ function plainAction(event: KeyboardEvent, actions: KeyActions): (() => void) | 
       return actions.fit;
     case "g":
       return actions.flyHere;
+    case "z":
+      return actions.drawZone;
     case "t":
       return actions.toggleTheme;
     default:

@@ -80,7 +80,7 @@ export class FakeStation {
       return this.checkOrder(JSON.parse(body ?? "{}") as OrderRequest);
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
     if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
-    const isControlRequest = /\/(authority|override|release)$/.test(path);
+    const isControlRequest = /\/(authority|override|release|zones|end)$/.test(path);
     if (isControlRequest || path === "/api/fleet-return") {
       const { given_at_unix_ms: _given, ...asked } = JSON.parse(body ?? "{}") as OrderRequest;
       this.requests.push([path + search, asked]);

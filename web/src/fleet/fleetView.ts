@@ -11,6 +11,7 @@ import type {
   StationView,
   StopLatchView,
   SurveyView,
+  TemporaryZoneView,
   VehicleView,
 } from "../protocol";
 import type { StationSource } from "../source/stationSource";
@@ -35,6 +36,7 @@ interface FleetData {
   fleetReturn: FleetReturnView | null;
   shade: ShadeLineView | null;
   surveys: SurveyView[];
+  temporaryZones: TemporaryZoneView[];
 }
 
 const NO_DATA: FleetData = {
@@ -50,6 +52,7 @@ const NO_DATA: FleetData = {
   fleetReturn: null,
   shade: null,
   surveys: [],
+  temporaryZones: [],
 };
 
 /**
@@ -73,6 +76,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("alarms", reconcile([...state.alarms], { key: "id" }));
     setView("station", reconcile(state.station));
     setView("stopLatch", reconcile(state.stop_latch));
+    setView("temporaryZones", reconcile([...state.temporary_zones], { key: "id" }));
     setView("site", reconcile(state.site));
     setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
     setView("shade", reconcile(state.shade));

@@ -19,6 +19,7 @@ import { PadLayer } from "./padLayer";
 import { type Layer, type PlannedTarget, positionOf, wholeView } from "./scene";
 import { SteeringLayer } from "./steeringLayer";
 import { SurveyRowsLayer } from "./surveyRowsLayer";
+import { TemporaryZoneLayer } from "./temporaryZoneLayer";
 import { TrailLayer } from "./trailLayer";
 import { VehicleLayer } from "./vehicleLayer";
 
@@ -30,8 +31,9 @@ const AGE_STEP_S = 0.2;
 
 /** The map with everything that has a position. */
 export function MapView() {
-  const { source, selection, theme, behindS, fitRequests, flyHere, overlay, setMapCentre } =
+  const { source, selection, theme, behindS, fitRequests, flyHere, zoneDraft, overlay } =
     useConsole();
+  const { aim, setMapCentre } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createDisplayedGround(source);
   let holder!: HTMLDivElement;
@@ -54,6 +56,7 @@ export function MapView() {
       new HeightZoneLayer(),
       new KeepOutLayer(),
       new BoundaryLayer(),
+      new TemporaryZoneLayer(),
       new PadLayer(),
       new HazardLayer(),
       new TrailLayer(),
@@ -61,7 +64,7 @@ export function MapView() {
       new FlyHereLayer(),
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }, [tools, notes]),
     ];
-    made.on("click", ({ lngLat }) => flyHere.aim({ lon: lngLat.lng, lat: lngLat.lat }));
+    made.on("click", ({ lngLat }) => aim({ lon: lngLat.lng, lat: lngLat.lat }));
     setMapCentre(() => ({ lon: made.getCenter().lng, lat: made.getCenter().lat }));
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
@@ -86,6 +89,9 @@ export function MapView() {
       behindS: agedBehindS(),
       selected: selection.keys(),
       plannedTarget: plannedTarget(),
+      zoneDraft: zoneDraft.isOn()
+        ? { points: zoneDraft.points(), radius_m: zoneDraft.radius_m() }
+        : null,
     };
     for (const layer of layers) layer.update(scene);
   });
@@ -115,7 +121,11 @@ export function MapView() {
   });
 
   return (
-    <section class="map" classList={{ "is-aiming": flyHere.isOn() }} aria-label="Map">
+    <section
+      class="map"
+      classList={{ "is-aiming": flyHere.isOn() || zoneDraft.isOn() }}
+      aria-label="Map"
+    >
       <div class="map-canvas" ref={holder} />
       <div class="grid-labels" ref={labels} aria-hidden="true" />
       <div class="map-tools" ref={tools}>

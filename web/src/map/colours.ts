@@ -12,6 +12,7 @@ export interface Colours {
   readonly boundary: string;
   readonly keepOut: string;
   readonly heightZone: string;
+  readonly temporaryZone: string;
   readonly survey: string;
   vehicle(number: number): string;
 }
@@ -34,6 +35,7 @@ export function readColours(page: Document): Colours {
     boundary: read("--boundary"),
     keepOut: read("--keep-out"),
     heightZone: read("--height-zone"),
+    temporaryZone: read("--temporary-zone"),
     survey: read("--survey"),
     stale,
     vehicle: (number) => vehicles[(number - 1) % VEHICLE_COLOURS] ?? stale,

@@ -60,6 +60,7 @@ function setUp() {
       behindS: 0,
       selected: [],
       plannedTarget: null,
+      zoneDraft: null,
     });
   const answer = async (index: number, frameId: number | null) => {
     requests[index]?.answer({ kind: "answered", value: { blob: new Blob(["x"]), frameId } });

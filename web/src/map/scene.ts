@@ -19,6 +19,14 @@ export interface Scene {
   readonly selected: readonly number[];
   /** The fly-here target that has not been confirmed yet. */
   readonly plannedTarget: PlannedTarget | null;
+  /** The temporary zone being drawn. */
+  readonly zoneDraft: ZoneOutline | null;
+}
+
+/** A zone being drawn: a centre with a radius, or the corners so far without one. */
+export interface ZoneOutline {
+  readonly points: readonly LonLat[];
+  readonly radius_m: number | null;
 }
 
 /** An unconfirmed target with its label; `from` is null while the vehicle's position is unknown. */
@@ -37,11 +45,14 @@ export function positionOf(vehicle: Pick<VehicleView, "position">): LonLat | nul
 /** Smallest extent of a view, so that a single vehicle is shown with its surroundings. */
 const LEAST_VIEW_M = 120;
 
-/** Extent of the first view: vehicles and ground image, else the site's areas, else its origin; null without any position. */
+/** Extent of the first view: vehicles, ground image and temporary zones, else the site's areas, else its origin; null without any position. */
 export function wholeView(state: StationState): Box | null {
   const vehicles = state.vehicles.flatMap((vehicle) => positionOf(vehicle) ?? []);
   const corners = (state.ground_image?.corners ?? []).map(([lon, lat]) => ({ lon, lat }));
-  return boxAround([...vehicles, ...corners], LEAST_VIEW_M) ?? siteView(state);
+  const zones = state.temporary_zones.flatMap(({ ring }) =>
+    ring.map(([lon, lat]) => ({ lon, lat })),
+  );
+  return boxAround([...vehicles, ...corners, ...zones], LEAST_VIEW_M) ?? siteView(state);
 }
 
 function siteView(state: StationState): Box | null {

@@ -17,6 +17,7 @@ const PLAIN: Colours = {
   boundary: "#000001",
   keepOut: "#000002",
   heightZone: "#000003",
+  temporaryZone: "#b3370b",
   survey: "#000004",
   vehicle: (number) => `colour ${number}`,
 };
@@ -52,7 +53,13 @@ function show(east_m: number, changes: Partial<VehicleView> = {}): void {
   const [longitude_deg, latitude_deg] = at(east_m, 0);
   const position = { longitude_deg, latitude_deg, age_s: 0.1 };
   const one = vehicle(1, { position, track: [at(-50, 0)], ...changes });
-  layer.update({ state: station([one]), behindS: 0, selected: [], plannedTarget: null });
+  layer.update({
+    state: station([one]),
+    behindS: 0,
+    selected: [],
+    plannedTarget: null,
+    zoneDraft: null,
+  });
 }
 
 describe("trails", () => {

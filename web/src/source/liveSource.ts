@@ -2,7 +2,7 @@ import { createSignal } from "solid-js";
 import type { AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { Requests } from "./requests";
-import type { Connection, NamedOrder, NewSurvey, StationSource } from "./stationSource";
+import type { Connection, NamedOrder, NewSurvey, NewZone, StationSource } from "./stationSource";
 import { newStreamOwner, type Socket, Stream } from "./stream";
 import { StreamLag } from "./streamLag";
 
@@ -96,6 +96,14 @@ export class LiveSource implements StationSource {
 
   refuseApp(linkId: number) {
     return this.requests.refuseApp(linkId);
+  }
+
+  drawZone(zone: NewZone) {
+    return this.requests.drawZone(zone);
+  }
+
+  endZone(id: number) {
+    return this.requests.endZone(id);
   }
 
   releaseStop(serials: readonly string[] | null) {

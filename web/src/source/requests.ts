@@ -7,9 +7,11 @@ import type {
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
+  TemporaryZoneRequest,
+  TemporaryZoneResponse,
 } from "../protocol";
 import type { paths } from "../protocol/schema";
-import type { NamedOrder, NewSurvey, Outcome, Picture } from "./stationSource";
+import type { NamedOrder, NewSurvey, NewZone, Outcome, Picture } from "./stationSource";
 
 /** Request timeout: an order must not arrive long after the operator sent it. */
 export const REQUEST_MS = 3_000;
@@ -139,6 +141,16 @@ export class Requests {
     );
   }
 
+  drawZone(zone: NewZone): Promise<Outcome<TemporaryZoneResponse>> {
+    const options = { body: zone as TemporaryZoneRequest, signal: timeout() };
+    return answered(() => this.client.POST("/api/zones", options), asZoneResponse);
+  }
+
+  endZone(zone_id: number): Promise<Outcome<ActionResponse>> {
+    const options = { params: { path: { zone_id } }, signal: timeout() };
+    return answered(() => this.client.POST("/api/zones/{zone_id}/end", options), identity);
+  }
+
   releaseStop(named: readonly string[] | null): Promise<Outcome<ActionResponse>> {
     const body = { serials: named === null ? null : [...named] };
     return answered(
@@ -215,6 +227,10 @@ function timeout(): AbortSignal {
 /** openapi-fetch widens pairs to lists; the station sends pairs. */
 function asSurveyResponse(data: unknown): SurveyResponse {
   return data as SurveyResponse;
+}
+
+function asZoneResponse(data: unknown): TemporaryZoneResponse {
+  return data as TemporaryZoneResponse;
 }
 
 function identity<T>(value: T): T {

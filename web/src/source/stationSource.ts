@@ -9,6 +9,8 @@ import type {
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
+  TemporaryZoneRequest,
+  TemporaryZoneResponse,
 } from "../protocol";
 import type { Instant } from "./clock";
 
@@ -39,6 +41,9 @@ export interface NamedOrder {
 export type NewSurvey = Pick<SurveyRequest, "height_above_takeoff_m" | "speed_mps"> &
   Partial<SurveyRequest>;
 
+/** A temporary zone to draw; omitted fields use the station's defaults. */
+export type NewZone = Pick<TemporaryZoneRequest, "kind" | "reason"> & Partial<TemporaryZoneRequest>;
+
 /** Where the page gets states from and sends orders to: a running station or a recording. */
 export interface StationSource {
   /** The newest complete state; null before the first. */
@@ -50,6 +55,9 @@ export interface StationSource {
   order(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Makes every flying vehicle hold position, and latches all; motors stay on. */
   allStop(): Promise<Outcome<readonly OrderResult[]>>;
+  /** Draws a temporary zone, which acts at once. */
+  drawZone(zone: NewZone): Promise<Outcome<TemporaryZoneResponse>>;
+  endZone(id: number): Promise<Outcome<ActionResponse>>;
   /** Releases vehicles from the all stop in force; null means all, also those that connect later. */
   releaseStop(serials: readonly string[] | null): Promise<Outcome<ActionResponse>>;
   /** Admits the app that waits on a link as this vehicle, on the list or until the station stops. */

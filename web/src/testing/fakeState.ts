@@ -1,3 +1,4 @@
+import { circle } from "../map/localGrid";
 import type {
   AlarmView,
   AreaView,
@@ -8,6 +9,7 @@ import type {
   ShadeLineView,
   StationState,
   SurveyView,
+  TemporaryZoneView,
   VehicleView,
 } from "../protocol";
 
@@ -244,6 +246,29 @@ export function area(
     floor_m: null,
     ceiling_m: null,
     datum: null,
+    ...changes,
+  };
+}
+
+/** A temporary zone of 20 m around a point of the field. */
+export function zone(
+  id: number,
+  [east_m, north_m]: readonly [number, number] = [60, 40],
+  changes: Partial<TemporaryZoneView> = {},
+): TemporaryZoneView {
+  const [lon, lat] = at(east_m, north_m);
+  return {
+    id,
+    name: `person ${id} (temporary)`,
+    kind: "person",
+    ring: circle({ lon, lat }, 20),
+    radius_m: 20,
+    floor_m: null,
+    ceiling_m: 30,
+    reason: "Checks a sprinkler",
+    by: "Ann",
+    age_s: 130,
+    ends_in_s: null,
     ...changes,
   };
 }

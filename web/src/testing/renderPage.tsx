@@ -12,6 +12,7 @@ import type {
   Connection,
   NamedOrder,
   NewSurvey,
+  NewZone,
   Outcome,
   StationSource,
 } from "../source/stationSource";
@@ -51,6 +52,8 @@ export type PageRequest =
   | { readonly override: string; readonly serial: string }
   | { readonly clearedHazard: string }
   | { readonly separationHold: boolean }
+  | { readonly drawnZone: NewZone }
+  | { readonly endedZone: number }
   | { readonly releasedStop: readonly string[] | null }
   | {
       readonly admittedLink: number;
@@ -169,6 +172,14 @@ function fakeSource(
     allStop: async () => {
       recorded.allStops += 1;
       return { kind: "answered", value: [] };
+    },
+    drawZone: async (drawnZone) => {
+      recorded.requests.push({ drawnZone });
+      return { kind: "answered", value: { ...recorded.response, zone: null } };
+    },
+    endZone: async (endedZone) => {
+      recorded.requests.push({ endedZone });
+      return { kind: "answered", value: recorded.response };
     },
     releaseStop: async (releasedStop) => {
       recorded.requests.push({ releasedStop });

@@ -1,0 +1,182 @@
+import { createSignal, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { ZoneShape } from "../../orders/zoneDraft";
+import type { TemporaryZoneView } from "../../protocol";
+import { responseProblem } from "../../text/names";
+import { formatAge } from "../../text/quantities";
+import { ZONE_KINDS, type ZoneKind, zoneEnd, zoneHeights, zoneName } from "../../text/zones";
+import { GUARD_MS, GuardButton } from "../guard/GuardButton";
+import { Empty, Panel, Problem } from "../Panel";
+import "./zones.css";
+
+/** Temporary zones: those in force with their end, and the form to draw one. */
+export function ZonesPanel() {
+  const { fleet, zoneDraft } = useConsole();
+  return (
+    <Panel
+      title="Temporary zones"
+      count={fleet.temporaryZones.length}
+      actions={
+        <button
+          type="button"
+          class="button"
+          aria-pressed={zoneDraft.isOn()}
+          title="Keep drones out of a place at once (Z)"
+          onClick={() => zoneDraft.toggle()}
+        >
+          {zoneDraft.isOn() ? "Cancel" : "Draw a zone"}
+        </button>
+      }
+    >
+      <Show when={zoneDraft.isOn()}>
+        <DrawForm />
+      </Show>
+      <Show
+        when={fleet.temporaryZones.length > 0}
+        fallback={
+          <Show when={!zoneDraft.isOn()}>
+            <Empty>No temporary zone is in force.</Empty>
+          </Show>
+        }
+      >
+        <ul class="list">
+          <For each={fleet.temporaryZones}>{(zone) => <ZoneRow zone={zone} />}</For>
+        </ul>
+      </Show>
+    </Panel>
+  );
+}
+
+function ZoneRow(props: { zone: TemporaryZoneView }) {
+  const { source, behindS } = useConsole();
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const end = async () => setProblem(responseProblem(await source.endZone(props.zone.id)));
+  return (
+    <li class="row" data-testid={`zone-${props.zone.id}`}>
+      <div class="row-line">
+        <strong>{zoneName(props.zone)}</strong>
+        <span>{zoneHeights(props.zone)}</span>
+      </div>
+      <p class="wire-text">{props.zone.reason}</p>
+      <p class="muted wire-text">
+        {formatAge(props.zone.age_s + behindS())} ago by {props.zone.by},{" "}
+        {zoneEnd(props.zone.ends_in_s, behindS())}
+      </p>
+      <GuardButton
+        label="End zone"
+        name={`End the zone ${zoneName(props.zone)}: flights may enter it again`}
+        class="guard-grave"
+        hold_ms={GUARD_MS}
+        subject={String(props.zone.id)}
+        onConfirm={() => void end()}
+      />
+      <Problem text={problem()} />
+    </li>
+  );
+}
+
+/** One press draws the zone: it only brings vehicles to rest, and seconds count. */
+function DrawForm() {
+  const { source, zoneDraft, aimAtCentre } = useConsole();
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const draw = async () => {
+    const zone = zoneDraft.zone();
+    if (zone === null) return;
+    const refusal = responseProblem(await source.drawZone(zone));
+    setProblem(refusal);
+    if (refusal === null) zoneDraft.leave();
+  };
+  return (
+    <form
+      class="section zone-form"
+      aria-label="Draw a temporary zone"
+      onSubmit={(event) => {
+        event.preventDefault();
+        void draw();
+      }}
+    >
+      <p class="zone-wide" role="status">
+        {hint(zoneDraft.shape(), zoneDraft.points().length)}
+      </p>
+      <div class="section-buttons zone-wide">
+        <button type="button" class="button" onClick={() => aimAtCentre()}>
+          Use map centre
+        </button>
+        <Show when={zoneDraft.shape() === "outline" && zoneDraft.points().length > 0}>
+          <button type="button" class="button" onClick={() => zoneDraft.undo()}>
+            Undo corner
+          </button>
+        </Show>
+      </div>
+      <label>
+        Kept clear for
+        <select
+          class="field"
+          value={zoneDraft.kind()}
+          onChange={(event) => zoneDraft.setKind(event.currentTarget.value as ZoneKind)}
+        >
+          <For each={Object.entries(ZONE_KINDS)}>
+            {([kind, { name }]) => <option value={kind}>{name}</option>}
+          </For>
+        </select>
+      </label>
+      <label>
+        Shape
+        <select
+          class="field"
+          value={zoneDraft.shape()}
+          onChange={(event) => zoneDraft.setShape(event.currentTarget.value as ZoneShape)}
+        >
+          <option value="circle">Circle</option>
+          <option value="outline">Outline</option>
+        </select>
+      </label>
+      <Show when={zoneDraft.shape() === "circle"}>
+        <label>
+          Radius, m
+          <input
+            class="field"
+            type="text"
+            inputmode="decimal"
+            value={zoneDraft.radius()}
+            onInput={(event) => zoneDraft.setRadius(event.currentTarget.value)}
+          />
+        </label>
+      </Show>
+      <label>
+        Minutes (empty: until ended)
+        <input
+          class="field"
+          type="text"
+          inputmode="decimal"
+          value={zoneDraft.minutes()}
+          onInput={(event) => zoneDraft.setMinutes(event.currentTarget.value)}
+        />
+      </label>
+      <label class="zone-wide">
+        Reason
+        <input
+          class="field"
+          type="text"
+          maxlength={200}
+          placeholder={ZONE_KINDS[zoneDraft.kind()].reason}
+          value={zoneDraft.reason()}
+          onInput={(event) => zoneDraft.setReason(event.currentTarget.value)}
+        />
+      </label>
+      <button type="submit" class="button zone-go zone-wide" disabled={zoneDraft.zone() === null}>
+        Keep clear now
+      </button>
+      <Problem text={problem()} />
+    </form>
+  );
+}
+
+function hint(shape: ZoneShape, points: number): string {
+  if (shape === "circle") {
+    return points === 0 ? "Press the centre on the map." : "Press again to move the centre.";
+  }
+  const left = 3 - points;
+  if (left > 0) return `Press the corners on the map: ${left} more at least.`;
+  return `${points} corners. Press the map for more.`;
+}
