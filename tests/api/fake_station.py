@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from fastapi import FastAPI
 
 from recon.api.app import create_app
 from recon.api.port import SurveyCellStates
@@ -20,7 +19,7 @@ from recon.api.schema import (
     SurveyWays,
     TemporaryZoneResponse,
 )
-from recon.api.security import Access
+from recon.api.security import Access, AccessCheck
 from recon.model.command import Body
 from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
@@ -32,8 +31,6 @@ from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
 from recon.station.kernel.worker import AnyJob, JobRunner
-
-TOKEN = "a-token-of-enough-letters"
 
 
 @dataclass
@@ -204,9 +201,9 @@ class FakeStation:
 
 
 def application(
-    station: FakeStation, *, token: str | None = None, console: Path | None = None
-) -> FastAPI:
-    return create_app(station, Access.make("127.0.0.1", token), console, "1.2.3")
+    station: FakeStation, *, access: Access | None = None, console: Path | None = None
+) -> AccessCheck:
+    return AccessCheck(create_app(station, console, "1.2.3"), access or Access())
 
 
 def rgb_frame(serial: str) -> Frame:

@@ -6,12 +6,15 @@ from pathlib import Path
 import pytest
 import websockets
 from tests.api.client import Client
-from tests.api.fake_station import TOKEN, FakeStation, application
+from tests.api.fake_station import FakeStation, application
 from tests.api.test_stream import PATIENCE_S, served
 from tests.link.approved import core, extended
+from tests.persons import user
 
 from recon import wire
+from recon.api.login import Login
 from recon.api.schema import AuditPage
+from recon.api.security import Access
 from recon.model.event import LinkOpened, PacketReceived
 from recon.record.audit import AuditEntry
 from recon.record.audit_log import KEPT_ENTRIES, AuditLog
@@ -68,7 +71,7 @@ def test_without_an_audit_the_page_is_empty() -> None:
 
 
 def test_it_needs_the_token_like_all_else(station: FakeStation) -> None:
-    client = Client(application(station, token=TOKEN))
+    client = Client(application(station, access=Access.network(Login([user()]))))
     assert client.get("/api/audit").status_code == 401
     assert not client.open_stream("/api/audit/stream").is_served
 

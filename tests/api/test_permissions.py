@@ -4,14 +4,13 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from fastapi import FastAPI
 from fastapi.routing import APIRoute, APIWebSocketRoute
 from tests.api.client import Client
-from tests.api.fake_station import FakeStation
+from tests.api.fake_station import FakeStation, application
 
 from recon.api.app import create_app
 from recon.api.permissions import LEAST_ROLE, STREAM
-from recon.api.security import LOCAL_PERSON, Access
+from recon.api.security import LOCAL_PERSON, Access, AccessCheck
 from recon.model.person import Role
 
 HOVER = {"serials": ["A"], "order": {"kind": "hover"}}
@@ -54,14 +53,14 @@ BODIES: dict[str, tuple[str, object, Role]] = {
 }
 
 
-def app_for(role: Role, station: FakeStation | None = None) -> FastAPI:
+def app_for(role: Role, station: FakeStation | None = None) -> AccessCheck:
     access = Access(local=replace(LOCAL_PERSON, role=role))
-    return create_app(station or FakeStation(), access, None, "1.2.3")
+    return application(station or FakeStation(), access=access)
 
 
 def routes() -> set[tuple[str, str]]:
     found = set[tuple[str, str]]()
-    for route in app_for(Role.ADMIN).routes:
+    for route in create_app(FakeStation(), None, "1.2.3").routes:
         if isinstance(route, APIRoute):
             found |= {(method, route.path) for method in route.methods or ()}
         elif isinstance(route, APIWebSocketRoute):
@@ -101,13 +100,16 @@ def test_a_malformed_request_is_refused_by_role_first() -> None:
 
 def test_a_route_without_a_row_is_an_administrators() -> None:
     for role in Role:
-        app = app_for(role)
+        app = create_app(FakeStation(), None, "1.2.3")
 
         @app.get("/api/new")
         async def new() -> int:
             return 1
 
-        assert Client(app).get("/api/new").status_code == (200 if role is Role.ADMIN else 403)
+        access = Access(local=replace(LOCAL_PERSON, role=role))
+        assert Client(AccessCheck(app, access)).get("/api/new").status_code == (
+            200 if role is Role.ADMIN else 403
+        )
 
 
 def test_roles_are_ordered() -> None:

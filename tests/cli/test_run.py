@@ -4,7 +4,6 @@ import contextlib
 import json
 import signal
 import socket
-import stat
 import urllib.request
 from pathlib import Path
 
@@ -12,8 +11,6 @@ import pytest
 from tests.cli.processes import started
 
 from recon import wire
-from recon.cli.run import read_token
-from recon.station.kernel.run import StartError
 
 FREE = ("--link-port", "0", "--http-port", "0")
 HELLO = wire.encode(wire.MessageString(type=1, text=b"hello"))
@@ -97,11 +94,12 @@ def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
     ("options", "text"),
     [
         (("--site", "/nowhere/at/all"), "/nowhere/at/all"),
-        (("--http-host", "0.0.0.0"), "--token-file"),
-        (("--http-host", "::"), "--token-file"),
+        (("--http-host", "0.0.0.0"), "recon user add NAME --role operator"),
+        (("--http-host", "::"), "--https-host ::"),
+        (("--https-host", "0.0.0.0", "--users", "/nowhere/users.toml"), "recon user add NAME"),
+        (("--certificate", "/nowhere.pem"), "--certificate and --key belong together"),
         (("--link-host", "203.0.113.77"), "--link-port"),
         (("--link-host", "no.such.host.invalid"), "no.such.host.invalid"),
-        (("--token-file", "/nowhere/token"), "/nowhere/token"),
         (("--capture", "/proc/none"), "--capture"),
         (("--link-port", "70000"), "--link-port"),
         (("--nonsense",), "nonsense"),
@@ -111,31 +109,3 @@ def test_wrong_options_are_one_sentence(options: tuple[str, ...], text: str) -> 
     given = dict.fromkeys(options)
     free = FREE if "--link-port" not in given else FREE[2:]
     assert text in refused(*free, *options)
-
-
-def test_beyond_loopback_with_a_token_it_runs(tmp_path: Path) -> None:
-    token = tmp_path / "token"
-    token.write_text("0123456789abcdef\n")
-    with started("run", *FREE, "--http-host", "0.0.0.0", "--token-file", str(token)) as recon:
-        assert "#token=0123456789abcdef" in recon.line_with("console:")
-        assert recon.end(signal.SIGTERM) == 0
-
-
-@pytest.mark.parametrize(
-    ("content", "text"),
-    [
-        (b"short", "16 characters"),
-        (b"", "16 characters"),
-        (b"with/slashes+and=signs==", "letters, digits"),
-        (b"two words of a long secret", "letters, digits"),
-        (b"\xff\xfe" * 20, "cannot read"),
-    ],
-)
-def test_a_secret_that_browsers_cannot_send_is_refused(
-    tmp_path: Path, content: bytes, text: str
-) -> None:
-    path = tmp_path / "token"
-    path.write_bytes(content)
-    path.chmod(stat.S_IRUSR | stat.S_IWUSR)
-    with pytest.raises(StartError, match=text):
-        read_token(path)

@@ -9,7 +9,7 @@ import pytest
 from tests.cli.processes import started
 from tests.cli.station_process import StationProcess, addresses, run_options, station_process
 
-from recon.station.kernel.run import local_person
+from recon.station.kernel.http_servers import local_person
 
 
 @pytest.fixture(scope="module")

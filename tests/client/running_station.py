@@ -8,11 +8,13 @@ from typing import Any
 
 import uvicorn
 from starlette.types import ASGIApp
+from tests.persons import user
 from tests.ready import ready_profile, ready_site
 
 from recon.api.app import create_app
 from recon.api.connections import HttpConnection, StreamConnection
-from recon.api.security import Access
+from recon.api.login import Login
+from recon.api.security import Access, AccessCheck
 from recon.geo import point_from_enu
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
@@ -101,5 +103,6 @@ async def running_station(
         )
         await stack.enter_async_context(background(run_fleet(config, say=lambda line: None)))
         service = Service.around(driver, site, None)
-        app = create_app(service, Access.make("127.0.0.1", token), None, "test")
+        access = Access() if token is None else Access.network(Login([user(token=token)]))
+        app = AccessCheck(create_app(service, None, "test"), access)
         yield await stack.enter_async_context(serving(app))

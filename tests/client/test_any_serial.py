@@ -12,7 +12,7 @@ from tests.patient_loop import run_patiently
 from tests.ready import ready_site
 
 from recon.api.app import create_app
-from recon.api.security import Access
+from recon.api.security import Access, AccessCheck
 from recon.client import RequestRefusedError, Station
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
@@ -48,9 +48,7 @@ async def station_with(serial: str) -> AsyncIterator[str]:
     await links.start("127.0.0.1", 0)
     _, writer = await asyncio.open_connection("127.0.0.1", links.port)
     writer.write(extended(serial.encode()) + core())
-    app = create_app(
-        Service.around(driver, site, None), Access.make("127.0.0.1", None), None, "test"
-    )
+    app = AccessCheck(create_app(Service.around(driver, site, None), None, "test"), Access())
     try:
         async with background(driver.run()), serving(app) as url:
             yield url

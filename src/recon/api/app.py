@@ -17,7 +17,7 @@ from recon.api.permissions import require_listed_role
 from recon.api.picture_routes import add_picture_routes
 from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, found
-from recon.api.security import POLICY_VIOLATION, Access, AccessCheck, refuse_stream
+from recon.api.security import POLICY_VIOLATION, refuse_stream
 from recon.api.streams import MAX_ENTRIES, AuditStream, StateStream
 from recon.api.survey_routes import add_survey_routes
 from recon.api.zone_routes import add_zone_routes
@@ -36,8 +36,8 @@ SECURITY_HEADERS = {
 }
 
 
-def create_app(port: StationPort, access: Access, console: Path | None, version: str) -> FastAPI:
-    """Return the application around a station.
+def create_app(port: StationPort, console: Path | None, version: str) -> FastAPI:
+    """Return the application around a station, to be put behind an `AccessCheck`.
 
     `console` is the folder with the built console; without one a page describes how to build it.
     """
@@ -57,7 +57,6 @@ def create_app(port: StationPort, access: Access, console: Path | None, version:
     add_zone_routes(app, port)
     _add_console(app, console)
     _add_errors_and_headers(app)
-    app.add_middleware(AccessCheck, access=access)
     return app
 
 

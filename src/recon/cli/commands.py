@@ -28,6 +28,7 @@ class CommandSource(NamedTuple):
 
 COMMANDS = {
     "run": CommandSource("run:run_command", "Run the station until Ctrl+C."),
+    "user": CommandSource("users:user_app", "Manage the users of the console on other computers."),
     "status": CommandSource("status:status_command", "Show every vehicle and its telemetry's age."),
     "all-stop": CommandSource(
         "stop_commands:all_stop_command",

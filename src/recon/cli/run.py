@@ -1,7 +1,6 @@
 """`recon run`: the station; `recon openapi`: the description of its API."""
 
 import json
-import string
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,8 +8,9 @@ import typer
 
 import recon
 from recon.api.app import create_app
-from recon.api.security import Access
 from recon.cli.foreground import print_now, run_in_loop
+from recon.cli.qr import qr_lines
+from recon.cli.users import UsersOption
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
 from recon.site import Site, default_site, load_site, site_report
@@ -19,11 +19,7 @@ from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
-from recon.station.kernel.run import RunConfig, Started, StartError, run
-
-MIN_TOKEN_LENGTH = 16
-TOKEN_LETTERS = frozenset(string.ascii_letters + string.digits + "-._~")
-"""Characters that need no escaping in a URL or in a WebSocket's list of subprotocols."""
+from recon.station.kernel.run import RunConfig, Started, run
 
 
 def run_command(
@@ -39,15 +35,24 @@ def run_command(
     link_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port for companion apps; 0: any free port.")
     ] = 3001,
-    http_host: Annotated[
-        str, typer.Option(help="Address of the console; other than loopback needs --token-file.")
-    ] = "127.0.0.1",
+    http_host: Annotated[str, typer.Option(help="Loopback address of the console.")] = "127.0.0.1",
     http_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port of the console; 0: any free port.")
     ] = 8080,
-    token_file: Annotated[
-        Path | None, typer.Option(help="File with the access token of the console.")
+    https_host: Annotated[
+        str | None,
+        typer.Option(
+            help="Address of the console for other computers, with TLS and login; 0.0.0.0: each."
+        ),
     ] = None,
+    https_port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port for other computers; 0: any free port.")
+    ] = 8443,
+    certificate: Annotated[
+        Path | None, typer.Option(help="PEM file of a certificate; default: a generated one.")
+    ] = None,
+    key: Annotated[Path | None, typer.Option(help="PEM file of the certificate's key.")] = None,
+    users: UsersOption = None,
     capture: Annotated[Path | None, typer.Option(help="Folder for every link's raw bytes.")] = None,
     audit: Annotated[
         Path | None,
@@ -74,7 +79,11 @@ def run_command(
         site_folder=site,
         capture_folder=capture,
         audit=None if audit is None else AuditPlace(audit),
-        token=None if token_file is None else read_token(token_file),
+        users_file=users,
+        https_host=https_host,
+        https_port=https_port,
+        certificate=certificate,
+        key=key,
         console=console_folder(),
         link=LinkSettings(garbage_limit_bytes=garbage_limit),
         apps_file=apps_file,
@@ -110,24 +119,12 @@ def announce(started: Started) -> None:
     if started.taken_up:
         print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")
     print_now(f"console: {started.console_url}")
-
-
-def read_token(path: Path) -> str:
-    """Return the token in a file; raises `StartError` when it is missing, short or unsuitable."""
-    try:
-        token = path.read_text(encoding="utf-8").strip()
-    except (OSError, UnicodeDecodeError) as problem:
-        raise StartError(f"cannot read the token file {path}: {problem}") from problem
-    if len(token) < MIN_TOKEN_LENGTH:
-        raise StartError(
-            f"{path}: expected a token of at least {MIN_TOKEN_LENGTH} characters, got {len(token)}"
-        )
-    if not TOKEN_LETTERS.issuperset(token):
-        raise StartError(
-            f"{path}: expected a token of letters, digits and -._~ only (browsers cannot send "
-            "others); create one with `openssl rand -hex 24`"
-        )
-    return token
+    if started.network is not None:
+        for url in started.network.urls:
+            print_now(f"console for other computers, with login: {url}")
+        print_now(f"certificate SHA-256: {started.network.fingerprint}")
+        for line in qr_lines(started.network.login_url):
+            print_now(line)
 
 
 def console_folder() -> Path | None:
@@ -149,4 +146,4 @@ def openapi_document() -> dict[str, Any]:
     site = default_site()
     driver = AsyncioDriver(first_state(site), lambda: 0)
     service = Service.around(driver, site, None)
-    return create_app(service, Access(), None, recon.version()).openapi()
+    return create_app(service, None, recon.version()).openapi()

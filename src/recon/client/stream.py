@@ -39,8 +39,8 @@ KEEPALIVE_S = 0.5
 FIRST_PAUSE_S = 0.2
 LONGEST_PAUSE_S = 2.0
 _TOO_BIG = 1009
-_REFUSED = (1008, 1013)
-"""Access denied or invalid, and too many readers."""
+_REFUSED = (1008, 1013, 4401)
+"""Invalid, too many readers, and login needed."""
 
 
 WINDOW_NS = 60 * NS_PER_S

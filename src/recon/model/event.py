@@ -285,6 +285,32 @@ class LinkLimitReached:
 
 
 @dataclass(frozen=True, slots=True)
+class LoginAccepted:
+    """A person used a token from an address for the first time in this run."""
+
+    by: str
+    role: str
+
+
+@dataclass(frozen=True, slots=True)
+class LoginRefused:
+    """A wrong token came from an address; `is_repeated` at the limit, after which no more events
+    come in the same minute."""
+
+    address: str
+    failures: int
+    is_repeated: bool
+
+
+@dataclass(frozen=True, slots=True)
+class UsersChanged:
+    """The users file was read again: what changed, or why it cannot be used."""
+
+    change: str
+    problem: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class StationFaulted:
     """The station's own code raised: what it was doing, and the error."""
 
@@ -331,6 +357,9 @@ Event = (
     | HazardDismissed
     | SeparationHoldSwitched
     | ZoneDrawn
+    | LoginAccepted
+    | LoginRefused
+    | UsersChanged
     | ZoneEnded
     | FleetReturnOrdered
     | SurveyRequested

@@ -44,6 +44,20 @@ class Person:
         return f"{self.name} ({self.address})" if self.address else self.name
 
 
+@dataclass(frozen=True, slots=True)
+class User:
+    """A person that may log in, as the users file has it.
+
+    Of the token only the SHA-256 is kept. A fast hash is right for it: a token has 256 random bits,
+    which no search finds, however fast it hashes. Slow hashes are for passwords that users choose.
+    """
+
+    name: str
+    role: Role
+    token_sha256: bytes
+    created_utc: str
+
+
 def is_name(text: str) -> bool:
     """Return whether a text can be a person's name."""
     return NAME.fullmatch(text) is not None

@@ -6,7 +6,7 @@ They stay until an operator acknowledges them. A fault's alarm is critical while
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from recon.model.event import ClockGap, StationFaulted
+from recon.model.event import ClockGap, LoginRefused, StationFaulted, UsersChanged
 from recon.model.replacing import replace
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
@@ -85,6 +85,31 @@ def note_gap(station: Station, event: ClockGap, now_ns: int) -> Station:
     )
     key = f"station_suspended:{now_ns}"
     condition = Condition(key, Severity.ERROR, "station_suspended", STATION_NAME, text)
+    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book)
+
+
+def note_refused_login(station: Station, event: LoginRefused, now_ns: int) -> Station:
+    """Return the station with an alarm for repeated wrong tokens from one address."""
+    if not event.is_repeated:
+        return station
+    text = (
+        f"{event.failures} wrong tokens from {event.address} within a minute: an old link on a "
+        "tablet, or a stranger in the network; `recon user list` shows the users"
+    )
+    return _noted(station, f"login_refused:{event.address}", "login_refused", text, now_ns)
+
+
+def note_users(station: Station, event: UsersChanged, now_ns: int) -> Station:
+    """Return the station with an alarm when the users file cannot be used."""
+    if event.problem is None:
+        return station
+    text = f"users stay as they were: {event.problem}"
+    return _noted(station, "users_file", "users_file", text, now_ns)
+
+
+def _noted(station: Station, key: str, rule: str, text: str, now_ns: int) -> Station:
+    condition = Condition(key, Severity.WARNING, rule, STATION_NAME, text)
     book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
     return replace(station, alarms=book)
 

@@ -27,10 +27,13 @@ from recon.model.event import (
     Event,
     HazardDismissed,
     LinkLimitReached,
+    LoginAccepted,
+    LoginRefused,
     PreflightOverridden,
     SeparationHoldSwitched,
     StopReleased,
     Tick,
+    UsersChanged,
     ZoneDrawn,
     ZoneEnded,
 )
@@ -121,6 +124,14 @@ def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEn
         case AuditFailed(problem):
             text = problem or "audit and recovery snapshot are written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
+        case LoginAccepted(by, role):
+            yield AuditEntry("login.accepted", f"logged in as {role}", by, details={"role": role})
+        case LoginRefused(address, failures):
+            text = f"wrong token from {address}, number {failures} within a minute"
+            yield AuditEntry("login.refused", text, details={"address": address})
+        case UsersChanged(change, problem):
+            text = problem or change
+            yield AuditEntry("users.changed", text, details={"is_troubled": problem is not None})
         case LinkLimitReached(limit, problem):
             text = problem or f"link server: limit of {limit} no longer reached"
             details = {"limit": limit, "is_reached": problem is not None}

@@ -12,6 +12,7 @@ from recon.model.errors import RecordError
 from recon.record.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
 from recon.record.audit_files import RunEnd, audit_files, read_run_end, run_number
 from recon.record.audit_log import AuditLog, refuse_other_writer
+from recon.record.users_file import state_folder
 from recon.station.state.settings import StationSettings
 
 MAX_FILES_READ = 5
@@ -43,11 +44,7 @@ class Begun:
 def default_place(link_port: int, environment: Mapping[str, str] = os.environ) -> AuditPlace:
     """Return the folder in the user's state folder: one for each port, so that a restarted station
     finds its own; without a fixed port, a shared one."""
-    if sys.platform == "win32":
-        base = Path(environment.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    else:
-        base = Path(environment.get("XDG_STATE_HOME") or Path.home() / ".local" / "state")
-    folder = base / "recon" / "audit"
+    folder = state_folder(environment) / "audit"
     return (
         AuditPlace(folder / "any-port", True)
         if link_port == 0

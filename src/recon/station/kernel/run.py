@@ -1,29 +1,25 @@
 """`recon run`: the station on real sockets, until SIGINT or SIGTERM."""
 
 import asyncio
-import errno
-import getpass
-import signal
 import socket
-from collections.abc import Awaitable, Callable, Iterator
-from contextlib import AsyncExitStack, contextmanager
+from collections.abc import Awaitable, Callable
+from contextlib import AsyncExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import uvicorn
-
 from recon import version
 from recon.api.app import create_app
-from recon.api.connections import PING_S, HttpConnection, StreamConnection
-from recon.api.security import LOCAL_PERSON, LOOPBACK_NAMES, Access
+from recon.api.certificate import Certificate
+from recon.api.login import Login
+from recon.api.servers import HttpServer
 from recon.fleet.admission import AllowedApp
 from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
-from recon.model.errors import ReconError, RecordError
+from recon.model.errors import RecordError
 from recon.model.event import Event
-from recon.model.person import THIS_COMPUTER, Person, Role, is_name
 from recon.model.units import ns_to_seconds
+from recon.record.users_file import default_users_file
 from recon.site import Site
 from recon.site.reading import site_digest
 from recon.station.api_views.service import Service
@@ -39,17 +35,25 @@ from recon.station.audit.start import (
 from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
+from recon.station.kernel.http_servers import (
+    NetworkAccess,
+    NetworkConfig,
+    StartError,
+    cannot_listen,
+    certificate_of,
+    listen,
+    loopback_server,
+    network_access,
+    network_server,
+    require_startable,
+    stopped_by_signals,
+    url_of,
+)
+from recon.station.kernel.users_watch import UsersWatch
 from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.recovery.restart import LastRun, restart_entries, restored
 from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
 from recon.station.state.station import Station
-
-HTTP_BACKLOG = 128
-SHUTDOWN_S = 2
-
-
-class StartError(ReconError):
-    """The station cannot start; the text states why, and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +70,26 @@ class RunConfig:
     capture_folder: Path | None = None
     audit: AuditPlace | None = None
     """None: the place in the user's state folder that belongs to the link port."""
-    token: str | None = None
+    users_file: Path | None = None
+    """None: the one of this computer's user."""
+    https_host: str | None = None
+    """Address for other computers; None: they reach nothing."""
+    https_port: int = 8443
+    certificate: Path | None = None
+    key: Path | None = None
+    """The site's own certificate with its key; without one the station generates one."""
     console: Path | None = None
     link: LinkSettings = field(default_factory=LinkSettings)
     apps_file: Path | None = None
     """The list of admitted apps; None: any app is admitted."""
     apps: tuple[AllowedApp, ...] | None = None
     """The entries of that file."""
+
+    @property
+    def network(self) -> NetworkConfig:
+        """The part about other computers."""
+        users = self.users_file or default_users_file()
+        return NetworkConfig(users, self.https_host, self.https_port, self.certificate, self.key)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +102,8 @@ class Started:
     audit_folder: str = ""
     apps_listed: int | None = None
     """Entries of the list of apps; None without a list."""
+    network: NetworkAccess | None = None
+    """What other computers use; None when they reach nothing."""
     taken_up: str = ""
     """What this run continues from the last one, in words; empty if nothing."""
 
@@ -95,13 +114,13 @@ OnStart = Callable[[Started], Awaitable[None]]
 
 async def run(config: RunConfig, on_start: OnStart) -> None:
     """Run a station until SIGINT or SIGTERM. Raises `StartError` when it cannot start."""
-    _require_token(config)
+    require_startable(config.http_host, config.network)
+    certificate = certificate_of(config.network)
     place = config.audit or default_place(config.link_port)
     begun = _begin_audit(place)
     last_run, is_snapshot_good = _last_run(place, begun)
-    http_socket = _listen(config.http_host, config.http_port, "--http-port")
     async with AsyncExitStack() as stack:
-        stack.callback(http_socket.close)
+        doors = _open_doors(config, certificate, stack)
         clock = station_clock()
         station = restored(first_state(config.site, apps=config.apps), last_run, clock())
         auditor = _start_auditor(config, begun, last_run, clock, stack)
@@ -123,12 +142,12 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         )
         links = await _start_links_and_worker(config, driver, service, stack)
         started = replace(
-            _started(config, service, links, http_socket),
+            _started(config, service, links, doors),
             audit_folder=str(begun.log.folder),
             apps_listed=None if config.apps is None else len(config.apps),
             taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
         )
-        await _serve(config, driver, service, http_socket, lambda: on_start(started), stack)
+        await _serve(config, driver, service, doors, lambda: on_start(started), stack)
 
 
 async def _start_links_and_worker(
@@ -151,22 +170,23 @@ async def _serve(
     config: RunConfig,
     driver: AsyncioDriver,
     service: Service,
-    http_socket: socket.socket,
+    doors: "_Doors",
     on_start: Callable[[], Awaitable[None]],
     stack: AsyncExitStack,
 ) -> None:
-    """Run the driver's timers and the HTTP server until one of the two ends."""
+    """Run the driver's timers and the HTTP servers until one of them ends."""
     ticking = asyncio.create_task(driver.run())
     stack.callback(ticking.cancel)
-    server = _http_server(config, service)
+    servers = _servers(config, driver, service, doors, stack)
     freeze_loaded_objects()
-    stack.enter_context(_stopped_by_signals(server))
-    serving = asyncio.create_task(server.serve(sockets=[http_socket]))
+    stack.enter_context(stopped_by_signals([server for server, _ in servers]))
+    serving = [asyncio.create_task(server.serve(sockets=[sock])) for server, sock in servers]
     await on_start()
-    done, _ = await asyncio.wait((serving, ticking), return_when=asyncio.FIRST_COMPLETED)
+    done, _ = await asyncio.wait((*serving, ticking), return_when=asyncio.FIRST_COMPLETED)
     # If the timers have ended, the station must not seem to run.
-    server.should_exit = True
-    await serving
+    for server, _ in servers:
+        server.should_exit = True
+    await asyncio.gather(*serving)
     for task in done:
         task.result()
 
@@ -181,12 +201,45 @@ def _write_app_list(config: RunConfig, driver: AsyncioDriver, stack: AsyncExitSt
     stack.callback(writer.close)
 
 
-def _require_token(config: RunConfig) -> None:
-    if config.http_host not in LOOPBACK_NAMES and config.token is None:
-        raise StartError(
-            f"host {config.http_host} opens the console to the network without a token; give "
-            "--token-file FILE with a secret of at least 16 characters, or use 127.0.0.1"
-        )
+def _servers(
+    config: RunConfig,
+    driver: AsyncioDriver,
+    service: Service,
+    doors: "_Doors",
+    stack: AsyncExitStack,
+) -> list[tuple[HttpServer, socket.socket]]:
+    """Return the server of each address, around one application."""
+    login = Login(report=driver.handle)
+    users = UsersWatch(config.network.users_file, login, driver.handle)
+    users.read()
+    watching = asyncio.create_task(users.run())
+    stack.callback(watching.cancel)
+    app = create_app(service, config.console, version())
+    servers = [(loopback_server(app, login, config.http_host), doors.loopback)]
+    if doors.network is not None and doors.certificate is not None:
+        servers.append((network_server(app, login, doors.certificate), doors.network))
+    return servers
+
+
+@dataclass(frozen=True, slots=True)
+class _Doors:
+    """The listening sockets of the HTTP servers."""
+
+    loopback: socket.socket
+    network: socket.socket | None
+    certificate: Certificate | None
+
+
+def _open_doors(
+    config: RunConfig, certificate: Certificate | None, stack: AsyncExitStack
+) -> _Doors:
+    loopback = listen(config.http_host, config.http_port, "--http-port")
+    stack.callback(loopback.close)
+    network = None
+    if config.https_host is not None:
+        network = listen(config.https_host, config.https_port, "--https-port")
+        stack.callback(network.close)
+    return _Doors(loopback, network, certificate)
 
 
 def _begin_audit(place: AuditPlace) -> Begun:
@@ -252,38 +305,11 @@ def _taken_up(station: Station, troubles: tuple[str, ...]) -> str:
     return "; ".join((*parts, *troubles))
 
 
-def _listen(host: str, port: int, option: str) -> socket.socket:
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    sock = socket.socket(family, socket.SOCK_STREAM)
-    try:
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        sock.bind((host, port))
-        # Listen at once: the address must be open when it is printed, and a second station started
-        # at the same moment must find the port in use.
-        sock.listen(HTTP_BACKLOG)
-    except (OSError, OverflowError) as problem:
-        sock.close()
-        raise _cannot_listen(host, port, option, problem) from problem
-    return sock
-
-
-def _cannot_listen(host: str, port: int, option: str, problem: Exception) -> StartError:
-    if isinstance(problem, OSError) and problem.errno == errno.EADDRINUSE:
-        return StartError(
-            f"port {port} of {host} is in use, perhaps by another station; stop that one, or "
-            f"choose another port with {option}"
-        )
-    reason = problem.strerror if isinstance(problem, OSError) else problem
-    return StartError(f"cannot listen on {host} port {port}: {reason}; see {option}")
-
-
 async def _listen_for_links(links: LinkServer, config: RunConfig) -> list[str]:
     try:
         return await links.start(config.link_host, config.link_port)
     except (OSError, OverflowError) as problem:
-        raise _cannot_listen(
-            config.link_host, config.link_port, "--link-port", problem
-        ) from problem
+        raise cannot_listen(config.link_host, config.link_port, "--link-port", problem) from problem
 
 
 def _start_capture(config: RunConfig, driver: AsyncioDriver) -> Capture | None:
@@ -301,78 +327,10 @@ def _start_capture(config: RunConfig, driver: AsyncioDriver) -> Capture | None:
     return capture
 
 
-class _HttpServer(uvicorn.Server):
-    """Uvicorn without its own signal handling.
-
-    That would raise the signal again once the server has ended, and so kill the process before the
-    links are closed and the captures written.
-    """
-
-    @contextmanager
-    def capture_signals(self) -> Iterator[None]:
-        """Leave signals alone; `_stopped_by_signals` takes them."""
-        yield
-
-
-@contextmanager
-def _stopped_by_signals(server: uvicorn.Server) -> Iterator[None]:
-    """End the server on SIGINT and SIGTERM; the second one does not wait for open requests."""
-    loop = asyncio.get_running_loop()
-    numbers = (signal.SIGINT, signal.SIGTERM)
-
-    def stop() -> None:
-        server.force_exit = server.should_exit
-        server.should_exit = True
-
-    for number in numbers:
-        loop.add_signal_handler(number, stop)
-    try:
-        yield
-    finally:
-        for number in numbers:
-            loop.remove_signal_handler(number)
-
-
-def _http_server(config: RunConfig, service: Service) -> uvicorn.Server:
-    access = Access.make(config.http_host, config.token, local_person())
-    app = create_app(service, access, config.console, version())
-    return _HttpServer(
-        uvicorn.Config(
-            app,
-            log_level="warning",
-            access_log=False,
-            server_header=False,
-            http=HttpConnection,
-            # Its send waits while the reader's socket takes no more: see api/streams.py.
-            ws=StreamConnection,
-            ws_max_size=64 * 1024,
-            ws_ping_interval=PING_S,
-            ws_ping_timeout=PING_S,
-            timeout_graceful_shutdown=SHUTDOWN_S,
-            lifespan="off",
-        )
-    )
-
-
-def local_person() -> Person:
-    """Return the person of requests over loopback: the user of this computer.
-
-    An administrator: programs of this user can end the station and write its files anyway.
-    """
-    try:
-        name = getpass.getuser()
-    except (OSError, KeyError, ImportError):
-        return LOCAL_PERSON
-    return Person(name, Role.ADMIN, THIS_COMPUTER) if is_name(name) else LOCAL_PERSON
-
-
-def _started(
-    config: RunConfig, service: Service, links: LinkServer, http_socket: socket.socket
-) -> Started:
-    port = http_socket.getsockname()[1]
-    host = f"[{config.http_host}]" if ":" in config.http_host else config.http_host
-    fragment = "" if config.token is None else f"/#token={config.token}"
-    return Started(service.link_addresses, links.port, f"http://{host}:{port}{fragment}")
+def _started(config: RunConfig, service: Service, links: LinkServer, doors: _Doors) -> Started:
+    network = network_access(config.network, doors.certificate, doors.network)
+    url = url_of(config.http_host, doors.loopback)
+    return Started(service.link_addresses, links.port, url, network=network)
 
 
 def _text(folder: Path | None) -> str | None:

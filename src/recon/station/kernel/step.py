@@ -27,6 +27,8 @@ from recon.model.event import (
     LinkClosed,
     LinkLimitReached,
     LinkOpened,
+    LoginAccepted,
+    LoginRefused,
     OperatorOrder,
     OwnerConnected,
     OwnerDisconnected,
@@ -37,6 +39,7 @@ from recon.model.event import (
     StationFaulted,
     StopReleased,
     Tick,
+    UsersChanged,
     ZoneDrawn,
     ZoneEnded,
 )
@@ -173,6 +176,10 @@ def _link_limit(station: Station, event: LinkLimitReached, _now_ns: int) -> Stat
     return replace(station, link_limits={**others, **reached})
 
 
+def _audited_only(station: Station, _event: Event, _now_ns: int) -> Station:
+    return station
+
+
 def _acknowledged(station: Station, event: AlarmAcknowledged, _now_ns: int) -> Station:
     book = alarm_book.acknowledge(station.alarms, event.alarm_id, event.by)
     return replace(station, alarms=book)
@@ -240,6 +247,9 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(AuditFailed, _audit_failed),
         changing(LinkLimitReached, _link_limit),
         changing(AlarmAcknowledged, _acknowledged),
+        changing(LoginAccepted, _audited_only),
+        changing(LoginRefused, event_alarms.note_refused_login),
+        changing(UsersChanged, event_alarms.note_users),
         *(command for each in OPERATIONS for command in each.commands),
     )
 )
