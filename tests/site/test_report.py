@@ -50,6 +50,7 @@ def test_the_report_lists_the_layers_the_terrain_and_the_limits() -> None:
         "the WGS84 ellipsoid",
         "limits: 5 to 130 m above ground, 500 m from home, 15 m/s; 15 m beside or 6 m above each "
         "other; 5 m from fences; 25 % of the battery left at home",
+        "failsafe matrix: default",
     )
 
 

@@ -19,14 +19,17 @@ from recon.model.event import (
     PacketReceived,
     Tick,
 )
+from recon.model.failsafe_matrix import FailsafeCell, FailsafeMatrix, Reaction
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.report import CoreReport, ExtendedReport, Report
 from recon.model.vehicle import FlightMode, VelocityNed
 from recon.safety import ApprovedCommand, PreparedAirspace
+from recon.safety.failsafe import DEFAULT_MATRIX, ROWS
 from recon.station.kernel.step import step
 from recon.station.kernel.virtual import EPOCH_NS
 from recon.station.state.alarm_book import Alarm
 from recon.station.state.orders import OrderRecord
+from recon.station.state.settings import StationSettings
 from recon.station.state.station import Clock, Station
 from recon.station.state.steps import SendCommand
 
@@ -36,11 +39,30 @@ CLOCK = Clock(EPOCH_NS, EPOCH_NS, EPOCH_NS)
 AIRSPACE = PreparedAirspace(ready_airspace(HOME))
 
 
-class CommandedStation:
-    """Links carry an order at once, unless `is_stuck`; time goes on in ticks of 0.1 s."""
+def _ordering_nothing() -> FailsafeMatrix:
+    """The default, with an alarm for each reaction but the watchdogs' holds."""
+    alarm = FailsafeCell(Reaction.ALARM)
+    return FailsafeMatrix(
+        {
+            condition: dict.fromkeys(row, alarm) if ROWS[condition].is_timed else row
+            for condition, row in DEFAULT_MATRIX.rows.items()
+        }
+    )
 
-    def __init__(self) -> None:
-        self.station = Station(fleet=Fleet(profiles=PROFILES), airspace=AIRSPACE, clock=CLOCK)
+
+ORDERING_NOTHING = _ordering_nothing()
+
+
+class CommandedStation:
+    """Links carry an order at once, unless `is_stuck`; time goes on in ticks of 0.1 s.
+
+    The failsafe matrix orders nothing unless it is given: a test looks at one mechanism.
+    """
+
+    def __init__(self, matrix: FailsafeMatrix = ORDERING_NOTHING) -> None:
+        settings = StationSettings(failsafe_matrix=matrix)
+        fleet = Fleet(profiles=PROFILES)
+        self.station = Station(settings=settings, fleet=fleet, airspace=AIRSPACE, clock=CLOCK)
         self.now_ns = 0
         self.is_stuck = False
         self.sent: list[tuple[float, int, int]] = []

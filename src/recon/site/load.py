@@ -20,6 +20,7 @@ from recon.site.consistency import (
     refuse_sunken_zones,
 )
 from recon.site.elevation import ElevationTable, read_elevation
+from recon.site.failsafe import failsafe_from_tables
 from recon.site.imager import imager_from_table
 from recon.site.layers import read_layers
 from recon.site.reading import convert, read_bounded, refuse_non_finite
@@ -131,7 +132,8 @@ def load_site(folder: Path) -> Site:
     limits = limits_from_table(
         convert(path, table.limits, LimitsTable, "limits"), f"{path}: limits"
     )
-    site = Site(table.name, frame, grid, imager, profiles, layers, limits)
+    failsafe = failsafe_from_tables(path, table.failsafe)
+    site = Site(table.name, frame, grid, imager, profiles, layers, limits, failsafe)
     refuse_high_go_home_heights(str(path), profiles, limits)
     refuse_misplaced_pads(path, site)
     if table.elevation is not None:

@@ -13,6 +13,7 @@ from recon.safety import SafetySettings
 from recon.safety.separation_minima import gate_minima
 from recon.site.consistency import highest_ground_m
 from recon.site.elevation import ground_heights_m
+from recon.site.failsafe import failsafe_report, failsafe_warnings
 from recon.site.site import Imager, Layers, Site
 
 
@@ -32,6 +33,7 @@ def site_report(site: Site) -> tuple[str, ...]:
         lines += _imager_report(site.imager)
     lines += _layers_report(site.layers)
     lines += [_terrain_report(site), _limits_report(site.limits)]
+    lines.append(failsafe_report(site.failsafe))
     lines += [f"warning: {warning}" for warning in site_warnings(site)]
     return tuple(lines)
 
@@ -116,6 +118,7 @@ def site_warnings(site: Site) -> tuple[str, ...]:
     if site.frame is None:
         return ()
     return (
+        *failsafe_warnings(site.failsafe),
         *_unbounded(site),
         *_unknown_ground(site),
         *_missing_keys(site),

@@ -152,6 +152,46 @@ class LimitsTable(_Table, frozen=True):
     """Aircraft land where they are at about a tenth."""
 
 
+ReactionName = Literal["nothing", "alarm", "hold", "return", "land"]
+
+
+class ReactionTable(_Table, frozen=True):
+    """A cell of [failsafe.CONDITION] with a delay: { do = "hold", after_s = 5 }."""
+
+    do: ReactionName
+    after_s: Annotated[float, Meta(ge=0.0, le=600.0)] | None = None
+    """An aircraft of this size flies half an hour: ten minutes later is too late for anything."""
+
+
+class FailsafeRowTable(_Table, frozen=True):
+    """[failsafe.CONDITION]: a reaction by what the vehicle does; absent keys keep the default.
+
+    Each cell is a reaction's name or a `ReactionTable`.
+    """
+
+    mission: Any = None
+    steered: Any = None
+    holding: Any = None
+    returning: Any = None
+
+
+class FailsafeTable(_Table, frozen=True):
+    """[failsafe]: the rows that differ from the default."""
+
+    link_lost: dict[str, Any] = {}
+    telemetry_lost: dict[str, Any] = {}
+    gnss_lost: dict[str, Any] = {}
+    battery_low: dict[str, Any] = {}
+    battery_critical: dict[str, Any] = {}
+    wind: dict[str, Any] = {}
+    attitude: dict[str, Any] = {}
+    geofence: dict[str, Any] = {}
+    separation: dict[str, Any] = {}
+    imaging_drone_lost: dict[str, Any] = {}
+    station_overloaded: dict[str, Any] = {}
+    operator_gone: dict[str, Any] = {}
+
+
 class SiteTable(_Table, frozen=True):
     """The whole file. The tables are converted one by one, so that an error names its table."""
 
@@ -162,4 +202,5 @@ class SiteTable(_Table, frozen=True):
     ground_image: dict[str, Any] | None = None
     layers: dict[str, Any] = {}
     elevation: dict[str, Any] | None = None
+    failsafe: dict[str, Any] = {}
     vehicles: list[dict[str, Any]] = []

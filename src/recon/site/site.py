@@ -11,8 +11,10 @@ from recon.camera import (
     TelemetryReference,
 )
 from recon.model.airspace import Airspace, ElevationModel, FlightLimits, LandingPad, Region, Zone
+from recon.model.failsafe_matrix import FailsafeMatrix
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import VehicleProfile
+from recon.safety.failsafe import DEFAULT_MATRIX
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +69,7 @@ class Site:
     profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
     layers: Layers = field(default_factory=Layers)
     limits: FlightLimits = field(default_factory=FlightLimits)
+    failsafe: FailsafeMatrix = DEFAULT_MATRIX
     elevation: ElevationModel | None = None
     elevation_file: str | None = None
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from recon.geo import Footprints, Polygon
 from recon.model.airspace import ZoneKind
+from recon.model.failsafe_matrix import FailsafeCondition
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.severity import Severity
 from recon.safety.airspace import PreparedAirspace, PreparedZone
@@ -182,7 +183,8 @@ def _found(
         text = f"{text}; {watched.name} {watched.hold_outcome}"
     finding = watched.finding(rule, severity, text, about=f":{about}" if about else "")
     is_due = picture.lasted_s(finding.key) >= picture.settings.confirm_s
-    if not (stops and is_due and watched.may_be_held) or watched.is_coming_down:
+    may_be_held = watched.may_be_held_for(FailsafeCondition.GEOFENCE)
+    if not (stops and is_due and may_be_held) or watched.is_coming_down:
         return finding
     if watched.was_held_within_s(picture.now_ns, picture.settings.hold_again_s):
         return finding

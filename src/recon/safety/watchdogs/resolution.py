@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from recon.model.failsafe_matrix import FailsafeCondition
 from recon.safety.prediction import BoolArray
 from recon.safety.separation_minima import SeparationMinima
 from recon.safety.settings import WatchdogSettings
@@ -60,7 +61,8 @@ def vehicle_to_hold(picture: TrafficPicture, conflict: PairConflict) -> WatchedV
 
 def can_be_held(picture: TrafficPicture, candidate: WatchedVehicle) -> bool:
     """Return whether the station may hold a vehicle now: it was not held a moment ago."""
-    if not picture.is_hold_on or not candidate.may_be_held:
+    may_be_held = candidate.may_be_held_for(FailsafeCondition.SEPARATION)
+    if not picture.is_hold_on or not may_be_held:
         return False
     return not candidate.was_held_within_s(picture.now_ns, picture.settings.hold_again_s)
 

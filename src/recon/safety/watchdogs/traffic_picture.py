@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from recon.model.control import AuthorityHolder, Commanded, Intent
+from recon.model.failsafe_matrix import FailsafeCondition
 from recon.model.geo import LatLon
 from recon.model.severity import Severity
 from recon.model.units import NS_PER_S
@@ -74,7 +75,8 @@ class WatchedVehicle(NamedTuple):
 
     `motion` is None while it has never reported a position; `hazard` is set while telemetry is
     lost. `stick_quiet_s` is the time since the last stick of a stream, None without a stream.
-    `hold_refused` is the reason a hold could not be given to it just now.
+    `hold_refused` is the reason a hold could not be given to it just now. `alarm_only` has the
+    conditions for which the site's failsafe matrix has it alarmed about and not held.
     """
 
     state: VehicleState
@@ -86,6 +88,7 @@ class WatchedVehicle(NamedTuple):
     is_imager: bool = False
     stick_quiet_s: float | None = None
     hold_refused: str = ""
+    alarm_only: frozenset[FailsafeCondition] = frozenset()
 
     @property
     def key(self) -> str:
@@ -118,11 +121,12 @@ class WatchedVehicle(NamedTuple):
             or self.state.flight_mode.value in _COMING_DOWN_MODES
         )
 
-    @property
-    def may_be_held(self) -> bool:
-        """Whether a hold would be the station's to give: in the air, known, not the pilot's."""
+    def may_be_held_for(self, condition: FailsafeCondition) -> bool:
+        """Return whether a hold would be the station's to give: in the air, known, not the pilot's,
+        and not left to an alarm by the site."""
         return (
             self.is_flying_in_contact
+            and condition not in self.alarm_only
             and self.state.is_flying.value is True
             and self.state.serial is not None
             and self.holder is not AuthorityHolder.PILOT

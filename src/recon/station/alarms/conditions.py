@@ -23,8 +23,14 @@ from recon.model.command import Phase
 from recon.model.control import AuthorityHolder, Commanded
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
-from recon.model.vehicle import BatteryWarning, FlightMode, Staleness, VehicleState
-from recon.station.alarms import app_conditions, event_alarms, flight_conditions
+from recon.model.vehicle import FlightMode, Staleness, VehicleState
+from recon.safety.failsafe import battery_critical, battery_low
+from recon.station.alarms import (
+    app_conditions,
+    event_alarms,
+    failsafe_conditions,
+    flight_conditions,
+)
 from recon.station.imaging import frames
 from recon.station.operations import OPERATIONS
 from recon.station.state import alarm_book, orders
@@ -50,7 +56,15 @@ def raise_alarms(station: Station, now_ns: int) -> Stepped:
 
 
 def conditions(station: Station, now_ns: int) -> Iterator[Condition]:
-    """Yield every condition that holds now."""
+    """Yield every condition that holds now, with what the failsafe matrix does about it."""
+    present = _present(station, now_ns)
+    if station.failsafe_state.occurrences:
+        present = (failsafe_conditions.with_reaction(station, one, now_ns) for one in present)
+    yield from present
+    yield from failsafe_conditions.conditions(station, now_ns)
+
+
+def _present(station: Station, now_ns: int) -> Iterator[Condition]:
     awaited = identity_grace.awaited(station, now_ns)
     yield from _awaited(awaited, station.settings)
     names = {vehicle.serial for vehicle in awaited}
@@ -147,22 +161,12 @@ def _no_telemetry(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:
 
 def _battery(vehicle: VehicleState, settings: StationSettings) -> Iterator[Condition]:
     """Report the aircraft's own warning and the level: either may be wrong or missing."""
-    warning = vehicle.battery_warning.value
-    level = vehicle.battery_fraction.value
-    left = 1.0 if level is None or vehicle.is_flying.value is False else level
-    if warning is BatteryWarning.SERIOUS:
-        text = "battery critically low, reported by the aircraft: land now"
-        yield _about(vehicle, "battery", Severity.CRITICAL, text)
-    elif left <= settings.serious_battery_fraction:
-        limit = settings.serious_battery_fraction
-        text = f"battery at {left:.0%}, limit {limit:.0%}: land now"
-        yield _about(vehicle, "battery", Severity.CRITICAL, text)
-    elif warning is BatteryWarning.LOW:
-        text = "battery low, reported by the aircraft: return home"
-        yield _about(vehicle, "battery", Severity.WARNING, text)
-    elif left <= settings.low_battery_fraction:
-        text = f"battery at {left:.0%}, limit {settings.low_battery_fraction:.0%}: return home"
-        yield _about(vehicle, "battery", Severity.WARNING, text)
+    critical = battery_critical.words(vehicle, settings.serious_battery_fraction)
+    low = battery_low.words(vehicle, settings.low_battery_fraction)
+    if critical is not None:
+        yield _about(vehicle, "battery", Severity.CRITICAL, critical)
+    elif low is not None:
+        yield _about(vehicle, "battery", Severity.WARNING, low)
 
 
 def _landing(vehicle: VehicleState, after_s: float) -> Iterator[Condition]:

@@ -12,6 +12,7 @@ from recon.fleet.state import staleness
 from recon.model.severity import Severity
 from recon.model.trust import DoubtKind
 from recon.model.vehicle import Staleness, VehicleState
+from recon.safety.failsafe import attitude, gnss_lost, wind
 from recon.station.state.settings import FlightAlarmSettings, StationSettings
 
 
@@ -49,8 +50,7 @@ def _gnss(vehicle: VehicleState, settings: StationSettings) -> Iterator[FlightCo
     count, level = vehicle.gnss_satellite_count.value, vehicle.gnss_signal_level.value
     if vehicle.extended_received_at_ns is None:
         return
-    is_lost = vehicle.position.value is None or level == 0
-    if is_lost:
+    if gnss_lost.is_lost(vehicle):
         text = (
             f"GNSS lost ({_reception(count, level)}): it drifts with the wind; its pilot must "
             "steer it"
@@ -82,25 +82,14 @@ def _height(vehicle: VehicleState, limits: FlightAlarmSettings) -> Iterator[Flig
 
 
 def _wind(vehicle: VehicleState, settings: StationSettings) -> Iterator[FlightCondition]:
-    level, limit = vehicle.wind_level.value, settings.safety.preflight.strong_wind_level
-    if level is not None and level >= limit:
-        text = (
-            f"strong wind, reported by the aircraft (level {level}, limit {limit}), near what it "
-            "can fly in: bring it lower and home, or land it"
-        )
+    text = wind.words(vehicle, settings.safety.preflight.strong_wind_level)
+    if text is not None:
         yield FlightCondition("strong_wind", Severity.WARNING, text)
 
 
 def _attitude(vehicle: VehicleState, limits: FlightAlarmSettings) -> Iterator[FlightCondition]:
-    attitude = vehicle.attitude.value
-    if attitude is None:
-        return
-    tilt_deg = max(abs(attitude.pitch_deg), abs(attitude.roll_deg))
-    if tilt_deg > limits.max_tilt_deg:
-        text = (
-            f"tilted by {tilt_deg:.0f} deg, limit {limits.max_tilt_deg:g} deg: its pilot must take "
-            "over; keep clear below"
-        )
+    text = attitude.words(vehicle, limits.max_tilt_deg)
+    if text is not None:
         yield FlightCondition("attitude", Severity.CRITICAL, text, limits.tilt_s)
 
 

@@ -22,7 +22,7 @@ def first_state(
     apps: tuple[AllowedApp, ...] | None = None,
 ) -> Station:
     """Return the station before its first event; `apps` None: without a list of apps."""
-    chosen = _with_lens(settings or StationSettings(), site)
+    chosen = _with_lens(settings or StationSettings(failsafe_matrix=site.failsafe), site)
     marked = None if site.imager is None else site.imager.marked_frame
     return Station(
         settings=chosen,

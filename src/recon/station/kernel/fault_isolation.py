@@ -56,7 +56,7 @@ def after_fault(
         return note_fault(station, StationFaulted(where, describe_fault(fault)), now_ns), ()
     outputs: tuple[Output, ...] = ()
     for part in parts:
-        station, more = _attempt(part.name, part.isolated or part.run, station, now_ns)
+        station, more = attempt(part.name, part.isolated or part.run, station, now_ns)
         outputs += more
     return station, outputs
 
@@ -74,10 +74,10 @@ def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
             station, more = order_gateway.update_streams(station, now_ns, (serial,))
         except Exception as fault:
             station = note_fault(station, StationFaulted(where, describe_fault(fault)), now_ns)
-            station, more = _attempt(where, partial(_end_stream, serial), station, now_ns)
+            station, more = attempt(where, partial(_end_stream, serial), station, now_ns)
             setpoint_stream = station.control(serial).stream
             if setpoint_stream is not None and setpoint_stream.closing is None:
-                station, more = _attempt(where, partial(_hold, serial), station, now_ns)
+                station, more = attempt(where, partial(_hold, serial), station, now_ns)
         outputs += more
     return station, outputs
 
@@ -88,7 +88,7 @@ def follow_orders_isolated(station: Station, now_ns: int) -> Stepped:
     serials = {record.command.serial for record in station.orders.tracked}
     for serial in sorted(serial for serial in serials if serial is not None):
         part = partial(_follow_orders_of, serial)
-        station, more = _attempt(f"following the orders of {serial}", part, station, now_ns)
+        station, more = attempt(f"following the orders of {serial}", part, station, now_ns)
         outputs += more
     return station, outputs
 
@@ -132,7 +132,8 @@ def isolated(watchdog: Watchdog) -> Watchdog:
 ISOLATED_WATCHDOGS = tuple(isolated(watchdog) for watchdog in WATCHDOGS)
 
 
-def _attempt(name: str, part: Part, station: Station, now_ns: int) -> Stepped:
+def attempt(name: str, part: Part, station: Station, now_ns: int) -> Stepped:
+    """Run one part; if it raises, return the station before it with the fault recorded."""
     try:
         return part(station, now_ns)
     except Exception as fault:

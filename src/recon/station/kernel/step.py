@@ -57,6 +57,7 @@ from recon.station.control import (
 )
 from recon.station.imaging import frames
 from recon.station.kernel import fault_isolation
+from recon.station.kernel.failsafe_orders import run_failsafes, run_failsafes_isolated
 from recon.station.kernel.fault_isolation import TickPart
 from recon.station.kernel.watchdog_holds import run_watchdogs
 from recon.station.operations import OPERATIONS
@@ -210,6 +211,7 @@ TICK_PARTS: tuple[TickPart, ...] = (
     ),
     *(TickPart(f"advancing the {each.name}", each.tick) for each in OPERATIONS),
     TickPart("running the watchdogs", run_watchdogs, fault_isolation.run_watchdogs_isolated),
+    TickPart("running the failsafe matrix", run_failsafes, run_failsafes_isolated),
     TickPart("raising alarms", raise_alarms, fault_isolation.raise_alarms_isolated),
 )
 """What a tick does, in this order."""

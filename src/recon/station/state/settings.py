@@ -6,8 +6,10 @@ from recon.detection import DetectionSettings
 from recon.fleet.settings import FleetSettings
 from recon.forecast import ForecastSettings
 from recon.guidance.steering import SteeringSettings
+from recon.model.failsafe_matrix import FailsafeMatrix
 from recon.model.mission import DJI
 from recon.safety import SafetySettings
+from recon.safety.failsafe import DEFAULT_MATRIX
 from recon.station.state.setpoint_stream import StreamSettings
 
 
@@ -48,6 +50,36 @@ class FlightAlarmSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class FailsafeSettings:
+    """When the station's own conditions of the failsafe matrix hold, and how reactions are ordered;
+    times in seconds."""
+
+    period_s: float = 0.1
+    lingers_s: float = 3.0
+    """A condition that is back within this is the same occurrence: no second reaction."""
+    retry_s: float = 1.0
+    tries: int = 5
+    """A reaction that the gate refused is ordered again: telemetry comes back within seconds."""
+
+    restart_settles_s: float = 3.0
+    """What a vehicle shows in its first telemetry after a restart, two extended packets long, is
+    from before it: the operator knows it, or has decided about it."""
+
+    late_step_s: float = 0.5
+    """Ten ticks missed: sticks are late by as much, and an aircraft hovers below 5 Hz."""
+    late_within_s: float = 10.0
+    """One such gap happens; a second one within this is a load that stays."""
+    suspended_s: float = 1.0
+    """The gap from which on the station counts as suspended, as in the driver."""
+    late_lasts_s: float = 5.0
+
+    operator_stays_s: float = 30.0
+    """A client connected this long is a console or a program; a command of the shell is shorter."""
+    operator_gone_s: float = 10.0
+    """A page that is opened again, or a network that changes, is back within this."""
+
+
+@dataclass(frozen=True, slots=True)
 class StationSettings:
     """Times in seconds."""
 
@@ -55,6 +87,8 @@ class StationSettings:
     safety: SafetySettings = field(default_factory=SafetySettings)
     restart: RestartSettings = field(default_factory=RestartSettings)
     flight_alarms: FlightAlarmSettings = field(default_factory=FlightAlarmSettings)
+    failsafe: FailsafeSettings = field(default_factory=FailsafeSettings)
+    failsafe_matrix: FailsafeMatrix = DEFAULT_MATRIX
     detection: DetectionSettings = field(default_factory=DetectionSettings)
     forecast: ForecastSettings = field(default_factory=ForecastSettings)
 

@@ -11,6 +11,7 @@ from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.station.state.alarm_book import AlarmBook
+from recon.station.state.failsafe_state import FailsafeState
 from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imaging import Imaging, ShadePipeline
 from recon.station.state.orders import OrderBook
@@ -93,6 +94,8 @@ class Station:
     """The newest fleet return of this run."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """Findings, holds and switches of the watchdogs."""
+    failsafe_state: FailsafeState = field(default_factory=FailsafeState)
+    """Occurrences of the failsafe matrix's conditions. Writer: `failsafe/runner.py`."""
     faults: Mapping[str, Fault] = field(default_factory=dict)
     """Recent faults in the station's own code, by where they arose."""
 

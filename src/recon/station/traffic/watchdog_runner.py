@@ -22,6 +22,7 @@ from recon.safety.watchdogs import (
     build_traffic_picture,
     hold_outcome,
 )
+from recon.station.failsafe import failsafe_holds
 from recon.station.state.station import Station
 from recon.station.state.watchdog_state import ActiveFinding, HoldRefused, StickCount
 from recon.station.traffic import identity_grace
@@ -94,6 +95,7 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
             is_imager=vehicle.serial is not None and vehicle.serial == imager,
             stick_quiet_s=quiet_s,
             hold_refused="" if refused is None else refused.why,
+            alarm_only=failsafe_holds.alarm_only(station, vehicle),
         )
 
 
