@@ -4,6 +4,7 @@ Exit codes: 0 done; 1 refused, or not confirmed by telemetry; 2 wrong use, or no
 """
 
 import asyncio
+import os
 from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import Annotated
@@ -17,6 +18,8 @@ DONE, REFUSED, WRONG_USE = 0, 1, 2
 
 DEFAULT_ADDRESS = "http://127.0.0.1:8080"
 MAX_TOKEN_BYTES = 4096
+FINGERPRINT_VARIABLE = "RECON_FINGERPRINT"
+"""SHA-256 of the certificate of an https address, as the station prints it."""
 
 AddressOption = Annotated[
     str, typer.Option("--station", envvar="RECON_STATION", help="Address of the station's console.")
@@ -53,11 +56,17 @@ class VehicleNameError(ClientError):
 
 def run_at_station(address: str, token_file: Path | None, work: Work) -> None:
     """Connect, run `work` and exit with its exit code; raises `ClientError`s."""
-    raise typer.Exit(asyncio.run(_connected(address, read_token(token_file), work)))
+    raise typer.Exit(asyncio.run(_connected(station_at(address, token_file), work)))
 
 
-async def _connected(address: str, token: str | None, work: Work) -> int:
-    async with Station(address, token) as station:
+def station_at(address: str, token_file: Path | None) -> Station:
+    """Return the station of a command's options, not yet connected; raises `AddressError`."""
+    fingerprint = os.environ.get(FINGERPRINT_VARIABLE)
+    return Station(address, read_token(token_file), fingerprint=fingerprint)
+
+
+async def _connected(unopened: Station, work: Work) -> int:
+    async with unopened as station:
         return await work(station)
 
 

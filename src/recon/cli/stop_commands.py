@@ -22,8 +22,8 @@ from recon.cli.connection import (
     VehicleNameError,
     WaitOption,
     named_serials,
-    read_token,
     run_at_station,
+    station_at,
 )
 from recon.cli.output import Outcome, await_outcomes, print_line, print_outcomes
 from recon.client import ClientError, FleetCommands, OrderStatus, Station, StopAnswer, VehicleAnswer
@@ -89,7 +89,7 @@ def all_stop_command(
 
     It stays in force: nothing moves a vehicle until `recon release-stop`.
     """
-    outcomes = asyncio.run(_all_stop(Station(address, read_token(token_file)), wait))
+    outcomes = asyncio.run(_all_stop(station_at(address, token_file), wait))
     raise typer.Exit(print_outcomes(outcomes, as_json))
 
 

@@ -8,6 +8,7 @@ async with Station("http://127.0.0.1:8080") as station:
 from recon.client.errors import (
     AddressError,
     BadAnswerError,
+    CertificateError,
     ClientError,
     ConnectionLostError,
     MaybeSentError,
@@ -55,6 +56,7 @@ __all__ = [
     "AuditRecord",
     "AuthorityStatus",
     "BadAnswerError",
+    "CertificateError",
     "ClientError",
     "ConnectionLostError",
     "EulerAngles",

@@ -3,6 +3,7 @@
 ClientError                  the text states what was expected, what was received, and what to do
 |- AddressError              an invalid address or token
 |- StationUnreachableError   no connection: nothing was sent
+|  |- CertificateError       the certificate is not the pinned one, or of no known authority
 |- RequestRefusedError       the station answered and did nothing
 |  |- OrderInvalidError      the order's format was rejected (returned as a `Refusal`)
 |- BadAnswerError            the response is not a station's
@@ -24,6 +25,10 @@ class AddressError(ClientError):
 
 class StationUnreachableError(ClientError):
     """No connection to the station was made; nothing was sent."""
+
+
+class CertificateError(StationUnreachableError):
+    """The station's certificate is not the pinned one, or no known authority vouches for it."""
 
 
 class RequestRefusedError(ClientError):

@@ -19,6 +19,7 @@ from recon.client.errors import (
     StationUnreachableError,
 )
 from recon.client.messages import ProblemMessage, decode, shown
+from recon.client.trust import Trust, is_untrusted
 
 LONGEST_ANSWER_BYTES = 16 * 1024 * 1024
 ORDER_INVALID = 422
@@ -29,12 +30,16 @@ M = TypeVar("M")
 class Http:
     """Requests to one station."""
 
-    def __init__(self, address: Address, answer_within_s: float) -> None:
+    def __init__(
+        self, address: Address, answer_within_s: float, trust: Trust | None = None
+    ) -> None:
         self._address = address
+        self._trust = trust or Trust(address)
         self._answer_within_s = answer_within_s
         self._client = httpx.AsyncClient(
             base_url=address.http,
             headers={**address.headers, "Accept-Encoding": "identity"},
+            verify=self._trust.context,
             timeout=answer_within_s,
             # Ignore proxy variables: the station is on the local network.
             trust_env=False,
@@ -87,6 +92,7 @@ class Http:
         self._check_status(status, data, path)
 
     async def _send(self, method: str, path: str, content: bytes | None) -> tuple[int, bytes]:
+        await self._trusted()
         headers = {} if content is None else {"Content-Type": "application/json"}
         async with (
             asyncio.timeout(self._answer_within_s),
@@ -101,6 +107,12 @@ class Http:
                         "one: is this a Recon station?"
                     )
             return response.status_code, bytes(data)
+
+    async def _trusted(self) -> None:
+        try:
+            await self._trust.prepare()
+        except OSError as problem:
+            raise self._unreachable(problem) from problem
 
     def _check_status(self, status: int, data: bytes, path: str) -> None:
         if 200 <= status < 300:
@@ -117,6 +129,8 @@ class Http:
         )
 
     def _unreachable(self, problem: Exception) -> StationUnreachableError:
+        if is_untrusted(problem):
+            return self._trust.untrusted()
         return StationUnreachableError(
             f"expected a station at {self._address.http}, got none "
             f"({_reason(problem, self._answer_within_s)}); nothing was ordered: start it with "

@@ -33,15 +33,28 @@ class Station:
     Leaving the block sends no order: vehicles fly on.
     """
 
-    def __init__(self, url: str, token: str | None = None, *, answer_within_s: float = 5.0) -> None:
-        """Parse a station's address; raises `AddressError`. Opens nothing yet."""
+    def __init__(
+        self,
+        url: str,
+        token: str | None = None,
+        *,
+        fingerprint: str | None = None,
+        answer_within_s: float = 5.0,
+    ) -> None:
+        """Parse a station's address; raises `AddressError`. Opens nothing yet.
+
+        `fingerprint` is the SHA-256 of the certificate of an `https` address, as the station
+        prints it; without one the certificate must be of an authority that this computer trusts.
+        """
         # Imported here: `recon hold --help` need not wait for the HTTP libraries.
         from recon.client.http import Http
         from recon.client.stream import Stream
+        from recon.client.trust import Trust
 
-        self.address = parse_address(url, token)
-        self._stream = Stream(self.address)
-        self._http = Http(self.address, answer_within_s)
+        self.address = parse_address(url, token, fingerprint)
+        trust = Trust(self.address)
+        self._stream = Stream(self.address, trust=trust)
+        self._http = Http(self.address, answer_within_s, trust)
         self._order_api = OrderApi(self._http, self._stream)
         self.fleet = FleetCommands(self._order_api)
         self.zones = ZoneCommands(self._http)

@@ -1,7 +1,7 @@
 """The stream of states, read in the background; only the newest state is kept.
 
     connecting --handshake--> reading --closed, or silent for 5 s--> waiting --pause--> connecting
-    connecting or reading --wrong token, not a station--> failed, for good
+    connecting or reading --wrong token or certificate, not a station--> failed, for good
 
 The pause starts at 0.2 s, doubles with each attempt up to 2 s, and starts over after a received
 state. The gap shows in the ages of the values. A lost stream is reopened without the caller, orders
@@ -23,8 +23,9 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketException
 
 from recon.client.address import Address
-from recon.client.errors import BadAnswerError, ClientError, RequestRefusedError
+from recon.client.errors import BadAnswerError, CertificateError, ClientError, RequestRefusedError
 from recon.client.messages import ReceivedState, StateMessage, decode
+from recon.client.trust import Trust, is_untrusted
 from recon.model.units import NS_PER_S, ns_to_seconds
 
 LONGEST_STATE_BYTES = 16 * 1024 * 1024
@@ -77,7 +78,12 @@ class StreamClock:
 class Stream:
     """Reads states until stopped; any number of tasks can wait for the next one."""
 
-    def __init__(self, address: Address, now_ns: Callable[[], int] | None = None) -> None:
+    def __init__(
+        self,
+        address: Address,
+        now_ns: Callable[[], int] | None = None,
+        trust: Trust | None = None,
+    ) -> None:
         self.now_ns = now_ns or time.monotonic_ns
         self.newest: ReceivedState | None = None
         self.owner: str | None = None
@@ -85,6 +91,7 @@ class Stream:
         self.trouble = "no answer yet"
         """Why no state is arriving, for error texts."""
         self._address = address
+        self._trust = trust or Trust(address)
         self._clock = StreamClock()
         self._failure: ClientError | None = None
         self._changed = asyncio.Event()
@@ -126,21 +133,27 @@ class Stream:
             before = self.newest
             try:
                 await self._read_connection()
-            except (BadAnswerError, RequestRefusedError) as problem:
-                self._failure = problem
-                self._wake()
+            except (BadAnswerError, RequestRefusedError, CertificateError) as problem:
+                self._fail(problem)
                 return
             except TimeoutError:
                 self.trouble = f"no state for {SILENT_CONNECTION_S:g} s"
             except (OSError, WebSocketException) as problem:
+                if is_untrusted(problem):
+                    self._fail(self._trust.untrusted())
+                    return
                 self.trouble = str(problem)
             pause_s = FIRST_PAUSE_S if before is not self.newest else 2.0 * pause_s
             await asyncio.sleep(min(pause_s, LONGEST_PAUSE_S))
 
     async def _read_connection(self) -> None:
         owner = token_urlsafe(24)
+        await self._trust.prepare()
         try:
-            async with _open(self._address, owner) as connection, _keepalives(connection):
+            async with (
+                _open(self._address, self._trust, owner) as connection,
+                _keepalives(connection),
+            ):
                 self.owner = owner
                 await self._read(connection)
         except InvalidStatus as problem:
@@ -180,6 +193,10 @@ class Stream:
         self.newest = ReceivedState(number, created_at_ns, message)
         self._wake()
 
+    def _fail(self, problem: ClientError) -> None:
+        self._failure = problem
+        self._wake()
+
     def _wake(self) -> None:
         """Wake all waiting tasks; later ones wait for the next change."""
         self._changed.set()
@@ -215,10 +232,11 @@ async def _keepalives(connection: ClientConnection) -> AsyncIterator[None]:
         task.cancel()
 
 
-def _open(address: Address, owner: str) -> connect:
+def _open(address: Address, trust: Trust, owner: str) -> connect:
     return _ConnectWithoutRedirect(
         f"{address.stream}?owner={owner}",
         additional_headers=address.headers,
+        ssl=trust.context if address.is_secure else None,
         compression=None,
         proxy=None,
         max_size=LONGEST_STATE_BYTES,
