@@ -1,6 +1,7 @@
 """Commands at a real station with simulated drones: 0 done, 1 refused, 2 wrong use."""
 
 import json
+import shlex
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,6 +11,8 @@ from tests.cli.processes import started
 from tests.cli.station_process import StationProcess, addresses, run_options, station_process
 
 from recon.station.kernel.http_servers import local_person
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -100,6 +103,17 @@ class TestOnTheGround:
             (*circle, "--corner", at),
         ):
             assert station.recon("zone", "add", *person, *wrong).code == 2
+
+    def test_the_guides_zone_commands_work(self, station: StationProcess) -> None:
+        guide = (ROOT / "docs/how-to/keep-a-place-clear.md").read_text(encoding="utf-8")
+        lines = [line for line in guide.splitlines() if line.startswith("recon zone ")]
+        assert [line.split()[2] for line in lines] == ["add", "add", "list", "end"]
+        for line in lines[:-1]:
+            assert station.recon(*shlex.split(line)[1:]).code == 0, line
+        drawn = station.recon("zone", "list", "--json").json
+        assert [zone["kind"] for zone in drawn] == ["person", "tractor"]
+        for zone in drawn:
+            assert station.recon("zone", "end", str(zone["id"])).code == 0
 
     def test_a_dry_run_prints_the_refusal_and_sends_nothing(
         self, station: StationProcess, mission: Path

@@ -85,7 +85,7 @@ describe("drawing a zone", () => {
     expect(page.root.textContent).toContain("1 more at least");
   });
 
-  it("takes words and minutes, and waits while a number is none", () => {
+  it("takes words and minutes, and waits while a number is missing", () => {
     show();
     const { zoneDraft, aim } = page.shared;
     press("Draw a zone");
