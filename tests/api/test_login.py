@@ -17,8 +17,10 @@ from tests.patient_loop import run_patiently
 from tests.persons import TOKEN, user
 
 from recon.api import login as login_module
+from recon.api.addresses import SharedAddress
+from recon.api.app import create_app
 from recon.api.login import FAILURES_OVERALL, FAILURES_PER_ADDRESS, WINDOW_S, Login, RefusedRequest
-from recon.api.security import LOGIN_NEEDED, Access
+from recon.api.security import LOGIN_NEEDED, Access, AccessCheck
 from recon.model.event import LoginAccepted, LoginRefused
 from recon.model.person import Person, Role
 
@@ -127,6 +129,28 @@ class TestRequests:
         assert response.headers["connection"] == "close"
         right = {"authorization": f"Bearer {TOKEN}"}
         assert client.post("/api/all-stop", headers=right).status_code == 200
+
+    def test_it_states_the_person_and_the_address_for_other_computers(self) -> None:
+        shared = SharedAddress(("https://192.0.2.5:8443",), ":".join(["AB"] * 32))
+        app = create_app(FakeStation(), None, "1.2.3", shared)
+        client = Client(AccessCheck(app, Access(Login([user()]))))
+        local = client.get("/api/access").json()
+        assert (local["role"], local["is_logged_in"]) == ("admin", False)
+        named = client.get("/api/access", headers={"authorization": f"Bearer {TOKEN}"}).json()
+        assert named == {
+            "name": "cleo",
+            "role": "operator",
+            "is_logged_in": True,
+            "urls": ["https://192.0.2.5:8443"],
+            "fingerprint": shared.fingerprint,
+        }
+        assert shared.login_url == f"https://192.0.2.5:8443/#fingerprint={'AB' * 32}"
+        code = client.get("/api/access/qr.svg")
+        assert code.headers["content-type"] == "image/svg+xml"
+        assert b"<svg" in code.content
+        alone = Client(application(FakeStation()))
+        assert alone.get("/api/access/qr.svg").status_code == 404
+        assert alone.get("/api/access").json()["urls"] == []
 
     def test_over_loopback_a_token_that_is_given_is_checked(self) -> None:
         access = Access(Login([user(role=Role.OBSERVER)]))

@@ -4,6 +4,7 @@ import contextlib
 import socket
 import struct
 import sys
+from dataclasses import dataclass
 from ipaddress import ip_address
 
 if sys.platform == "linux":
@@ -13,6 +14,19 @@ _SIOCGIFADDR = 0x8915
 """Linux: the IPv4 address of an interface (netdevice(7))."""
 
 EVERY_ADDRESS = frozenset({"0.0.0.0", "::"})
+
+
+@dataclass(frozen=True, slots=True)
+class SharedAddress:
+    """What other computers use: addresses of the console, and the certificate's fingerprint."""
+
+    urls: tuple[str, ...]
+    fingerprint: str
+
+    @property
+    def login_url(self) -> str:
+        """The first address, with the fingerprint for the login page and for `--station`."""
+        return f"{self.urls[0]}/#fingerprint={self.fingerprint.replace(':', '')}"
 
 
 def is_loopback(host: str) -> bool:

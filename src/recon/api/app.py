@@ -11,6 +11,8 @@ from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException as AnyHTTPException
 
 from recon.api import schema
+from recon.api.access_routes import add_access_routes
+from recon.api.addresses import SharedAddress
 from recon.api.order_routes import add_order_routes
 from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
@@ -36,10 +38,13 @@ SECURITY_HEADERS = {
 }
 
 
-def create_app(port: StationPort, console: Path | None, version: str) -> FastAPI:
+def create_app(
+    port: StationPort, console: Path | None, version: str, shared: SharedAddress | None = None
+) -> FastAPI:
     """Return the application around a station, to be put behind an `AccessCheck`.
 
     `console` is the folder with the built console; without one a page describes how to build it.
+    `shared` is the address for other computers.
     """
     app = FastAPI(
         title="Recon",
@@ -48,6 +53,7 @@ def create_app(port: StationPort, console: Path | None, version: str) -> FastAPI
         redoc_url=None,
         dependencies=[Depends(require_listed_role)],
     )
+    add_access_routes(app, shared)
     _add_state_routes(app, port)
     _add_audit_and_streams(app, port)
     add_order_routes(app, port)

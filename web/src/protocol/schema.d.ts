@@ -4,6 +4,46 @@
  */
 
 export interface paths {
+    "/api/access": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Access
+         * @description Name and role of the person of this request, and the address for other computers.
+         */
+        get: operations["access_api_access_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/access/qr.svg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Code
+         * @description The address for other computers with the certificate's fingerprint, as a QR code.
+         */
+        get: operations["code_api_access_qr_svg_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/alarms/{alarm_id}/acknowledge": {
         parameters: {
             query?: never;
@@ -673,6 +713,27 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /**
+         * AccessView
+         * @description The person of this request. `is_logged_in`: by a token, not as this computer's user.
+         *
+         *     `urls` and `fingerprint` are of the console for other computers; empty and null without one.
+         */
+        AccessView: {
+            /** Fingerprint */
+            fingerprint: string | null;
+            /** Is Logged In */
+            is_logged_in: boolean;
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "observer" | "pilot" | "operator" | "admin";
+            /** Urls */
+            urls: string[];
+        };
         /**
          * ActionResponse
          * @description The outcome of an operator command that is no order: accepted, or refused with a reason.
@@ -2417,6 +2478,55 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    access_api_access_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AccessView"];
+                };
+            };
+        };
+    };
+    code_api_access_qr_svg_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     acknowledge_api_alarms__alarm_id__acknowledge_post: {
         parameters: {
             query?: never;

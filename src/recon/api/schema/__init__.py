@@ -5,6 +5,7 @@ since. `value: null` means unknown. Heights are above the vehicle's own takeoff 
 otherwise.
 """
 
+from recon.api.schema.access import AccessView
 from recon.api.schema.message import (
     ActionResponse,
     Message,
@@ -93,6 +94,7 @@ from recon.api.schema.zones import (
 )
 
 __all__ = [
+    "AccessView",
     "ActionResponse",
     "AdmitAppRequest",
     "AgedFlag",

@@ -19,7 +19,7 @@ from pathlib import Path
 import uvicorn
 from starlette.types import ASGIApp
 
-from recon.api.addresses import in_url, is_loopback, reachable_addresses
+from recon.api.addresses import SharedAddress, in_url, is_loopback, reachable_addresses
 from recon.api.certificate import Certificate, load_certificate, own_certificate
 from recon.api.connections import PING_S, HttpConnection, StreamConnection
 from recon.api.login import Login
@@ -47,19 +47,6 @@ class NetworkConfig:
     port: int = 8443
     certificate: Path | None = None
     key: Path | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class NetworkAccess:
-    """What other computers use: addresses of the console, and the certificate's fingerprint."""
-
-    urls: tuple[str, ...]
-    fingerprint: str
-
-    @property
-    def login_url(self) -> str:
-        """The first address, with the fingerprint for the login page and for `--station`."""
-        return f"{self.urls[0]}/#fingerprint={self.fingerprint.replace(':', '')}"
 
 
 def require_startable(http_host: str, network: NetworkConfig) -> None:
@@ -120,15 +107,15 @@ def url_of(host: str, sock: socket.socket, scheme: str = "http") -> str:
     return f"{scheme}://{in_url(host)}:{sock.getsockname()[1]}"
 
 
-def network_access(
+def shared_address(
     config: NetworkConfig, certificate: Certificate | None, sock: socket.socket | None
-) -> NetworkAccess | None:
+) -> SharedAddress | None:
     """Return what other computers use, None when they reach nothing."""
     if config.host is None or certificate is None or sock is None:
         return None
     hosts = reachable_addresses(config.host)
     urls = tuple(url_of(host, sock, "https") for host in hosts)
-    return NetworkAccess(urls, certificate.fingerprint)
+    return SharedAddress(urls, certificate.fingerprint)
 
 
 def listen(host: str, port: int, option: str) -> socket.socket:

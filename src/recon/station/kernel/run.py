@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from recon import version
+from recon.api.addresses import SharedAddress
 from recon.api.app import create_app
 from recon.api.certificate import Certificate
 from recon.api.login import Login
@@ -36,16 +37,15 @@ from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.http_servers import (
-    NetworkAccess,
     NetworkConfig,
     StartError,
     cannot_listen,
     certificate_of,
     listen,
     loopback_server,
-    network_access,
     network_server,
     require_startable,
+    shared_address,
     stopped_by_signals,
     url_of,
 )
@@ -102,7 +102,7 @@ class Started:
     audit_folder: str = ""
     apps_listed: int | None = None
     """Entries of the list of apps; None without a list."""
-    network: NetworkAccess | None = None
+    network: SharedAddress | None = None
     """What other computers use; None when they reach nothing."""
     taken_up: str = ""
     """What this run continues from the last one, in words; empty if nothing."""
@@ -214,7 +214,8 @@ def _servers(
     users.read()
     watching = asyncio.create_task(users.run())
     stack.callback(watching.cancel)
-    app = create_app(service, config.console, version())
+    shared = shared_address(config.network, doors.certificate, doors.network)
+    app = create_app(service, config.console, version(), shared)
     servers = [(loopback_server(app, login, config.http_host), doors.loopback)]
     if doors.network is not None and doors.certificate is not None:
         servers.append((network_server(app, login, doors.certificate), doors.network))
@@ -328,7 +329,7 @@ def _start_capture(config: RunConfig, driver: AsyncioDriver) -> Capture | None:
 
 
 def _started(config: RunConfig, service: Service, links: LinkServer, doors: _Doors) -> Started:
-    network = network_access(config.network, doors.certificate, doors.network)
+    network = shared_address(config.network, doors.certificate, doors.network)
     url = url_of(config.http_host, doors.loopback)
     return Started(service.link_addresses, links.port, url, network=network)
 
