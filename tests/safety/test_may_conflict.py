@@ -1,6 +1,7 @@
 """What is sorted out before trajectories are compared piece by piece never meets."""
 
 import sys
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -20,7 +21,7 @@ from tests.safety.traffic import (
 
 from recon.model.command import FlyMission, GoTo, StickFrame, VirtualStick
 from recon.model.control import Commanded, Intent
-from recon.model.vehicle import VehicleState
+from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import Traffic
 from recon.safety.prediction import vehicle_motion
 from recon.safety.prediction.conflicts import first_conflict
@@ -29,9 +30,11 @@ from recon.safety.prediction.predicted_trajectories import (
     is_too_far,
     may_conflict,
     may_enter,
+    predict_order,
+    predict_traffic,
     trajectory_bounds,
 )
-from recon.safety.prediction.trajectory import FlightPart, Trajectory, TrajectoryWriter
+from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, Trajectory, TrajectoryWriter
 from recon.safety.rules.separation import separation
 from recon.safety.separation_minima import SeparationMinima
 
@@ -165,3 +168,49 @@ def test_sorting_out_far_traffic_changes_no_refusal(
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(sys.modules[separation.__module__], "is_too_far", lambda *_: False)
         assert judged(body, own, *known) == with_bound
+
+
+def short_orders() -> st.SearchStrategy[VirtualStick | GoTo]:
+    """Orders that end soon, so that others are predicted only for a while."""
+    stick = st.builds(
+        VirtualStick,
+        st.just(StickFrame.GROUND),
+        st.just(0.0),
+        st.floats(-5.0, 5.0),
+        st.floats(-5.0, 5.0),
+        st.just(40.0),
+        st.floats(0.5, 5.0),
+    )
+    goto = st.builds(lambda north: GoTo(at(north, 0.0), 40.0, 5.0), st.floats(5.0, 40.0))
+    return st.one_of(stick, goto)
+
+
+@given(
+    short_orders(),
+    st.lists(st.tuples(st.floats(-60.0, 60.0), st.floats(-60.0, 60.0)), min_size=3, max_size=12),
+    st.floats(100.0, 250.0),
+)
+@settings(max_examples=examples(300), deadline=None)
+def test_the_end_of_interest_leaves_out_no_conflict(
+    body: VirtualStick | GoTo, places: list[tuple[float, float]], far_m: float
+) -> None:
+    """Traffic on its mission may come early: it is predicted for as long as that can matter."""
+    own = vehicle_motion(aircraft("A", (0.0, 0.0)), AIR, PLANE, NOW, SETTINGS)
+    mission = route((far_m, 0.0), *places)
+    coming = aircraft("B", (far_m, 0.0), velocity=(0.0, 0.0, 0.0), mode=FlightMode.GPS_WAYPOINT)
+    other = vehicle_motion(coming, AIR, PLANE, NOW, SETTINGS)
+    assert own is not None
+    assert other is not None
+    trajectory = predict_order(own, body, SETTINGS)
+    bounds = trajectory_bounds(trajectory, NEED, SETTINGS)
+    whole = predict_traffic(other, flies(mission, 1), SETTINGS, FOREVER_S)
+    asked = predict_traffic(other, flies(mission, 1), SETTINGS, bounds.until_s)
+    found = first_conflict(trajectory, whole, NEED, SETTINGS)
+    assert (found is None) is (first_conflict(trajectory, asked, NEED, SETTINGS) is None)
+    if found is not None:
+        assert may_enter(other, flies(mission, 1), bounds, SETTINGS)
+
+
+def test_where_times_are_wholly_uncertain_all_of_the_traffic_is_of_interest() -> None:
+    endless = replace(SETTINGS, time_uncertainty=1.0)
+    assert trajectory_bounds(standing(0.0, 40.0), NEED, endless).until_s == FOREVER_S

@@ -55,6 +55,16 @@ def test_the_watchdog_counts_none_either() -> None:
     assert "3 m in height" in level.text
 
 
+def test_the_watchdog_counts_none_to_a_hazard_area_either() -> None:
+    """Flat ground is assumed under both: the lost one may be as high as the other."""
+    a, b = pair(100.0, 40.0)
+    lost = aircraft("B", (0.0, 12.0), 40.0, home=NORTH, age_s=10.0)
+    for shown in (lost, replace(lost, position=b.position)):
+        found = looks(separation, in_context(a), in_context(shown))
+        assert [finding.rule for finding in found] == ["separation"]
+    assert looks(separation, *map(in_context, with_pads(a, lost))) == []
+
+
 def test_takeoffs_at_one_place_have_one_height() -> None:
     a, b = pair(70.0, 40.0)
     near = replace(b, takeoff_point=aircraft("B", home=(-35.0, 0.0)).takeoff_point)

@@ -20,11 +20,11 @@ from recon.safety.prediction.motion import (
     plausible_speed_mps,
 )
 from recon.safety.prediction.predictor import UNHOMED_RADIUS_M, Predictor
+from recon.safety.prediction.protected_volumes import latest_entry_s, latest_s
 from recon.safety.prediction.trajectory import (
     ALL_HEIGHTS_M,
     EAST_0,
     EAST_1,
-    END_S,
     HIGH_0,
     HIGH_1,
     LOW_0,
@@ -82,8 +82,8 @@ def _has_not_begun(motion: VehicleMotion, intent: Intent) -> bool:
 @dataclass(frozen=True, slots=True)
 class TrajectoryBounds:
     """A circle in the plane and a band of heights that hold a trajectory, what it must be kept
-    clear of
-    included, and how long it is of interest."""
+    clear of included, and until when others are of interest: they may fly earlier than they are
+    thought to."""
 
     east_m: float
     north_m: float
@@ -101,14 +101,13 @@ def trajectory_bounds(
     east_m, north_m = float(rows[0, EAST_0]), float(rows[0, NORTH_0])
     wide_m = np.hypot(rows[:, EAST_1] - east_m, rows[:, NORTH_1] - north_m)
     wide_m += np.maximum(rows[:, RADIUS_0], rows[:, RADIUS_1])
-    ends_s = float(rows[-1, END_S])
     return TrajectoryBounds(
         east_m,
         north_m,
         float(wide_m.max()) + need.horizontal_m,
         float(rows[:, [LOW_0, LOW_1]].min()) - need.vertical_m,
         float(rows[:, [HIGH_0, HIGH_1]].max()) + need.vertical_m,
-        ends_s * (1.0 + settings.time_uncertainty) + settings.slack_s,
+        latest_entry_s(latest_s(trajectory, settings), settings),
     )
 
 

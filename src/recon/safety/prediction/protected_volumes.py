@@ -11,6 +11,7 @@ from recon.safety.prediction.trajectory import (
     EAST_0,
     EAST_1,
     END_S,
+    FOREVER_S,
     HIGH_0,
     HIGH_1,
     LOW_0,
@@ -86,6 +87,21 @@ def cut(trajectories: Sequence[Trajectory], settings: PredictionSettings) -> Pro
         part=found[:, PART].astype(np.int64),
         first=row_first[np.concatenate([[0], np.cumsum(counts)])],
     )
+
+
+def latest_s(trajectory: Trajectory, settings: PredictionSettings) -> float:
+    """Return the latest time at which any of a trajectory may be flown: its delay included."""
+    end_s = trajectory.rows[-1:, END_S]
+    return float(_later(end_s, settings)[0]) + trajectory.delay_s
+
+
+def latest_entry_s(until_s: float, settings: PredictionSettings) -> float:
+    """Return how late a piece may be thought to begin that is flown by then all the same: it may be
+    flown early."""
+    steady = 1.0 - settings.time_uncertainty
+    if steady <= 0.0:
+        return FOREVER_S
+    return min(FOREVER_S, (until_s + settings.slack_s) / steady)
 
 
 def _pieces(rows: FloatArray, settings: PredictionSettings) -> IntArray:

@@ -93,19 +93,31 @@ def closeness(
 
 
 def hazard_closeness(
-    ahead: Samples, times_s: FloatArray, hazard: HazardArea, need: SeparationMinima
+    ahead: Samples,
+    times_s: FloatArray,
+    hazard: HazardArea,
+    need: SeparationMinima,
+    unknown: BoolArray | None = None,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the same of V vehicles to where a hazard area may be, each (V, K)."""
+    """Return the same of V vehicles to where a hazard area may be, each (V, K).
+
+    No height separates the vehicles in `unknown` (V,) from it.
+    """
     radius_m = np.minimum(hazard.largest_m, hazard.radius_m + hazard.growth_mps * times_s)
     circle_m = np.hypot(ahead.east_m - hazard.east_m, ahead.north_m - hazard.north_m) - radius_m
     over_m = ahead.low_m - hazard.high_m
+    under_m = hazard.corridor_low_m - ahead.high_m
+    if unknown is not None:
+        rows = unknown[:, np.newaxis]
+        over_m = np.where(rows, np.minimum(over_m, 0.0), over_m)
+        under_m = np.where(rows, np.minimum(under_m, 0.0), under_m)
     vertical_m = np.maximum(over_m, hazard.low_m - ahead.high_m)
     least, horizontal_m = _shares(circle_m, vertical_m, need), circle_m
     if hazard.home_m is not None:
         landing_m = np.hypot(ahead.east_m - hazard.home_m[0], ahead.north_m - hazard.home_m[1])
         landing_m -= hazard.corridor_half_m
         way_m = _to_way_m(ahead, hazard, hazard.home_m) - hazard.corridor_half_m
-        beside_m = np.maximum(over_m, hazard.corridor_low_m - ahead.high_m)
+        beside_m = np.maximum(over_m, under_m)
         least = np.minimum(least, _shares(landing_m, vertical_m, need))
         least = np.minimum(least, _shares(way_m, beside_m, need))
         horizontal_m = np.minimum(horizontal_m, np.minimum(landing_m, way_m))

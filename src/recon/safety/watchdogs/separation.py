@@ -59,7 +59,7 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
         return
     for watched in picture.watched:
         if watched.hazard is not None:
-            yield from _hazard(picture, watched.hazard, need)
+            yield from _hazard(picture, watched, watched.hazard, need)
     if len(picture.predicted) < 2:
         return
     flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
@@ -114,14 +114,16 @@ def _pair(
 
 
 def _hazard(
-    picture: TrafficPicture, hazard: HazardArea, need: SeparationMinima
+    picture: TrafficPicture, lost: WatchedVehicle, hazard: HazardArea, need: SeparationMinima
 ) -> Iterator[Finding]:
     ahead = picture.ahead
-    flies = hazard_closeness(ahead.as_it_flies, ahead.times_s, hazard, need)
+    pairs = _unknown_heights((*picture.predicted, lost))
+    unknown = None if pairs is None else pairs[-1, :-1]
+    flies = hazard_closeness(ahead.as_it_flies, ahead.times_s, hazard, need, unknown)
     rows = np.flatnonzero((flies[0][: len(picture.flying)] < 1.0).any(axis=1))
     if len(rows) == 0:
         return
-    if_held = hazard_closeness(ahead.if_held, ahead.times_s, hazard, need)
+    if_held = hazard_closeness(ahead.if_held, ahead.times_s, hazard, need, unknown)
     for row in rows:
         watched = picture.flying[row]
         found = approach(flies[0][row], flies[1][row], flies[2][row], ahead.times_s)
