@@ -144,8 +144,16 @@ class FakeStation:
     def switch_separation_hold(self, is_on: bool, by: Person) -> None:
         self.service.switch_separation_hold(is_on, by)
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: Person) -> ActionResponse:
-        return self.service.take_authority(serial, holder, by)
+    def take_authority(
+        self, serial: str, holder: AuthorityHolder, by: Person, *, takes_over: bool = False
+    ) -> ActionResponse:
+        return self.service.take_authority(serial, holder, by, takes_over=takes_over)
+
+    def person_connected(self, by: Person) -> None:
+        self.service.person_connected(by)
+
+    def person_disconnected(self, by: Person) -> None:
+        self.service.person_disconnected(by)
 
     def preflight(self, serial: str) -> PreflightView | None:
         return self.service.preflight(serial)

@@ -11,6 +11,7 @@ from recon.station.state.vehicle_control import ControlChanges, VehicleControl
 
 WRITERS = {
     "authority": "station/control/authority.py",
+    "lease": "station/control/operator_lease.py",
     "intent": "station/control/intents.py",
     "tracking": "station/control/mode_tracking.py",
     "stream": "station/steering/stream_ends.py",

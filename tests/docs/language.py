@@ -28,7 +28,7 @@ INSTEAD = {
     r"sightings?": "vehicle snapshots",
     r"containment": "fault isolation",
     r"stick_?zero": "neutral setpoint",
-    r"leases?": "setpoint stream",
+    r"setpoint leases?": "setpoint stream",
     r"leaders?|(is|are|was) led|leads it": "authority holder; controlled by",
     r"foreseen|foresees?|foreseeing": "predicted",
     r"by and by": "gradually",

@@ -148,10 +148,11 @@ class CommandedStation:
         *,
         link: int | None = None,
         takeoff: bool = False,
+        person: str = "",
     ) -> int:
         number = self._next_order
         self._next_order += 1
-        self.happens(OperatorOrder(number, body, "test", serial, link, takeoff))
+        self.happens(OperatorOrder(number, body, "test", serial, link, takeoff, person=person))
         return number
 
     def answered(self, order: int, positive: bool | None, link_id: int = 1) -> "CommandedStation":

@@ -69,10 +69,11 @@ class Steered:
     def stream(self) -> SetpointStream | None:
         return self.w.driver.station.control(SERIAL).stream
 
-    def order(self, body: Body, owner: str | None = None) -> int:
+    def order(self, body: Body, owner: str | None = None, person: str = "") -> int:
         number = self.w._next_order
         self.w._next_order += 1
-        self.w.driver.handle(OperatorOrder(number, body, "test", SERIAL, owner=owner))
+        order = OperatorOrder(number, body, "test", SERIAL, owner=owner, person=person)
+        self.w.driver.handle(order)
         return number
 
     def goto(

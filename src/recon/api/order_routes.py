@@ -124,9 +124,14 @@ def _add_readiness(app: FastAPI, port: StationPort) -> None:
     async def authority(
         serial: str, asked: schema.AuthorityRequest, request: Request
     ) -> schema.ActionResponse:
-        """Transfer control authority: from now on only `holder` may set the vehicle in motion."""
-        require(person_of(request), authority_role(asked.holder))
-        return port.take_authority(serial, AuthorityHolder(asked.holder), person_of(request))
+        """Transfer control authority: from now on only `holder` may set the vehicle in motion.
+
+        The person who takes it for the operator, or gives it to guidance, operates the vehicle.
+        """
+        person = person_of(request)
+        require(person, authority_role(asked.holder))
+        holder = AuthorityHolder(asked.holder)
+        return port.take_authority(serial, holder, person, takes_over=asked.take_over)
 
     @app.get("/api/vehicle/preflight", responses=PROBLEMS)
     async def preflight(serial: str) -> schema.PreflightView:

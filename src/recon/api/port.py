@@ -109,8 +109,19 @@ class StationPort(Protocol):
     def switch_separation_hold(self, is_on: bool, by: Person) -> None:
         """Switch the separation holds of the watchdogs on or off."""
 
-    def take_authority(self, serial: str, holder: AuthorityHolder, by: Person) -> ActionResponse:
-        """Transfer control authority; refusals are results, not errors."""
+    def take_authority(
+        self, serial: str, holder: AuthorityHolder, by: Person, *, takes_over: bool = False
+    ) -> ActionResponse:
+        """Transfer control authority; refusals are results, not errors.
+
+        `takes_over`: also from another person who operates the vehicle.
+        """
+
+    def person_connected(self, by: Person) -> None:
+        """Report that a person opened a stream of states."""
+
+    def person_disconnected(self, by: Person) -> None:
+        """Report that a stream of states of a person closed."""
 
     def preflight(self, serial: str) -> PreflightView | None:
         """Return a vehicle's checklist as of now; None for an unknown vehicle."""

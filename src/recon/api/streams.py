@@ -26,6 +26,7 @@ from recon.api.security import (
     POLICY_VIOLATION,
     TRY_AGAIN_LATER,
     accept_stream,
+    person_of,
     refuse_stream,
 )
 
@@ -121,11 +122,16 @@ class StateStream:
             gone.cancel()
 
     async def _listen(self, socket: WebSocket, owner: str | None) -> None:
-        if owner is None:
-            await _until_gone(socket)
-            return
-        async with self._owners.open(owner):
-            await _until_silent(socket)
+        person = person_of(socket)
+        self._port.person_connected(person)
+        try:
+            if owner is None:
+                await _until_gone(socket)
+                return
+            async with self._owners.open(owner):
+                await _until_silent(socket)
+        finally:
+            self._port.person_disconnected(person)
 
     def _newest(self) -> str:
         if self._clock_s() - self._made_at_s >= INTERVAL_S / 2:

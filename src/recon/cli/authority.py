@@ -43,17 +43,22 @@ class Switch(Enum):
 
 def take_command(
     vehicles: NamesArgument = None,
+    take_over: Annotated[
+        bool, typer.Option("--take-over", help="Also from another person who operates them.")
+    ] = False,
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
     """Take control authority for the operator.
 
-    From then on only the operator's orders set these vehicles in motion. Nothing is sent to them.
+    From then on only your orders set these vehicles in motion. Nothing is sent to them, but what
+    another person steers stops and holds.
     """
+    control = "operator control"
 
     async def work(station: Station) -> int:
         done = [
-            _is_done(serial, await station.known(serial).take(), "operator control")
+            _is_done(serial, await station.known(serial).take(take_over=take_over), control)
             for serial in named_serials(station, vehicles)
         ]
         return DONE if all(done) else REFUSED

@@ -29,7 +29,8 @@ def status_command(
         if as_json:
             print_json(msgspec.to_builtins(vehicles))
             return DONE
-        columns = ("vehicle", "serial", "telemetry", "state", "mode", "height", "speed", "battery")
+        facts = ("vehicle", "serial", "telemetry", "state", "mode", "height", "speed", "battery")
+        columns = (*facts, "operated by")
         print_table("vehicles", columns, [_vehicle_row(vehicle) for vehicle in vehicles])
         latch = await station.stop_in_force()
         if latch is not None:
@@ -113,6 +114,7 @@ def _vehicle_row(vehicle: Telemetry) -> tuple[str, ...]:
         _with_unit(vehicle.height_above_takeoff_m.value, "m"),
         _with_unit(_speed_mps(vehicle), "m/s"),
         "unknown" if battery is None else f"{battery:.0%}",
+        "" if vehicle.lease is None else vehicle.lease.person,
     )
 
 

@@ -56,6 +56,18 @@ class AuthorityStatus(msgspec.Struct, frozen=True):
     reason: str
 
 
+class LeaseStatus(msgspec.Struct, frozen=True):
+    """The person who operates a vehicle. `absent_s` None: a stream of that person is open."""
+
+    person: str
+    age_s: float
+    absent_s: float | None
+
+    def older_by(self, seconds: float) -> "LeaseStatus":
+        """Return this lease with `seconds` added to its ages."""
+        return LeaseStatus(self.person, self.age_s + seconds, _older(self.absent_s, seconds))
+
+
 class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     """One vehicle's newest telemetry. Heights are above its takeoff point (barometric), metres.
 
@@ -82,6 +94,7 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     mission_id: Aged[float]
     camera_state: Aged[str]
     conflict_link_ids: tuple[int, ...]
+    lease: LeaseStatus | None = None
 
     @property
     def is_live(self) -> bool:
@@ -103,6 +116,8 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
                 Aged | Position | Velocity | EulerAngles | AuthorityStatus,
             )
         }
+        if self.lease is not None:
+            changes["lease"] = self.lease.older_by(seconds)
         age_s = _older(self.telemetry_age_s, seconds)
         worse = max(self.staleness, staleness_at(age_s), key=_BEST_TO_WORST.index)
         return msgspec.structs.replace(self, **changes, telemetry_age_s=age_s, staleness=worse)

@@ -131,12 +131,13 @@ class Vehicle:
         """Stop sending images."""
         return await self._order_api.send_one(self.serial, StopCamera())
 
-    async def take(self) -> Refusal | None:
+    async def take(self, *, take_over: bool = False) -> Refusal | None:
         """Take operator control, from guidance or a pilot who agrees; None on success.
 
-        Guidance can no longer move the vehicle. Its current order continues.
+        Guidance can no longer move the vehicle. Its current order continues. `take_over`: also from
+        another person who operates the vehicle; what that person steers stops and holds.
         """
-        return await self._set_authority(AuthorityHolder.OPERATOR)
+        return await self._set_authority(AuthorityHolder.OPERATOR, take_over=take_over)
 
     async def give_to_pilot(self) -> Refusal | None:
         """Hand over to the pilot: the station no longer moves the vehicle; None on success."""
@@ -198,10 +199,12 @@ class Vehicle:
             if last is not None:
                 yield last[1].older_by(stream.age_s(last[0]))
 
-    async def _set_authority(self, holder: AuthorityHolder) -> Refusal | None:
-        return await self._post("authority", {"holder": holder.value})
+    async def _set_authority(
+        self, holder: AuthorityHolder, *, take_over: bool = False
+    ) -> Refusal | None:
+        return await self._post("authority", {"holder": holder.value, "take_over": take_over})
 
-    async def _post(self, path: str, request: dict[str, str]) -> Refusal | None:
+    async def _post(self, path: str, request: dict[str, str | bool]) -> Refusal | None:
         answer = await self._order_api.http.post(
             self._path(path), request, AnswerMessage, "an answer"
         )

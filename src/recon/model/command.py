@@ -128,7 +128,8 @@ class Command:
 
     `takeoff` explicitly allows the vehicle to leave the ground. `role` is the role of the
     client: only the authority holder may set the vehicle in motion. `given_at_ns` is when its
-    person gave it, None if not stated; `issued_at_ns` when it reached the station.
+    person gave it, None if not stated; `issued_at_ns` when it reached the station. `person` is that
+    person's name; empty for the station's own orders.
     """
 
     id: int
@@ -141,6 +142,7 @@ class Command:
     takeoff: bool = False
     role: AuthorityHolder = AuthorityHolder.OPERATOR
     given_at_ns: int | None = None
+    person: str = ""
 
     @property
     def name(self) -> str:

@@ -32,6 +32,15 @@ class ControlAuthority:
 
 
 @dataclass(frozen=True, slots=True)
+class OperatorLease:
+    """The person who operates a vehicle, by name; since when, and the last order to move it."""
+
+    person: str
+    since_ns: int
+    ordered_at_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class StopLatch:
     """An all stop in force: nothing sets a vehicle in motion until a person releases it.
 

@@ -92,7 +92,8 @@ class OperatorOrder:
 
     `command_id` is chosen by the client, to match the answer. `owner` names the API stream whose
     end stops a setpoint stream; None for orders that do not depend on a connection. `given_at_ns`
-    is when its person gave it, in station time; None if not stated.
+    is when its person gave it, in station time; None if not stated. `person` is that person's name;
+    empty for the station's own orders.
     """
 
     command_id: int
@@ -104,15 +105,22 @@ class OperatorOrder:
     role: AuthorityHolder = AuthorityHolder.OPERATOR
     owner: str | None = None
     given_at_ns: int | None = None
+    person: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class AuthorityTaken:
-    """Control authority over a vehicle is explicitly given to `holder`."""
+    """Control authority over a vehicle is explicitly given to `holder`.
+
+    `person` is the name of the person who does so, and then operates the vehicle; `takes_over`:
+    also from another person who operates it.
+    """
 
     serial: str
     holder: AuthorityHolder
     by: str
+    person: str = ""
+    takes_over: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +166,20 @@ class StopReleased:
 
     serials: tuple[str, ...] | None
     by: str
+
+
+@dataclass(frozen=True, slots=True)
+class PersonConnected:
+    """A person opened a stream of states; several at once are counted."""
+
+    person: str
+
+
+@dataclass(frozen=True, slots=True)
+class PersonDisconnected:
+    """A stream of states of a person closed."""
+
+    person: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,6 +257,7 @@ class FleetReturnOrdered:
     serials: tuple[str, ...]
     by: str
     given_at_ns: int | None = None
+    person: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -258,6 +281,7 @@ class SurveyStarted:
     by: str
     takeoff: bool = False
     given_at_ns: int | None = None
+    person: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -350,6 +374,8 @@ Event = (
     | AppListFailed
     | AllStopped
     | StopReleased
+    | PersonConnected
+    | PersonDisconnected
     | OwnerConnected
     | OwnerDisconnected
     | ClockRead

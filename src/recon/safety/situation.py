@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from recon.model.command import Command
-from recon.model.control import ControlAuthority, Intent, StopLatch
+from recon.model.control import ControlAuthority, Intent, OperatorLease, StopLatch
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
@@ -79,8 +79,8 @@ class Situation:
     there is neither. `claiming_links` are its open links, its own first; more than one while its
     identity is unsettled. `stick_height_above_takeoff_m` is what its newest stick asked for.
     `traffic` are the other vehicles in the air, lost ones included. `stop_latch` is the all stop in
-    force. `waiting_link_ids` are links that report the command's serial and are not admitted; to a
-    stop they are claiming links as well.
+    force. `lease` names the person who operates the vehicle. `waiting_link_ids` are links that
+    report the command's serial and are not admitted; to a stop they are claiming links as well.
     """
 
     now_ns: int
@@ -90,6 +90,7 @@ class Situation:
     settings: SafetySettings = SafetySettings()
     airspace: PreparedAirspace = OPEN_AIRSPACE
     authority: ControlAuthority = ControlAuthority()
+    lease: OperatorLease | None = None
     stop_latch: StopLatch | None = None
     intent: Intent = Intent()
     stick_height_above_takeoff_m: float | None = None

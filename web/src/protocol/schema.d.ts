@@ -333,6 +333,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/person": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Person
+         * @description The person of this request: name and role.
+         */
+        get: operations["person_api_person_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/separation-hold/{switch}": {
         parameters: {
             query?: never;
@@ -551,6 +571,8 @@ export interface paths {
         /**
          * Authority
          * @description Transfer control authority: from now on only `holder` may set the vehicle in motion.
+         *
+         *     The person who takes it for the operator, or gives it to guidance, operates the vehicle.
          */
         post: operations["authority_api_vehicle_authority_post"];
         delete?: never;
@@ -921,6 +943,12 @@ export interface components {
              * @enum {string}
              */
             holder: "pilot" | "operator" | "guidance";
+            /**
+             * Take Over
+             * @description also from another person who operates the vehicle
+             * @default false
+             */
+            take_over: boolean;
         };
         /**
          * AuthorityView
@@ -1319,6 +1347,21 @@ export interface components {
             name: string;
         };
         /**
+         * LeaseView
+         * @description The operator lease: the person who operates the vehicle. Every person may stop it.
+         */
+        LeaseView: {
+            /**
+             * Absent S
+             * @description since that person's last stream closed or last order; null: a stream is open
+             */
+            absent_s: number | null;
+            /** Age S */
+            age_s: number;
+            /** Person */
+            person: string;
+        };
+        /**
          * LimitsView
          * @description The site's limits for every vehicle.
          */
@@ -1552,6 +1595,19 @@ export interface components {
             name: string;
             /** Serial */
             serial: string | null;
+        };
+        /**
+         * PersonView
+         * @description The person of a request, as the station has authenticated it.
+         */
+        PersonView: {
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "observer" | "pilot" | "operator" | "admin";
         };
         /**
          * PhaseView
@@ -2376,6 +2432,8 @@ export interface components {
              * @description held by an all stop: only hold, land and return are sent until it is released
              */
             is_stopped: boolean;
+            /** @description null: free, the next order to move takes it */
+            lease: components["schemas"]["LeaseView"] | null;
             /** Link Id */
             link_id: number | null;
             mission_id: components["schemas"]["AgedNumber"];
@@ -2971,6 +3029,26 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    person_api_person_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonView"];
                 };
             };
         };

@@ -191,6 +191,9 @@ class AuthorityRequest(StrictMessage):
     """The new holder of control authority."""
 
     holder: HolderName
+    take_over: bool = Field(
+        default=False, description="also from another person who operates the vehicle"
+    )
 
 
 class PreflightOverrideRequest(StrictMessage):

@@ -110,6 +110,16 @@ class AuthorityView(Message):
     reason: str
 
 
+class LeaseView(Message):
+    """The operator lease: the person who operates the vehicle. Every person may stop it."""
+
+    person: str
+    age_s: float
+    absent_s: float | None = Field(
+        description="since that person's last stream closed or last order; null: a stream is open"
+    )
+
+
 class OverrideView(Message):
     """Permission to fly missions without a passed checklist; it ends with the landing."""
 
@@ -144,6 +154,7 @@ class VehicleView(Message):
     is_simulated: bool
     is_imager: bool
     authority: AuthorityView
+    lease: LeaseView | None = Field(description="null: free, the next order to move takes it")
     is_stopped: bool = Field(
         description="held by an all stop: only hold, land and return are sent until it is released"
     )

@@ -20,6 +20,7 @@ from recon.safety.rules.link_age import link_age
 from recon.safety.rules.max_height import max_height
 from recon.safety.rules.min_height import min_height
 from recon.safety.rules.not_expired import not_expired
+from recon.safety.rules.operator_lease import operator_lease
 from recon.safety.rules.preflight import preflight
 from recon.safety.rules.reachable import reachable
 from recon.safety.rules.separation import separation
@@ -37,6 +38,7 @@ RULES: tuple[Rule, ...] = (
     finite_numbers,
     stop_latch,
     authority,
+    operator_lease,
     dji_limits,
     altitude_reference,
     flying,

@@ -22,6 +22,8 @@ from recon.model.event import (
     OperatorOrder,
     OwnerConnected,
     OwnerDisconnected,
+    PersonConnected,
+    PersonDisconnected,
     PreflightOverridden,
     SeparationHoldSwitched,
     StopReleased,
@@ -44,7 +46,7 @@ from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.api_views.vehicle_views import preflight_view
 from recon.station.api_views.zone_views import zone_views
-from recon.station.control import authority, preflight, stop_latch, temporary_zones
+from recon.station.control import handover, preflight, stop_latch, temporary_zones
 from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
@@ -101,6 +103,7 @@ class Service:
                 takeoff=takeoff,
                 owner=owner,
                 given_at_ns=given_at_ns,
+                person=by.name,
             )
             for serial in dict.fromkeys(serials)
         ]
@@ -126,6 +129,7 @@ class Service:
                 takeoff=takeoff,
                 owner=owner,
                 given_at_ns=given_at_ns,
+                person=by.name,
             )
             for serial in dict.fromkeys(serials)
         ]
@@ -159,8 +163,12 @@ class Service:
             and link.own_state.core_received_at_ns is not None
             and link.own_state.is_flying.value is not False
         ]
-        orders = [OperatorOrder(self._ids(), Hover(), by.label, serial=s) for s in serials]
-        orders += [OperatorOrder(self._ids(), Hover(), by.label, link_id=i) for i in links]
+        orders = [
+            OperatorOrder(self._ids(), Hover(), by.label, serial=s, person=by.name) for s in serials
+        ]
+        orders += [
+            OperatorOrder(self._ids(), Hover(), by.label, link_id=i, person=by.name) for i in links
+        ]
         return self._give(orders)
 
     def release_stop(self, serials: list[str] | None, by: Person) -> schema.ActionResponse:
@@ -203,9 +211,7 @@ class Service:
     ) -> schema.OrderResponse:
         """Return vehicles home in layers; None: every vehicle that is or may be in flight."""
         called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
-        return schema.OrderResponse(
-            results=[self._call_one(s, by.label, given_at_ns) for s in called]
-        )
+        return schema.OrderResponse(results=[self._call_one(s, by, given_at_ns) for s in called])
 
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle."""
@@ -219,11 +225,20 @@ class Service:
         self.driver.handle(SeparationHoldSwitched(is_on, by.label))
 
     def take_authority(
-        self, serial: str, holder: AuthorityHolder, by: Person
+        self, serial: str, holder: AuthorityHolder, by: Person, *, takes_over: bool = False
     ) -> schema.ActionResponse:
-        """Transfer control authority."""
-        event = AuthorityTaken(serial, holder, by.label)
-        return self._command(event, authority.refusal(self.driver.station, event))
+        """Transfer control authority, and the operator lease with it."""
+        event = AuthorityTaken(serial, holder, by.label, by.name, takes_over)
+        refused = handover.refusal(self.driver.station, event, self.driver.now_ns())
+        return self._command(event, refused)
+
+    def person_connected(self, by: Person) -> None:
+        """Count a stream of a person."""
+        self.driver.handle(PersonConnected(by.name))
+
+    def person_disconnected(self, by: Person) -> None:
+        """Count a stream of a person that closed."""
+        self.driver.handle(PersonDisconnected(by.name))
 
     def preflight(self, serial: str) -> schema.PreflightView | None:
         """Return a vehicle's checklist as of now."""
@@ -282,7 +297,7 @@ class Service:
     ) -> schema.SurveyResponse:
         """Start a survey with these vehicles, or add them."""
         return self._surveys.start(
-            survey_id, serials, takeoff=takeoff, by=by.label, given_at_ns=given_at_ns
+            survey_id, serials, takeoff=takeoff, by=by, given_at_ns=given_at_ns
         )
 
     def stop_survey(self, survey_id: int, *, is_aborted: bool, by: Person) -> schema.SurveyResponse:
@@ -335,10 +350,11 @@ class Service:
         self.driver.handle(order)
         return self._outcome(order.command_id, order.serial)
 
-    def _call_one(self, serial: str, by: str, given_at_ns: int | None) -> schema.OrderResult:
+    def _call_one(self, serial: str, by: Person, given_at_ns: int | None) -> schema.OrderResult:
         """Add one vehicle to the return; it is planned at the next tick."""
         command_id = self._ids()
-        self.driver.handle(FleetReturnOrdered(command_id, (serial,), by, given_at_ns))
+        event = FleetReturnOrdered(command_id, (serial,), by.label, given_at_ns, by.name)
+        self.driver.handle(event)
         return self._outcome(command_id, serial)
 
     def _outcome(self, command_id: int, serial: str | None) -> schema.OrderResult:

@@ -19,6 +19,7 @@ from recon.station.api_views.vehicle_views import (
     authority_view,
     doubt_views,
     hazard_view,
+    lease_view,
     override_view,
     steering_view,
 )
@@ -105,6 +106,7 @@ def _vehicle(
         is_simulated=vehicle.is_simulated,
         is_imager=vehicle.serial is not None and vehicle.serial == station.imaging.imager_serial,
         authority=authority_view(station, vehicle.serial, now_ns),
+        lease=lease_view(station, vehicle.serial, now_ns),
         is_stopped=station.is_stopped(vehicle.serial),
         preflight_override=override_view(station, vehicle.serial, now_ns),
         steering=steering_view(station, vehicle.serial),

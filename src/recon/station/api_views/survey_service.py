@@ -10,6 +10,7 @@ from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.errors import SiteError
 from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
+from recon.model.person import Person
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
 from recon.site import Site
 from recon.site.geojson import Feature, regions_of
@@ -42,11 +43,12 @@ class SurveyService:
         serials: list[str],
         *,
         takeoff: bool,
-        by: str,
+        by: Person,
         given_at_ns: int | None = None,
     ) -> schema.SurveyResponse:
         """Start a survey, unless that is refused; the audit has the refusal too."""
-        event = SurveyStarted(survey_id, tuple(dict.fromkeys(serials)), by, takeoff, given_at_ns)
+        named = tuple(dict.fromkeys(serials))
+        event = SurveyStarted(survey_id, named, by.label, takeoff, given_at_ns, by.name)
         refusal = start_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
         return self._taken(survey_id) if refusal is None else _refused(refusal)

@@ -9,6 +9,7 @@ from recon.safety.check import Check
 from recon.safety.checks import checklist
 from recon.safety.datum import home
 from recon.safety.prediction.motion import last_place
+from recon.station.control import operator_lease
 from recon.station.control.preflight import facts
 from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import dismissed_by, hazard
@@ -24,6 +25,19 @@ def authority_view(station: Station, serial: str | None, now_ns: int) -> schema.
         holder_name=authority.holder_name,
         age_s=age_s,
         reason=authority.reason,
+    )
+
+
+def lease_view(station: Station, serial: str | None, now_ns: int) -> schema.LeaseView | None:
+    """Return who operates a vehicle; None while it is free."""
+    lease = station.control(serial).lease
+    if lease is None:
+        return None
+    since_ns = operator_lease.absent_since_ns(station, lease)
+    return schema.LeaseView(
+        person=lease.person,
+        age_s=ns_to_seconds(now_ns - lease.since_ns),
+        absent_s=None if since_ns is None else ns_to_seconds(now_ns - since_ns),
     )
 
 

@@ -42,7 +42,7 @@ from recon.station.audit.alarm_entries import AlarmsLogged, acknowledged_entry, 
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries, pairing_entry
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
-from recon.station.control import authority, preflight, stop_latch, temporary_zones
+from recon.station.control import handover, preflight, stop_latch, temporary_zones
 from recon.station.operations import OPERATIONS
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import VehicleControl
@@ -65,7 +65,7 @@ def audit(
     memory: Auditing, before: Station, event: Event, after: Station, now_ns: int
 ) -> tuple[Auditing, tuple[AuditEntry, ...]]:
     """Return the entries of one step, in the order of cause and effect."""
-    entries = list(_commands(before, event, after))
+    entries = list(_commands(before, event, after, now_ns))
     for operation in OPERATIONS:
         entries += operation.audit(before, event, after, now_ns)
     links, new = link_entries(memory.links, before, event, after, now_ns)
@@ -74,6 +74,7 @@ def audit(
     entries += new
     changed = after.controls_changed_since(before)
     entries += _authorities(before, after, changed)
+    entries += _leases(before, after, changed)
     entries += _overrides(before, after, changed)
     entries += _temporary_zones(before, event, after)
     orders = memory.orders
@@ -90,13 +91,14 @@ def audit(
     return Auditing(orders, alarms, links, flights), tuple(entries)
 
 
-def _commands(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
+def _commands(before: Station, event: Event, after: Station, now_ns: int) -> Iterator[AuditEntry]:
     """Operator commands that are not orders to one vehicle."""
     match event:
         case AlarmAcknowledged(alarm_id, by) if alarm_id in before.alarms.alarms:
             yield acknowledged_entry(before.alarms.alarms[alarm_id], by)
         case AuthorityTaken(serial=serial, by=by):
-            yield from _refused(after, "authority", authority.refusal(before, event), by, serial)
+            refused = handover.refusal(before, event, now_ns)
+            yield from _refused(after, "authority", refused, by, serial)
         case PreflightOverridden(serial=serial, by=by):
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
         case AppAdmitted() | AppRefused():
@@ -174,6 +176,28 @@ def _authorities(before: Station, after: Station, changed: Changed) -> Iterator[
         text = f"authority: {held.holder.value}: {held.reason}"
         by = held.holder_name or held.holder.value
         yield _about(after, "authority.taken", text, by, serial, details)
+
+
+def _leases(before: Station, after: Station, changed: Changed) -> Iterator[AuditEntry]:
+    """Each change of the person who operates a vehicle; not each order of the same one."""
+    for serial, control in changed:
+        lease, was = control.lease, before.control(serial).lease
+        person = None if lease is None else lease.person
+        former = None if was is None else was.person
+        if person == former:
+            continue
+        details = {"person": person, "from": former}
+        if person is None:
+            text = f"operator lease of {former} ended"
+            yield _about(after, "lease.ended", text, "station", serial, details)
+        else:
+            text = (
+                f"operated by {person}"
+                if former is None
+                else f"taken over by {person} from {former}"
+            )
+            kind = "lease.taken" if former is None else "lease.taken_over"
+            yield _about(after, kind, text, person, serial, details)
 
 
 def _overrides(before: Station, after: Station, changed: Changed) -> Iterator[AuditEntry]:

@@ -20,6 +20,7 @@ from recon.station.control import (
     late_starts,
     missions,
     mode_tracking,
+    operator_lease,
     order_timeouts,
     takeoff_stops,
 )
@@ -65,6 +66,7 @@ def submit(station: Station, order: OperatorOrder, now_ns: int) -> Stepped:
     if lane_of(command) is not Lane.CAMERA:
         station = neutral_setpoint.cancel(station, command.serial)
         station = release_stream(station, command.serial, now_ns)
+    station = operator_lease.after_order(station, command, now_ns)
     station = replace_older_orders(station, command, now_ns)
     queued = replace(queued_record(station, command, judged, now_ns), plan=flight_plan)
     return put(station, queued), (SendCommand(judged),)
@@ -126,6 +128,7 @@ def _steer(station: Station, order: OperatorOrder, command: Command, now_ns: int
         return put(station, refused_record(station, command, refusal, now_ns)), ()
     station = neutral_setpoint.cancel(station, command.serial)
     station = release_stream(station, command.serial, now_ns)
+    station = operator_lease.after_order(station, command, now_ns)
     station = replace_older_orders(station, command, now_ns)
     station = put(station, steered_record(station, command, now_ns))
     station, stream = setpoint_streams.start_stream(station, command, order.owner, now_ns)

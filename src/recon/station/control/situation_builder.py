@@ -24,6 +24,7 @@ def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
         takeoff=order.takeoff,
         role=order.role,
         given_at_ns=order.given_at_ns,
+        person=order.person,
     )
 
 
@@ -45,6 +46,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         settings=station.settings.safety,
         airspace=station.airspace,
         authority=control.authority,
+        lease=control.lease,
         stop_latch=station.stop_latch,
         intent=control.intent,
         stick_height_above_takeoff_m=_stick_height_m(control),

@@ -33,6 +33,8 @@ from recon.model.event import (
     OwnerConnected,
     OwnerDisconnected,
     PacketReceived,
+    PersonConnected,
+    PersonDisconnected,
     PreflightOverridden,
     SeparationHoldSwitched,
     SetpointsDue,
@@ -49,7 +51,8 @@ from recon.model.vehicle import VehicleState
 from recon.station.alarms import event_alarms
 from recon.station.alarms.conditions import raise_alarms
 from recon.station.control import (
-    authority,
+    handover,
+    operator_lease,
     order_gateway,
     preflight,
     stop_latch,
@@ -201,6 +204,7 @@ def _pass_time(station: Station, now_ns: int) -> Stepped:
 TICK_PARTS: tuple[TickPart, ...] = (
     TickPart("measuring the links' silence", _pass_time),
     TickPart("ending temporary zones", temporary_zones.end_due),
+    TickPart("ending the leases of absent persons", operator_lease.settle),
     TickPart(
         "driving the setpoint streams",
         order_gateway.update_streams,
@@ -237,7 +241,9 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(StopReleased, stop_latch.release),
         changing(ZoneDrawn, temporary_zones.draw),
         changing(ZoneEnded, temporary_zones.end),
-        on(AuthorityTaken, authority.take),
+        on(AuthorityTaken, handover.take),
+        changing(PersonConnected, operator_lease.connected),
+        changing(PersonDisconnected, operator_lease.disconnected),
         changing(OwnerConnected, _owner_connected),
         on(OwnerDisconnected, _owner_disconnected),
         changing(HazardDismissed, known_traffic.dismiss),

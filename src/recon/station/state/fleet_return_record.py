@@ -57,6 +57,8 @@ class ReturningVehicle:
     """The user that called it."""
     role: AuthorityHolder = AuthorityHolder.OPERATOR
     """The authority its orders are given under; when that changes, the return releases it."""
+    person: str = ""
+    """The name of the person whose orders they are; empty for guidance."""
 
     def at(self, stage: Stage, now_ns: int, reason: str = "") -> "ReturningVehicle":
         """Return the vehicle at another stage."""

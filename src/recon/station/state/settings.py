@@ -95,6 +95,10 @@ class StationSettings:
     order_expiry_s: float = 5.0
     """An order not sent by then may no longer fit what the operator sees."""
 
+    lease_absent_s: float = 60.0
+    """A tablet that changes the network or a page that is loaded again is back by then; a vehicle
+    in the air must not wait longer for an absent person."""
+
     stop_waits_s: float = 30.0
     """A hover refused because telemetry is stale or the connection lost waits this long for
     telemetry: a stop must not be lost in a gap."""

@@ -39,6 +39,14 @@ class Clock:
 
 
 @dataclass(frozen=True, slots=True)
+class Presence:
+    """The open streams of a person, and since when all are closed."""
+
+    streams: int = 0
+    left_at_ns: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Fault:
     """A fault in the station's own code: where, the error, first and last time."""
 
@@ -88,6 +96,8 @@ class Station:
     """The number of the next command the station gives by itself; see `take_id`."""
     owners: frozenset[str] = frozenset()
     """Open API streams that steered orders may depend on."""
+    persons: Mapping[str, Presence] = field(default_factory=dict)
+    """Persons with a stream of states, or who had one. Writer: `control/operator_lease.py`."""
     stop_latch: StopLatch | None = None
     """The all stop in force. Writer: `control/stop_latch.py`."""
     fleet_return: FleetReturn | None = None

@@ -11,7 +11,7 @@ import msgspec
 
 from recon.fleet.flight_table import Verdict
 from recon.model.command import Command, VirtualStick
-from recon.model.control import ControlAuthority, Intent
+from recon.model.control import ControlAuthority, Intent, OperatorLease
 from recon.model.units import Stamped
 from recon.model.vehicle import FlightMode
 from recon.safety import Override
@@ -99,6 +99,9 @@ class VehicleControl:
 
     authority: ControlAuthority = NEVER_TAKEN
     """Who may set it in motion. Writer: `control/authority.py`."""
+    lease: OperatorLease | None = None
+    """The person who operates it; None: free, and after a restart. Writer:
+    `control/operator_lease.py`."""
     intent: Intent = NO_INTENT
     """What it was last commanded to do. Writer: `control/intents.py`."""
     tracking: Tracking | None = None
@@ -125,6 +128,7 @@ class ControlChanges(TypedDict, total=False):
     """The fields of `VehicleControl` that a writer changes."""
 
     authority: ControlAuthority
+    lease: OperatorLease | None
     intent: Intent
     tracking: Tracking | None
     stream: SetpointStream | None

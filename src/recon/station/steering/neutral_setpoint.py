@@ -55,7 +55,11 @@ def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ..
         if now_ns >= neutral.due_at_ns and _is_flown_by_sticks(station, neutral, now_ns):
             station, number = take_id(station)
             zero = _zero(neutral.body, station.fleet.vehicles[serial])
-            orders.append(OperatorOrder(number, zero, ISSUER, serial, role=neutral.command.role))
+            lease = station.control(serial).lease
+            # It stops what was steered, also when another person has taken over since.
+            person = "" if lease is None else lease.person
+            role = neutral.command.role
+            orders.append(OperatorOrder(number, zero, ISSUER, serial, role=role, person=person))
     return station, tuple(orders)
 
 

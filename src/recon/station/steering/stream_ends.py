@@ -93,9 +93,12 @@ def with_refusal(station: Station, stream: SetpointStream, refusal: Refusal) -> 
 
 
 def judge_setpoint(
-    station: Station, stream: SetpointStream, now_ns: int, judge: Judge
+    station: Station, stream: SetpointStream, now_ns: int, judge: Judge, person: str | None = None
 ) -> tuple[Station, ApprovedCommand | Refusal, SetpointStream]:
-    """Ask the gate about the stream's present setpoint, as a virtual stick command."""
+    """Ask the gate about the stream's present setpoint, as a virtual stick command.
+
+    `person` None: the one whose order it is.
+    """
     settings, steered = station.settings.streams, stream.steered
     station, number = take_id(station)
     command = Command(
@@ -115,6 +118,7 @@ def judge_setpoint(
         expires_at_ns=now_ns + seconds_to_ns(1.5 * settings.period_s),
         serial=stream.command.serial,
         role=stream.command.role,
+        person=stream.command.person if person is None else person,
     )
     return station, judge(station, command), replace(stream, last_stick_id=number)
 
@@ -225,7 +229,10 @@ def _close(
     vehicle = update.station.fleet.vehicles.get(serial)
     height_m = None if vehicle is None else vehicle.height_above_takeoff_m.value
     stream = replace(stream, steered=halted(stream.steered, height_m, now_ns))
-    station, answer, stream = judge_setpoint(update.station, stream, now_ns, judge)
+    lease = update.station.control(serial).lease
+    # It stops what was steered, also when another person has taken over.
+    person = None if lease is None else lease.person
+    station, answer, stream = judge_setpoint(update.station, stream, now_ns, judge, person)
     update = replace(update, station=station)
     if isinstance(answer, Refusal):
         return order_hold(update, serial)

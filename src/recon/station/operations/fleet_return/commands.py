@@ -9,7 +9,7 @@ from recon.model.event import Event, FleetReturnOrdered, OperatorOrder
 from recon.record.audit import AuditEntry
 from recon.safety.datum import frame_for
 from recon.safety.rules.not_expired import given_refusal
-from recon.station.control import order_gateway
+from recon.station.control import operator_lease, order_gateway
 from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.operations.fleet_return.progress import is_still_left
 from recon.station.state.fleet_return_record import ENDED, FleetReturn, ReturningVehicle, Stage
@@ -27,9 +27,11 @@ def call_home(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepp
     """
     outputs: list[Output] = []
     for command_id, serial in enumerate(event.serials, event.first_command_id):
-        order = OperatorOrder(command_id, Hover(), f"{event.by}: fleet return", serial=serial)
+        by, person = f"{event.by}: fleet return", event.person
+        order = OperatorOrder(command_id, Hover(), by, serial=serial, person=person)
         why = given_refusal(event.given_at_ns, now_ns, station.settings.safety)
         why = why or refusal(station, serial)
+        why = why or operator_lease.refusal(station, serial, person, now_ns)
         if why is not None:
             station = order_gateway.record_refusal(station, order, why, now_ns)
             continue
@@ -46,6 +48,8 @@ def join(station: Station, hold: OperatorOrder, by: str, now_ns: int) -> Stepped
     station, sent = order_gateway.submit(station, hold, now_ns)
     if station.orders.records[hold.command_id].phase is not Phase.REFUSED_BY_STATION:
         station = _joined(station, hold, by, now_ns)
+        if hold.role is AuthorityHolder.OPERATOR:
+            station = operator_lease.assign(station, hold.serial or "", hold.person, now_ns)
     return station, sent
 
 
@@ -104,6 +108,7 @@ def _joined(station: Station, order: OperatorOrder, by: str, now_ns: int) -> Sta
         now_ns,
         by=by,
         role=order.role,
+        person=order.person,
     )
     return replace(station, fleet_return=running.put(member))
 

@@ -254,6 +254,7 @@ def _order_mission(
         f"{member.by}: fleet return",
         serial=member.serial,
         role=member.role,
+        person=member.person,
     )
     command = command_of(station, order, now_ns)
     refusal = judge(command, situation(station, command, now_ns))

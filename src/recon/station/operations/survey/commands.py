@@ -14,7 +14,7 @@ from recon.model.event import (
     SurveyStopped,
 )
 from recon.safety.rules.not_expired import given_refusal
-from recon.station.control import authority, order_gateway
+from recon.station.control import authority, handover, order_gateway
 from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.operations.survey.availability import is_flown
 from recon.station.operations.survey.return_to_home import is_under_way
@@ -36,7 +36,7 @@ def start_refusal(station: Station, event: SurveyStarted, now_ns: int) -> Refusa
     if isinstance(started, Refusal):
         return started
     for serial in event.serials:
-        refusal = _vehicle_refusal(station, record, serial, event.by)
+        refusal = _vehicle_refusal(station, record, serial, event, now_ns)
         if refusal is not None:
             return refusal
     return None
@@ -56,8 +56,8 @@ def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Stepped
     serials = dict.fromkeys(event.serials)
     outputs: tuple[Output, ...] = ()
     for serial in serials:
-        taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, event.by)
-        station, withdrawn = authority.take(station, taken, now_ns)
+        taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, event.by, event.person)
+        station, withdrawn = handover.take(station, taken, now_ns)
         outputs += withdrawn
     named = {
         serial: replace(
@@ -171,9 +171,10 @@ def _stopped(
 
 
 def _vehicle_refusal(
-    station: Station, record: SurveyRecord, serial: str, by: str
+    station: Station, record: SurveyRecord, serial: str, event: SurveyStarted, now_ns: int
 ) -> Refusal | None:
-    given = authority.refusal(station, AuthorityTaken(serial, AuthorityHolder.GUIDANCE, by))
+    taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, event.by, event.person)
+    given = handover.refusal(station, taken, now_ns)
     if given is not None:
         return given
     name = station.fleet.vehicles[serial].display_name
