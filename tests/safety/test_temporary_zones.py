@@ -65,6 +65,9 @@ class TestInTheAirspace:
         names = [zone.zone.name for zone in with_zone().zones_of(ZoneKind.KEEP_OUT)]
         assert names == ["yard", "person 3 (temporary)"]
         assert [zone.name for zone in with_zone().airspace.zones] == names
+        (temporary,) = with_zone().temporary_zones
+        assert temporary.zone.name == "person 3 (temporary)"
+        assert SITE.temporary_zones == ()
 
     def test_the_next_set_replaces_the_temporary_zones_only(self) -> None:
         ended = with_zone().with_temporary_zones([])

@@ -78,6 +78,7 @@ def drawn_region(drawn: DrawnZone, frame: LocalFrame) -> Region:
 
 
 def _faults(drawn: DrawnZone, frame: LocalFrame) -> Iterator[str]:
+    """Only the first one is asked for: what comes after a fault may rely on its absence."""
     if not 0 < len(drawn.reason.strip()) <= MOST_REASON:
         yield f"a reason of 1 to {MOST_REASON} characters is needed, for those who read the alarm"
     yield from _height_faults(drawn)
@@ -117,13 +118,15 @@ def _outline_faults(
 ) -> Iterator[str]:
     if not 3 <= len(corners) <= MOST_CORNERS:
         yield f"it has {len(corners)} corners: 3 to {MOST_CORNERS} are possible"
-        return
-    yield from _place_faults(corners, frame)
-    region = drawn_region(drawn, frame)
+    else:
+        yield from _place_faults(corners, frame)
+        yield from _region_faults(drawn_region(drawn, frame))
+
+
+def _region_faults(region: Region) -> Iterator[str]:
     fault = region_fault(region)
     if fault is not None:
         yield f"its outline cannot be used: {fault}"
-        return
     across_m = float((region.outline_m.max(axis=0) - region.outline_m.min(axis=0)).max())
     if across_m > MOST_ACROSS_M:
         yield (
@@ -135,7 +138,6 @@ def _outline_faults(
 def _place_faults(places: tuple[LatLon, ...], frame: LocalFrame) -> Iterator[str]:
     if not all(place.is_valid() for place in places):
         yield "a place of it is not on the globe: latitude -90 to 90, longitude -180 to 180 degrees"
-        return
     far_m = float(np.hypot(*places_m(frame, places).T).max())
     if far_m > FARTHEST_M:
         yield (
