@@ -6,14 +6,13 @@ from typing import Any
 import pytest
 import websockets
 from tests.api.client import Client
-from tests.api.fake_station import FakeStation
+from tests.api.fake_station import FakeStation, application
 from tests.api.test_stream import PATIENCE_S, served
 from tests.link.approved import core, extended
 from tests.patient_loop import run_patiently
 
 from recon import wire
-from recon.api.app import create_app
-from recon.api.security import LOOPBACK_NAMES, Access
+from recon.api.security import Access
 from recon.model.event import LinkOpened, PacketReceived
 from recon.model.person import Person, Role
 from recon.vehicles.reports import to_report
@@ -32,8 +31,7 @@ def station() -> FakeStation:
 
 def client_of(station: FakeStation, name: str, role: Role = Role.OPERATOR) -> Client:
     """The API as this person reaches it."""
-    access = Access(LOOPBACK_NAMES, local=Person(name, role, HERE))
-    return Client(create_app(station, access, None, "1.2.3"))
+    return Client(application(station, access=Access(local=Person(name, role, HERE))))
 
 
 def take(client: Client, **more: Any) -> dict[str, Any]:
@@ -45,11 +43,6 @@ def take(client: Client, **more: Any) -> dict[str, Any]:
 def lease(client: Client) -> dict[str, Any] | None:
     found: dict[str, Any] | None = client.get("/api/vehicle?serial=A").json()["lease"]
     return found
-
-
-def test_each_request_knows_its_person(station: FakeStation) -> None:
-    shown = client_of(station, "anna", Role.PILOT).get("/api/person").json()
-    assert shown == {"name": "anna", "role": "pilot"}
 
 
 def test_one_leads_and_the_other_takes_over_explicitly(station: FakeStation) -> None:

@@ -19,7 +19,7 @@ from recon.api.permissions import require_listed_role
 from recon.api.picture_routes import add_picture_routes
 from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, found
-from recon.api.security import POLICY_VIOLATION, person_of, refuse_stream
+from recon.api.security import POLICY_VIOLATION, refuse_stream
 from recon.api.streams import MAX_ENTRIES, AuditStream, StateStream
 from recon.api.survey_routes import add_survey_routes
 from recon.api.zone_routes import add_zone_routes
@@ -71,12 +71,6 @@ def _add_state_routes(app: FastAPI, port: StationPort) -> None:
     async def state() -> schema.StationState:
         """Everything a console shows, as of now; the stream sends the same."""
         return port.state()
-
-    @app.get("/api/person")
-    async def person(request: Request) -> schema.PersonView:
-        """The person of this request: name and role."""
-        asked_by = person_of(request)
-        return schema.PersonView(name=asked_by.name, role=asked_by.role.value)
 
     @app.get("/api/vehicles")
     async def vehicles() -> list[schema.VehicleView]:

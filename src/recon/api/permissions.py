@@ -23,7 +23,6 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/access"): Role.OBSERVER,
     ("GET", "/api/access/qr.svg"): Role.OBSERVER,
     ("GET", "/api/state"): Role.OBSERVER,
-    ("GET", "/api/person"): Role.OBSERVER,
     ("GET", "/api/vehicles"): Role.OBSERVER,
     ("GET", "/api/vehicle"): Role.OBSERVER,
     ("GET", "/api/vehicle/frame.jpg"): Role.OBSERVER,

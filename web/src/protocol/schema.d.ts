@@ -333,26 +333,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/person": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Person
-         * @description The person of this request: name and role.
-         */
-        get: operations["person_api_person_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/separation-hold/{switch}": {
         parameters: {
             query?: never;
@@ -1595,19 +1575,6 @@ export interface components {
             name: string;
             /** Serial */
             serial: string | null;
-        };
-        /**
-         * PersonView
-         * @description The person of a request, as the station has authenticated it.
-         */
-        PersonView: {
-            /** Name */
-            name: string;
-            /**
-             * Role
-             * @enum {string}
-             */
-            role: "observer" | "pilot" | "operator" | "admin";
         };
         /**
          * PhaseView
@@ -3029,26 +2996,6 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
-                };
-            };
-        };
-    };
-    person_api_person_get: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["PersonView"];
                 };
             };
         };

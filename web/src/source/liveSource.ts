@@ -114,8 +114,8 @@ export class LiveSource implements StationSource {
     return this.requests.fleetReturn(serials, this.stationNowMs());
   }
 
-  setAuthority(serial: string, holder: AuthorityHolder) {
-    return this.requests.setAuthority(serial, holder);
+  setAuthority(serial: string, holder: AuthorityHolder, takeOver = false) {
+    return this.requests.setAuthority(serial, holder, takeOver);
   }
 
   preflight(serial: string) {

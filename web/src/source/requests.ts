@@ -72,8 +72,14 @@ export class Requests {
     );
   }
 
-  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<ActionResponse>> {
-    const options = { params: { query: { serial } }, body: { holder }, signal: timeout() };
+  /** `take_over`: also from another person who operates the vehicle. */
+  setAuthority(
+    serial: string,
+    holder: AuthorityHolder,
+    take_over: boolean,
+  ): Promise<Outcome<ActionResponse>> {
+    const body = { holder, take_over };
+    const options = { params: { query: { serial } }, body, signal: timeout() };
     return answered(() => this.client.POST("/api/vehicle/authority", options), identity);
   }
 

@@ -72,7 +72,12 @@ export interface StationSource {
   check(order: NamedOrder): Promise<Outcome<readonly OrderResult[]>>;
   /** Returns vehicles home with landing missions at separate heights; null means all in reach. */
   fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
-  setAuthority(serial: string, holder: AuthorityHolder): Promise<Outcome<ActionResponse>>;
+  /** `takeOver`: also from another person who operates the vehicle. */
+  setAuthority(
+    serial: string,
+    holder: AuthorityHolder,
+    takeOver?: boolean,
+  ): Promise<Outcome<ActionResponse>>;
   preflight(serial: string): Promise<Outcome<PreflightView>>;
   overridePreflight(serial: string, reason: string): Promise<Outcome<ActionResponse>>;
   /** Clears a lost vehicle's hazard area. */

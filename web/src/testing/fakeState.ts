@@ -45,6 +45,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
       age_s: null,
       reason: "not yet transferred",
     },
+    lease: null,
     preflight_override: null,
     is_stopped: false,
     steering: null,

@@ -48,7 +48,7 @@ export interface RenderedPage {
 
 /** A request other than a vehicle order. */
 export type PageRequest =
-  | { readonly authority: AuthorityHolder; readonly serial: string }
+  | { readonly authority: AuthorityHolder; readonly serial: string; readonly takeOver?: boolean }
   | { readonly override: string; readonly serial: string }
   | { readonly clearedHazard: string }
   | { readonly separationHold: boolean }
@@ -201,8 +201,8 @@ function fakeSource(
       recorded.requests.push({ fleetReturn: serials });
       return { kind: "answered", value: recorded.answer };
     },
-    setAuthority: async (serial, authority) => {
-      recorded.requests.push({ authority, serial });
+    setAuthority: async (serial, authority, takeOver) => {
+      recorded.requests.push({ authority, serial, ...(takeOver && { takeOver }) });
       return { kind: "answered", value: recorded.response };
     },
     preflight: async () => recorded.preflight,

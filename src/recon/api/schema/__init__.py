@@ -50,7 +50,6 @@ from recon.api.schema.site import (
 from recon.api.schema.station import (
     FleetReturnView,
     LinkView,
-    PersonView,
     ReturningView,
     StationState,
     StationView,
@@ -130,7 +129,6 @@ __all__ = [
     "OrderResult",
     "OverrideView",
     "PadView",
-    "PersonView",
     "PhaseName",
     "PhaseView",
     "PositionView",

@@ -12,13 +12,6 @@ from recon.api.schema.vehicles import VehicleView
 from recon.api.schema.zones import TemporaryZoneView
 
 
-class PersonView(Message):
-    """The person of a request, as the station has authenticated it."""
-
-    name: str
-    role: Literal["observer", "pilot", "operator", "admin"]
-
-
 class StopLatchView(Message):
     """The all stop in force: nothing sets a vehicle in motion until a person releases it."""
 
