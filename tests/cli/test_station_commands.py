@@ -137,6 +137,8 @@ class TestReadiness:
         checklist = station.recon("preflight", "SIM-2")
         assert checklist.code == 0, checklist.out
         assert checklist.out.endswith("passed\n")
+        assert "telemetry lost  hold after 3 s  hold after 3 s  alarm  alarm\n" in checklist.out
+        assert "failsafe matrix: default\n" in checklist.out
         assert station.recon("preflight", "SIM-2", "--override", "").code == 1
         overridden = station.recon("preflight", "SIM-2", "--override", "it is a test")
         assert "it is a test" in overridden.out

@@ -23,6 +23,7 @@ from recon.cli.connection import (
     named_serials,
     run_at_station,
 )
+from recon.cli.failsafe_table import print_failsafe_matrix
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import Preflight, Refusal, Station
 
@@ -100,7 +101,8 @@ def preflight_command(
 ) -> None:
     """Show a vehicle's checklist.
 
-    Exit code 0 when missions are allowed: passed, or overridden.
+    With it the failsafe matrix of the site. Exit code 0 when missions are allowed: passed, or
+    overridden.
     """
 
     async def work(station: Station) -> int:
@@ -171,6 +173,7 @@ def _print_checklist(checklist: Preflight, as_json: bool) -> int:
     rows = [(p.name, p.state, p.text, p.to_do) for p in checklist.points]
     columns = ("check", "state", "finding", "what to do")
     print_table(f"preflight of {checklist.name}", columns, rows)
+    print_failsafe_matrix(checklist.failsafe)
     if checklist.override is not None:
         print_line(f"overridden by {checklist.override.by}: {checklist.override.reason}")
     elif checklist.is_passed:

@@ -176,14 +176,35 @@ class PreflightOverride(msgspec.Struct, frozen=True):
     age_s: float
 
 
+class FailsafeCellStatus(msgspec.Struct, frozen=True):
+    """One cell of the failsafe matrix; `default` is None where this is the default."""
+
+    activity: str
+    reaction: str
+    after_s: float
+    text: str
+    default: str | None
+    is_weaker: bool
+
+
+class FailsafeRowStatus(msgspec.Struct, frozen=True):
+    """What the station does about one condition, by what a vehicle does."""
+
+    condition: str
+    name: str
+    begins: str
+    cells: tuple[FailsafeCellStatus, ...]
+
+
 class Preflight(msgspec.Struct, frozen=True):
-    """A vehicle's checklist, evaluated on request."""
+    """A vehicle's checklist, evaluated on request, and the site's failsafe matrix."""
 
     serial: str
     name: str
     is_passed: bool
     override: PreflightOverride | None
     points: tuple[PreflightPoint, ...]
+    failsafe: tuple[FailsafeRowStatus, ...]
 
     @property
     def unmet(self) -> tuple[PreflightPoint, ...]:

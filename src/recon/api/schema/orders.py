@@ -87,6 +87,26 @@ class CheckView(Message):
     holds_back: bool = Field(description="whether missions are refused in this state")
 
 
+class FailsafeCellView(Message):
+    """One cell of the failsafe matrix; `default` is what a site that states nothing has."""
+
+    activity: Literal["mission", "steered", "holding", "returning"]
+    reaction: Literal["nothing", "alarm", "hold", "return", "land"]
+    after_s: float = Field(description="how long the condition must have held")
+    text: str
+    default: str | None = Field(description="the default in words; null where this is the default")
+    is_weaker: bool = Field(description="whether the default does more")
+
+
+class FailsafeRowView(Message):
+    """What the station does about one condition, by what a vehicle does."""
+
+    condition: str
+    name: str
+    begins: str
+    cells: list[FailsafeCellView]
+
+
 class PreflightView(Message):
     """A vehicle's checklist as of now; missions are allowed when it is passed or overridden."""
 
@@ -95,6 +115,7 @@ class PreflightView(Message):
     is_passed: bool
     override: OverrideView | None
     points: list[CheckView]
+    failsafe: list[FailsafeRowView] = Field(description="the site's failsafe matrix")
 
 
 class AuditEntryView(Message):

@@ -9,6 +9,7 @@ from recon.safety.check import Check
 from recon.safety.checks import checklist
 from recon.safety.datum import home
 from recon.safety.prediction.motion import last_place
+from recon.station.api_views.failsafe_view import failsafe_view
 from recon.station.control import operator_lease
 from recon.station.control.preflight import facts
 from recon.station.state.station import Station
@@ -84,6 +85,7 @@ def preflight_view(station: Station, serial: str, now_ns: int) -> schema.Preflig
         is_passed=not any(check.holds_back for check in checks),
         override=override_view(station, serial, now_ns),
         points=[_point(check) for check in checks],
+        failsafe=failsafe_view(station.settings.failsafe_matrix),
     )
 
 
