@@ -1099,6 +1099,53 @@ export interface components {
             text: string;
         };
         /**
+         * FailsafeCellView
+         * @description One cell of the failsafe matrix; `default` is what a site that states nothing has.
+         */
+        FailsafeCellView: {
+            /**
+             * Activity
+             * @enum {string}
+             */
+            activity: "mission" | "steered" | "holding" | "returning";
+            /**
+             * After S
+             * @description how long the condition must have held
+             */
+            after_s: number;
+            /**
+             * Default
+             * @description the default in words; null where this is the default
+             */
+            default: string | null;
+            /**
+             * Is Weaker
+             * @description whether the default does more
+             */
+            is_weaker: boolean;
+            /**
+             * Reaction
+             * @enum {string}
+             */
+            reaction: "nothing" | "alarm" | "hold" | "return" | "land";
+            /** Text */
+            text: string;
+        };
+        /**
+         * FailsafeRowView
+         * @description What the station does about one condition, by what a vehicle does.
+         */
+        FailsafeRowView: {
+            /** Begins */
+            begins: string;
+            /** Cells */
+            cells: components["schemas"]["FailsafeCellView"][];
+            /** Condition */
+            condition: string;
+            /** Name */
+            name: string;
+        };
+        /**
          * FleetReturnRequest
          * @description Vehicles to return home in layers; null: every vehicle that is or may be in flight.
          */
@@ -1626,6 +1673,11 @@ export interface components {
          * @description A vehicle's checklist as of now; missions are allowed when it is passed or overridden.
          */
         PreflightView: {
+            /**
+             * Failsafe
+             * @description the site's failsafe matrix
+             */
+            failsafe: components["schemas"]["FailsafeRowView"][];
             /** Is Passed */
             is_passed: boolean;
             /** Name */
