@@ -32,6 +32,7 @@ from recon.safety.watchdogs.traffic_picture import (
     hold_outcome,
     plane_of,
 )
+from recon.safety.watchdogs.way_home_zones import way_home_zones
 
 Watchdog = Callable[[TrafficPicture], Iterable[Finding]]
 
@@ -40,6 +41,7 @@ WATCHDOGS: tuple[Watchdog, ...] = (
     fences,
     battery_home,
     go_home,
+    way_home_zones,
     link,
     heights,
     sticks,

@@ -1,0 +1,80 @@
+"""Alarms about a failsafe's way home that leads through a temporary zone.
+
+The gate judges the way home when an order is given. A zone that is drawn later may lie on the way
+home of a vehicle that only hovers, or flies clear of the zone: nothing holds it, and on the loss of
+its link it would fly through. Only temporary zones are asked about: the site's own are judged with
+every order.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from recon.geo import Footprints
+from recon.model.severity import Severity
+from recon.model.vehicle import VehicleState
+from recon.safety.airspace import PreparedAirspace, PreparedZone
+from recon.safety.datum import home_enu_m, takeoff_up_m, vehicle_enu_m
+from recon.safety.heights import stays_above, zone_datum
+from recon.safety.prediction.trajectory import FloatArray
+from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture
+
+RULE = "way_home_zone"
+
+
+def way_home_zones(picture: TrafficPicture) -> Iterator[Finding]:
+    """Find vehicles in the air whose straight way home meets a temporary zone."""
+    airspace = picture.airspace
+    if not airspace.temporary_zones:
+        return
+    known = [
+        (one, way) for one in picture.flying if (way := _way_m(one.state, airspace)) is not None
+    ]
+    if not known:
+        return
+    # All ways at once: most are far from most zones.
+    ways_m = np.stack([way for _, way in known])
+    ways, margin_m = Footprints(ways_m), airspace.airspace.limits.boundary_margin_m
+    for zone in airspace.temporary_zones:
+        for index in np.flatnonzero(~zone.polygon.is_clear_of(ways, margin_m)):
+            watched = known[index][0]
+            if _is_above(zone, watched.state, ways_m[index], airspace):
+                continue
+            name = zone.zone.name
+            text = (
+                f"its way home leads through the keep-out zone {name!r}: without its link it would "
+                "fly through it; lead it to the other side, or land it"
+            )
+            yield watched.finding(RULE, Severity.WARNING, text, about=f":{name}", after_s=1.0)
+
+
+def _way_m(vehicle: VehicleState, airspace: PreparedAirspace) -> FloatArray | None:
+    """From here to its home, (3, 2) in the site's frame; None while either is unknown."""
+    here_m, home_m = vehicle_enu_m(airspace, vehicle), home_enu_m(airspace, vehicle)
+    if here_m is None or home_m is None:
+        return None
+    return np.stack([here_m[:2], home_m[:2], home_m[:2]])
+
+
+def _is_above(
+    zone: PreparedZone, vehicle: VehicleState, way_m: FloatArray, airspace: PreparedAirspace
+) -> bool:
+    """Whether it flies home above the zone, and lands beside it."""
+    ceiling_m, low_m = zone.zone.ceiling_m, _level_up_m(vehicle, airspace)
+    if ceiling_m is None or low_m is None:
+        return False
+    home = Footprints(way_m[np.newaxis, [1, 1, 1]])
+    if not zone.polygon.is_clear_of(home, airspace.airspace.limits.boundary_margin_m)[0]:
+        return False
+    datum = zone_datum(zone.zone)
+    return bool(stays_above(airspace, way_m[np.newaxis], np.array([low_m]), ceiling_m, datum)[0])
+
+
+def _level_up_m(vehicle: VehicleState, airspace: PreparedAirspace) -> float | None:
+    """The height of its level flight home, up_m of the frame; None if unknown."""
+    profile, takeoff_m = vehicle.profile, takeoff_up_m(airspace, vehicle)
+    go_home_m = None if profile is None else profile.go_home_height_m
+    height_m = vehicle.height_above_takeoff_m.value
+    if takeoff_m is None or go_home_m is None or height_m is None:
+        return None
+    return takeoff_m + max(go_home_m, height_m)
