@@ -1,4 +1,4 @@
-import type { PreflightView, StationState } from "../../src/protocol";
+import type { FailsafeRowView, PreflightView, StationState } from "../../src/protocol";
 import { alarm, area, at, command, hazard, station, vehicle } from "../../src/testing/fakeState";
 
 /** A field with fences, a lost vehicle, a steered one, and a fleet returning home. */
@@ -118,7 +118,20 @@ export function fencedState(elapsed_s: number): StationState {
   };
 }
 
-/** A checklist with an item that blocks missions. */
+function failsafeRow(condition: string, name: string, texts: readonly string[]): FailsafeRowView {
+  const activities = ["mission", "steered", "holding", "returning"] as const;
+  const cells = activities.map((activity, index) => ({
+    activity,
+    reaction: "alarm" as const,
+    after_s: 0,
+    text: texts[index] ?? "alarm",
+    default: activity === "mission" && condition === "wind" ? "return after 30 s" : null,
+    is_weaker: activity === "mission" && condition === "wind",
+  }));
+  return { condition, name, begins: name, cells };
+}
+
+/** A checklist with an item that blocks missions, and a failsafe matrix with a weaker cell. */
 export const CHECKLIST: PreflightView = {
   serial: "SN-001",
   name: "Alder",
@@ -141,5 +154,20 @@ export const CHECKLIST: PreflightView = {
       to_do: "Write go_home_height_m into the vehicle's profile.",
       holds_back: true,
     },
+  ],
+  failsafe: [
+    failsafeRow("telemetry_lost", "telemetry lost", [
+      "hold after 3 s",
+      "hold after 3 s",
+      "alarm",
+      "alarm",
+    ]),
+    failsafeRow("battery_low", "battery low", [
+      "return after 15 s",
+      "return after 15 s",
+      "return after 15 s",
+      "alarm",
+    ]),
+    failsafeRow("wind", "wind", ["alarm", "alarm", "alarm", "alarm"]),
   ],
 };

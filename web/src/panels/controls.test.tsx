@@ -1,5 +1,12 @@
 import { afterEach, describe, expect, it } from "vitest";
-import type { AuthorityHolder, CheckView, PreflightView, StationState } from "../protocol";
+import type {
+  AuthorityHolder,
+  CheckView,
+  FailsafeCellView,
+  FailsafeRowView,
+  PreflightView,
+  StationState,
+} from "../protocol";
 import { hazard, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
 import { VehicleDetail } from "./detail/VehicleDetail";
@@ -38,6 +45,28 @@ function point(state: CheckView["state"], changes: Partial<CheckView> = {}): Che
   };
 }
 
+function failsafeRow(changes: Partial<FailsafeCellView> = {}): FailsafeRowView {
+  const cell = (activity: FailsafeCellView["activity"]): FailsafeCellView => ({
+    activity,
+    reaction: "hold",
+    after_s: 3,
+    text: "hold after 3 s",
+    default: null,
+    is_weaker: false,
+  });
+  return {
+    condition: "telemetry_lost",
+    name: "telemetry lost",
+    begins: "no new telemetry for 1 s on an open link",
+    cells: [
+      { ...cell("mission"), ...changes },
+      cell("steered"),
+      cell("holding"),
+      cell("returning"),
+    ],
+  };
+}
+
 function list(changes: Partial<PreflightView> = {}): PreflightView {
   const points = [point("ok"), point("attention"), point("unknown"), point("fails")];
   return {
@@ -46,6 +75,7 @@ function list(changes: Partial<PreflightView> = {}): PreflightView {
     is_passed: false,
     override: null,
     points,
+    failsafe: [failsafeRow()],
     ...changes,
   };
 }
@@ -142,6 +172,20 @@ describe("the checklist", () => {
     page.clock.advance(200);
     await settled();
     expect(page.requests).toEqual([{ override: "short test hop", serial: "SN-001" }]);
+  });
+
+  it("has the site's failsafe matrix, folded, and counts what a site has changed", async () => {
+    const section = await open(list());
+    const matrix = () => find(section, ".failsafe").closest("details");
+    expect(matrix()?.querySelector("summary")?.textContent).toBe("When something fails: default");
+    expect(matrix()?.open).toBe(false);
+    expect(matrix()?.textContent).toContain("telemetry losthold after 3 s");
+    const alarm = { text: "alarm", default: "hold after 3 s", is_weaker: true };
+    page.showPreflight(list({ failsafe: [failsafeRow(alarm)] }));
+    page.clock.advance(2000);
+    await settled();
+    expect(matrix()?.textContent).toContain("When something fails: 1 of 4 changed, 1 weaker");
+    expect(matrix()?.textContent).toContain("alarm (default: hold after 3 s)");
   });
 
   it("shows the operator and the reason of an override", async () => {

@@ -13,6 +13,7 @@ import type { CheckView, PreflightView, Severity } from "../../protocol";
 import { issuerName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { SeverityMark } from "../SeverityMark";
+import { FailsafeTable } from "./FailsafeTable";
 import { Override } from "./Override";
 import "./preflight.css";
 import type { Clock } from "../../source/clock";
@@ -47,6 +48,7 @@ export function PreflightSection(props: { serial: string; name: string }) {
                 onAccepted={() => void preflight.refresh()}
               />
             </Show>
+            <FailsafeTable rows={list().failsafe} />
           </div>
         )}
       </Show>
