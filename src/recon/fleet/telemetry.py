@@ -42,6 +42,7 @@ def fold_core(
         altitude_offset_m=Stamped(offset_m, now_ns),
         altitude_offset_at_takeoff_m=_offset_at_takeoff_m(state, belief, offset_m),
         takeoff_point=belief.home if belief.takes_off else state.takeoff_point,
+        airborne_since_ns=_airborne_since_ns(state, belief, now_ns),
         core_received_at_ns=now_ns,
         track=_extend_track(state, report, now_ns, settings),
     )
@@ -138,6 +139,13 @@ def _offset_at_takeoff_m(
         return None
     at_takeoff_m = None if belief.takes_off else state.altitude_offset_at_takeoff_m
     return offset_m if at_takeoff_m is None and belief.is_flying else at_takeoff_m
+
+
+def _airborne_since_ns(state: VehicleState, belief: AirborneBelief, now_ns: int) -> int | None:
+    if belief.is_flying is False:
+        return None
+    is_new = belief.takes_off or state.airborne_since_ns is None
+    return now_ns if is_new else state.airborne_since_ns
 
 
 def _battery(state: VehicleState, report: ExtendedReport) -> float | None:

@@ -237,6 +237,8 @@ class VehicleState:
     """Altitude minus height above takeoff of one packet: the waypoint offset of a wgs84 app."""
     altitude_offset_at_takeoff_m: float | None = None
     takeoff_point: LatLon | None = None
+    airborne_since_ns: int | None = None
+    """Its takeoff, or first telemetry in flight when that was not observed; None on the ground."""
     rival_link_ids: tuple[int, ...] = ()
     """Other open links that claim this serial, until identity is resolved."""
     in_conflict: bool = False

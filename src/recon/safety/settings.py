@@ -232,6 +232,11 @@ class PredictionSettings:
     """Off its predicted path in a fault-free flight: aircraft fly some decimetres beside a row, and
     a barometer resolves decimetres. The gate keeps this beyond the watchdog's minima."""
 
+    height_drift_m_per_h: float = 0.5
+    """Of each vehicle's height above takeoff, by its time in the air: so much more is kept between
+    two. An assumption, for barometers that were warm at takeoff: two in the air for half an hour
+    are half a metre off each other, which layers of 8 m hold (docs/decisions/0017)."""
+
     corridor_m: float = 10.0
     """Half the width of a way home: GNSS error, wind, and where home really is."""
 

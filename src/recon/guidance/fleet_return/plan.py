@@ -3,8 +3,8 @@
 Theory of operation. Vehicles hover, and are separated by height, not by time: arrival times depend
 on wind and on how long each landing takes.
 
-1. Layers are `layer_spacing_m` apart, from the lowest height that clears ground and zones, to the
-   ceiling (`airspace`).
+1. Layers are `layer_spacing_m` apart, or as far as vehicles must be kept, from the lowest height
+   that clears ground and zones, to the ceiling (`airspace`).
 2. Vehicles are ordered by battery, lowest first in tenths; equal ones by distance to their pads.
 3. The first vehicle that can have a free layer gets the lowest one from which its whole flight
    (column up or down, level path, column over the pad) is separated from all vehicles that still
@@ -47,13 +47,16 @@ from recon.guidance.fleet_return.ways import ReturnPaths, WayHome
 NO_WAY = "no path to its pad in any layer around keep-out zones and hovering vehicles"
 
 
-def layers_up_m(home: WayHome, settings: FleetReturnSettings) -> tuple[float, ...]:
+def layers_up_m(
+    home: WayHome, settings: FleetReturnSettings, separation: Separation
+) -> tuple[float, ...]:
     """Return the heights of all layers, from the lowest; none where there is no room."""
     room_m = home.highest_up_m - home.lowest_up_m
     if not isfinite(room_m) or room_m < 0.0:
         return ()
-    count = floor(room_m / settings.layer_spacing_m) + 1
-    return tuple(home.lowest_up_m + i * settings.layer_spacing_m for i in range(count))
+    spacing_m = max(settings.layer_spacing_m, separation.vertical_m)
+    count = floor(room_m / spacing_m) + 1
+    return tuple(home.lowest_up_m + i * spacing_m for i in range(count))
 
 
 def plan_return(
@@ -68,7 +71,7 @@ def plan_return(
 
     `separation` is the least one with its slack. Everyone named is in a flight or left out.
     """
-    layers_m = layers_up_m(home, settings)
+    layers_m = layers_up_m(home, settings, separation)
     search = _Search(vehicles, home, separation, layers_m, others)
     waiting = sorted(vehicles, key=_turn)
     flights: list[ReturnFlight] = []

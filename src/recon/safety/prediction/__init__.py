@@ -21,6 +21,7 @@ from recon.safety.prediction.motion import (
     BoolArray,
     Plane,
     VehicleMotion,
+    height_drift_m,
     unknown_heights,
     vehicle_motion,
 )
@@ -43,6 +44,7 @@ __all__ = [
     "first_conflict",
     "hazard_area_of",
     "hazard_trajectories",
+    "height_drift_m",
     "part_text",
     "predict_order",
     "predict_traffic",

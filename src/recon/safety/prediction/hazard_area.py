@@ -68,9 +68,9 @@ def hazard_area_of(
         growth_mps=growth_mps,
         largest_m=largest_m,
         low_m=-ALL_HEIGHTS_M,
-        high_m=top_m,
+        high_m=top_m + motion.drift_m,
         home_m=motion.home_m if motion.goes_home else None,
-        corridor_low_m=motion.low_m,
+        corridor_low_m=motion.low_m - motion.drift_m,
         corridor_half_m=settings.corridor_m,
     )
 

@@ -19,6 +19,8 @@ from recon.safety.settings import PredictionSettings
 
 BoolArray = npt.NDArray[np.bool_]
 
+S_PER_HOUR = 3_600.0
+
 SAME_GROUND_M = 10.0
 """Takeoff points this near to each other are at one height, to 2 m on a slope of 1 in 5."""
 
@@ -64,6 +66,9 @@ class VehicleMotion(NamedTuple):
     """Whether it may go home by itself when it loses its controller."""
     is_ground_known: bool = True
     """Whether the height of its takeoff point is that of a pad or of an elevation model."""
+    drift_m: float = 0.0
+    """How far its barometer may have drifted since takeoff: its heights are known to this, up and
+    down. Where vehicles are compared it is taken off the gap; limits and zones have margins."""
 
     @property
     def name(self) -> str:
@@ -123,7 +128,18 @@ def vehicle_motion(
         go_home_up_m=None if go_home_m is None or base_m is None else base_m + go_home_m,
         goes_home=profile is None or profile.failsafe in (None, Failsafe.GO_HOME),
         is_ground_known=is_takeoff_height_known(airspace, state, home_place),
+        drift_m=height_drift_m(state, now_ns, settings),
     )
+
+
+def height_drift_m(
+    state: VehicleState, now_ns: int, settings: PredictionSettings, ahead_s: float = 0.0
+) -> float:
+    """Return how far a vehicle's height may have drifted by now, or so many seconds ahead."""
+    since_ns = state.airborne_since_ns
+    if since_ns is None:
+        return 0.0
+    return settings.height_drift_m_per_h * (age_at(now_ns, since_ns) + ahead_s) / S_PER_HOUR
 
 
 def unknown_heights(motions: Sequence[VehicleMotion]) -> BoolArray | None:

@@ -46,7 +46,7 @@ def predict_order(motion: VehicleMotion, body: Body, settings: PredictionSetting
     """Return the trajectory an order to move would send its vehicle on."""
     predictor = Predictor(motion, settings)
     write_order(predictor, body)
-    trajectory = predictor.writer.trajectory(motion.name, motion.state.serial)
+    trajectory = predictor.writer.trajectory(motion.name, motion.state.serial, motion.drift_m)
     may_wait = isinstance(body, FlyMission)
     return replace(trajectory, delay_s=settings.start_delay_s) if may_wait else trajectory
 
@@ -67,7 +67,7 @@ def predict_traffic(
         return volumes
     predictor = Predictor(motion, settings, until_s=until_s)
     predictor.follow(intent)
-    trajectory = predictor.writer.trajectory(motion.name, motion.state.serial)
+    trajectory = predictor.writer.trajectory(motion.name, motion.state.serial, motion.drift_m)
     if _has_not_begun(motion, intent):
         trajectory = replace(trajectory, delay_s=settings.start_delay_s)
     return (trajectory, *volumes)
@@ -205,14 +205,15 @@ def _band_m(
     """The heights it can be at within so many seconds."""
     if motion.age_s > settings.stale_s or intent.commanded in (Commanded.LAND, Commanded.RETURN):
         return -ALL_HEIGHTS_M, 2.0 * ALL_HEIGHTS_M
-    low_m, high_m = motion.low_m, motion.high_m
+    low_m, high_m = motion.low_m - motion.drift_m, motion.high_m + motion.drift_m
     heights_m = [intent.target_height_above_takeoff_m]
     if intent.mission is not None and intent.passed == 0:
         heights_m.append(intent.mission.waypoints[0].height_above_takeoff_m)
     for height_m in heights_m:
         if height_m is not None:
             band_m = motion.up_m(height_m)
-            low_m, high_m = min(low_m, band_m[0]), max(high_m, band_m[1])
+            low_m = min(low_m, band_m[0] - motion.drift_m)
+            high_m = max(high_m, band_m[1] + motion.drift_m)
     fastest_mps = max(settings.climb_mps, settings.sink_mps, abs(motion.velocity_mps[2]))
     change_m = fastest_mps * (motion.age_s + max(seconds, settings.stick_horizon_s))
     return low_m - change_m, high_m + change_m

@@ -80,6 +80,16 @@ class Trajectory:
     delay_s: float = 0.0
 
 
+def with_drift(rows: FloatArray, drift_m: float) -> FloatArray:
+    """Return rows with bands of heights that are wider by this, up and down."""
+    if drift_m == 0.0:
+        return rows
+    wider = rows.copy()
+    wider[:, [LOW_0, LOW_1]] -= drift_m
+    wider[:, [HIGH_0, HIGH_1]] += drift_m
+    return wider
+
+
 class TrajectoryWriter:
     """Writes a trajectory row after row from where a vehicle is."""
 
@@ -127,10 +137,11 @@ class TrajectoryWriter:
         """Stay indefinitely."""
         self.waits(FOREVER_S, part)
 
-    def trajectory(self, name: str, serial: str | None) -> Trajectory:
-        """Return what has been written."""
+    def trajectory(self, name: str, serial: str | None, drift_m: float = 0.0) -> Trajectory:
+        """Return what has been written, its heights uncertain by a drift."""
         rows = np.array(self.rows, dtype=np.float64).reshape(-1, COLUMNS)
-        return Trajectory(name, serial, rows, self.here_m)
+        here_m = self.here_m[0] - drift_m, self.here_m[1] + drift_m
+        return Trajectory(name, serial, with_drift(rows, drift_m), here_m)
 
 
 _APART_S = 4.0 * FOREVER_S

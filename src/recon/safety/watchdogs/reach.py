@@ -56,6 +56,8 @@ class Reach(NamedTuple):
     fastest_mps: float
     age_s: float
     slack_m: float
+    drift_m: float = 0.0
+    """Added to its band of heights where vehicles are compared."""
 
     def radius_m(self, seconds: float) -> float:
         """Return how far from its last place it comes until so many seconds from now."""
@@ -104,6 +106,7 @@ def reach_of(
         fastest_mps,
         motion.age_s,
         slack_m,
+        motion.drift_m,
     )
 
 
@@ -120,7 +123,10 @@ def near_each_other(
     if len(reaches) < 2:
         return set()
     bounds_m = np.array(
-        [(r.east_m, r.north_m, r.low_m, r.high_m, r.radius_m(horizon_s)) for r in reaches]
+        [
+            (r.east_m, r.north_m, r.low_m - r.drift_m, r.high_m + r.drift_m, r.radius_m(horizon_s))
+            for r in reaches
+        ]
     )
     east_m, north_m, low_m, high_m, radius_m = bounds_m.T[:, :, np.newaxis]
     apart_m = np.hypot(east_m - east_m.T, north_m - north_m.T)

@@ -109,7 +109,7 @@ def _may_wait(picture: TrafficPicture, conflict: PairConflict) -> bool:
 
 def _if_held(picture: TrafficPicture, conflict: PairConflict, number: int) -> Approach:
     """How near they come if this one of the two is held now and the other flies on."""
-    ahead = picture.ahead
+    ahead = picture.ahead_apart
     held, stays = (np.array([conflict.indices[index]]) for index in (number, 1 - number))
     close, horizontal_m, vertical_m = closeness(
         ahead.if_held, held, ahead.as_it_flies, stays, conflict.need, conflict.unknown

@@ -62,7 +62,7 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
             yield from _hazard(picture, watched, watched.hazard, need)
     if len(picture.predicted) < 2:
         return
-    flies, times_s = picture.ahead.as_it_flies, picture.ahead.times_s
+    flies, times_s = picture.ahead_apart.as_it_flies, picture.ahead.times_s
     unknown = _unknown_heights(picture.predicted)
     first, second = near_pairs(flies, need, unknown)
     if len(first) == 0:
@@ -116,7 +116,7 @@ def _pair(
 def _hazard(
     picture: TrafficPicture, lost: WatchedVehicle, hazard: HazardArea, need: SeparationMinima
 ) -> Iterator[Finding]:
-    ahead = picture.ahead
+    ahead = picture.ahead_apart
     pairs = _unknown_heights((*picture.predicted, lost))
     unknown = None if pairs is None else pairs[-1, :-1]
     flies = hazard_closeness(ahead.as_it_flies, ahead.times_s, hazard, need, unknown)

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+
 from recon.model.control import AuthorityHolder, Commanded, Intent
 from recon.model.failsafe_matrix import FailsafeCondition
 from recon.model.geo import LatLon
@@ -211,6 +213,16 @@ class TrafficPicture:
         rows = [_next_rows(one, self) for one in self.flying]
         rows += [_lost_rows(one, self) for one in self.lost]
         return look_ahead(rows, self.settings, self.prediction)
+
+    @cached_property
+    def ahead_apart(self) -> LookAhead:
+        """The same with heights as uncertain as barometers drift: for comparing vehicles."""
+        drift_m = [0.0 if one.motion is None else one.motion.drift_m for one in self.predicted]
+        if not any(drift_m):
+            return self.ahead
+        flies, by_m = self.ahead.as_it_flies, np.array(drift_m)[:, np.newaxis]
+        wider = replace(flies, low_m=flies.low_m - by_m, high_m=flies.high_m + by_m)
+        return replace(self.ahead, as_it_flies=wider)
 
     @property
     def minima(self) -> SeparationMinima:

@@ -123,7 +123,7 @@ def _begin_one(
     """Begin the first flight in turn that may begin."""
     running, ready = _with_free_layers(running, settings, now_ns)
     if ready:
-        traffic = _Traffic(station, running, settings)
+        traffic = _Traffic(station, running, settings, now_ns)
         for member in ready:
             flight = traffic.from_here(member)
             if flight is None:
@@ -168,9 +168,11 @@ def _waiting_in_turn(running: FleetReturn) -> list[ReturningVehicle]:
 class _Traffic:
     """What is in the air now, collected once for all vehicles that might begin."""
 
-    def __init__(self, station: Station, running: FleetReturn, settings: ReturnSettings) -> None:
+    def __init__(
+        self, station: Station, running: FleetReturn, settings: ReturnSettings, now_ns: int
+    ) -> None:
         self._settings = settings
-        self._separation = planning.separation(station, settings)
+        self._separation = planning.separation(station, settings, now_ns)
         self._flying = planning.in_the_air(station, running.frame)
         self._moving = {member.serial for member in running.at(*UNDER_WAY)}
         self._under_way = [

@@ -23,6 +23,7 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import home_enu_m, places_m, takeoff_up_m, vehicle_enu_m
+from recon.safety.prediction import height_drift_m
 from recon.safety.separation_minima import gate_minima
 from recon.station.operations.settings import ReturnSettings
 from recon.station.state.fleet_return_record import UNDER_WAY, FleetReturn, ReturningVehicle, Stage
@@ -81,12 +82,20 @@ def ground_up_m(station: Station, vehicles: Sequence[CalledVehicle]) -> tuple[fl
     return float(np.min(lowest_m)), float(np.max(highest_m))
 
 
-def separation(station: Station, settings: ReturnSettings) -> Separation:
-    """Return how far apart the plan keeps vehicles: the gate's minima and some slack."""
-    gate = gate_minima(station.airspace.airspace.limits, station.settings.safety)
+def separation(
+    station: Station, settings: ReturnSettings, now_ns: int, ahead_s: float = 0.0
+) -> Separation:
+    """Return how far apart vehicles are kept: the gate's minima, and some slack, or what two
+    barometers may have drifted by then where that is more."""
+    safety = station.settings.safety
+    gate = gate_minima(station.airspace.airspace.limits, safety)
+    drifts_m = sorted(
+        height_drift_m(vehicle, now_ns, safety.prediction, ahead_s)
+        for vehicle in station.fleet.vehicles.values()
+    )
     return Separation(
         gate.horizontal_m + settings.plan.horizontal_slack_m,
-        gate.vertical_m + settings.plan.vertical_slack_m,
+        gate.vertical_m + max(sum(drifts_m[-2:]), settings.plan.vertical_slack_m),
     )
 
 
@@ -172,7 +181,7 @@ def ask(
             vehicles.append(found)
     if not vehicles:
         return running, ()
-    work = _work(station, running, vehicles, settings)
+    work = _work(station, running, vehicles, settings, now_ns)
     planning = replace(running, planning_since_ns=now_ns)
     return planning, (Job(now_ns, PLAN_RETURN, work),)
 
@@ -217,8 +226,16 @@ PLAN_RETURN: JobKind[ReturnPlanRequest, ReturnPlan] = JobKind(
 """Plans layers, waves and landing missions for all vehicles that wait."""
 
 
+PLAN_LASTS_S = 600.0
+"""Until the last vehicle of a plan is down: layers must be far enough apart for the gate then."""
+
+
 def _work(
-    station: Station, running: FleetReturn, vehicles: list[CalledVehicle], settings: ReturnSettings
+    station: Station,
+    running: FleetReturn,
+    vehicles: list[CalledVehicle],
+    settings: ReturnSettings,
+    now_ns: int,
 ) -> ReturnPlanRequest:
     theirs = {member.serial for member in running.at(Stage.WAITING, *UNDER_WAY)}
     flying = in_the_air(station, running.frame)
@@ -227,7 +244,7 @@ def _work(
         tuple(other for key, other in flying.items() if key not in theirs),
         station.airspace.airspace,
         ground_up_m(station, vehicles),
-        separation(station, settings),
+        separation(station, settings, now_ns, PLAN_LASTS_S),
         settings,
         1 + max((_wave(member) for member in running.members.values()), default=0),
     )
