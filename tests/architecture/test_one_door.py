@@ -15,7 +15,7 @@ from recon.model.command import Hover, LandNow
 from recon.safety import ApprovedCommand, approve
 
 GATE = "safety/gate.py"
-MAY_KNOW_IT = ("safety", "api", "record", "sim", "link", "site", "station", "cli")
+MAY_KNOW_IT = ("safety", "api", "record", "sim", "guard", "link", "site", "station", "cli")
 """The rooms that the layers let import safety."""
 
 
@@ -63,14 +63,14 @@ class TestOnlyTheGateMakesOne:
         ]
         assert heirs == []
 
-    def test_only_the_station_asks_for_approval(self) -> None:
+    def test_only_the_station_and_its_guard_ask_for_approval(self) -> None:
         askers = {
             name_of(path)
             for path in files()
             for _, name in calls(path)
             if name.split(".")[-1] == "approve"
         }
-        assert askers == {"station/control/order_gateway.py"}
+        assert askers == {"station/control/order_gateway.py", "guard/watch.py"}
 
 
 class TestOneCannotBecomeAnother:
@@ -121,7 +121,7 @@ class TestLinksSendNothingElse:
         with pytest.raises(TypeError, match="approved for links"):
             Session(2, LinkSettings(), 0).submit(hold())
 
-    def test_one_place_encodes_packets_for_apps(self) -> None:
+    def test_one_place_of_each_encodes_packets_for_apps(self) -> None:
         encoders = {
             name_of(path)
             for path in files()
@@ -129,7 +129,7 @@ class TestLinksSendNothingElse:
             for _, name in calls(path)
             if name in ("encode", "wire.encode", "to_packet")
         }
-        assert encoders == {"link/session.py"}
+        assert encoders == {"link/session.py", "guard/process.py"}
 
     def test_one_line_of_the_link_room_writes_to_a_transport_and_it_writes_outgoing(self) -> None:
         senders = ("send", "sendall", "sendto", "sendmsg", "writelines", "write_eof")

@@ -1,6 +1,7 @@
 """`recon run`: the station; `recon openapi`: the description of its API."""
 
 import json
+import socket
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -39,6 +40,18 @@ def run_command(
     http_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port of the console; 0: any free port.")
     ] = 8080,
+    stop_port: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            max=65535,
+            help="Port of the guard, on this computer: all stop when the console does not answer. "
+            "Default: the console's port and 1; 0: any free port.",
+        ),
+    ] = None,
+    guard: Annotated[
+        bool, typer.Option(help="Run a guard: a process that can stop vehicles by itself.")
+    ] = hasattr(socket, "send_fds"),
     https_host: Annotated[
         str | None,
         typer.Option(
@@ -76,6 +89,7 @@ def run_command(
         link_port=link_port,
         http_host=http_host,
         http_port=http_port,
+        stop_port=guard_port(stop_port, http_port) if guard else None,
         site_folder=site,
         capture_folder=capture,
         audit=None if audit is None else AuditPlace(audit),
@@ -91,6 +105,13 @@ def run_command(
     )
     describe(config.site)
     run_in_loop(run(config, _announce))
+
+
+def guard_port(stop_port: int | None, http_port: int) -> int:
+    """Return the port of the guard: as asked, else beside the console's."""
+    if stop_port is not None:
+        return stop_port
+    return min(http_port + 1, 65535) if http_port else 0
 
 
 async def _announce(started: Started) -> None:
@@ -118,6 +139,8 @@ def announce(started: Started) -> None:
     print_now(f"audit: {started.audit_folder}")
     if started.taken_up:
         print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")
+    if started.stop_url is not None:
+        print_now(f"all stop without the console: curl -X POST {started.stop_url}")
     print_now(f"console: {started.console_url}")
     if started.network is not None:
         for url in started.network.urls:

@@ -1,11 +1,12 @@
 """One app's socket: bytes into its session, packets out, events to the server in their order."""
 
 import asyncio
+import os
 import select
 import socket
 from collections import deque
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, cast
 
 from recon.link.capture import Direction
@@ -49,6 +50,11 @@ class Connection(asyncio.BufferedProtocol):
         self.session = Session(link_id, self.server.settings, now_ns)
         self.server.add(self)
         self.server.handle(LinkOpened(link_id, address))
+
+    @property
+    def socket(self) -> Any:
+        """Its socket, as asyncio lends it; None without one."""
+        return None if self._transport is None else self._transport.get_extra_info("socket")
 
     @property
     def link_id(self) -> int:
@@ -173,6 +179,7 @@ class Connection(asyncio.BufferedProtocol):
         """Close the socket now; unsent commands fail with the reason."""
         if self._closing_reason is None and self._transport is not None:
             self._closing_reason = reason
+            _shut_down(self.socket)
             self._transport.abort()
 
     @contextmanager
@@ -266,6 +273,16 @@ def _prepare_socket(transport: asyncio.Transport, settings: LinkSettings) -> Non
         if hasattr(socket, name):
             sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, settings.send_buffer_bytes)
+
+
+def _shut_down(lent: Any) -> None:
+    """End a connection although the guard has a duplicate of its socket.
+
+    The socket that uvloop lends cannot be shut down, but a duplicate of it can.
+    """
+    if lent is not None:
+        with suppress(OSError), socket.socket(fileno=os.dup(lent.fileno())) as own:
+            own.shutdown(socket.SHUT_RDWR)
 
 
 def _reason(exc: Exception | None) -> str:

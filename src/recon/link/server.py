@@ -6,6 +6,7 @@ refused. What else all links share is in `shared_limits`; `connection` is one ap
 
 import asyncio
 from collections.abc import Callable
+from typing import Any, Protocol
 
 from recon.link.capture import Capture
 from recon.link.connection import Connection, address_text
@@ -17,6 +18,18 @@ from recon.safety import ApprovedCommand
 
 HandleEvent = Callable[[Event], None]
 Clock = Callable[[], int]
+
+
+class SocketWatch(Protocol):
+    """Who is told of each connection's socket: the station's guard."""
+
+    def opened(self, link_id: int, sock: Any) -> None:
+        """A connection stands; `sock` is closed with it."""
+        ...
+
+    def closed(self, link_id: int) -> None:
+        """A connection is over."""
+        ...
 
 
 class LinkServer:
@@ -35,6 +48,7 @@ class LinkServer:
         self.capture = capture
         self.objection: Objection = no_objection
         """Judges an order again at the moment of sending."""
+        self.watch: SocketWatch | None = None
         self.connections: dict[int, Connection] = {}
         self.refused_connections = 0
         self.ended: dict[int, Session] = {}
@@ -133,11 +147,15 @@ class LinkServer:
         """Take a new connection among those that stand."""
         self.connections[connection.link_id] = connection
         self.unfinished[connection.link_id] = connection
+        if self.watch is not None:
+            self.watch.opened(connection.link_id, connection.socket)
 
     def forget(self, session: Session) -> None:
         """Take a session that is over from those that stand; the oldest ended one goes."""
         self.connections.pop(session.link_id, None)
         self.ended[session.link_id] = session
+        if self.watch is not None:
+            self.watch.closed(session.link_id)
         if len(self.ended) > self.settings.ended_sessions_kept:
             del self.ended[next(iter(self.ended))]
 

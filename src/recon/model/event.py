@@ -343,6 +343,20 @@ class StationFaulted:
 
 
 @dataclass(frozen=True, slots=True)
+class GuardActed:
+    """The guard held vehicles by itself; `by` is the person of an all stop at its port.
+
+    `names` were sent a hover, `missed` may fly and were not; `serials` are of all of them.
+    """
+
+    why: str
+    serials: tuple[str, ...]
+    names: tuple[str, ...]
+    missed: tuple[str, ...]
+    by: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class AlarmAcknowledged:
     """An operator acknowledged an alarm."""
 
@@ -395,5 +409,6 @@ Event = (
     | AuditFailed
     | LinkLimitReached
     | StationFaulted
+    | GuardActed
     | JobEnded
 )

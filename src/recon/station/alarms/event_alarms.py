@@ -6,7 +6,7 @@ They stay until an operator acknowledges them. A fault's alarm is critical while
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from recon.model.event import ClockGap, LoginRefused, StationFaulted, UsersChanged
+from recon.model.event import ClockGap, GuardActed, LoginRefused, StationFaulted, UsersChanged
 from recon.model.replacing import replace
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
@@ -85,6 +85,20 @@ def note_gap(station: Station, event: ClockGap, now_ns: int) -> Station:
     )
     key = f"station_suspended:{now_ns}"
     condition = Condition(key, Severity.ERROR, "station_suspended", STATION_NAME, text)
+    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book)
+
+
+def note_guard(station: Station, event: GuardActed, now_ns: int) -> Station:
+    """Return the station with an alarm for what its guard did."""
+    names = ", ".join(event.names) or "no vehicle"
+    who = "" if event.by is None else f" by {event.by}"
+    missed = f", and could not hold {', '.join(event.missed)}" if event.missed else ""
+    text = (
+        f"The guard held {names}{missed}: {event.why}{who}. Check every vehicle before you give "
+        "orders"
+    )
+    condition = Condition(f"guard:{now_ns}", Severity.ERROR, "guard", STATION_NAME, text)
     book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
     return replace(station, alarms=book)
 

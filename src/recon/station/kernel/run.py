@@ -36,6 +36,7 @@ from recon.station.audit.start import (
 from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
+from recon.station.kernel.guard_line import GuardLine, take_over_from_orphan
 from recon.station.kernel.http_servers import (
     NetworkConfig,
     StartError,
@@ -65,6 +66,8 @@ class RunConfig:
     link_port: int = 3001
     http_host: str = "127.0.0.1"
     http_port: int = 8080
+    stop_port: int | None = None
+    """Of the guard, on loopback; None: no guard."""
     site_folder: Path | None = None
     """Where the site was read from; its digest goes into the audit."""
     capture_folder: Path | None = None
@@ -99,6 +102,8 @@ class Started:
     link_addresses: list[str]
     link_port: int
     console_url: str
+    stop_url: str | None = None
+    """Where a person stops all vehicles when the station does not answer; None without a guard."""
     audit_folder: str = ""
     apps_listed: int | None = None
     """Entries of the list of apps; None without a list."""
@@ -140,9 +145,11 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         service = Service.around(
             driver, config.site, _text(config.capture_folder), begun.log, last_run.first_ids[0]
         )
-        links = await _start_links_and_worker(config, driver, service, stack)
+        line = _start_guard(config, driver, service, doors, place.folder, stack)
+        links = await _start_links_and_worker(config, driver, service, line, stack)
         started = replace(
             _started(config, service, links, doors),
+            stop_url=None if line is None else line.stop_url,
             audit_folder=str(begun.log.folder),
             apps_listed=None if config.apps is None else len(config.apps),
             taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
@@ -151,7 +158,11 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
 
 
 async def _start_links_and_worker(
-    config: RunConfig, driver: AsyncioDriver, service: Service, stack: AsyncExitStack
+    config: RunConfig,
+    driver: AsyncioDriver,
+    service: Service,
+    line: GuardLine | None,
+    stack: AsyncExitStack,
 ) -> LinkServer:
     capture = _start_capture(config, driver)
     if capture is not None:
@@ -159,11 +170,35 @@ async def _start_links_and_worker(
     driver.worker = worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
     driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
     links.objection = driver.objection
+    links.watch = line
     service.link_addresses = await _listen_for_links(links, config)
     stack.push_async_callback(links.stop)
     worker.start()
     stack.callback(worker.stop)
     return links
+
+
+def _start_guard(
+    config: RunConfig,
+    driver: AsyncioDriver,
+    service: Service,
+    doors: "_Doors",
+    folder: Path,
+    stack: AsyncExitStack,
+) -> GuardLine | None:
+    """Start the guard, after the one of a station that has died here has given way."""
+    acts = take_over_from_orphan(folder)
+    if config.stop_port is None:
+        return None
+    stop_socket = listen("127.0.0.1", config.stop_port, "--stop-port")
+    line = GuardLine(driver, service, stop_socket, url_of(config.http_host, doors.loopback))
+    stack.callback(line.close)
+    line.write_port(folder)
+    for act in acts:
+        line.take(act)
+    guarding = asyncio.create_task(line.run())
+    stack.callback(guarding.cancel)
+    return line
 
 
 async def _serve(

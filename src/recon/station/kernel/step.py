@@ -23,6 +23,7 @@ from recon.model.event import (
     CommandDropped,
     CommandSent,
     Event,
+    GuardActed,
     HazardDismissed,
     LinkClosed,
     LinkLimitReached,
@@ -158,6 +159,14 @@ def _job_dropped(station: Station, event: JobDropped[Any, Any], now_ns: int) -> 
     return event.kind.dropped(station, event.job_id, now_ns)
 
 
+def _guard_acted(station: Station, event: GuardActed, now_ns: int) -> Stepped:
+    """The guard has held vehicles: the orders that steered them are over."""
+    station = event_alarms.note_guard(station, event, now_ns)
+    if event.by is not None:
+        return station, ()  # its all stop is given here as well
+    return order_gateway.end_streams(station, event.serials, event.why, now_ns)
+
+
 def _setpoints_due(station: Station, _event: SetpointsDue, now_ns: int) -> Stepped:
     return order_gateway.update_streams(station, now_ns)
 
@@ -252,6 +261,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         on(ClockGap, _clock_gap),
         changing(PreflightOverridden, preflight.override),
         changing(StationFaulted, event_alarms.note_fault),
+        on(GuardActed, _guard_acted),
         changing(AuditFailed, _audit_failed),
         changing(LinkLimitReached, _link_limit),
         changing(AlarmAcknowledged, _acknowledged),
