@@ -25,6 +25,7 @@ from recon.model.event import (
     LinkOpened,
     PacketReceived,
 )
+from recon.model.mission import DJI
 from recon.model.report import CoreReport, ExtendedReport
 
 MIB = 1024 * 1024
@@ -519,3 +520,19 @@ class TestServer:
             assert bytes.fromhex("daa70000000aff008a7d") in data
 
         run_on(loop, main)
+
+
+def test_the_sockets_buffer_takes_the_largest_packet_whole() -> None:
+    """So no packet is ever half written, and the guard's hover never goes into the middle of one."""
+    point = wire.Waypoint(
+        latitude_deg=42.0,
+        longitude_deg=-93.0,
+        altitude_m=300.0,
+        corner_radius_m=1.0,
+        speed_mps=5.0,
+        loiter_time_s=0.0,
+        gimbal_pitch_deg=-90.0,
+    )
+    points = [point] * DJI.max_waypoints
+    mission = wire.ExecuteWaypointMission(land_at_end=1, curved_flight=0, waypoints=points)
+    assert len(wire.encode(mission)) < LinkSettings().send_buffer_bytes / 2
