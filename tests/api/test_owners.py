@@ -1,6 +1,7 @@
 """Streams that own steered orders: a silent or closed one ends them."""
 
 import asyncio
+from dataclasses import replace
 
 import pytest
 import websockets
@@ -10,6 +11,8 @@ from tests.api.test_stream import PATIENCE_S, served
 from tests.patient_loop import run_patiently
 
 from recon.api import streams
+from recon.api.security import LOCAL_PERSON, Access
+from recon.model.person import Role
 
 NAME = "a-name-of-a-owner-01"
 
@@ -44,6 +47,24 @@ def test_a_stream_holds_while_it_is_open() -> None:
             async with websockets.connect(f"ws://127.0.0.1:{port}/api/stream") as reader:
                 await reader.recv()
                 assert held(station) == frozenset()
+
+    run_patiently(main())
+
+
+def test_the_open_page_of_an_observer_is_no_owner() -> None:
+    async def main() -> None:
+        station = FakeStation()
+        for role in Role:
+            access = Access(local=replace(LOCAL_PERSON, role=role))
+            async with (
+                asyncio.timeout(PATIENCE_S),
+                served(station, access) as port,
+                websockets.connect(url_of(port)) as reader,
+            ):
+                for _ in range(3):
+                    await reader.recv()
+                assert held(station) == ({NAME} if role.includes(Role.PILOT) else set())
+            await until_held(station, set())
 
     run_patiently(main())
 

@@ -14,7 +14,7 @@ from tests.patient_loop import run_patiently
 from recon.api import streams as stream_module
 from recon.api.connections import HttpConnection, StreamConnection
 from recon.api.schema import StationState
-from recon.api.security import PROTOCOL
+from recon.api.security import PROTOCOL, Access
 
 PATIENCE_S = 120.0
 
@@ -29,11 +29,11 @@ class BigStation(FakeStation):
 
 
 @contextlib.asynccontextmanager
-async def served(station: FakeStation) -> AsyncIterator[int]:
+async def served(station: FakeStation, access: Access | None = None) -> AsyncIterator[int]:
     """Serve an application on a free port of loopback, with the station's own connections."""
     listening = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(
-        application(station),
+        application(station, access=access),
         log_level="error",
         lifespan="off",
         http=HttpConnection,

@@ -29,6 +29,7 @@ from recon.api.security import (
     person_of,
     refuse_stream,
 )
+from recon.model.person import Role
 
 INTERVAL_S = 0.1
 MAX_STATE_READERS = 32
@@ -128,7 +129,9 @@ class StateStream:
             if owner is None:
                 await _until_gone(socket)
                 return
-            async with self._owners.open(owner):
+            # An observer may command nothing: its open page is no operator who would act.
+            counted = owner if person.role.includes(Role.PILOT) else None
+            async with self._owners.open(counted):
                 await _until_silent(socket)
         finally:
             self._port.person_disconnected(person)

@@ -1,9 +1,9 @@
 """Operator gone: no client is connected, after one was for half a minute.
 
 Only that edge counts: not a station without any client so far, nor a command of the shell, which
-connects for a moment. A steered vehicle is held by its stream as soon as its own client goes. A
-mission goes on for a minute, the time to open the console again; after that its alarms would be
-seen by no operator.
+connects for a moment, nor the page of an observer. A steered vehicle is held by its stream as soon
+as its own client goes. A mission goes on for a minute, the time to open the console again; after
+that its alarms would be seen by no operator.
 """
 
 from recon.model.failsafe_matrix import Activity, FailsafeCondition, Reaction

@@ -73,11 +73,10 @@ def _affected(station: Station, condition: FailsafeCondition) -> dict[str, Occur
 
 
 def _imaging_text(station: Station, _now_ns: int) -> str:
-    imager = station.fleet.vehicles[station.imaging.imager_serial or ""]
-    return (
-        f"the imaging drone {imager.display_name} is lost in flight: ground image and sun forecast "
-        "grow old"
-    )
+    serial = station.imaging.imager_serial or ""
+    imager = station.fleet.vehicles.get(serial)
+    name = serial if imager is None else imager.display_name
+    return f"the imaging drone {name} is lost in flight: ground image and sun forecast grow old"
 
 
 def _late_text(station: Station, _now_ns: int) -> str:
@@ -99,7 +98,8 @@ def _reactions(station: Station, affected: Mapping[str, Occurrence], now_ns: int
     for serial, occurrence in affected.items():
         words = _reaction_words(station, serial, occurrence, now_ns)
         if words:
-            names[words].append(station.fleet.vehicles[serial].display_name)
+            vehicle = station.fleet.vehicles.get(serial)
+            names[words].append(serial if vehicle is None else vehicle.display_name)
     return "".join(f"; {_few(found)}: {words}" for words, found in names.items())
 
 
@@ -115,8 +115,8 @@ def _cell(station: Station, serial: str, occurrence: Occurrence) -> FailsafeCell
 def _reaction_words(station: Station, serial: str, occurrence: Occurrence, now_ns: int) -> str:
     if occurrence.outcome is not ReactionOutcome.PENDING:
         return occurrence.outcome_text
-    cell, vehicle = _cell(station, serial, occurrence), station.fleet.vehicles[serial]
-    if not cell.reaction.is_order or not may_react(station, vehicle):
+    cell, vehicle = _cell(station, serial, occurrence), station.fleet.vehicles.get(serial)
+    if vehicle is None or not cell.reaction.is_order or not may_react(station, vehicle):
         return ""
     row, will = ROWS[occurrence.condition], _WILL[cell.reaction]
     if row.is_ordered_on_return:
