@@ -11,6 +11,7 @@ import { VehicleDetail } from "./panels/detail/VehicleDetail";
 import { FlyHereCard } from "./panels/fly/FlyHereCard";
 import { HelpDialog } from "./panels/help/HelpDialog";
 import { LinkList } from "./panels/links/LinkList";
+import { LoginDialog } from "./panels/login/LoginDialog";
 import { OrderBar } from "./panels/orders/OrderBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
@@ -81,6 +82,7 @@ export function App() {
         <LinkList />
         <StationPanel />
       </aside>
+      <LoginDialog />
       <HelpDialog isOpen={isHelpOpen()} onClose={() => setHelpOpen(false)} />
     </div>
   );

@@ -17,8 +17,20 @@ import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import type { SurveyView } from "./protocol";
 import type { Clock, Instant } from "./source/clock";
+import { lacking, type Role } from "./source/roles";
 import type { StationSource } from "./source/stationSource";
 import type { ThemeSwitch } from "./theme/theme";
+
+/** The login of this page. */
+export interface Login {
+  readonly hasToken: boolean;
+  /** SHA-256 of the certificate that the page's QR code named; null without one. */
+  readonly fingerprint: string | null;
+  logIn(token: string): void;
+  logOut(): void;
+}
+
+const NO_LOGIN: Login = { hasToken: false, fingerprint: null, logIn: () => {}, logOut: () => {} };
 
 /** State and services shared by all parts of the page. */
 export interface Console {
@@ -35,6 +47,9 @@ export interface Console {
   readonly zoneDraft: ZoneDraft;
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
+  readonly login: Login;
+  /** Why this person cannot do what needs a role; null when nothing is in the way. */
+  lacks(needed: Role): string | null;
   /** Seconds to add to every age in the newest state; grows until the next state. */
   readonly behindS: Accessor<number>;
   readonly fitRequests: Accessor<number>;
@@ -56,6 +71,7 @@ export function createConsole(
   theme: ThemeSwitch,
   clock: Clock,
   now: Accessor<Instant>,
+  login: Login = NO_LOGIN,
 ): Console {
   const fleet = createFleetView(source);
   const selection = createSelection();
@@ -92,6 +108,8 @@ export function createConsole(
     zoneDraft,
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
+    login,
+    lacks: (needed) => lacking(source.person(), needed),
     behindS,
     fitRequests,
     fit: () => setFitRequests((count) => count + 1),

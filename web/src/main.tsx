@@ -5,7 +5,8 @@ import "./theme/page.css";
 import { App } from "./App";
 import { ConsoleProvider, createConsole } from "./console";
 import { browserClock } from "./source/clock";
-import { LiveSource, tokenOf } from "./source/liveSource";
+import { LiveSource } from "./source/liveSource";
+import { keepToken, takeLogin } from "./source/login";
 import { createThemeSwitch } from "./theme/theme";
 
 /** Refresh interval of displayed ages. */
@@ -14,9 +15,15 @@ const AGE_TICK_MS = 100;
 function Page() {
   const [now, setNow] = createSignal(browserClock.now());
   setInterval(() => setNow(browserClock.now()), AGE_TICK_MS);
+  const given = takeLogin(location, history, sessionStorage);
+  // A new page begins with nothing of the person before.
+  const reloadWith = (token: string | null) => {
+    keepToken(token, sessionStorage);
+    location.reload();
+  };
   const source = new LiveSource({
     origin: location.origin,
-    token: tokenOf(location.hash),
+    token: given.token,
     clock: browserClock,
     random: (bytes) => crypto.getRandomValues(bytes),
     openSocket: (url, protocols) => new WebSocket(url, protocols),
@@ -27,6 +34,12 @@ function Page() {
     createThemeSwitch(document, localStorage),
     browserClock,
     now,
+    {
+      hasToken: given.token !== null,
+      fingerprint: given.fingerprint,
+      logIn: reloadWith,
+      logOut: () => reloadWith(null),
+    },
   );
   return (
     <ConsoleProvider value={shared}>

@@ -6,6 +6,7 @@ import type { components } from "./schema";
 
 type Schemas = components["schemas"];
 
+export type AccessView = Schemas["AccessView"];
 export type StationState = Schemas["StationState"];
 export type StationView = Schemas["StationView"];
 export type StopLatchView = Schemas["StopLatchView"];

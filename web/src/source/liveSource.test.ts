@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
 import { station, vehicle } from "../testing/fakeState";
-import { LiveSource, tokenOf } from "./liveSource";
+import { LiveSource } from "./liveSource";
 
 type Answer = (request: Request) => Response | Promise<Response>;
 
@@ -28,6 +28,8 @@ function setUp(answer: Answer, token: string | null = null) {
   });
   return { clock, source, sockets, requests };
 }
+
+const posted = (requests: Request[]) => requests.filter(({ method }) => method === "POST");
 
 const json = (value: unknown, status = 200) => Response.json(value, { status });
 
@@ -64,7 +66,7 @@ describe("the live source", () => {
       .poll(() => source.connection())
       .toMatchObject({
         kind: "lost",
-        reason: "Access denied. Open the console with its token.",
+        reason: "Not logged in: the token is missing, wrong or ended.",
       });
     expect(requests.map(({ url }) => new URL(url).pathname)).toEqual(["/api/state"]);
   });
@@ -95,7 +97,7 @@ describe("the live source", () => {
     sockets[0]?.deliver(station([vehicle(1)], { time_ns: 1_780_000_000e9 }));
     clock.advance(400);
     await source.order({ serials: ["A"], order: { kind: "hover" } });
-    const bodies = await Promise.all(requests.map((request) => request.json()));
+    const bodies = await Promise.all(posted(requests).map((request) => request.json()));
     expect(bodies.map(({ given_at_unix_ms }) => given_at_unix_ms)).toEqual([
       null,
       1_780_000_000_400,
@@ -110,7 +112,7 @@ describe("the live source", () => {
       "/api/all-stop/release",
       "/api/all-stop/release",
     ]);
-    const bodies = await Promise.all(requests.map((request) => request.json()));
+    const bodies = await Promise.all(posted(requests).map((request) => request.json()));
     expect(bodies).toEqual([{ serials: ["A"] }, { serials: null }]);
   });
 
@@ -118,7 +120,7 @@ describe("the live source", () => {
     const { source, requests } = setUp(() => json({ accepted: true, rule: null, reason: null }));
     await source.admitApp(7, "A", "session");
     await source.refuseApp(7);
-    const bodies = await Promise.all(requests.map((request) => request.json()));
+    const bodies = await Promise.all(posted(requests).map((request) => request.json()));
     expect(requests.map(({ url }) => new URL(url).pathname)).toEqual([
       "/api/apps/admit",
       "/api/apps/refuse",
@@ -216,14 +218,4 @@ describe("the live source", () => {
     expect(outcome).toMatchObject({ kind: "answered", value: { frameId: 8 } });
     expect(requests[0]?.url).toContain("/api/vehicle/frame.jpg?serial=a%2Fb%20%3F&id=7");
   });
-});
-
-describe("the token in the page's address", () => {
-  it.each([
-    ["#token=abc", "abc"],
-    ["#x=1&token=a%2Bb", "a+b"],
-    ["#token=", null],
-    ["", null],
-    ["#other", null],
-  ])("%s holds %s", (fragment, token) => expect(tokenOf(fragment)).toBe(token));
 });

@@ -1,5 +1,5 @@
 import { createSignal } from "solid-js";
-import type { AuthorityHolder, StationState } from "../protocol";
+import type { AccessView, AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { Requests } from "./requests";
 import type { Connection, NamedOrder, NewSurvey, NewZone, StationSource } from "./stationSource";
@@ -26,6 +26,7 @@ export const STREAM_PROTOCOL = "recon.v1";
 export class LiveSource implements StationSource {
   readonly state;
   readonly connection;
+  readonly person;
   private readonly lag = new StreamLag();
   private readonly stream: Stream;
   private readonly requests: Requests;
@@ -39,6 +40,8 @@ export class LiveSource implements StationSource {
     const [connection, setConnection] = createSignal<Connection>({ kind: "connecting" });
     this.state = state;
     this.connection = connection;
+    const [person, setPerson] = createSignal<AccessView | null>(null);
+    this.person = person;
     this.requests = new Requests(origin, token, (request) => options.fetch(request));
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
     const open = () => {
@@ -49,7 +52,13 @@ export class LiveSource implements StationSource {
     this.stream = new Stream(open, clock, {
       onConnection: (next) => {
         setConnection(next);
-        if (next.kind === "lost") void this.explain(next, setConnection);
+        if (next.kind === "lost") {
+          if (next.needsLogin !== true) void this.explain(next, setConnection);
+        } else if (next.kind === "live") {
+          void this.requests.person().then((outcome) => {
+            if (outcome.kind === "answered") setPerson(outcome.value);
+          });
+        }
       },
       onState: (newest, isFirst) => {
         if (isFirst) this.lag.restart(newest.time_ns, clock.now());
@@ -152,6 +161,10 @@ export class LiveSource implements StationSource {
     return this.requests.picture(`/api/ground-image.png?id=${frameId}`);
   }
 
+  sharedAddressCode() {
+    return this.requests.picture("/api/access/qr.svg");
+  }
+
   groundImageFile() {
     return this.requests.picture("/api/ground-image.tif");
   }
@@ -192,10 +205,4 @@ export class LiveSource implements StationSource {
 /** A browser cannot set headers on a WebSocket, so the token travels as a second subprotocol. */
 function streamProtocols(token: string | null): string[] {
   return token === null ? [STREAM_PROTOCOL] : [STREAM_PROTOCOL, `recon.token.${token}`];
-}
-
-/** The token in a page's address (`#token=...`), or null. */
-export function tokenOf(fragment: string): string | null {
-  const token = new URLSearchParams(fragment.replace(/^#/, "")).get("token");
-  return token === null || token === "" ? null : token;
 }

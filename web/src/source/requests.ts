@@ -1,5 +1,6 @@
 import createClient from "openapi-fetch";
 import type {
+  AccessView,
   ActionResponse,
   AuthorityHolder,
   OrderResult,
@@ -190,6 +191,10 @@ export class Requests {
     return withoutBody(() => this.client.POST("/api/alarms/{alarm_id}/acknowledge", options));
   }
 
+  person(): Promise<Outcome<AccessView>> {
+    return answered(() => this.client.GET("/api/access", { signal: timeout() }), identity);
+  }
+
   /** Why the station rejects this page, or null: a browser reports no reason for a WebSocket. */
   async refusalReason(): Promise<string | null> {
     const outcome = await attempt(async () => {
@@ -295,7 +300,7 @@ const UNAUTHORISED = 401;
 
 function refusal(response: Response, body: unknown): string {
   if (response.status === UNAUTHORISED) {
-    return "Access denied. Open the console with its token.";
+    return "Not logged in: the token is missing, wrong or ended.";
   }
   const message =
     typeof body === "object" && body !== null ? (body as { error?: unknown }).error : null;

@@ -1,5 +1,6 @@
 import type { Accessor } from "solid-js";
 import type {
+  AccessView,
   ActionResponse,
   AuthorityHolder,
   Order,
@@ -18,7 +19,13 @@ import type { Instant } from "./clock";
 export type Connection =
   | { readonly kind: "connecting" }
   | { readonly kind: "live" }
-  | { readonly kind: "lost"; readonly reason: string; readonly attempt: number };
+  | {
+      readonly kind: "lost";
+      readonly reason: string;
+      readonly attempt: number;
+      /** The station wants a token; nothing is tried again until the user has logged in. */
+      readonly needsLogin?: boolean;
+    };
 
 /** The result of a request. `problem` is a sentence for the operator that states what to do. */
 export type Outcome<T> =
@@ -49,6 +56,10 @@ export interface StationSource {
   /** The newest complete state; null before the first. */
   readonly state: Accessor<StationState | null>;
   readonly connection: Accessor<Connection>;
+  /** The person of this page's requests; null until the station has stated it. */
+  readonly person: Accessor<AccessView | null>;
+  /** The address for other computers as a QR code. */
+  sharedAddressCode(): Promise<Outcome<Picture>>;
   /** Seconds to add at `now` to every age in `state`; null before the first state. */
   behindS(now: Instant): number | null;
   /** Sends an order, always without takeoff. */

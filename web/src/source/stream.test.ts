@@ -111,6 +111,18 @@ describe("the stream", () => {
     });
   });
 
+  it("waits for a login when the station wants a token", () => {
+    const { stream, newest, connections, clock } = setUp();
+    stream.open();
+    newest().fail(4401, "token wrong: it was renewed");
+    expect(connections.at(-1)).toMatchObject({
+      kind: "lost",
+      reason: "Token wrong: it was renewed",
+      needsLogin: true,
+    });
+    expect(clock.pending).toBe(0);
+  });
+
   it("treats unreadable data as a lost connection", () => {
     const { stream, newest, connections } = setUp();
     stream.open();

@@ -81,7 +81,10 @@ export class Stream {
     this.expectMessageWithin(OPENING_MS, "No answer from the station");
     socket.onopen = () => this.expectMessageWithin(SILENCE_MS, "No data from the station");
     socket.onmessage = (event) => this.receive(event.data);
-    socket.onclose = (event) => this.loseConnection(closingReason(event.code, event.reason));
+    socket.onclose = (event) => {
+      if (event.code === LOGIN_NEEDED) this.awaitLogin(event.reason);
+      else this.loseConnection(closingReason(event.code, event.reason));
+    };
   }
 
   /** A browser throws for a token that is not a valid subprotocol. */
@@ -134,6 +137,19 @@ export class Stream {
     this.cancelTimer = this.clock.after(delayMs, () => this.connect());
   }
 
+  /** Without a right token each further attempt would count as a failed login. */
+  private awaitLogin(reason: string): void {
+    this.closeSocket();
+    this.cancelTimer();
+    this.attempt += 1;
+    this.listener.onConnection({
+      kind: "lost",
+      reason: reason === "" ? "Not logged in" : capitalised(reason),
+      attempt: this.attempt,
+      needsLogin: true,
+    });
+  }
+
   /** Closes the socket and ignores any further events from it. */
   private closeSocket(): void {
     const socket = this.socket;
@@ -149,6 +165,13 @@ export class Stream {
 const POLICY_VIOLATION = 1008;
 /** The station received no keepalive from this page in time. */
 const OWNER_SILENT = 4008;
+
+/** The station wants a token, or ended the one of this page. */
+const LOGIN_NEEDED = 4401;
+
+function capitalised(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
 
 function closingReason(code: number, reason: string): string {
   if (code === OWNER_SILENT) return "This page stopped responding";

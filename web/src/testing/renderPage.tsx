@@ -2,6 +2,7 @@ import { createRoot, createSignal, type JSX } from "solid-js";
 import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
 import type {
+  AccessView,
   ActionResponse,
   AuthorityHolder,
   OrderResult,
@@ -41,6 +42,8 @@ export interface RenderedPage {
   fetchFramesWith(fetch: StationSource["vehicleFrame"]): void;
   receive(state: StationState): void;
   connect(connection: Connection): void;
+  /** Sets the person of the page's requests. */
+  nameAs(person: AccessView): void;
   /** Sets the age of the newest state, seconds. */
   age(behindS: number): void;
   dispose(): void;
@@ -92,6 +95,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
   const clock = new FakeClock();
   const [state, setState] = createSignal<StationState | null>(first, { equals: false });
   const [connection, setConnection] = createSignal<Connection>({ kind: "live" });
+  const [person, setPerson] = createSignal<AccessView | null>(null);
   const [now, setNow] = createSignal(clock.now());
   const recorded: Recorded = {
     orders: [],
@@ -105,7 +109,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     fetchFrame: noPicture,
   };
   let behindS = 0;
-  const source = fakeSource(state, connection, () => behindS, recorded);
+  const source = fakeSource(state, connection, person, () => behindS, recorded);
   const { shared, disposeShared } = createRoot((disposeShared) => ({
     shared: createConsole(source, PLAIN_THEME, clock, now),
     disposeShared,
@@ -142,6 +146,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     },
     receive: setState,
     connect: setConnection,
+    nameAs: setPerson,
     age: (seconds) => {
       behindS = seconds;
       clock.advance(1);
@@ -158,12 +163,15 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
 function fakeSource(
   state: StationSource["state"],
   connection: StationSource["connection"],
+  person: StationSource["person"],
   behindS: () => number,
   recorded: Recorded,
 ): StationSource {
   return {
     state,
     connection,
+    person,
+    sharedAddressCode: noPicture,
     behindS,
     order: async (order) => {
       recorded.orders.push(order);

@@ -24,7 +24,7 @@ export function AlarmList() {
 }
 
 function AlarmRow(props: { alarm: AlarmView }) {
-  const { source, behindS } = useConsole();
+  const { source, behindS, lacks } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const acknowledge = async () => {
     const outcome = await source.acknowledge(props.alarm.id);
@@ -56,6 +56,8 @@ function AlarmRow(props: { alarm: AlarmView }) {
           type="button"
           class="button"
           aria-label={`Acknowledge ${subject()}: ${text()}`}
+          disabled={lacks("operator") !== null}
+          title={lacks("operator") ?? undefined}
           onClick={() => void acknowledge()}
         >
           Ack

@@ -41,6 +41,7 @@ export function AuthoritySection(props: {
         <Show when={props.authority.holder !== "pilot"}>
           <GuardButton
             label="Hand over to pilot"
+            needs="pilot"
             name={`Hand over ${props.name} to its pilot`}
             hold_ms={BRIEF_MS}
             subject={subject()}

@@ -17,8 +17,11 @@ export function ConnectionBanner() {
           <Show when={fleet.hasState} fallback="No data received yet.">
             All data below is <span aria-hidden="true">{formatAge(behindS())}</span> old.
           </Show>{" "}
-          {connection().reason}; reconnecting (attempt {connection().attempt}). Watch the aircraft
-          and use the remote controllers.
+          {connection().reason}
+          <Show when={connection().needsLogin !== true} fallback=". Log in again.">
+            ; reconnecting (attempt {connection().attempt}).
+          </Show>{" "}
+          Watch the aircraft and use the remote controllers.
         </div>
       )}
     </Show>

@@ -1,6 +1,7 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { simulation } from "../../fleet/vehicleStatus";
+import { PersonTag } from "../login/PersonTag";
 import { StatusButton } from "./StatusButton";
 import "./bar.css";
 
@@ -18,6 +19,7 @@ export function TopBar(props: { onHelp: () => void }) {
         </p>
         <SimulationTag />
         <div class="bar-space" />
+        <PersonTag />
         <button
           type="button"
           class="button"

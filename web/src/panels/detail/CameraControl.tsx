@@ -12,7 +12,7 @@ const RATES_HZ = [1, 2, 5] as const;
  * vehicle. Answers go to `orderApi`, which outlives this component.
  */
 export function CameraControl(props: { orderApi: OrderApi }) {
-  const { targets, selection } = useConsole();
+  const { targets, selection, lacks } = useConsole();
   const [fps_hz, setFps_hz] = createSignal<number>(RATES_HZ[0]);
   const isOne = () => selection.keys().length === 1 && targets().serials.length === 1;
   const order = (order: { kind: "camera_start"; fps_hz: number } | { kind: "camera_stop" }) => {
@@ -43,7 +43,8 @@ export function CameraControl(props: { orderApi: OrderApi }) {
         <button
           type="button"
           class="button"
-          disabled={!isOne()}
+          disabled={!isOne() || lacks("operator") !== null}
+          title={lacks("operator") ?? undefined}
           onClick={() => order({ kind: "camera_start", fps_hz: fps_hz() })}
         >
           Start camera
@@ -51,7 +52,8 @@ export function CameraControl(props: { orderApi: OrderApi }) {
         <button
           type="button"
           class="button"
-          disabled={!isOne()}
+          disabled={!isOne() || lacks("operator") !== null}
+          title={lacks("operator") ?? undefined}
           onClick={() => order({ kind: "camera_stop" })}
         >
           Stop camera

@@ -1,6 +1,7 @@
 import { createEffect } from "solid-js";
 import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
+import type { Role } from "../../source/roles";
 import "./guard.css";
 
 /** Hold time for actions that cannot be reversed at once. */
@@ -17,9 +18,12 @@ export function GuardButton(props: {
   /** Changes whenever the button's action changes; empty disables it. */
   subject: string;
   class?: string;
+  /** The role that the action needs. */
+  needs?: Role;
   onConfirm: () => void;
 }) {
-  const { clock } = useConsole();
+  const { clock, lacks } = useConsole();
+  const lack = () => lacks(props.needs ?? "operator");
   const timer = createHoldTimer(
     clock,
     // The hold time never changes during the button's life.
@@ -27,7 +31,7 @@ export function GuardButton(props: {
     () => props.subject,
     () => props.onConfirm(),
   );
-  const isDisabled = () => props.subject === "";
+  const isDisabled = () => props.subject === "" || lack() !== null;
   createEffect(() => {
     if (isDisabled()) timer.cancel();
   });
@@ -39,11 +43,19 @@ export function GuardButton(props: {
       classList={{ "is-holding": timer.kind() === "holding" }}
       aria-disabled={isDisabled()}
       aria-label={`${props.name ?? props.label}: hold for ${seconds()} seconds`}
+      title={lack() ?? undefined}
+      aria-description={lack() ?? undefined}
       style={{ "--held": timer.progress() }}
       {...holdHandlers(timer, isDisabled)}
     >
       {props.label}
-      <small class="guard-hint">{seconds() < 1 ? "hold briefly" : `hold ${seconds()} s`}</small>
+      <small class="guard-hint">
+        {lack() !== null
+          ? `needs ${props.needs ?? "operator"}`
+          : seconds() < 1
+            ? "hold briefly"
+            : `hold ${seconds()} s`}
+      </small>
     </button>
   );
 }

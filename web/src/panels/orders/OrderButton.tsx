@@ -1,4 +1,5 @@
-import { createEffect, Match, Show, Switch } from "solid-js";
+import { createEffect, Match, Switch } from "solid-js";
+import { useConsole } from "../../console";
 import type { HoldTimer } from "../../orders/holdToConfirm";
 import type { OrderKind } from "../../orders/targets";
 import { listNames } from "../../text/names";
@@ -10,7 +11,9 @@ export function OrderButton(props: {
   timer: HoldTimer;
   labels: readonly string[];
 }) {
-  const isDisabled = () => props.labels.length === 0;
+  const { lacks } = useConsole();
+  const lack = () => lacks("pilot");
+  const isDisabled = () => props.labels.length === 0 || lack() !== null;
   createEffect(() => {
     if (isDisabled()) props.timer.cancel();
   });
@@ -21,8 +24,8 @@ export function OrderButton(props: {
       classList={{ "is-holding": props.timer.kind() === "holding" }}
       aria-disabled={isDisabled()}
       aria-label={accessibleName(props.order, props.labels)}
-      title={props.order.note}
-      aria-description={props.order.note}
+      title={lack() ?? props.order.note}
+      aria-description={lack() ?? props.order.note}
       aria-keyshortcuts={`Shift+${props.order.key}`}
       style={{ "--held": props.timer.progress() }}
       {...holdHandlers(props.timer, isDisabled)}
@@ -30,12 +33,14 @@ export function OrderButton(props: {
       <OrderIcon kind={props.order.kind} />
       <span class="order-text">
         <strong>{props.order.label}</strong>
-        <Show when={props.order.hold_ms >= 1000} fallback={<small>hold briefly</small>}>
-          <small>hold {props.order.hold_ms / 1000} s</small>
-        </Show>
+        <small>{lack() !== null ? "needs pilot" : holdHint(props.order.hold_ms)}</small>
       </span>
     </button>
   );
+}
+
+function holdHint(hold_ms: number): string {
+  return hold_ms >= 1000 ? `hold ${hold_ms / 1000} s` : "hold briefly";
 }
 
 function accessibleName(order: OrderKind, labels: readonly string[]): string {

@@ -35,6 +35,7 @@ export function Override(props: { serial: string; name: string; onAccepted: () =
         onInput={(event) => setReason(event.currentTarget.value)}
       />
       <GuardButton
+        needs="admin"
         label="Override the checklist"
         name={`Override the checklist of ${props.name}`}
         class="guard-grave"

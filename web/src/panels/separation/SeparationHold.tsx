@@ -24,7 +24,7 @@ export function SeparationBanner() {
 
 /** On with one press, off only with a held button. */
 export function SeparationSwitch() {
-  const { source, fleet } = useConsole();
+  const { source, fleet, lacks } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const isOn = () => fleet.station?.separation_hold_on ?? true;
   const turn = async (on: boolean) => {
@@ -36,13 +36,20 @@ export function SeparationSwitch() {
       <Show
         when={isOn()}
         fallback={
-          <button type="button" class="button" onClick={() => void turn(true)}>
+          <button
+            type="button"
+            class="button"
+            disabled={lacks("operator") !== null}
+            title={lacks("operator") ?? undefined}
+            onClick={() => void turn(true)}
+          >
             Switch separation hold on
           </button>
         }
       >
         <GuardButton
           label="Switch separation hold off"
+          needs="admin"
           class="guard-grave"
           hold_ms={GUARD_MS}
           subject="off"

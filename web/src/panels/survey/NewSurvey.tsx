@@ -21,7 +21,7 @@ export function NewSurvey(props: {
   isFirst: boolean;
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { source, fleet } = useConsole();
+  const { source, fleet, lacks } = useConsole();
   const [isPlanning, setPlanning] = createSignal(false);
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   const plan = async (form: HTMLFormElement) => {
@@ -78,7 +78,12 @@ export function NewSurvey(props: {
               <For each={WHEN_DONE}>{([name, label]) => <option value={name}>{label}</option>}</For>
             </select>
           </label>
-          <button type="submit" class="button" disabled={isPlanning()}>
+          <button
+            type="submit"
+            class="button"
+            disabled={isPlanning() || lacks("operator") !== null}
+            title={lacks("operator") ?? undefined}
+          >
             Plan survey
           </button>
         </form>

@@ -163,6 +163,7 @@ function Stop(props: SurveyProps & { word: keyof typeof STOPS }) {
     <GuardButton
       label={label()}
       name={`${label()} survey ${props.survey.name}`}
+      needs="pilot"
       class={props.word === "abort" ? "guard-grave" : ""}
       // A pause is safe and reversible; an abort is final.
       hold_ms={props.word === "abort" ? GUARD_MS : BRIEF_MS}

@@ -1,0 +1,44 @@
+import { createResource, For, onCleanup, Show } from "solid-js";
+import { useConsole } from "../../console";
+import "./login.css";
+
+/** How other computers open this console: addresses, the certificate's fingerprint, a QR code. */
+export function SharedAddress() {
+  const { source } = useConsole();
+  const shared = () => {
+    const person = source.person();
+    return person !== null && person.fingerprint !== null ? person : null;
+  };
+  return (
+    <Show when={shared()}>
+      {(access) => (
+        <section class="section" aria-label="Console for other computers">
+          <h3>Console for other computers</h3>
+          <For each={access().urls}>{(url) => <p class="wire-text">{url}</p>}</For>
+          <p class="muted">Certificate SHA-256</p>
+          <code class="login-digits">{access().fingerprint}</code>
+          <Code />
+        </section>
+      )}
+    </Show>
+  );
+}
+
+function Code() {
+  const { source } = useConsole();
+  let url: string | null = null;
+  const [code] = createResource(async () => {
+    const outcome = await source.sharedAddressCode();
+    if (outcome.kind === "failed") return null;
+    url = URL.createObjectURL(outcome.value.blob);
+    return url;
+  });
+  onCleanup(() => {
+    if (url !== null) URL.revokeObjectURL(url);
+  });
+  return (
+    <Show when={code()}>
+      {(address) => <img class="login-code" src={address()} alt="The first address as a QR code" />}
+    </Show>
+  );
+}

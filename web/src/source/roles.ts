@@ -1,0 +1,14 @@
+import type { AccessView } from "../protocol";
+
+export type Role = AccessView["role"];
+
+const ROLES: readonly Role[] = ["observer", "pilot", "operator", "admin"];
+
+/**
+ * Why a person cannot do what needs a role, or null. The station decides; buttons only show it. Before the
+ * person is known nothing is disabled.
+ */
+export function lacking(person: AccessView | null, needed: Role): string | null {
+  if (person === null || ROLES.indexOf(person.role) >= ROLES.indexOf(needed)) return null;
+  return `Needs the role ${needed}; ${person.name} has ${person.role}`;
+}
