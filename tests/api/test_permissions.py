@@ -1,7 +1,9 @@
 """Which role each request needs: every route is in the table, and the table is obeyed."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from fastapi.routing import APIRoute, APIWebSocketRoute
@@ -116,3 +118,14 @@ def test_roles_are_ordered() -> None:
     for low, high in pairwise(Role):
         assert high.includes(low)
         assert not low.includes(high)
+
+
+def test_the_page_on_security_has_every_request_in_the_row_of_its_role() -> None:
+    page = (Path(__file__).parents[2] / "SECURITY.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| (observer|pilot|operator|admin) \| [^|]* \| (.*) \|$", page, re.M))
+    named = {role: set(re.findall(r"`(/api/[^`]*)`", text)) for role, text in rows.items()}
+    expected: dict[str, set[str]] = {role.value: set() for role in Role}
+    for (method, path), role in LEAST_ROLE.items():
+        if method == "POST":
+            expected[role.value].add(path)
+    assert named == expected

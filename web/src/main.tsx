@@ -21,6 +21,10 @@ function Page() {
     keepToken(token, sessionStorage);
     location.reload();
   };
+  // An address with another token opened in this tab changes its fragment only.
+  window.addEventListener("hashchange", () => {
+    if (location.hash.includes("token=")) location.reload();
+  });
   const source = new LiveSource({
     origin: location.origin,
     token: given.token,

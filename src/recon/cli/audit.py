@@ -34,7 +34,9 @@ def show_command(
         str | None,
         typer.Option(help="Only kinds that start with this, like `order` or `alarm.raised`."),
     ] = None,
-    client: Annotated[str | None, typer.Option("--by", help="Only entries of this client.")] = None,
+    person: Annotated[
+        str | None, typer.Option("--by", help="Only entries of this person, or with address.")
+    ] = None,
     positions: Annotated[
         bool, typer.Option("--positions", help="Include vehicle positions.")
     ] = False,
@@ -47,12 +49,12 @@ def show_command(
                 (positions or kind is not None or line.kind != "vehicle.position")
                 and (kind is None or line.kind.startswith(kind))
                 and (vehicle is None or vehicle in (line.serial, line.vehicle))
-                and (client is None or line.by == client)
+                and (person is None or _is_by(line.by, person))
             )
             if is_chosen and as_json:
                 print_json(msgspec.to_builtins(line))
             elif is_chosen:
-                print_line(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<16}  {line.text}")
+                print_line(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<24}  {line.text}")
 
 
 @audit_app.command("verify")
@@ -73,6 +75,11 @@ def verify_command(
             for sentence in _sentences(verdict):
                 print_line(sentence)
     raise typer.Exit(0 if all(verdict.is_whole for verdict in verdicts) else 1)
+
+
+def _is_by(by: str, person: str) -> bool:
+    """Return whether an entry is of a person, named with or without an address."""
+    return by == person or by.startswith((f"{person} (", f"{person}:"))
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from recon.client.errors import (
     StationUnreachableError,
 )
 from recon.client.messages import ProblemMessage, decode, shown
-from recon.client.trust import Trust, is_untrusted
+from recon.client.trust import CertificateTrust, is_untrusted
 
 LONGEST_ANSWER_BYTES = 16 * 1024 * 1024
 ORDER_INVALID = 422
@@ -31,10 +31,10 @@ class Http:
     """Requests to one station."""
 
     def __init__(
-        self, address: Address, answer_within_s: float, trust: Trust | None = None
+        self, address: Address, answer_within_s: float, trust: CertificateTrust | None = None
     ) -> None:
         self._address = address
-        self._trust = trust or Trust(address)
+        self._trust = trust or CertificateTrust(address)
         self._answer_within_s = answer_within_s
         self._client = httpx.AsyncClient(
             base_url=address.http,

@@ -49,10 +49,10 @@ class Station:
         # Imported here: `recon hold --help` need not wait for the HTTP libraries.
         from recon.client.http import Http
         from recon.client.stream import Stream
-        from recon.client.trust import Trust
+        from recon.client.trust import CertificateTrust
 
         self.address = parse_address(url, token, fingerprint)
-        trust = Trust(self.address)
+        trust = CertificateTrust(self.address)
         self._stream = Stream(self.address, trust=trust)
         self._http = Http(self.address, answer_within_s, trust)
         self._order_api = OrderApi(self._http, self._stream)

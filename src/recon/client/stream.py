@@ -25,7 +25,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketExce
 from recon.client.address import Address
 from recon.client.errors import BadAnswerError, CertificateError, ClientError, RequestRefusedError
 from recon.client.messages import ReceivedState, StateMessage, decode
-from recon.client.trust import Trust, is_untrusted
+from recon.client.trust import CertificateTrust, is_untrusted
 from recon.model.units import NS_PER_S, ns_to_seconds
 
 LONGEST_STATE_BYTES = 16 * 1024 * 1024
@@ -82,7 +82,7 @@ class Stream:
         self,
         address: Address,
         now_ns: Callable[[], int] | None = None,
-        trust: Trust | None = None,
+        trust: CertificateTrust | None = None,
     ) -> None:
         self.now_ns = now_ns or time.monotonic_ns
         self.newest: ReceivedState | None = None
@@ -91,7 +91,7 @@ class Stream:
         self.trouble = "no answer yet"
         """Why no state is arriving, for error texts."""
         self._address = address
-        self._trust = trust or Trust(address)
+        self._trust = trust or CertificateTrust(address)
         self._clock = StreamClock()
         self._failure: ClientError | None = None
         self._changed = asyncio.Event()
@@ -232,7 +232,7 @@ async def _keepalives(connection: ClientConnection) -> AsyncIterator[None]:
         task.cancel()
 
 
-def _open(address: Address, trust: Trust, owner: str) -> connect:
+def _open(address: Address, trust: CertificateTrust, owner: str) -> connect:
     return _ConnectWithoutRedirect(
         f"{address.stream}?owner={owner}",
         additional_headers=address.headers,

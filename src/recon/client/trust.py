@@ -15,7 +15,7 @@ from recon.client.errors import CertificateError
 ANSWER_WITHIN_S = 5.0
 
 
-class Trust:
+class CertificateTrust:
     """The TLS settings for one station; `prepare` must end before the first connection."""
 
     def __init__(self, address: Address) -> None:

@@ -1,7 +1,7 @@
 """The audit's lines: what happened, who asked, about which vehicle: JSON, one line each, ASCII.
 
     {"n": 17, "utc": "2025-06-01T09:30:00.123456Z", "t_ns": 1748770200123456000,
-     "kind": "order.sent", "by": "api 127.0.0.1", "serial": "1ZN", "vehicle": "Anna",
+     "kind": "order.sent", "by": "anna (192.168.1.7)", "serial": "1ZN", "vehicle": "Anna",
      "text": "Anna: hover: sent", "details": {...}, "before": "<SHA-256 of the line before>"}
 
 `n` grows by one from line to line. `before` chains them: it is the hash of the bytes of the line
@@ -46,7 +46,8 @@ _DEEPEST = 8
 
 @dataclass(frozen=True, slots=True)
 class AuditEntry:
-    """An event. `by` is the client that caused it; `details` are JSON values, units in names."""
+    """An event. `by` is its person with the address, or `station`; `details` are JSON values, units
+    in names."""
 
     kind: str
     text: str

@@ -1,0 +1,87 @@
+import { execFileSync, spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { expect, test } from "@playwright/test";
+
+/** A station that other computers log in to, here over loopback, with its own state folder. */
+const PROJECT = fileURLToPath(new URL("../..", import.meta.url));
+const RECON = join(PROJECT, ".venv", "bin", "recon");
+const STARTS_WITHIN_MS = 90_000;
+
+const folder = mkdtempSync(join(tmpdir(), "recon-login-"));
+const environment = { ...process.env, XDG_STATE_HOME: folder };
+let station: ReturnType<typeof spawn> | null = null;
+let url = "";
+let token = "";
+
+test.use({ ignoreHTTPSErrors: true });
+
+test.beforeAll(async () => {
+  test.setTimeout(STARTS_WITHIN_MS + 30_000);
+  const added = execFileSync(RECON, ["user", "add", "anna", "--role", "pilot"], {
+    env: environment,
+    encoding: "utf8",
+  });
+  token = /token: (\S+)/.exec(added)?.[1] ?? "";
+  url = await startedStation();
+});
+
+test.afterAll(() => {
+  station?.kill("SIGTERM");
+  rmSync(folder, { recursive: true, force: true });
+});
+
+function startedStation(): Promise<string> {
+  const free = ["--link-port", "0", "--http-port", "0", "--https-port", "0"];
+  const started = spawn(RECON, ["run", ...free, "--https-host", "127.0.0.1"], { env: environment });
+  station = started;
+  return new Promise((resolve, reject) => {
+    let output = "";
+    const timer = setTimeout(() => reject(new Error(output)), STARTS_WITHIN_MS);
+    started.stdout.on("data", (chunk: Buffer) => {
+      output += chunk.toString();
+      const found = /other computers, with login: (https:\/\/\S+)/.exec(output)?.[1];
+      if (found === undefined) return;
+      clearTimeout(timer);
+      resolve(found);
+    });
+  });
+}
+
+test("asks for a token, shows the person, and logs out", async ({ page }) => {
+  await page.goto(url);
+  const dialog = page.getByRole("dialog", { name: "Log in to Recon" });
+  await expect(dialog).toContainText("Token missing");
+  await page.getByLabel("Token, or the whole address with it").fill("wrong");
+  await page.getByRole("button", { name: "Log in" }).click();
+  await expect(dialog).toContainText("Token wrong");
+  await page.getByLabel("Token, or the whole address with it").fill(`${url}/#token=${token}`);
+  await page.getByRole("button", { name: "Log in" }).click();
+  await expect(page.locator(".person")).toContainText("anna pilot");
+  await expect(dialog).toHaveCount(0);
+  await page.reload();
+  await expect(page.locator(".person")).toContainText("anna pilot");
+  await page.getByRole("button", { name: "Log out" }).click();
+  await expect(dialog).toContainText("Token missing");
+});
+
+test("takes the token out of the address", async ({ page }) => {
+  await page.goto(`${url}/#token=${token}`);
+  await expect(page.locator(".person")).toContainText("anna pilot");
+  expect(page.url()).toBe(`${url}/`);
+  await expect(page.getByAltText("The first address as a QR code")).toBeVisible();
+});
+
+for (const scheme of ["light", "dark"] as const) {
+  test(`is legible in ${scheme} colours`, async ({ page }, info) => {
+    await page.emulateMedia({ colorScheme: scheme });
+    await page.goto(`${url}/#fingerprint=${"AB".repeat(32)}`);
+    await expect(page.getByRole("dialog")).toContainText("AB:AB");
+    await page.screenshot({ path: info.outputPath(`login-${scheme}.png`) });
+    await page.goto(`${url}/#token=${token}`);
+    await expect(page.locator(".person")).toContainText("anna pilot");
+    await page.screenshot({ path: info.outputPath(`logged-in-${scheme}.png`) });
+  });
+}
