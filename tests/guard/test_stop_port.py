@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.guard.stop_port import MOST_BYTES, NOBODY, StopPort
+from recon.guard.stop_port import MOST_BYTES, UNNAMED, StopPort
 from recon.guard.watch import Act
 
 CONSOLE = "http://127.0.0.1:8080"
@@ -94,7 +94,7 @@ def test_a_person_stops_all() -> None:
 def test_no_stop_fails_for_a_name(body: bytes) -> None:
     guard = FakeGuard()
     assert answer(spoken(guard, request(body=body)))[0] == 200
-    assert guard.stopped_by == [NOBODY]
+    assert guard.stopped_by == [UNNAMED]
 
 
 def test_the_consoles_page_may_ask() -> None:

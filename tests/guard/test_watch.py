@@ -12,8 +12,8 @@ from recon.guard.watch import (
     Picture,
     StationEnded,
     Watched,
+    noted,
     step,
-    told,
 )
 from recon.model.command import Hover
 from recon.model.event import AllStopped, Tick
@@ -110,13 +110,13 @@ def test_it_is_repeated_until_pictures_grow_too_old_for_the_gate() -> None:
     assert times_s == [1.05, 1.75, 2.45]
 
 
-def test_a_station_that_speaks_again_ends_the_repeats_and_is_told_once() -> None:
+def test_a_station_that_speaks_again_ends_the_repeats_and_is_noted_once() -> None:
     guard = Guard(watched(1, steered=True)).silent(1.1).pictures()
     assert len(guard.sent) == 1
     guard.beats(5.0)
     assert len(guard.sent) == 1
     assert len(guard.state.acts) == 1
-    assert told(guard.state).acts == ()
+    assert noted(guard.state).acts == ()
     guard.silent(1.1)
     assert len(guard.sent) == 2
 

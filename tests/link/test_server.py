@@ -523,7 +523,7 @@ class TestServer:
 
 
 def test_the_sockets_buffer_takes_the_largest_packet_whole() -> None:
-    """So no packet is ever half written, and the guard's hover never goes into the middle of one."""
+    """No packet is ever half written, so the guard's hover never cuts one in two."""
     point = wire.Waypoint(
         latitude_deg=42.0,
         longitude_deg=-93.0,

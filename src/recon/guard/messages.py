@@ -14,7 +14,7 @@ from recon.guard.watch import Act, Picture, Watched
 from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import VehicleState
 
-SOCKET, CLOSED, PICTURE, TOLD, OVER = "socket", "closed", "picture", "told", "over"
+SOCKET, CLOSED, PICTURE, NOTED, OVER = "socket", "closed", "picture", "noted", "over"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +40,9 @@ def closed_line(link_id: int) -> bytes:
     return _line({"is": CLOSED, "link": link_id})
 
 
-def told_line() -> bytes:
-    """The station has taken note of every act it was told."""
-    return _line({"is": TOLD})
+def noted_line() -> bytes:
+    """The station has taken note of every act."""
+    return _line({"is": NOTED})
 
 
 def over_line() -> bytes:

@@ -3,7 +3,7 @@
     python -m recon.guard.process LINE_FD STOP_FD CONSOLE_ORIGIN
 
 `LINE_FD` is one end of a socket pair with the station, `STOP_FD` a listening socket on loopback.
-It ends when the station says so, or, after the station's death, when every app has gone, the next
+It ends when the station ends in order, or, after the station's death, when every app has gone, the next
 station asks it to give way, or half a minute is over.
 """
 
@@ -63,7 +63,7 @@ class GuardProcess:
         return self.state.acts[-1]
 
     def yield_to_next(self) -> tuple[Act, ...]:
-        """End, because the next station starts; return what its people must know."""
+        """End, because the next station starts; return what its operators must know."""
         self.is_over.set()
         return self.state.acts
 
@@ -115,8 +115,8 @@ class GuardProcess:
                 self._apps[message["link"]] = socket.socket(fileno=self._duplicates.pop(0))
             case messages.CLOSED:
                 self._forget(message["link"])
-            case messages.TOLD:
-                self.state = watch.told(self.state)
+            case messages.NOTED:
+                self.state = watch.noted(self.state)
             case messages.PICTURE:
                 self._handle(messages.picture_of(message, self.now_ns()))
             case messages.OVER:
@@ -138,7 +138,7 @@ class GuardProcess:
         self._end_without_apps()
 
     def _read_app(self, link_id: int) -> None:
-        """Nobody else reads it any more."""
+        """The station reads it no longer."""
         try:
             data = self._apps[link_id].recv(READ_BYTES)
         except BlockingIOError:

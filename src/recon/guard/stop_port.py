@@ -22,7 +22,7 @@ from recon.model.person import is_name
 PATIENCE_S = 2.0
 MOST_BYTES = 4096
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
-NOBODY = "a person at the guard's port"
+UNNAMED = "a person at the guard's port"
 
 
 class Stops(Protocol):
@@ -132,5 +132,5 @@ def _name_in(body: bytes) -> str:
     try:
         name = json.loads(body)["by"]
     except (ValueError, KeyError, TypeError):
-        return NOBODY
-    return name if isinstance(name, str) and is_name(name) else NOBODY
+        return UNNAMED
+    return name if isinstance(name, str) and is_name(name) else UNNAMED

@@ -4,9 +4,9 @@ Theory of operation. The station's picture, ten times a second, is its heartbeat
 link's vehicle, whether it flies, and whether the station steers it by sticks.
 
     watching --no picture for `silent_s`, or the station ended--> silent: what it steered is held
-    silent   --a picture--> watching; the station is told what was done, and ends those orders
+    silent   --a picture--> watching; it learns what was done, and ends those orders
     any      --a person's all stop--> every vehicle that may be in the air is held; a station that
-             speaks is told to stop all, and latches that
+             speaks is reported the all stop, and latches it
 
 A hold is a hover that the gate has approved by the last picture, and `repeats` more of them while
 the station stays silent. As pictures age, the gate refuses it: a hover on the ground would make
@@ -47,7 +47,7 @@ class GuardSettings:
     """As the station repeats an emergency order."""
 
     acts_kept: int = 64
-    """What was done and the station has not been told; beyond this the oldest go."""
+    """What was done and no station knows of; beyond this the oldest go."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ class GuardState:
     """Of the last picture; None while the station is silent."""
     repeats: Mapping[int, Repeat] = field(default_factory=dict)
     acts: tuple[Act, ...] = ()
-    """Not yet told to a station."""
+    """Not yet known to a station."""
     settings: GuardSettings = GuardSettings()
 
 
@@ -149,7 +149,7 @@ def step(state: GuardState, event: GuardEvent, now_ns: int) -> Acted:
             return _on_tick(state, now_ns)
 
 
-def told(state: GuardState) -> GuardState:
+def noted(state: GuardState) -> GuardState:
     """Return the guard once a station knows what it did."""
     return replace(state, acts=())
 

@@ -21,7 +21,7 @@ Clock = Callable[[], int]
 
 
 class SocketWatch(Protocol):
-    """Who is told of each connection's socket: the station's guard."""
+    """Takes a duplicate of each connection's socket: the station's guard."""
 
     def opened(self, link_id: int, sock: Any) -> None:
         """A connection stands; `sock` is closed with it."""

@@ -44,7 +44,7 @@ GIVE_WAY_S = 1.0
 MOST_ANSWER_BYTES = 256 * 1024
 PORT_FILE = "guard-port"
 GUARD = "at its guard"
-"""Where a fault is that the guard's end is told as."""
+"""The place of a fault: the guard has ended."""
 
 
 class GuardLine:
@@ -171,7 +171,7 @@ class GuardLine:
             return
         for message in self._lines.feed(data):
             self.take(messages.act_of(message))
-        self._unsent.append((messages.told_line(), None))
+        self._unsent.append((messages.noted_line(), None))
         self._flush()
 
     def take(self, act: Act) -> None:
