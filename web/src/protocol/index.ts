@@ -21,6 +21,7 @@ export type GroundImageView = Schemas["GroundImageView"];
 export type AreaView = Schemas["AreaView"];
 export type PadView = Schemas["PadView"];
 export type HazardView = Schemas["HazardView"];
+export type LeaseView = Schemas["LeaseView"];
 export type AuthorityView = Schemas["AuthorityView"];
 export type SteeringView = Schemas["SteeringView"];
 export type FailsafeCellView = Schemas["FailsafeCellView"];

@@ -1,11 +1,13 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { AuthorityHolder, AuthorityView } from "../../protocol";
+import { anothersLease } from "../../fleet/operatorLease";
+import type { AuthorityHolder, AuthorityView, LeaseView } from "../../protocol";
 import { issuerName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
-import { BRIEF_MS, GuardButton } from "../guard/GuardButton";
+import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 import "./authority.css";
+import { OperatorLease } from "./OperatorLease";
 
 const HOLDERS: Readonly<Record<AuthorityHolder, string>> = {
   pilot: "Pilot",
@@ -18,18 +20,33 @@ export function AuthoritySection(props: {
   serial: string;
   name: string;
   authority: AuthorityView;
+  lease: LeaseView | null;
 }) {
   const { source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
-  const transfer = async (holder: AuthorityHolder) => {
-    setProblem(responseProblem(await source.setAuthority(props.serial, holder)));
+  const transfer = async (holder: AuthorityHolder, takeOver = false) => {
+    setProblem(responseProblem(await source.setAuthority(props.serial, holder, takeOver)));
   };
-  const subject = () => JSON.stringify([props.serial, props.authority.holder]);
+  const others = () => anothersLease(props.lease, source.person());
+  const subject = () => JSON.stringify([props.serial, props.authority.holder, others()?.person]);
   return (
     <section class="section" aria-label="Control authority">
       <AuthorityText authority={props.authority} />
+      <Show when={props.lease}>{(lease) => <OperatorLease lease={lease()} />}</Show>
       <div class="section-buttons">
-        <Show when={props.authority.holder !== "operator"}>
+        <Show when={others()}>
+          {(lease) => (
+            <GuardButton
+              label={`Take over from ${lease().person}`}
+              name={`Take over ${props.name} from ${lease().person}`}
+              class="guard-grave"
+              hold_ms={GUARD_MS}
+              subject={subject()}
+              onConfirm={() => void transfer("operator", true)}
+            />
+          )}
+        </Show>
+        <Show when={props.authority.holder !== "operator" && others() === null}>
           <GuardButton
             label="Take over"
             name={`Take over ${props.name}`}

@@ -72,7 +72,12 @@ function ControlSections(props: { serial: string; vehicle: VehicleView }) {
       <Show when={props.vehicle.is_stopped}>
         <StopSection serial={props.serial} name={label()} />
       </Show>
-      <AuthoritySection serial={props.serial} name={label()} authority={props.vehicle.authority} />
+      <AuthoritySection
+        serial={props.serial}
+        name={label()}
+        authority={props.vehicle.authority}
+        lease={props.vehicle.lease}
+      />
       <PreflightSection serial={props.serial} name={label()} />
     </>
   );

@@ -1,5 +1,6 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { anothersLease } from "../../fleet/operatorLease";
 import { hasBatteryWarning } from "../../fleet/readiness";
 import { badgeText, stalenessNow, vehicleKey, vehicleStatus } from "../../fleet/vehicleStatus";
 import type { VehicleView } from "../../protocol";
@@ -16,7 +17,7 @@ import { SeverityMark } from "../SeverityMark";
 
 /** One vehicle: a checkbox that adds it to the selection, and a body that selects only it. */
 export function VehicleRow(props: { vehicle: VehicleView }) {
-  const { selection, behindS } = useConsole();
+  const { selection, source, behindS } = useConsole();
   const vehicle = () => props.vehicle;
   const key = () => vehicleKey(vehicle());
   const status = createMemo(() => vehicleStatus(vehicle(), behindS()));
@@ -57,6 +58,13 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
             <span class="tag tag-stopped" title="Held by an all stop">
               STOPPED
             </span>
+          </Show>
+          <Show when={anothersLease(vehicle().lease, source.person())}>
+            {(lease) => (
+              <span class="tag vehicle-operator" title={`Operated by ${lease().person}`}>
+                {lease().person}
+              </span>
+            )}
           </Show>
           <span class={`severity push tone-${status().severity ?? "good"}`}>
             <Show when={status().severity}>
