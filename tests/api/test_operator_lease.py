@@ -58,7 +58,7 @@ def test_one_leads_and_the_other_takes_over_explicitly(station: FakeStation) -> 
     assert found is not None
     assert found["person"] == "bob"
     (record,) = station.driver.station.alarms.alarms.values()
-    assert record.condition.text == "A: bob took over from anna"
+    assert record.condition.text == "A: taken over by bob from anna"
 
 
 def test_an_order_to_move_is_refused_and_a_stop_is_not(station: FakeStation) -> None:

@@ -1,4 +1,6 @@
 import { expect, test } from "@playwright/test";
+import type { StationState } from "../src/protocol";
+import { alarm, link, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
@@ -37,6 +39,53 @@ for (const theme of THEMES) {
       clearInterval(timer);
     });
   }
+}
+
+/** A drone that another person operates, and an app that waits to be admitted. */
+function sharedState(): StationState {
+  const alder = vehicle(1, { lease: { person: "anna", age_s: 74, absent_s: null } });
+  const birch = vehicle(2, { lease: { person: "local-operator", age_s: 30, absent_s: null } });
+  const waits = link(7, {
+    status: "waiting",
+    claimed_serial: null,
+    waiting: {
+      serial: "1581F5BKD22BJ00A",
+      age_s: 42,
+      reason: "its serial is expected from 192.168.8.21",
+      is_flying: true,
+    },
+  });
+  return station([alder, birch], {
+    links: [link(1), link(2), waits],
+    alarms: [
+      alarm(7, {
+        rule: "lease_ended",
+        serial: "SN-001",
+        vehicle_name: "Alder",
+        text: "Alder: taken over by anna from local-operator",
+      }),
+    ],
+  });
+}
+
+for (const theme of THEMES) {
+  test(`another person and a waiting app, ${theme.name}`, async ({ page }) => {
+    await page.setViewportSize({ width: 1440, height: 1000 });
+    await page.emulateMedia({ colorScheme: theme.colorScheme });
+    const fake = await FakeStation.behind(page, sharedState());
+    fake.showPicture(await fieldPicture(page));
+    await page.goto("/");
+    await applyTheme(page, theme);
+    await page.getByRole("button", { name: /^vehicle 1 Alder/ }).click();
+    await expect(page.getByText("Take over from anna")).toBeVisible();
+    await page.screenshot({ path: `screens/shared-${theme.name}.png` });
+    const waiting = page.getByLabel("Admit 1581F5BKD22BJ00A", { exact: true });
+    await waiting.scrollIntoViewIfNeeded();
+    await waiting.screenshot({ path: `screens/waiting-${theme.name}.png` });
+    await page
+      .getByLabel("Control authority")
+      .screenshot({ path: `screens/lease-${theme.name}.png` });
+  });
 }
 
 test("connection lost, help and a held button", async ({ page }) => {

@@ -137,7 +137,7 @@ class TestTakingOver:
         (alarm,) = (
             a for a in scene.station.alarms.alarms.values() if a.condition.rule == "lease_ended"
         )
-        assert alarm.condition.text == "A: bob took over from anna"
+        assert alarm.condition.text == "A: taken over by bob from anna"
         assert alarm.acknowledged_by is None
         assert scene.refusal_rule(scene.order(mission(), person="anna")) == "operator_lease"
         assert scene.phase(scene.order(mission(), person="bob")) is Phase.SENT

@@ -1,5 +1,6 @@
 import type { Page, WebSocketRoute } from "@playwright/test";
 import type {
+  AccessView,
   OrderRequest,
   OrderResult,
   PreflightView,
@@ -18,6 +19,14 @@ export class FakeStation {
   /** The gate's result for checked orders. */
   checkResult: Partial<OrderResult> = {};
   preflight: PreflightView | null = null;
+  /** The person of the page's requests: this computer's user. */
+  person: AccessView = {
+    name: "local-operator",
+    role: "admin",
+    is_logged_in: false,
+    urls: [],
+    fingerprint: null,
+  };
   /** Answer for any survey's paths. */
   ways: SurveyWays | null = null;
   private sockets: WebSocketRoute[] = [];
@@ -75,6 +84,7 @@ export class FakeStation {
 
   private answer({ pathname: path, search }: URL, body: string | null) {
     if (!this.isReachable) return null;
+    if (path === "/api/access") return { json: this.person };
     if (path === "/api/orders") return this.order(JSON.parse(body ?? "{}") as OrderRequest);
     if (path === "/api/orders/check")
       return this.checkOrder(JSON.parse(body ?? "{}") as OrderRequest);

@@ -61,7 +61,7 @@ def assign(station: Station, serial: str, person: str, now_ns: int) -> Station:
         return station.with_control(serial, lease=replace(lease, ordered_at_ns=now_ns))
     if lease is not None:
         station = _with_alarm(
-            station, serial, lease, f"{person} took over from {lease.person}", now_ns
+            station, serial, lease, f"taken over by {person} from {lease.person}", now_ns
         )
     return station.with_control(serial, lease=OperatorLease(person, now_ns, now_ns))
 
@@ -72,9 +72,7 @@ def release(station: Station, serial: str, person: str, now_ns: int) -> Station:
     if lease is None:
         return station
     if lease.person != person:
-        why = (
-            f"{person or 'the station'} gave it to its pilot; {lease.person} no longer operates it"
-        )
+        why = f"given to its pilot by {person}; {lease.person} no longer operates it"
         station = _with_alarm(station, serial, lease, why, now_ns)
     return station.with_control(serial, lease=None)
 
