@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from tests.cli.processes import PATIENCE_S, started
 
+from recon.cli.audit import is_by
 from recon.cli.qr import qr_lines
 from recon.model.person import Role
 from recon.record.users_file import read_users
@@ -131,3 +132,11 @@ def test_a_qr_code_is_drawn_on_terminals_only() -> None:
     lines = qr_lines("https://192.0.2.5:8443/#token=" + 43 * "x", is_terminal=True)
     assert 15 < len(lines) < 40
     assert max(map(len, lines)) <= 80
+
+
+@pytest.mark.parametrize("by", ["anna", "anna (192.0.2.7)", "anna (192.0.2.7): fleet return"])
+def test_an_entry_is_a_persons_with_or_without_the_address(by: str) -> None:
+    assert is_by(by, "anna")
+    assert is_by(by, by)
+    assert not is_by(by, "ann")
+    assert not is_by(by, "192.0.2.7")

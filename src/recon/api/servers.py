@@ -25,7 +25,7 @@ from recon.api import connections
 from recon.api.connections import HttpConnection
 
 HANDSHAKES_HZ = 50.0
-"""About 2 ms each: at most a tenth of the loop's time."""
+"""About 1 ms each: at most a twentieth of the loop's time."""
 BURST = 20
 """Handshakes that begin at once: a console opens six connections."""
 

@@ -49,7 +49,7 @@ def show_command(
                 (positions or kind is not None or line.kind != "vehicle.position")
                 and (kind is None or line.kind.startswith(kind))
                 and (vehicle is None or vehicle in (line.serial, line.vehicle))
-                and (person is None or _is_by(line.by, person))
+                and (person is None or is_by(line.by, person))
             )
             if is_chosen and as_json:
                 print_json(msgspec.to_builtins(line))
@@ -77,7 +77,7 @@ def verify_command(
     raise typer.Exit(0 if all(verdict.is_whole for verdict in verdicts) else 1)
 
 
-def _is_by(by: str, person: str) -> bool:
+def is_by(by: str, person: str) -> bool:
     """Return whether an entry is of a person, named with or without an address."""
     return by == person or by.startswith((f"{person} (", f"{person}:"))
 

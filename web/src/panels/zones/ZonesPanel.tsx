@@ -77,7 +77,7 @@ function ZoneRow(props: { zone: TemporaryZoneView }) {
 
 /** One press draws the zone: it only brings vehicles to rest, and seconds count. */
 function DrawForm() {
-  const { source, zoneDraft, aimAtCentre } = useConsole();
+  const { source, zoneDraft, aimAtCentre, lacks } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const draw = async () => {
     const zone = zoneDraft.zone();
@@ -164,7 +164,12 @@ function DrawForm() {
           onInput={(event) => zoneDraft.setReason(event.currentTarget.value)}
         />
       </label>
-      <button type="submit" class="button zone-go zone-wide" disabled={zoneDraft.zone() === null}>
+      <button
+        type="submit"
+        class="button zone-go zone-wide"
+        disabled={zoneDraft.zone() === null || lacks("pilot") !== null}
+        title={lacks("pilot") ?? undefined}
+      >
         Keep clear now
       </button>
       <Problem text={problem()} />
