@@ -111,6 +111,11 @@ def test_an_ordered_landing_is_no_finding() -> None:
     assert looks(go_home, in_context(lands, intent=Intent(Commanded.LAND, NOW))) == []
 
 
+@pytest.mark.parametrize("state", [goes_home(None), goes_home((15.0, 0.0), velocity=WEST)])
+def test_without_a_place_or_near_home_no_track_is_wrong(state: VehicleState) -> None:
+    assert not is_off_track(state)
+
+
 class TestPrediction:
     """Others are kept apart from where it flies, not from where it was asked to."""
 

@@ -82,6 +82,8 @@ def asked_height_m(vehicle: VehicleState) -> float | None:
 def seen_height_m(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) -> float | None:
     """Return the height above takeoff at which it goes home, once telemetry shows another one than
     is asked; None while it does not."""
+    if vehicle.go_home is None:
+        return None
     asked_m, height_m = asked_height_m(vehicle), vehicle.height_above_takeoff_m.value
     if asked_m is None or height_m is None or not _is_level(vehicle, settings):
         return None
@@ -94,10 +96,10 @@ def seen_height_m(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) ->
 def is_off_track(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) -> bool:
     """Return whether it goes home and is beside the straight way to the home that the station
     believes, or turns away from it."""
-    flight, velocity = vehicle.go_home, vehicle.velocity_ned.value
-    place, there = vehicle.position.value, home(vehicle)
+    flight = vehicle.go_home
     if flight is None or flight.level_from is None or not _is_level(vehicle, settings):
         return False
+    place, there, velocity = vehicle.position.value, home(vehicle), vehicle.velocity_ned.value
     if place is None or there is None or velocity is None:
         return False
     north_m, east_m = offset_north_east_m(place, there)

@@ -8,7 +8,7 @@ class FleetReturnSettings:
     """Distances in metres, speeds in metres per second."""
 
     layer_spacing_m: float = 8.0
-    """Two barometers drift apart by a few metres in an hour; 6 m must be left between vehicles."""
+    """The gate keeps 7.5 m; more is planned where two barometers may have drifted by over 0.5 m."""
 
     lowest_layer_m: float = 20.0
     """Above the highest ground on the ways: over vans, masts and the trees of a field's edge."""
