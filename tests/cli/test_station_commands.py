@@ -9,7 +9,10 @@ from pathlib import Path
 import pytest
 from tests.cli.processes import started
 from tests.cli.station_process import StationProcess, addresses, run_options, station_process
+from tests.persons import user
 
+from recon.model.person import Role
+from recon.record.users_file import change_users
 from recon.station.kernel.http_servers import local_person
 
 ROOT = Path(__file__).parents[2]
@@ -255,20 +258,29 @@ class TestAudit:
 
 def test_a_token_is_read_from_a_file_and_not_audited(tmp_path: Path) -> None:
     secret = "0123456789abcdef-secret"
-    token = tmp_path / "token"
+    token, users, audit = tmp_path / "token", tmp_path / "users.toml", tmp_path / "audit"
     token.write_text(secret + "\n")
-    audit = tmp_path / "audit"
-    with started(*run_options(audit), "--token-file", str(token)) as process:
-        url, link_port = addresses(process)
-        station = StationProcess(process, None, url.partition("/#")[0], link_port, audit)
+    change_users(users, lambda known: [user("anna", Role.PILOT, secret)])
+    shared = ("--https-host", "127.0.0.1", "--https-port", "0", "--users", str(users))
+    with started(*run_options(audit), *shared) as process:
+        _, link_port = addresses(process)
+        url = process.line_with("console for other computers").rpartition(" ")[2]
+        fingerprint = process.line_with("certificate SHA-256").rpartition(" ")[2]
+        pinned = f"{url}/#fingerprint={fingerprint}"
+        station = StationProcess(process, None, pinned, link_port, audit)
         refused = station.recon("status")
         assert refused.code == 2
-        assert "token" in refused.err
+        assert "token missing" in refused.err
+        unpinned = station.recon("status", "--token-file", token, address=url)
+        assert (unpinned.code, "RECON_FINGERPRINT" in unpinned.err) == (2, True)
         assert station.recon("status", "--token-file", token).code == 0
         assert station.recon("all-stop", "--token-file", token).out == "no vehicles to command\n"
+        released = station.recon("release-stop", "--all", "--token-file", token)
+        assert (released.code, "this needs operator" in released.err) == (2, True)
         wrong = station.recon("status", "--token-file", tmp_path / "none")
         assert (wrong.code, "cannot read the token file" in wrong.err) == (2, True)
         assert process.end(signal.SIGTERM) == 0
     (path,) = audit.glob("*.jsonl")
     assert secret not in path.read_text()
+    assert '"by":"anna (127.0.0.1)"' in path.read_text()
     assert '"station.stopped"' in path.read_text().splitlines()[-1]
