@@ -37,7 +37,7 @@ def test_vehicles_return_in_separate_layers_and_a_hold_releases_them() -> None:
             await station.fleet.hold()
             released = await until(station, lambda vehicles: all(v.is_done for v in vehicles))
             assert {vehicle.stage for vehicle in released} == {"released"}
-            assert all("hover, ordered by api" in (v.reason or "") for v in released)
+            assert all("hover, ordered by local-operator" in (v.reason or "") for v in released)
 
     run_patiently(main())
 
