@@ -3,8 +3,8 @@
     python -m recon.guard.process LINE_FD STOP_FD CONSOLE_ORIGIN
 
 `LINE_FD` is one end of a socket pair with the station, `STOP_FD` a listening socket on loopback.
-It ends when the station ends in order, or, after the station's death, when every app has gone, the next
-station asks it to give way, or half a minute is over.
+It ends when the station ends in order, or, after the station's death, when every app has gone, the
+next station asks it to give way, or half a minute is over.
 """
 
 import asyncio
