@@ -50,6 +50,8 @@ class VehicleMarks:
     """No motion packet has reached it since its pilot flew it."""
     is_coming_down: bool = False
     """No packet that moves has reached it since land or return; a hold may have left it low."""
+    is_given_to_pilot: bool = False
+    """A person has given it to its pilot; the watchdogs may only warn of it."""
     battery_alarm_since_s: float | None = None
     landed_s: float | None = None
     low_at_m: tuple[float, float] | None = None
@@ -111,6 +113,13 @@ def _of_persons(
 ) -> tuple[ViolationClass, str]:
     if breach.kind in PLACES and vehicles[0].is_coming_down:
         return ViolationClass.PERSON, "land or return, which is always sent"
+    if breach.kind == "separation" and any(
+        v.is_given_to_pilot and v.is_coming_down for v in vehicles
+    ):
+        return (
+            ViolationClass.PERSON,
+            "return or landing of a vehicle that is its pilot's: never held",
+        )
     if breach.kind == "separation" and station.are_holds_off:
         return ViolationClass.PERSON, "an operator had switched the holds off"
     if breach.kind == "forced landing":

@@ -153,7 +153,9 @@ class ClosedLoopRun:
                 if isinstance(body, Hover) and not takeoff:
                     self.stops.ordered(serial, now_s, is_expected=self._expects_stop(serial))
             case AuthorityTaken(serial=serial, holder=holder) if serial in self.apps:
-                if holder is not AuthorityHolder.PILOT:
+                is_pilots = holder is AuthorityHolder.PILOT
+                self.marks[serial].is_given_to_pilot = is_pilots
+                if not is_pilots:
                     self.guard.ends(serial)
             case SeparationHoldSwitched(is_on=is_on):
                 self.book.station_marks = replace(self.book.station_marks, are_holds_off=not is_on)

@@ -111,3 +111,13 @@ def test_a_place_never_sent_is_a_fault_only_of_damaged_bytes() -> None:
     assert class_of(shown, known()) is ViolationClass.STATION
     assert class_of(shown, marked(Mark.DAMAGED, 1.0)) is ViolationClass.FAULT
     assert class_of(shown, marked(Mark.DAMAGED, 13.0)) is ViolationClass.STATION
+
+
+def test_a_return_of_a_vehicle_given_to_its_pilot_is_the_persons() -> None:
+    given = known()
+    given.is_given_to_pilot = True
+    assert class_of(PAIR, given, known()) is ViolationClass.STATION
+    given.is_coming_down = True
+    assert class_of(PAIR, given, known()) is ViolationClass.PERSON
+    given.is_given_to_pilot = False
+    assert class_of(PAIR, given, known()) is ViolationClass.STATION

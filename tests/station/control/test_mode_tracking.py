@@ -275,7 +275,7 @@ class TestOtherOrders:
         order = scene.order(STICK)
         scene.keeps_receiving(1, *at(0.0, FlightMode.JOYSTICK)).passes(0.5)
         assert scene.phase(order) is Phase.CONFIRMED
-        scene.passes(0.6)
+        scene.passes(1.6).keeps_receiving(1, *at(0.0, GPS))
         ended_as(scene, order, Phase.DONE)
         assert commanded(scene) is Commanded.HOLD
 

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from tests.fleet.reports import core, extended
+import pytest
+from tests.fleet.reports import S, core, extended
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import CommandedStation, flying
 
@@ -11,6 +12,7 @@ from recon.model.vehicle import FlightMode
 
 GROUND = (core(flying=False, height_m=0.0), extended(mode=FlightMode.GPS_ATTI))
 JOYSTICK = (core(velocity=(5.0, 0.0, 0.0)), extended(mode=FlightMode.JOYSTICK))
+STANDING = (core(), extended(mode=FlightMode.GPS_ATTI))
 PILOT = (core(velocity=(5.0, 0.0, 0.0)), extended(mode=FlightMode.GPS_SPORT))
 HELD = replace(STICK, velocity_x_mps=5.0, velocity_y_mps=0.0, timeout_s=1.0)
 
@@ -130,3 +132,52 @@ class TestTheZeroOfAStick:
         scene.keeps_receiving(1, *lost).passes(2.0)
         _, zero = self.sticks(scene)
         assert (zero.velocity_x_mps, zero.height_above_takeoff_m) == (0.0, 60.0)
+
+
+class TestTheHoldAfterAStick:
+    """In stick mode an aircraft drifts, also at zero velocity."""
+
+    def holds_at_s(self, scene: CommandedStation) -> list[float]:
+        holds = {
+            number
+            for number, record in scene.station.orders.records.items()
+            if isinstance(record.command.body, Hover)
+        }
+        return [round(at_s, 1) for at_s, _, number in scene.sent if number in holds]
+
+    def test_it_follows_the_neutral_setpoint_and_ends_stick_mode(self) -> None:
+        scene = flying()
+        began_s = scene.now_ns / S
+        scene.order(HELD)
+        scene.keeps_receiving(1, *JOYSTICK).passes(2.3)
+        (at_s,) = self.holds_at_s(scene)
+        assert at_s - began_s == pytest.approx(HELD.timeout_s + 1.0, abs=0.21)
+        scene.keeps_receiving(1, *STANDING).passes(20.0)
+        assert len(self.holds_at_s(scene)) == 1
+
+    def test_it_follows_a_stick_that_only_stops(self) -> None:
+        scene = flying()
+        scene.order(replace(HELD, velocity_x_mps=0.0, height_above_takeoff_m=40.5))
+        scene.keeps_receiving(1, *JOYSTICK).passes(2.3)
+        assert len(self.holds_at_s(scene)) == 1
+
+    def test_sticks_that_follow_each_other_are_not_interrupted(self) -> None:
+        scene = flying()
+        scene.keeps_receiving(1, core(), JOYSTICK[1])
+        for _ in range(6):
+            scene.order(HELD)
+            scene.passes(HELD.timeout_s + 0.5)
+        assert self.holds_at_s(scene) == []
+
+    def test_neither_the_pilot_nor_a_newer_order_gets_one(self) -> None:
+        scene = flying()
+        scene.order(HELD)
+        scene.keeps_receiving(1, *JOYSTICK).passes(1.5)
+        scene.keeps_receiving(1, *PILOT).passes(10.0)
+        assert self.holds_at_s(scene) == []
+        scene = flying()
+        scene.order(HELD)
+        scene.keeps_receiving(1, *JOYSTICK).passes(1.5)
+        scene.order(LandNow())
+        scene.passes(10.0)
+        assert self.holds_at_s(scene) == []

@@ -1,7 +1,7 @@
 """A stop holds a vehicle that is about to fly: what waits is withdrawn, what left is followed."""
 
 from tests.fleet.reports import core, extended
-from tests.safety.cases import STICK, mission
+from tests.safety.cases import STICK, mission, waypoint
 from tests.station.commanded import CommandedStation, flying
 from tests.station.station_world import World, from_the_ground, square_mission, world
 
@@ -173,6 +173,16 @@ class TestATakeoffThatWasSent:
         hold = scene.order(Hover())
         scene.keeps_receiving(1, *HOVERING).passes(0.3)
         assert scene.phase(hold) is Phase.DONE
+
+    def test_a_later_one_that_was_refused_hides_it_from_no_stop(self) -> None:
+        scene = parked()
+        scene.order(mission(), takeoff=True)
+        refused = scene.passes(0.5).order(mission(waypoint(), waypoint(5_000.0)), takeoff=True)
+        assert scene.phase(refused) is Phase.REFUSED_BY_STATION
+        hold = scene.passes(0.5).order(Hover())
+        assert scene.phase(hold) is Phase.QUEUED
+        scene.keeps_receiving(1, *CLIMBING).passes(0.2)
+        assert len(scene.times_s(hold)) == 1
 
     def test_on_the_ground_without_a_takeoff_a_hold_is_refused(self) -> None:
         scene = parked()

@@ -257,9 +257,9 @@ def update_orders(station: Station, now_ns: int, serials: tuple[str, ...] | None
     station, sent = mode_tracking.track(station, tracked, now_ns, _judge_at(now_ns))
     outputs += sent
     station, neutrals = neutral_setpoint.due(station, now_ns)
-    for order in neutrals:
+    for ended, order in neutrals:
         station, sent = submit(station, order, now_ns)
-        station = neutral_setpoint.cancel(station, order.serial)
+        station = neutral_setpoint.after(station, ended, now_ns)
         outputs += sent
     return neutral_setpoint.drop_overdue(station, now_ns), outputs
 

@@ -43,8 +43,11 @@ def takeoff_under_way(station: Station, command: Command, now_ns: int) -> OrderR
             continue
         if was_shown(record):
             return None
-        is_recent = record.sent is not None and record.sent.sent_at_ns >= late_ns
-        return record if is_recent or record.waiting_link_ids else None
+        if record.waiting_link_ids:
+            return record
+        if record.sent is not None:
+            return record if record.sent.sent_at_ns >= late_ns else None
+        # It was refused, and hides no earlier one that has left.
     return None
 
 

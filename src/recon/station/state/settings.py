@@ -139,6 +139,10 @@ class StationSettings:
     camera_confirm_s: float = 8.0
     stick_confirm_s: float = 2.0
 
+    stick_to_hold_s: float = 1.0
+    """From a neutral setpoint to the hold: a client that steers by single sticks sends the next one
+    within this, and mode changes cost an app some tenths of a second."""
+
     neutral_setpoint_waits_s: float = 3.0
     """After a stick's time the mode may still be on its way; later than this nothing flies it."""
 

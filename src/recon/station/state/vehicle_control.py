@@ -61,11 +61,12 @@ NO_INTENT = Intent()
 
 @dataclass(frozen=True, slots=True)
 class PendingNeutral:
-    """A single virtual stick in effect, and when its neutral setpoint is due."""
+    """A single virtual stick, and when its neutral setpoint or the hold after that is due."""
 
     command: Command
     body: VirtualStick
     due_at_ns: int
+    is_hold: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,15 +1,21 @@
-"""The neutral setpoint that ends a single stick. Writes `VehicleControl.neutral`.
+"""The neutral setpoint that ends a single stick, and the hold after it.
 
-A virtual stick packet asks the app to hold a velocity for `timeout_s` and then to stop, but apps do
-not do so reliably. When that time is over the station sends zero velocity with the same yaw, at the
-last reported height: so a climb ends too. Without a known height the stick's own is kept. Nothing
-is sent after a newer order, or when the vehicle is no longer in stick mode: its pilot flies it.
+Writes `VehicleControl.neutral`. A virtual stick packet asks the app to hold a velocity for
+`timeout_s` and then to stop, but apps do not do so reliably.
+
+    stick sent --its time is over--> zero velocity with the same yaw, at the last reported height:
+    so a climb ends too (without a known height, the stick's own)
+    neutral setpoint sent --`stick_to_hold_s`--> a hold: in stick mode zero velocity still drifts,
+    in wind by 0.8 m/s, until a fence ends it; in position mode the aircraft keeps its place
+
+A stick that only stops needs no neutral setpoint, but the hold. Nothing is sent after a newer
+order, or when the vehicle is no longer in stick mode: its pilot flies it.
 """
 
 from collections.abc import Iterator
 from dataclasses import replace
 
-from recon.model.command import Command, VirtualStick
+from recon.model.command import Command, Hover, VirtualStick
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
@@ -20,17 +26,30 @@ ISSUER = "station: end of a stick"
 
 
 def begin(station: Station, command: Command, now_ns: int) -> Station:
-    """Return the station after a command was sent: a stick that moves needs a neutral setpoint.
+    """Return the station after a command was sent: a stick needs an end.
 
-    Not one without velocity, if the vehicle is at its height or has none reported.
+    Without velocity, with the vehicle at its height or none reported, a hold is enough.
     """
     body = command.body
     if not isinstance(body, VirtualStick) or command.serial is None or command.id < 0:
         return station
-    if _stands(station, command.serial, body):
-        return station
     neutral = PendingNeutral(command, body, now_ns + seconds_to_ns(body.timeout_s))
+    if _stands(station, command.serial, body):
+        neutral = _then_hold(station, neutral, neutral.due_at_ns)
     return station.with_control(command.serial, neutral=neutral)
+
+
+def after(station: Station, ended: PendingNeutral, now_ns: int) -> Station:
+    """Return the station after the neutral setpoint or the hold of a stick was submitted."""
+    serial = ended.command.serial or ""
+    if ended.is_hold:
+        return cancel(station, serial)
+    return station.with_control(serial, neutral=_then_hold(station, ended, now_ns))
+
+
+def _then_hold(station: Station, neutral: PendingNeutral, from_ns: int) -> PendingNeutral:
+    due_at_ns = from_ns + seconds_to_ns(station.settings.stick_to_hold_s)
+    return replace(neutral, due_at_ns=due_at_ns, is_hold=True)
 
 
 def cancel(station: Station, serial: str | None) -> Station:
@@ -48,18 +67,22 @@ def pending(station: Station) -> Iterator[tuple[str, PendingNeutral]]:
         yield serial, neutral
 
 
-def due(station: Station, now_ns: int) -> tuple[Station, tuple[OperatorOrder, ...]]:
-    """Return the neutral setpoints due now, as orders; `cancel` each once submitted."""
-    orders: list[OperatorOrder] = []
+def due(
+    station: Station, now_ns: int
+) -> tuple[Station, tuple[tuple[PendingNeutral, OperatorOrder], ...]]:
+    """Return what is due now, with its order; `after` each once submitted."""
+    orders: list[tuple[PendingNeutral, OperatorOrder]] = []
     for serial, neutral in pending(station):
         if now_ns >= neutral.due_at_ns and _is_flown_by_sticks(station, neutral, now_ns):
             station, number = take_id(station)
-            zero = _zero(neutral.body, station.fleet.vehicles[serial])
+            vehicle = station.fleet.vehicles[serial]
+            body = Hover() if neutral.is_hold else _zero(neutral.body, vehicle)
             lease = station.control(serial).lease
             # It stops what was steered, also when another person has taken over since.
             person = "" if lease is None else lease.person
             role = neutral.command.role
-            orders.append(OperatorOrder(number, zero, ISSUER, serial, role=role, person=person))
+            order = OperatorOrder(number, body, ISSUER, serial, role=role, person=person)
+            orders.append((neutral, order))
     return station, tuple(orders)
 
 
