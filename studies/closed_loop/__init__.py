@@ -25,8 +25,9 @@ physics
     when the aircraft had landed less than 1 s before it.
 person
     A person's order that is always sent took the vehicle there (land, return: never judged by
-    places; nor held by a watchdog while a person has given the vehicle to its pilot), an operator had switched the separation holds off, or left a vehicle in the air
-    for 20 s under a battery alarm.
+    places; nor held by a watchdog while a person has given the vehicle to its pilot), an operator
+    had switched the separation holds off, or left a vehicle in the air for 20 s under a battery
+    alarm.
 station
     Everything else.
 
