@@ -90,6 +90,8 @@ class ClosedLoopRun:
             serial: deque(maxlen=ARRIVALS_KEPT) for serial in self.apps
         }
         """When core telemetry arrived, and its link's longest delay then."""
+        self._takes_off_for: dict[str, int] = {}
+        """The survey by which each vehicle was last allowed to take off."""
         self._alarm_ids: set[int] = set()
         self._died_s: float | None = None
         self._snapshot = b""
@@ -159,12 +161,14 @@ class ClosedLoopRun:
                     self.guard.ends(serial)
             case SeparationHoldSwitched(is_on=is_on):
                 self.book.station_marks = replace(self.book.station_marks, are_holds_off=not is_on)
-            case SurveyStarted(serials=serials, takeoff=True):
+            case SurveyStarted(survey_id=number, serials=serials, takeoff=True):
                 for serial in serials:
                     self.permits.allow(serial, now_s, float("inf"))
-            case SurveyStopped():
-                for serial in self.apps:
-                    self.permits.withdraw(serial)
+                    self._takes_off_for[serial] = number
+            case SurveyStopped(survey_id=number):
+                for serial, flown in self._takes_off_for.items():
+                    if flown == number:
+                        self.permits.withdraw(serial)
         self.driver.handle(event)
         self._note_answer(event)
 
