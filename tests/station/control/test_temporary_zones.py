@@ -7,6 +7,7 @@ import pytest
 from tests.fleet.reports import PLACE, S
 from tests.safety.cases import STICK, mission
 from tests.station.commanded import AIRSPACE, CommandedStation
+from tests.station.failsafe.reacting import put_matrix, with_cell
 from tests.station.flown import hovering
 from tests.station.recovery.restarts import restart_world, restored_from, saved
 from tests.station.station_world import HOME, World, world
@@ -15,6 +16,7 @@ from recon.geo.distance import moved_m, offset_north_east_m
 from recon.model.airspace import ZoneKind
 from recon.model.command import FlyMission, Phase, Refusal
 from recon.model.event import AlarmAcknowledged, ZoneDrawn, ZoneEnded
+from recon.model.failsafe_matrix import Activity, FailsafeCondition, Reaction
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.severity import Severity
@@ -92,6 +94,14 @@ class TestUnderWay:
         assert any(
             "is about to enter the keep-out zone 'person 1 (temporary)'" in text for text in texts
         )
+
+    def test_a_site_that_leaves_its_geofence_to_alarms_does_not_leave_this_to_them(self) -> None:
+        here, _ = flown_to(20.0)
+        put_matrix(here, with_cell(FailsafeCondition.GEOFENCE, Activity.MISSION, Reaction.ALARM))
+        here.driver.handle(ahead(north_m(here) + 25.0 + 10.0))
+        here.run_for(20.0)
+        assert speed_mps(here) < 0.5
+        assert here.driver.station.orders.records[-1].command.issued_by == "station: zone_ahead"
 
     def test_one_far_ahead_lets_it_fly_up_to_it(self) -> None:
         here, _order = flown_to(60.0)

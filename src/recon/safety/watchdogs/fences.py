@@ -89,6 +89,8 @@ def _boundary(picture: TrafficPicture, way: Way, fence: Polygon) -> Iterator[Fin
 def _keep_out(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
     indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead))
     name = zone.zone.name
+    # A person drew it because somebody is there now: no site leaves that to an alarm.
+    row = None if zone in picture.airspace.temporary_zones else FailsafeCondition.GEOFENCE
     for index in indices[_has_its_heights(picture.airspace, way, zone, indices)]:
         inside_m, later_m = _depths_m(way, zone.polygon, int(index))
         if inside_m >= 0.0:
@@ -97,7 +99,9 @@ def _keep_out(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator
         else:
             text, stops = f"is about to enter the keep-out zone {name!r}", True
         is_in = inside_m >= 0.0
-        yield _found(picture, int(index), ZONE, text, about=name, is_bad=is_in, stops=stops)
+        yield _found(
+            picture, int(index), ZONE, text, about=name, is_bad=is_in, stops=stops, row=row
+        )
 
 
 def _heights(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
@@ -176,6 +180,7 @@ def _found(
     about: str = "",
     is_bad: bool = False,
     stops: bool = False,
+    row: FailsafeCondition | None = FailsafeCondition.GEOFENCE,
 ) -> Finding:
     watched = picture.flying[index]
     severity = Severity.CRITICAL if is_bad else Severity.ERROR
@@ -183,7 +188,7 @@ def _found(
         text = f"{text}; {watched.name} {watched.hold_outcome}"
     finding = watched.finding(rule, severity, text, about=f":{about}" if about else "")
     is_due = picture.lasted_s(finding.key) >= picture.settings.confirm_s
-    may_be_held = watched.may_be_held_for(FailsafeCondition.GEOFENCE)
+    may_be_held = watched.may_be_held_for(row)
     if not (stops and is_due and may_be_held) or watched.is_coming_down:
         return finding
     if watched.was_held_within_s(picture.now_ns, picture.settings.hold_again_s):

@@ -123,9 +123,9 @@ class WatchedVehicle(NamedTuple):
             or self.state.flight_mode.value in _COMING_DOWN_MODES
         )
 
-    def may_be_held_for(self, condition: FailsafeCondition) -> bool:
+    def may_be_held_for(self, condition: FailsafeCondition | None) -> bool:
         """Return whether a hold would be the station's to give: in the air, known, not the pilot's,
-        and not left to an alarm by the site."""
+        and not left to an alarm by the site; None: no site may leave this to an alarm."""
         return (
             self.is_flying_in_contact
             and condition not in self.alarm_only
