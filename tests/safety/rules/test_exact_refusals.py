@@ -35,7 +35,7 @@ from tests.safety.fenced import (
 from tests.safety.traffic import AIR, aircraft, at
 
 from recon.model.command import Body, Command, GoTo, Hover, Nudge, Refusal, StartCamera
-from recon.model.control import AuthorityHolder, ControlAuthority, StopLatch
+from recon.model.control import AuthorityHolder, ControlAuthority, OperatorLease, StopLatch
 from recon.model.geo import LatLon
 from recon.model.units import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
@@ -143,6 +143,15 @@ ORDERS = [
         "height_above_takeoff_m must be a finite number; got nan",
         field="height_above_takeoff_m",
         value="nan",
+    ),
+    case(
+        "operator_lease",
+        replace(command(northward()), person="bea"),
+        replace(HERE, lease=OperatorLease("ann", NOW - 90 * S, NOW)),
+        "A is operated by ann, since 90 s ago; ask ann, or take it over (console: Take over; shell: "
+        "recon take --take-over). Hold, land and return home are always accepted",
+        person="ann",
+        age_s=90.0,
     ),
     case(
         "authority",
