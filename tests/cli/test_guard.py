@@ -86,6 +86,19 @@ def test_a_guard_that_ends_is_an_alarm_and_is_followed_by_another(tmp_path: Path
     assert guards_of(station.station.process.pid) == []
 
 
+def test_the_shells_all_stop_goes_to_the_guard_of_a_halted_station(tmp_path: Path) -> None:
+    with station_process(tmp_path, 2, *FLYING) as station:
+        port = stop_url_of_ready_guard(station).rpartition(":")[2].removesuffix("/all-stop")
+        with halted(station.station.process.pid):
+            done = station.recon("all-stop", "--stop-port", port)
+        assert done.code == 1, done.err  # sent, and not confirmed by telemetry
+        assert sorted(done.out.splitlines()) == [
+            "Drone 1: accepted (hover sent by its guard; the station does not answer)",
+            "Drone 2: accepted (hover sent by its guard; the station does not answer)",
+        ]
+        station.until(hold)
+
+
 def test_without_a_guard_there_is_no_stop_port(tmp_path: Path) -> None:
     with started(*run_options(tmp_path), "--no-guard") as station:
         addresses(station)

@@ -25,8 +25,10 @@ from recon.cli.connection import (
     run_at_station,
     station_at,
 )
+from recon.cli.guard_stop import STATION_ANSWERS_WITHIN_S, guard_port_of, stop_all_at_guard
 from recon.cli.output import Outcome, await_outcomes, print_line, print_outcomes
 from recon.client import ClientError, FleetCommands, OrderStatus, Station, StopAnswer, VehicleAnswer
+from recon.client.errors import MaybeSentError, StationUnreachableError
 
 CONFIRMATION_TIMEOUT_S = 15.0
 POLL_INTERVAL_S = 0.2
@@ -82,14 +84,30 @@ def return_command(
 def all_stop_command(
     wait: WaitOption = CONFIRMATION_TIMEOUT_S,
     as_json: JsonOption = False,
+    stop_port: Annotated[
+        int | None,
+        typer.Option(help="Port of the station's guard; default: the console's port and 1."),
+    ] = None,
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
     """Hold every vehicle in the air, identified or not. Never stops motors.
 
-    It stays in force: nothing moves a vehicle until `recon release-stop`.
+    It stays in force: nothing moves a vehicle until `recon release-stop`. Where the station does
+    not answer within a second, its guard holds them.
     """
-    outcomes = asyncio.run(_all_stop(station_at(address, token_file), wait))
+    port = guard_port_of(address) if stop_port is None else stop_port
+    first = None if port is None else STATION_ANSWERS_WITHIN_S
+    try:
+        outcomes = asyncio.run(_all_stop(station_at(address, token_file), wait, first))
+    except (TimeoutError, StationUnreachableError, MaybeSentError) as problem:
+        by_guard = None if port is None else stop_all_at_guard(port)
+        if by_guard is None and not isinstance(problem, TimeoutError):
+            raise
+        if by_guard is None:
+            outcomes = asyncio.run(_all_stop(station_at(address, token_file), wait, None))
+        else:
+            outcomes = by_guard
     raise typer.Exit(print_outcomes(outcomes, as_json))
 
 
@@ -144,10 +162,14 @@ def _order(
     run_at_station(address, token_file, work)
 
 
-async def _all_stop(station: Station, wait_s: float) -> list[Outcome]:
-    """Send the stop before anything else; then poll for the outcomes."""
+async def _all_stop(station: Station, wait_s: float, within_s: float | None) -> list[Outcome]:
+    """Send the stop before anything else; then poll for the outcomes.
+
+    Raises `TimeoutError` when the station has not answered within `within_s`.
+    """
     try:
-        answers = await station.all_stop_at_once()
+        async with asyncio.timeout(within_s):
+            answers = await station.all_stop_at_once()
         lives: dict[int, OrderStatus] = {}
         end_s = time.monotonic() + wait_s
         while time.monotonic() < end_s and not _are_over(answers, lives):

@@ -148,8 +148,8 @@ ORDERS = [
         "operator_lease",
         replace(command(northward()), person="bea"),
         replace(HERE, lease=OperatorLease("ann", NOW - 90 * S, NOW)),
-        "A is operated by ann, since 90 s ago; ask ann, or take it over (console: Take over; shell: "
-        "recon take --take-over). Hold, land and return home are always accepted",
+        "A is operated by ann, since 90 s ago; ask ann, or take it over (console: Take over; "
+        "shell: recon take --take-over). Hold, land and return home are always accepted",
         person="ann",
         age_s=90.0,
     ),
