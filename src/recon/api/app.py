@@ -31,7 +31,9 @@ The API is described at <a href="/openapi.json">/openapi.json</a>."""
 SECURITY_HEADERS = {
     "Content-Security-Policy": (
         "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
-        "style-src 'self' 'unsafe-inline'; connect-src 'self' blob:; frame-ancestors 'none'"
+        "style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; "
+        # The guard's port, for an all stop that the station does not answer.
+        "connect-src 'self' blob: http://127.0.0.1:*"
     ),
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",

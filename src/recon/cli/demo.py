@@ -10,7 +10,7 @@ import typer
 
 import recon
 from recon.cli.foreground import print_now, run_in_loop
-from recon.cli.run import announce, console_folder
+from recon.cli.run import HAS_GUARD, announce, console_folder, guard_port
 from recon.cli.scripted_operator import fly_surveys
 from recon.client import ClientError
 from recon.model.errors import ReconError
@@ -55,6 +55,7 @@ def demo_command(
         site=played.site,
         link_port=link_port,
         http_port=http_port,
+        stop_port=guard_port(None, http_port) if HAS_GUARD else None,
         # No state of an earlier run is recovered: its drones no longer exist.
         audit=default_place(link_port=0),
         console=console_folder(),

@@ -22,6 +22,9 @@ from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
 from recon.station.kernel.run import RunConfig, Started, run
 
+HAS_GUARD = hasattr(socket, "send_fds")
+"""Windows hands no sockets to other processes."""
+
 
 def run_command(
     site: Annotated[
@@ -51,7 +54,7 @@ def run_command(
     ] = None,
     guard: Annotated[
         bool, typer.Option(help="Run a guard: a process that can stop vehicles by itself.")
-    ] = hasattr(socket, "send_fds"),
+    ] = HAS_GUARD,
     https_host: Annotated[
         str | None,
         typer.Option(

@@ -1909,6 +1909,11 @@ export interface components {
             connections_refused: number;
             /** Frames Dropped */
             frames_dropped: number;
+            /**
+             * Guard Stop Url
+             * @description all stop at the station's guard, for pages on this computer; null: no guard
+             */
+            guard_stop_url: string | null;
             /** Link Addresses */
             link_addresses: string[];
             /**

@@ -218,4 +218,61 @@ describe("the live source", () => {
     expect(outcome).toMatchObject({ kind: "answered", value: { frameId: 8 } });
     expect(requests[0]?.url).toContain("/api/vehicle/frame.jpg?serial=a%2Fb%20%3F&id=7");
   });
+
+  describe("with a guard beside the station", () => {
+    const guardUrl = "http://127.0.0.1:8081/all-stop";
+
+    function withGuard(answer: Answer) {
+      const page = setUp(answer);
+      const state = station([vehicle(1)]);
+      page.sockets[0]?.deliver({
+        ...state,
+        station: { ...state.station, guard_stop_url: guardUrl },
+      });
+      return page;
+    }
+
+    it("asks the guard when the station does not answer an all stop", async () => {
+      const { clock, source, requests } = withGuard((request) =>
+        request.url === guardUrl
+          ? json({ held: ["Drone 1"], missed: ["Drone 2"] })
+          : new Promise<Response>(() => {}),
+      );
+      const stopped = source.allStop();
+      clock.advance(1_000);
+      expect(await stopped).toMatchObject({
+        kind: "answered",
+        value: [
+          { vehicle_name: "Drone 1", accepted: true },
+          { vehicle_name: "Drone 2", accepted: false, rule: "flying" },
+        ],
+      });
+      expect(posted(requests).map(({ url }) => url)).toEqual([
+        "http://127.0.0.1:8080/api/all-stop",
+        guardUrl,
+      ]);
+    });
+
+    it("asks it at once when the station cannot be reached", async () => {
+      const { source } = withGuard((request) => {
+        if (request.url !== guardUrl) throw new TypeError("connection refused");
+        return json({ held: ["Drone 1"], missed: [] });
+      });
+      expect(await source.allStop()).toMatchObject({ value: [{ vehicle_name: "Drone 1" }] });
+    });
+
+    it("leaves it alone when the station answers", async () => {
+      const { clock, source, requests } = withGuard(() => json({ results: [] }));
+      expect(await source.allStop()).toEqual({ kind: "answered", value: [] });
+      clock.advance(5_000);
+      expect(posted(requests).map(({ url }) => url)).not.toContain(guardUrl);
+    });
+
+    it("gives the station's reason when neither answers", async () => {
+      const { source } = withGuard(() => {
+        throw new TypeError("connection refused");
+      });
+      expect(await source.allStop()).toMatchObject({ kind: "failed" });
+    });
+  });
 });

@@ -22,6 +22,9 @@ export interface LiveSourceOptions {
 /** WebSocket subprotocol of the stream. */
 export const STREAM_PROTOCOL = "recon.v1";
 
+/** A station that runs answers an all stop within some tens of milliseconds. */
+export const GUARD_AFTER_MS = 1_000;
+
 /** A source connected to a running station. */
 export class LiveSource implements StationSource {
   readonly state;
@@ -143,8 +146,18 @@ export class LiveSource implements StationSource {
     return this.requests.setSeparationHold(isOn);
   }
 
-  allStop() {
-    return this.requests.allStop();
+  /** Asks the station's guard too, when the station does not answer. */
+  async allStop() {
+    const guardUrl = this.state()?.station.guard_stop_url ?? null;
+    const asked = this.requests.allStop();
+    if (guardUrl === null) return asked;
+    const silence = new Promise<null>((resolve) =>
+      this.clock.after(GUARD_AFTER_MS, () => resolve(null)),
+    );
+    const first = await Promise.race([asked, silence]);
+    if (first?.kind === "answered") return first;
+    const held = await this.requests.allStopAtGuard(guardUrl, this.person()?.name ?? null);
+    return held.kind === "answered" ? held : asked;
   }
 
   acknowledge(alarmId: number) {

@@ -148,6 +148,23 @@ export class Requests {
     );
   }
 
+  /** An all stop at the station's guard: no order of the station, so results have no number. */
+  allStopAtGuard(url: string, by: string | null): Promise<Outcome<readonly OrderResult[]>> {
+    return attempt(async () => {
+      const body = JSON.stringify(by === null ? {} : { by });
+      const response = await this.fetch(
+        new Request(url, { method: "POST", body, signal: timeout() }),
+      );
+      if (!response.ok) return failed(`The guard refused: ${response.status}`);
+      const { held, missed } = (await response.json()) as { held: string[]; missed: string[] };
+      const reason = "nothing recent shows it in flight; use its controller";
+      return done([
+        ...held.map((name) => guardResult(name, null)),
+        ...missed.map((name) => guardResult(name, reason)),
+      ]);
+    });
+  }
+
   drawZone(zone: NewZone): Promise<Outcome<TemporaryZoneResponse>> {
     const options = { body: zone as TemporaryZoneRequest, signal: timeout() };
     return answered(() => this.client.POST("/api/zones", options), asZoneResponse);
@@ -229,6 +246,22 @@ const STEERED: readonly string[] = ["goto", "nudge", "hold_position"];
 function orderBody({ serials, order }: NamedOrder, owner: string, given_at_unix_ms: number | null) {
   const body = { serials: [...serials], order, takeoff: false, given_at_unix_ms };
   return STEERED.includes(order.kind) ? { ...body, owner } : body;
+}
+
+function guardResult(vehicle_name: string, reason: string | null): OrderResult {
+  return {
+    accepted: reason === null,
+    command_id: 0,
+    is_simulated: false,
+    link_id: null,
+    parameters: {},
+    parts: 0,
+    reason,
+    repairs: [],
+    rule: reason === null ? null : "flying",
+    serial: null,
+    vehicle_name,
+  };
 }
 
 function timeout(): AbortSignal {

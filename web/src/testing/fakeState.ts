@@ -185,6 +185,7 @@ export function station(
       connections_refused: 0,
       apps_listed: null,
       separation_hold_on: true,
+      guard_stop_url: null,
     },
     site: {
       name: "Field by the creek",

@@ -67,6 +67,9 @@ class StationView(Message):
     apps_listed: int | None = Field(
         description="entries of the list of admitted apps; null: no list, any app is admitted"
     )
+    guard_stop_url: str | None = Field(
+        description="all stop at the station's guard, for pages on this computer; null: no guard"
+    )
     separation_hold_on: bool = Field(
         description="whether the watchdogs hold vehicles; if not, they only raise alarms"
     )

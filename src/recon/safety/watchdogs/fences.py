@@ -89,7 +89,7 @@ def _boundary(picture: TrafficPicture, way: Way, fence: Polygon) -> Iterator[Fin
 def _keep_out(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
     indices = np.flatnonzero(~zone.polygon.is_clear_of(way.ahead))
     name = zone.zone.name
-    # A person drew it because somebody is there now: no site leaves that to an alarm.
+    # A person drew it for what is there now: no site leaves that to an alarm.
     row = None if zone in picture.airspace.temporary_zones else FailsafeCondition.GEOFENCE
     for index in indices[_has_its_heights(picture.airspace, way, zone, indices)]:
         inside_m, later_m = _depths_m(way, zone.polygon, int(index))

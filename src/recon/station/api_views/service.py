@@ -63,6 +63,7 @@ class Service:
     capture_folder: str | None
     audit_log: AuditLog | None
     _ids: Callable[[], int]
+    guard_stop_url: str | None = None
 
     @classmethod
     def around(
@@ -389,6 +390,7 @@ class Service:
             frames_dropped=self.driver.station.imaging.frames_dropped,
             capture_folder=self.capture_folder,
             capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
+            guard_stop_url=self.guard_stop_url,
             separation_hold_on=self.driver.station.watchdog_state.is_hold_on,
             connections_refused=0 if links is None else links.refused_connections,
             apps_listed=None if listed is None else len(listed),

@@ -192,6 +192,7 @@ def _start_guard(
         return None
     stop_socket = listen("127.0.0.1", config.stop_port, "--stop-port")
     line = GuardLine(driver, service, stop_socket, url_of(config.http_host, doors.loopback))
+    service.guard_stop_url = line.stop_url
     stack.callback(line.close)
     line.write_port(folder)
     for act in acts:
