@@ -235,7 +235,7 @@ class PredictionSettings:
     height_drift_m_per_h: float = 0.5
     """Of each vehicle's height above takeoff, by its time in the air: so much more is kept between
     two. An assumption, for barometers that were warm at takeoff: two in the air for half an hour
-    are half a metre off each other, which layers of 8 m hold (docs/decisions/0017)."""
+    are half a metre off each other, which layers of 8 m hold (docs/decisions/0014)."""
 
     corridor_m: float = 10.0
     """Half the width of a way home: GNSS error, wind, and where home really is."""
