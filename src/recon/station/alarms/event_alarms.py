@@ -6,10 +6,17 @@ They stay until an operator acknowledges them. A fault's alarm is critical while
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from recon.model.event import ClockGap, GuardActed, LoginRefused, StationFaulted, UsersChanged
+from recon.model.event import (
+    ClockGap,
+    CommandAnswered,
+    GuardActed,
+    LoginRefused,
+    StationFaulted,
+    UsersChanged,
+)
 from recon.model.replacing import replace
 from recon.model.report import MessageReport, MessageSeverity
-from recon.model.units import seconds_to_ns
+from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
@@ -99,6 +106,30 @@ def note_guard(station: Station, event: GuardActed, now_ns: int) -> Station:
         "orders"
     )
     condition = Condition(f"guard:{now_ns}", Severity.ERROR, "guard", STATION_NAME, text)
+    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
+    return replace(station, alarms=book)
+
+
+def note_slow_answer(station: Station, event: CommandAnswered, now_ns: int) -> Station:
+    """Return the station with an alarm for an order that was acknowledged late.
+
+    The protocol carries no time of measurement, so only an answer shows how slow a link is.
+    """
+    record = station.orders.records.get(event.command_id)
+    if record is None or record.sent is None or record.times_sent != 1 or event.positive is None:
+        return station
+    took_s = ns_to_seconds(now_ns - record.sent.sent_at_ns)
+    vehicle = station.fleet.vehicle_of_link(event.link_id)
+    is_slow = took_s > station.settings.flight_alarms.slow_answer_s
+    if not is_slow or vehicle is None or vehicle.is_flying.value is False:
+        return station
+    name = vehicle.display_name
+    text = (
+        f"{name}: its app answered an order after {took_s:.1f} s, so its telemetry may be as old: "
+        "keep wide distances, bring its controller nearer, end its video"
+    )
+    key = f"latency:{vehicle.serial or event.link_id}"
+    condition = Condition(key, Severity.WARNING, "latency", name, text, vehicle.serial)
     book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
     return replace(station, alarms=book)
 

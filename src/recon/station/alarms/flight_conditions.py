@@ -1,8 +1,8 @@
 """Conditions of a vehicle in flight, and doubts about its telemetry, as alarms.
 
 Each compares the newest telemetry with what the aircraft can do. The protocol carries no time of
-measurement, so the latency of telemetry cannot be known: a link that delays every packet alike
-looks live.
+measurement, so a link that delays every packet alike looks live, until an order is answered late
+(`event_alarms.note_slow_answer`).
 """
 
 from collections.abc import Iterator

@@ -159,6 +159,11 @@ def _job_dropped(station: Station, event: JobDropped[Any, Any], now_ns: int) -> 
     return event.kind.dropped(station, event.job_id, now_ns)
 
 
+def _answered(station: Station, event: CommandAnswered, now_ns: int) -> Station:
+    noted = event_alarms.note_slow_answer(station, event, now_ns)
+    return order_gateway.on_link_event(noted, event, now_ns)
+
+
 def _guard_acted(station: Station, event: GuardActed, now_ns: int) -> Stepped:
     """The guard has held vehicles: the orders that steered them are over."""
     station = event_alarms.note_guard(station, event, now_ns)
@@ -241,7 +246,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         on(JobDropped, _job_dropped),
         on(OperatorOrder, order_gateway.submit),
         changing(CommandSent, order_gateway.on_link_event),
-        changing(CommandAnswered, order_gateway.on_link_event),
+        changing(CommandAnswered, _answered),
         changing(CommandDropped, order_gateway.on_link_event),
         on(AppAdmitted, _fleet),
         on(AppRefused, _app_refused),

@@ -47,6 +47,9 @@ class FlightAlarmSettings:
     max_descent_mps: float = 9.0
     """They sink at 3 to 6 m/s, the fastest at 8."""
     descent_s: float = 0.3
+    slow_answer_s: float = 1.0
+    """From an order's sending to its acknowledgment: apps answer when they have read it, so this is
+    the link's way there and back. At 15 m/s it is 15 m."""
 
 
 @dataclass(frozen=True, slots=True)
