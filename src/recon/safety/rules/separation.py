@@ -128,7 +128,8 @@ def _conflict(
         )
     else:
         reason = (
-            f"{when} it must keep {minima.horizontal_m:g} m, or {minima.vertical_m:g} m in height, "
+            f"{when} it must keep {round(minima.horizontal_m, 1):g} m, or "
+            f"{round(minima.vertical_m, 1):g} m in height, "
             f"from {other.name} ({part_text(conflict.other_part)}); got "
             f"{conflict.horizontal_m:.0f} m and {conflict.vertical_m:.0f} m in height: fly at "
             "another height, elsewhere, or later"
