@@ -49,7 +49,7 @@ HALTED_S = 3.0
 HALTED_REPEATS = 5
 AFTER_HALT_S = 2.5
 """Until a station that goes on has telemetry again, and has sent what waited for it."""
-STOP_LINE = "all stop without the console: curl -X POST "
+STOP_LINE = "all stop by the guard: curl -X POST "
 
 
 @dataclass(slots=True)

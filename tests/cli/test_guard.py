@@ -12,7 +12,7 @@ from typing import Any
 from tests.cli.processes import PATIENCE_S, started
 from tests.cli.station_process import StationProcess, addresses, run_options, station_process
 
-STOP_LINE = "all stop without the console: curl -X POST "
+STOP_LINE = "all stop by the guard: curl -X POST "
 FLYING = ("--airborne", "--wander")
 
 

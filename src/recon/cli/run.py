@@ -143,7 +143,7 @@ def announce(started: Started) -> None:
     if started.taken_up:
         print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")
     if started.stop_url is not None:
-        print_now(f"all stop without the console: curl -X POST {started.stop_url}")
+        print_now(f"all stop by the guard: curl -X POST {started.stop_url}")
     print_now(f"console: {started.console_url}")
     if started.network is not None:
         for url in started.network.urls:
