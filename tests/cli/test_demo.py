@@ -36,7 +36,9 @@ radius_m = 100.0
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_vehicles_fly_and_the_simulator_ends_with_the_demo(number: int, tmp_path: Path) -> None:
+def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(
+    number: int, tmp_path: Path
+) -> None:
     scenario = tmp_path / "few.toml"
     scenario.write_text(FEW, encoding="utf-8")
     ports = ("--http-port", "0", "--link-port", "0")
@@ -48,7 +50,7 @@ def test_vehicles_fly_and_the_simulator_ends_with_the_demo(number: int, tmp_path
         demo.line_with("survey 1: flown by SIM-1, SIM-2")
         demo.line_with("mission: started")
         children = children_of(demo.process.pid)
-        assert len(children) == 1
+        assert len(children) == 2  # the simulator and the guard
         assert demo.end(number) == 0
         assert "Traceback" not in demo.text
         assert "scripted operator stopped" not in demo.text
