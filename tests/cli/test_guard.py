@@ -86,6 +86,17 @@ def test_a_guard_that_ends_is_an_alarm_and_is_followed_by_another(tmp_path: Path
     assert guards_of(station.station.process.pid) == []
 
 
+def test_a_guard_that_hangs_is_replaced(tmp_path: Path) -> None:
+    with station_process(tmp_path, 2, *FLYING) as station:
+        stop_url_of_ready_guard(station)
+        (hanging,) = guards_of(station.station.process.pid)
+        os.kill(hanging, signal.SIGSTOP)
+        station.station.line_with("at its guard: it has ended")
+        stop_url_of_ready_guard(station)
+        assert guards_of(station.station.process.pid) != [hanging]
+        assert station.station.end(signal.SIGTERM) == 0
+
+
 def test_the_shells_all_stop_goes_to_the_guard_of_a_halted_station(tmp_path: Path) -> None:
     with station_process(tmp_path, 2, *FLYING) as station:
         port = stop_url_of_ready_guard(station).rpartition(":")[2].removesuffix("/all-stop")

@@ -54,6 +54,7 @@ def test_a_picture_arrives_as_it_was_sent(pictures: list[LinkPicture]) -> None:
 )
 def test_an_act_arrives_as_it_was_sent(act: Act) -> None:
     (message,) = Lines().feed(messages.act_line(act))
+    assert message["is"] == messages.ACT
     assert messages.act_of(message) == act
 
 

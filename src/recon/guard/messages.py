@@ -1,7 +1,8 @@
 """What the station and its guard say to each other: one line of JSON each, over a socket pair.
 
 Station to guard: a duplicate of an app's socket (it comes with the line), a closed link, a picture
-of all links (the heartbeat), the receipt of what the guard did. Guard to station: what it did.
+of all links (the heartbeat), the receipt of what the guard did. Guard to station: that it has taken
+a picture, and what it did.
 Times are sent as ages: the two processes' clocks need not agree.
 """
 
@@ -14,6 +15,7 @@ from recon.guard.watch import Act, Picture, Watched
 from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import VehicleState
 
+ALIVE, ACT = "alive", "act"
 SOCKET, CLOSED, PICTURE, NOTED, OVER = "socket", "closed", "picture", "noted", "over"
 
 
@@ -73,9 +75,14 @@ def _watched(link: LinkPicture, now_ns: int) -> Watched:
     return Watched(link.name, vehicle, link.is_steered)
 
 
+def alive_line() -> bytes:
+    """The guard has taken a picture."""
+    return _line({"is": ALIVE})
+
+
 def act_line(act: Act) -> bytes:
     """Something the guard did."""
-    return _line(asdict(act))
+    return _line({"is": ACT} | asdict(act))
 
 
 def act_of(message: dict[str, Any]) -> Act:

@@ -78,7 +78,7 @@ class GuardProcess:
         for hover in hovers:
             self._write(hover)
         for act in self.state.acts[known:]:
-            self._tell(act)
+            self._say(messages.act_line(act))
 
     def _write(self, approved: ApprovedCommand) -> None:
         """Write a hover past everything: its bytes are few, and the station's packets whole."""
@@ -89,10 +89,10 @@ class GuardProcess:
                 with suppress(OSError):
                     app.send(data)
 
-    def _tell(self, act: Act) -> None:
+    def _say(self, line: bytes) -> None:
         if self._line is not None:
             with suppress(OSError):
-                self._line.send(messages.act_line(act))
+                self._line.send(line)
 
     def _read_line(self) -> None:
         assert self._line is not None
@@ -119,6 +119,7 @@ class GuardProcess:
                 self.state = watch.noted(self.state)
             case messages.PICTURE:
                 self._handle(messages.picture_of(message, self.now_ns()))
+                self._say(messages.alive_line())
             case messages.OVER:
                 self.is_over.set()
 

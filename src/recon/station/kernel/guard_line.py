@@ -3,7 +3,8 @@
 Theory of operation.
 
     starting --started--> watched: each new socket goes to the guard, a picture ten times a second
-    watched  --the guard ends--> unwatched: an alarm; a new one is started after `RESTART_S`
+    watched  --the guard ends, or leaves pictures unanswered--> unwatched: an alarm; it is killed,
+             and a new one started after `RESTART_S`
     watched  --the guard did something--> its hold is an alarm and ends the orders it held against;
              an all stop at its port is given here too, and latches
 
@@ -39,6 +40,10 @@ from recon.station.state.station import Station
 
 BEAT_S = 0.1
 RESTART_S = 1.0
+MOST_UNANSWERED = 50
+"""Beats, 5 s: so long a busy computer may keep it from running."""
+STARTS_WITHIN = 250
+"""Beats, 25 s: from its start to its first answer."""
 ENDS_WITHIN_S = 2.0
 GIVE_WAY_S = 1.0
 MOST_ANSWER_BYTES = 256 * 1024
@@ -62,6 +67,8 @@ class GuardLine:
         self._process: subprocess.Popen[bytes] | None = None
         self._unsent: deque[tuple[bytes, int | None]] = deque()
         self._lines = messages.Lines()
+        self._unanswered = 0
+        """Beats since the guard last answered one."""
 
     @property
     def stop_url(self) -> str:
@@ -125,10 +132,17 @@ class GuardLine:
         mine.setblocking(False)
         self._line, self._lines = mine, messages.Lines()
         asyncio.get_running_loop().add_reader(mine, self._read)
+        self._unanswered = -STARTS_WITHIN
         self._unsent = deque((messages.socket_line(link), link) for link in self._sockets)
 
     def _beat(self) -> None:
         self._flush()
+        if self._line is None:
+            return
+        # Counted, not timed: a station that was suspended has not asked either.
+        self._unanswered += 1
+        if self._unanswered > MOST_UNANSWERED:
+            self._ended()
         if self._unsent or self._line is None:
             return
         now_ns = self._driver.now_ns()
@@ -170,8 +184,11 @@ class GuardLine:
             self._ended()
             return
         for message in self._lines.feed(data):
+            if message["is"] == messages.ALIVE:
+                self._unanswered = 0
+                continue
             self.take(messages.act_of(message))
-        self._unsent.append((messages.noted_line(), None))
+            self._unsent.append((messages.noted_line(), None))
         self._flush()
 
     def take(self, act: Act) -> None:
@@ -182,6 +199,9 @@ class GuardLine:
 
     def _ended(self) -> None:
         self._hang_up()
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
         what = "it has ended; a new one is started. Without it only the station can stop vehicles"
         self._driver.handle(StationFaulted(GUARD, what))
 
