@@ -61,7 +61,7 @@ test("takes over a vehicle, overrides its checklist and clears a hazard area", a
     expect.poll(() => fake.requests.length).toBe(3),
   );
   expect(fake.requests).toEqual([
-    ["/api/vehicle/authority?serial=SN-001", { holder: "operator" }],
+    ["/api/vehicle/authority?serial=SN-001", { holder: "operator", take_over: false }],
     ["/api/vehicle/preflight/override?serial=SN-001", { reason: "height read off the app" }],
     ["/api/vehicle/hazard/dismiss?serial=SN-003", null],
   ]);
