@@ -71,9 +71,11 @@ class StationProcess:
         raise AssertionError(f"condition never met; last: {vehicles}")
 
 
-def run_options(audit: Path, link_port: int = 0) -> tuple[str, ...]:
+def run_options(audit: Path, link_port: int = 0, *, guard: bool = False) -> tuple[str, ...]:
+    """Options of a station; starting a guard too takes half a second of a core."""
     ports = ("--link-port", str(link_port), "--http-port", "0")
-    return ("run", *ports, "--site", str(demo_site_folder()), "--audit", str(audit))
+    more = ("--audit", str(audit), "--guard" if guard else "--no-guard")
+    return ("run", *ports, "--site", str(demo_site_folder()), *more)
 
 
 def sim_options(link_port: int, vehicles: int, *more: str) -> tuple[str, ...]:
@@ -88,10 +90,12 @@ def addresses(station: Started) -> tuple[str, int]:
 
 
 @contextmanager
-def station_process(audit: Path, vehicles: int, *more: str) -> Iterator[StationProcess]:
+def station_process(
+    audit: Path, vehicles: int, *more: str, guard: bool = False
+) -> Iterator[StationProcess]:
     """Run a station and simulated drones; both are stopped afterwards."""
     with ExitStack() as stack:
-        process = stack.enter_context(started(*run_options(audit)))
+        process = stack.enter_context(started(*run_options(audit, guard=guard)))
         url, link_port = addresses(process)
         simulator = None
         if vehicles:

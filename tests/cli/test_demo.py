@@ -6,7 +6,6 @@ import time
 import urllib.request
 from pathlib import Path
 
-import pytest
 from tests.cli.processes import PATIENCE_S, started
 
 
@@ -35,10 +34,7 @@ radius_m = 100.0
 """
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(
-    number: int, tmp_path: Path
-) -> None:
+def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path) -> None:
     scenario = tmp_path / "few.toml"
     scenario.write_text(FEW, encoding="utf-8")
     ports = ("--http-port", "0", "--link-port", "0")
@@ -51,9 +47,21 @@ def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(
         demo.line_with("mission: started")
         children = children_of(demo.process.pid)
         assert len(children) == 2  # the simulator and the guard
-        assert demo.end(number) == 0
+        assert demo.end(signal.SIGINT) == 0
         assert "Traceback" not in demo.text
         assert "scripted operator stopped" not in demo.text
+        assert not any(Path(f"/proc/{pid}").exists() for pid in children)
+
+
+def test_it_ends_as_cleanly_before_anything_flies(tmp_path: Path) -> None:
+    scenario = tmp_path / "few.toml"
+    scenario.write_text(FEW, encoding="utf-8")
+    ports = ("--http-port", "0", "--link-port", "0")
+    with started("demo", *ports, "--scenario", str(scenario)) as demo:
+        demo.line_with("Ctrl+C ends the demo")
+        children = children_of(demo.process.pid)
+        assert demo.end(signal.SIGTERM) == 0
+        assert "Traceback" not in demo.text
         assert not any(Path(f"/proc/{pid}").exists() for pid in children)
 
 

@@ -48,7 +48,7 @@ def halted(pid: int) -> Iterator[None]:
 
 
 def test_with_the_station_halted_a_person_stops_all_at_its_guard(tmp_path: Path) -> None:
-    with station_process(tmp_path, 2, *FLYING) as station:
+    with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         url = stop_url_of_ready_guard(station)
         with halted(station.station.process.pid):
             answer = stop_all(url, "ann")
@@ -61,13 +61,13 @@ def test_with_the_station_halted_a_person_stops_all_at_its_guard(tmp_path: Path)
 
 
 def test_after_the_stations_death_all_can_be_stopped_and_the_next_one_knows(tmp_path: Path) -> None:
-    with station_process(tmp_path, 2, *FLYING) as station:
+    with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         url = stop_url_of_ready_guard(station)
         station.station.process.kill()
         station.station.process.wait(PATIENCE_S)
         answer = stop_all(url, "bea")
         assert sorted(answer["held"] + answer["missed"]) == ["Drone 1", "Drone 2"]
-        with started(*run_options(tmp_path, station.link_port)) as successor:
+        with started(*run_options(tmp_path, station.link_port, guard=True)) as successor:
             successor.line_with('by="bea (guard')
             next_url, _ = addresses(successor)
             again = StationProcess(successor, None, next_url, station.link_port, tmp_path)
@@ -76,7 +76,7 @@ def test_after_the_stations_death_all_can_be_stopped_and_the_next_one_knows(tmp_
 
 
 def test_a_guard_that_ends_is_an_alarm_and_is_followed_by_another(tmp_path: Path) -> None:
-    with station_process(tmp_path, 2, *FLYING) as station:
+    with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         first = stop_url_of_ready_guard(station)
         for pid in guards_of(station.station.process.pid):
             os.kill(pid, signal.SIGKILL)
@@ -87,7 +87,7 @@ def test_a_guard_that_ends_is_an_alarm_and_is_followed_by_another(tmp_path: Path
 
 
 def test_a_guard_that_hangs_is_replaced(tmp_path: Path) -> None:
-    with station_process(tmp_path, 2, *FLYING) as station:
+    with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         stop_url_of_ready_guard(station)
         (hanging,) = guards_of(station.station.process.pid)
         os.kill(hanging, signal.SIGSTOP)
@@ -98,7 +98,7 @@ def test_a_guard_that_hangs_is_replaced(tmp_path: Path) -> None:
 
 
 def test_the_shells_all_stop_goes_to_the_guard_of_a_halted_station(tmp_path: Path) -> None:
-    with station_process(tmp_path, 2, *FLYING) as station:
+    with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         port = stop_url_of_ready_guard(station).rpartition(":")[2].removesuffix("/all-stop")
         with halted(station.station.process.pid):
             done = station.recon("all-stop", "--stop-port", port)
@@ -111,7 +111,7 @@ def test_the_shells_all_stop_goes_to_the_guard_of_a_halted_station(tmp_path: Pat
 
 
 def test_without_a_guard_there_is_no_stop_port(tmp_path: Path) -> None:
-    with started(*run_options(tmp_path), "--no-guard") as station:
+    with started(*run_options(tmp_path)) as station:
         addresses(station)
         assert guards_of(station.process.pid) == []
         assert not any(STOP_LINE in line for line in station.lines)

@@ -12,7 +12,7 @@ from tests.cli.processes import started
 
 from recon import wire
 
-FREE = ("--link-port", "0", "--http-port", "0")
+FREE = ("--link-port", "0", "--http-port", "0", "--no-guard")
 HELLO = wire.encode(wire.MessageString(type=1, text=b"hello"))
 
 
