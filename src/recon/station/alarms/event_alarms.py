@@ -18,7 +18,6 @@ from recon.model.replacing import replace
 from recon.model.report import MessageReport, MessageSeverity
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Fault, Station
 from recon.station.state.steps import Stepped
@@ -46,8 +45,7 @@ def on_message(
         serial=vehicle.serial,
         link_id=vehicle.link_id,
     )
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book), ()
+    return station.with_alarm(condition, now_ns), ()
 
 
 def _unacknowledged(station: Station, source: str) -> int:
@@ -92,8 +90,7 @@ def note_gap(station: Station, event: ClockGap, now_ns: int) -> Station:
     )
     key = f"station_suspended:{now_ns}"
     condition = Condition(key, Severity.ERROR, "station_suspended", STATION_NAME, text)
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)
 
 
 def note_guard(station: Station, event: GuardActed, now_ns: int) -> Station:
@@ -106,8 +103,7 @@ def note_guard(station: Station, event: GuardActed, now_ns: int) -> Station:
         "orders"
     )
     condition = Condition(f"guard:{now_ns}", Severity.ERROR, "guard", STATION_NAME, text)
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)
 
 
 def note_slow_answer(station: Station, event: CommandAnswered, now_ns: int) -> Station:
@@ -130,8 +126,7 @@ def note_slow_answer(station: Station, event: CommandAnswered, now_ns: int) -> S
     )
     key = f"latency:{vehicle.serial or event.link_id}"
     condition = Condition(key, Severity.WARNING, "latency", name, text, vehicle.serial)
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)
 
 
 def note_refused_login(station: Station, event: LoginRefused, now_ns: int) -> Station:
@@ -155,8 +150,7 @@ def note_users(station: Station, event: UsersChanged, now_ns: int) -> Station:
 
 def _noted(station: Station, key: str, rule: str, text: str, now_ns: int) -> Station:
     condition = Condition(key, Severity.WARNING, rule, STATION_NAME, text)
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)
 
 
 def fault_conditions(station: Station, now_ns: int) -> Iterator[Condition]:

@@ -14,7 +14,7 @@ from recon.model.control import AuthorityHolder, ControlAuthority, Intent
 from recon.model.event import AuthorityTaken
 from recon.station.control import intents
 from recon.station.control.withdrawal import withdraw
-from recon.station.state import alarm_book, orders
+from recon.station.state import orders
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Station
 from recon.station.state.steps import Output, Stepped, WithdrawMotion
@@ -100,9 +100,8 @@ def give_to_pilot(
         serial=serial,
         link_id=vehicle.link_id,
     )
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
     links = station.fleet.link_ids_claiming(serial)
-    return replace(station, alarms=book), (WithdrawMotion(links, why),)
+    return station.with_alarm(condition, now_ns), (WithdrawMotion(links, why),)
 
 
 def hand_back(station: Station, serial: str, to: str, why: str, now_ns: int) -> Station:

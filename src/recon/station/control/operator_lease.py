@@ -19,7 +19,6 @@ from recon.model.event import PersonConnected, PersonDisconnected
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.safety.rules.operator_lease import held_by_another
-from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Presence, Station
 from recon.station.state.steps import Stepped
@@ -137,5 +136,4 @@ def _with_alarm(
         text=f"{name}: {what}",
         serial=serial,
     )
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)

@@ -24,7 +24,6 @@ from recon.model.units import seconds_to_ns
 from recon.record.audit import AuditEntry
 from recon.safety.airspace import PreparedZone
 from recon.safety.temporary_zones import MOST_ZONES, drawn_fault, prepared_temporary_zone
-from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Station
 from recon.station.state.steps import Stepped
@@ -152,5 +151,4 @@ def _changed(station: Station, prepared: tuple[PreparedZone, ...]) -> Station:
 
 def _noted(station: Station, zone: TemporaryZone, rule: str, text: str, now_ns: int) -> Station:
     condition = Condition(f"{rule}:{zone.id}", Severity.WARNING, rule, "", text)
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)

@@ -33,7 +33,6 @@ from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
 from recon.record.audit import AuditEntry
 from recon.station.control import authority, stop_latch, temporary_zones
 from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot, restored_zone
-from recon.station.state import alarm_book
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
 from recon.station.state.settings import RestartSettings
@@ -291,8 +290,7 @@ def _with_troubles(station: Station, troubles: tuple[str, ...], now_ns: int) -> 
         "give orders"
     )
     condition = Condition("recovery_snapshot", Severity.ERROR, "restarted", "", text)
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)
 
 
 def _with_alarm(station: Station, serial: str | None, name: str, text: str, now_ns: int) -> Station:
@@ -304,8 +302,7 @@ def _with_alarm(station: Station, serial: str | None, name: str, text: str, now_
         text=f"{name}: {text}",
         serial=serial,
     )
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)
 
 
 def _interrupted(order: OrderSnapshot, now_ns: int) -> OrderRecord | None:

@@ -10,7 +10,8 @@ from recon.model.imagery import Frame
 from recon.model.replacing import replace
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
-from recon.station.state.alarm_book import AlarmBook
+from recon.station.state import alarm_book
+from recon.station.state.alarm_book import AlarmBook, Condition
 from recon.station.state.failsafe_state import FailsafeState
 from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imaging import Imaging, ShadePipeline
@@ -128,6 +129,11 @@ class Station:
             streaming=_with_member(self.streaming, serial, control.stream is not None),
             neutral_pending=_with_member(self.neutral_pending, serial, control.neutral is not None),
         )
+
+    def with_alarm(self, condition: Condition, now_ns: int) -> "Station":
+        """Return the station with the alarm of an event; it stays until it is acknowledged."""
+        book = alarm_book.note(self.alarms, condition, now_ns, self.settings.alarms_kept)
+        return replace(self, alarms=book)
 
     def with_fleet(self, fleet: Fleet) -> "Station":
         """Return the station with another fleet; drop the control states of forgotten vehicles.

@@ -15,7 +15,7 @@ from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import ApprovedCommand
-from recon.station.state import alarm_book, orders
+from recon.station.state import orders
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.station import Station, take_id
@@ -255,5 +255,4 @@ def _alarm(station: Station, stream: SetpointStream, why: str, now_ns: int) -> S
         text=f"{name}: {stream.command.name.replace('_', ' ')}: {why}",
         serial=serial,
     )
-    book = alarm_book.note(station.alarms, condition, now_ns, station.settings.alarms_kept)
-    return replace(station, alarms=book)
+    return station.with_alarm(condition, now_ns)
