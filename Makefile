@@ -106,8 +106,7 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 	RECON_THOROUGH=1 $(PYTEST) -m hypothesis
 	@$(MAKE) mutants
 
-mutants: setup ## Mutate the gate's rules: a test must fail for each mutant
-	rm -rf mutants
+mutants: setup ## Mutate gate, watchdogs, trust layer and guard: a test must fail for each mutant (hours)
 	$(RUN) --group study python -m studies.mutants
 
 docs: setup web/node_modules/.stamp ## Regenerate the API's description and the console's types

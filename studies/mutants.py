@@ -1,27 +1,97 @@
-"""Mutation testing of the gate's rules: every change of a rule must fail a test.
+"""Mutation testing of what keeps vehicles apart: every change must fail a test.
 
-    python -m studies.mutants
+    python -m studies.mutants              all parts, hours on two cores
+    python -m studies.mutants rules guard  some of them
 
-Runs mutmut (configured in pyproject.toml), lists the mutants no test notices, and ends with 1 when
-one of them has no written reason in studies/survivors.toml, or a reason stands there for nothing.
-A reason is found again by the function and the changed lines, not by mutmut's numbering.
+Copies the project to a temporary folder, runs mutmut there for each part, lists the mutants that no
+test notices, and ends with 1 when one of them has no written reason in studies/survivors.toml, or a
+reason stands there for nothing. A reason is found again by the function and the changed lines, not
+by mutmut's numbering.
 
 A mutant whose tests run out of time is not counted as noticed: on a busy machine any of them does,
 an unnoticed one too. It is run once more, by itself; what runs out of time again loops forever, or
 the machine is too busy to tell, and stands among the survivors until a reason is written.
 """
 
+import shutil
 import subprocess
 import sys
+import tempfile
 import tomllib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from configparser import ConfigParser
 from dataclasses import dataclass
 from pathlib import Path
 
+PROJECT = Path(__file__).parents[1]
 REASONS = Path(__file__).with_name("survivors.toml")
+COPIED = ("src", "tests", "vectors", "scenarios", "docs", "benches", "studies")
 KILLED = ("killed", "caught by type check")
 TIMEOUT = "timeout"
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Files that are changed together, and the tests that must notice."""
+
+    changed: tuple[str, ...]
+    tests: tuple[str, ...]
+
+
+def _safety(*names: str) -> tuple[str, ...]:
+    return tuple(f"src/recon/safety/{name}" for name in names)
+
+
+PARTS: Mapping[str, Part] = {
+    "rules": Part(
+        _safety("rules/*.py", "gate.py"), ("tests/safety/rules", "tests/safety/test_gate.py")
+    ),
+    "trust": Part(("src/recon/fleet/trust.py", "src/recon/fleet/airborne.py"), ("tests/fleet",)),
+    "guard": Part(("src/recon/guard/watch.py",), ("tests/guard",)),
+    "failsafe": Part(_safety("failsafe/*.py"), ("tests/safety/failsafe", "tests/station/failsafe")),
+    "returns": Part(
+        _safety("go_home.py", "return_missions.py", "landing_time.py"),
+        (
+            "tests/safety/test_go_home.py",
+            "tests/safety/test_return_missions.py",
+            "tests/safety/test_landing_time.py",
+            "tests/safety/checks",
+        ),
+    ),
+    "checks": Part(_safety("checks/*.py", "check.py"), ("tests/safety/checks",)),
+    "watchdogs": Part(_safety("watchdogs/*.py"), ("tests/safety/watchdogs",)),
+    "path": Part(
+        _safety("path/*.py"),
+        ("tests/safety/test_order_path.py", "tests/safety/test_path_volumes.py"),
+    ),
+    "prediction": Part(
+        _safety("prediction/*.py", "separation_minima.py"),
+        (
+            "tests/safety/test_prediction.py",
+            "tests/safety/test_may_conflict.py",
+            "tests/safety/test_standstill.py",
+            "tests/safety/rules/test_separation.py",
+        ),
+    ),
+    "places": Part(
+        _safety("airspace.py", "datum.py", "heights.py", "energy.py", "temporary_zones.py"),
+        (
+            "tests/safety/test_airspace.py",
+            "tests/safety/test_datum.py",
+            "tests/safety/test_energy.py",
+            "tests/safety/test_energy_of_orders.py",
+            "tests/safety/test_height_drift.py",
+            "tests/safety/test_temporary_zones.py",
+            "tests/safety/test_unknown_heights.py",
+        ),
+    ),
+}
+"""By name; small parts first, so that a broken set-up shows within minutes."""
+
+
+Key = tuple[str, str, str]
+"""Function, its lines before, and after."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,43 +104,93 @@ class Mutant:
     after: str
 
     @property
-    def key(self) -> tuple[str, str, str]:
+    def key(self) -> "Key":
         """What a written reason names."""
         return self.function, self.before, self.after
 
 
-def main() -> int:
-    """Run everything; print the tally and the survivors without a reason."""
-    _run()
-    late = [name for name, state in _all_states().items() if state == TIMEOUT]
-    if late:
-        _run("--max-children", "1", *late)
-    states = _all_states()
-    print(", ".join(f"{count} {state}" for state, count in Counter(states.values()).items()))
-    survivors = [_read(name) for name, state in states.items() if state not in KILLED]
-    reasons = _reasons()
-    unexplained = [mutant for mutant in survivors if mutant.key not in reasons]
-    unneeded = set(reasons) - {mutant.key for mutant in survivors}
-    for mutant in unexplained:
-        print(f"\nno test notices {mutant.name}, and no reason is written:")
-        print(f"  - {mutant.before}\n  + {mutant.after}")
+def main(names: Sequence[str]) -> int:
+    """Run the named parts, all by default; print the tally and the survivors without a reason."""
+    unknown = sorted(set(names) - set(PARTS))
+    if unknown:
+        print(f"expected parts of {', '.join(PARTS)}; got {', '.join(unknown)}")
+        return 2
+    reasons, needed, unexplained = _reasons(), set[Key](), 0
+    for name in names or PARTS:
+        survivors = survivors_of(name)
+        needed |= {mutant.key for mutant in survivors}
+        unexplained += _report(name, survivors, set(reasons))
+    unneeded = set(reasons) - needed if not names else set[Key]()
     for function, before, _after in unneeded:
         print(f"\na reason is written for {function} ({before}), and no such mutant survives")
-    print(f"{len(survivors)} survivors, {len(unexplained)} without a written reason")
     return 1 if unexplained or unneeded else 0
 
 
-def _run(*arguments: str) -> None:
-    subprocess.run([sys.executable, "-m", "mutmut", "run", *arguments], check=True)
+def survivors_of(name: str) -> list["Mutant"]:
+    """Run one part in a copy of the project; return the mutants that no test noticed."""
+    with tempfile.TemporaryDirectory(prefix="recon-mutants-") as folder:
+        copy = Path(folder)
+        _copy_project(copy, PARTS[name])
+        _run(copy)
+        late = [mutant for mutant, state in _all_states(copy).items() if state == TIMEOUT]
+        if late:
+            _run(copy, "--max-children", "1", *late)
+        states = _all_states(copy)
+        tally = ", ".join(f"{count} {state}" for state, count in Counter(states.values()).items())
+        print(f"\n{name}: {tally}", flush=True)
+        return [_read(copy, mutant) for mutant, state in states.items() if state not in KILLED]
 
 
-def _all_states() -> dict[str, str]:
-    return dict(_states(_ask("results", "--all", "true")))
+def _report(name: str, survivors: Sequence["Mutant"], reasons: set["Key"]) -> int:
+    unexplained = [mutant for mutant in survivors if mutant.key not in reasons]
+    for mutant in unexplained:
+        print(f"\nno test notices {mutant.name}, and no reason is written:")
+        print(f"  - {mutant.before}\n  + {mutant.after}")
+    print(
+        f"{name}: {len(survivors)} survivors, {len(unexplained)} without a written reason",
+        flush=True,
+    )
+    return len(unexplained)
 
 
-def _ask(*arguments: str) -> str:
+def _copy_project(copy: Path, part: Part) -> None:
+    ignored = shutil.ignore_patterns("__pycache__")
+    for name in COPIED:
+        shutil.copytree(PROJECT / name, copy / name, ignore=ignored)
+    shutil.copy(PROJECT / "pyproject.toml", copy)
+    parser = ConfigParser()
+    parser["mutmut"] = {
+        "source_paths": _lines("src"),
+        "only_mutate": _lines(*part.changed),
+        "pytest_add_cli_args": _lines(
+            "-p", "no:cacheprovider", "-x", "--hypothesis-profile=mutants"
+        ),
+        "pytest_add_cli_args_test_selection": _lines(*part.tests),
+        "also_copy": _lines(*(f"{name}/" for name in COPIED[2:])),
+        "use_git_change_detection": "false",
+        # Few mutants loop for ever: what runs out of time mostly does so on a busy machine.
+        "timeout_multiplier": "60.0",
+    }
+    with (copy / "setup.cfg").open("w", encoding="utf-8") as file:
+        parser.write(file)
+
+
+def _lines(*values: str) -> str:
+    return "\n".join(("", *values))
+
+
+def _run(copy: Path, *arguments: str) -> None:
+    subprocess.run([sys.executable, "-m", "mutmut", "run", *arguments], check=True, cwd=copy)
+
+
+def _all_states(copy: Path) -> dict[str, str]:
+    return dict(_states(_ask(copy, "results", "--all", "true")))
+
+
+def _ask(copy: Path, *arguments: str) -> str:
     command = [sys.executable, "-m", "mutmut", *arguments]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    done = subprocess.run(command, check=True, capture_output=True, text=True, cwd=copy)
+    return done.stdout
 
 
 def _states(results: str) -> Iterator[tuple[str, str]]:
@@ -80,8 +200,8 @@ def _states(results: str) -> Iterator[tuple[str, str]]:
             yield name, state
 
 
-def _read(name: str) -> Mutant:
-    lines = _ask("show", name).splitlines()
+def _read(copy: Path, name: str) -> Mutant:
+    lines = _ask(copy, "show", name).splitlines()
     changes = [line for line in lines if line[:1] in "-+" and line[:3] not in ("---", "+++")]
     module, _, rest = name.rpartition(".")
     function = rest.split("__mutmut_")[0].removeprefix("x_")
@@ -90,10 +210,10 @@ def _read(name: str) -> Mutant:
     return Mutant(name, f"{module.removeprefix('recon.')}.{function}", before, after)
 
 
-def _reasons() -> dict[tuple[str, str, str], str]:
+def _reasons() -> dict[Key, str]:
     entries = tomllib.loads(REASONS.read_text(encoding="utf-8")).get("survivor", [])
     return {(e["function"], e["before"], e["after"]): e["reason"] for e in entries}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))
