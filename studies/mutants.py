@@ -26,7 +26,7 @@ from pathlib import Path
 
 PROJECT = Path(__file__).parents[1]
 REASONS = Path(__file__).with_name("survivors.toml")
-COPIED = ("src", "tests", "vectors", "scenarios", "docs", "benches", "studies")
+COPIED = ("src", "tests", "vectors", "scenarios", "docs", "benches", "studies", "tools")
 KILLED = ("killed", "caught by type check")
 TIMEOUT = "timeout"
 
@@ -180,7 +180,12 @@ def _lines(*values: str) -> str:
 
 
 def _run(copy: Path, *arguments: str) -> None:
-    subprocess.run([sys.executable, "-m", "mutmut", "run", *arguments], check=True, cwd=copy)
+    # Its progress is a line that turns: for a terminal only.
+    shown = None if sys.stdout.isatty() else subprocess.PIPE
+    command = [sys.executable, "-m", "mutmut", "run", *arguments]
+    done = subprocess.run(command, cwd=copy, stdout=shown, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"mutmut ended with {done.returncode}:\n{(done.stdout or '')[-4000:]}")
 
 
 def _all_states(copy: Path) -> dict[str, str]:

@@ -15,7 +15,7 @@ from recon.guard.watch import (
     noted,
     step,
 )
-from recon.model.command import Hover
+from recon.model.command import Command, Hover
 from recon.model.event import AllStopped, Tick
 from recon.model.units import Stamped, seconds_to_ns
 from recon.model.vehicle import VehicleState
@@ -54,6 +54,14 @@ class Guard:
             assert isinstance(hover.command.body, Hover)
             assert not hover.command.takeoff
             (link_id,) = hover.link_ids
+            assert hover.command == Command(
+                0,
+                Hover(),
+                "guard",
+                self.now_ns,
+                self.now_ns + seconds_to_ns(self.state.settings.repeat_s),
+                link_id=link_id,
+            )
             self.sent.append(((self.now_ns - START_NS) / S, link_id))
         return self
 
@@ -108,6 +116,40 @@ def test_it_is_repeated_until_pictures_grow_too_old_for_the_gate() -> None:
     guard = Guard(watched(1, steered=True)).silent(20.0)
     times_s = [round(at_s, 2) for at_s, _ in guard.sent]
     assert times_s == [1.05, 1.75, 2.45]
+
+
+def test_with_telemetry_of_its_own_each_link_gets_its_repeats_and_no_more() -> None:
+    """Both links at once: a repeat of one takes none from the other."""
+    guard = Guard(watched(1), watched(2)).happens(AllStopped("ann"))
+    for number in range(100):
+        reports = [CoreRead(n, jittered(core(height_m=20.0), number)) for n in (1, 2)]
+        guard.silent(0.1).happens(reports[0]).happens(reports[1])
+    times_s = sorted((link_id, round(at_s, 2)) for at_s, link_id in guard.sent)
+    assert times_s == [(n, at_s) for n in (1, 2) for at_s in (0.0, 0.7, 1.4, 2.1)]
+
+
+def test_a_station_that_ends_after_its_silence_is_acted_upon_once() -> None:
+    guard = Guard(watched(1, steered=True)).silent(1.1).happens(StationEnded())
+    assert len(guard.sent) == 1
+    assert len(guard.state.acts) == 1
+
+
+def test_high_above_the_ground_nothing_goes_out_without_fresh_telemetry() -> None:
+    """It knows no ground: from 100 m over a takeoff point the hill may be 5 m below."""
+    high = watched(1)
+    vehicle = replace(high.vehicle, height_above_takeoff_m=Stamped(100.0, START_NS))
+    guard = Guard(replace(high, vehicle=vehicle)).silent(0.5).happens(StationEnded())
+    guard.silent(4.0).happens(AllStopped("ann"))
+    assert guard.sent == []
+    assert guard.state.acts[-1].missed == ("Drone 1",)
+
+
+def test_one_false_report_of_the_ground_does_not_hide_a_flying_vehicle() -> None:
+    """In the air is an estimate: the app's own flag says ground, and it is held all the same."""
+    flying = watched(1)
+    vehicle = replace(flying.vehicle, reported_is_flying=Stamped(False, START_NS))
+    guard = Guard(replace(flying, vehicle=vehicle)).happens(AllStopped("ann"))
+    assert guard.links_sent() == {1}
 
 
 def test_a_station_that_speaks_again_ends_the_repeats_and_is_noted_once() -> None:

@@ -176,12 +176,12 @@ def _hold_steered(state: GuardState, why: str, now_ns: int) -> Acted:
 def _hold(
     state: GuardState, links: list[int], why: str, now_ns: int, by: str | None = None
 ) -> Acted:
-    asked = [state.links[link_id] for link_id in links]
-    serials = tuple(one.vehicle.serial for one in asked if one.vehicle.serial is not None)
+    asked = {link_id: state.links[link_id] for link_id in links}
+    serials = tuple(one.vehicle.serial for one in asked.values() if one.vehicle.serial is not None)
     outputs: tuple[ApprovedCommand, ...] = ()
     names: list[str] = []
     missed: list[str] = []
-    for link_id, one in zip(links, asked, strict=True):
+    for link_id, one in asked.items():
         state = _with_repeat(state, link_id, state.settings.repeats, now_ns)
         hover = _hover(state, link_id, now_ns)
         outputs += hover
