@@ -4,6 +4,7 @@ import asyncio
 import sys
 from collections.abc import Coroutine
 from pathlib import Path
+from time import time
 from typing import Annotated, Any
 
 import typer
@@ -59,6 +60,7 @@ def demo_command(
         # No state of an earlier run is recovered: its drones no longer exist.
         audit=default_place(link_port=0),
         console=console_folder(),
+        sun_time_ahead_s=played.sky.sun.start_utc_s - time(),
     )
     run_in_loop(_Demo(config, path, played, seed, survey).run())
 

@@ -1,4 +1,4 @@
-"""Geometry on the ground: the site's east-north-up frame, WGS84, regions, surfaces and paths.
+"""Geometry on the ground: the site's east-north-up frame, WGS84, regions, surfaces, paths, the sun.
 
 Lengths are metres; local coordinates are east, north, up of the site's origin. Array functions take
 and return (N, 2) or (N, 3) float64; NaN or infinity gives the safe answer, never an exception.
@@ -17,6 +17,7 @@ from recon.geo.local_frame import (
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
 from recon.geo.polygon import Box, Footprints, Polygon, region_fault, thinned_ring
+from recon.geo.sun import SunPosition, sun_position
 from recon.geo.surface import Surface
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "OnGlobe",
     "Path",
     "Polygon",
+    "SunPosition",
     "Surface",
     "TangentPlane",
     "corner_hulls",
@@ -38,6 +40,7 @@ __all__ = [
     "rounded_path",
     "shift_east_north_m",
     "straight_path",
+    "sun_position",
     "tangent_plane",
     "thinned_ring",
 ]

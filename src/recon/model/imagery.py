@@ -62,3 +62,7 @@ class GroundImage:
     registration: Registration = Registration.UNREGISTERED
     serial: str = ""
     """The vehicle that took it; empty when unknown."""
+    toward_sun_enu: FloatArray | None = None
+    """Unit vector (3,) to the sun at capture; None when unknown or the sun is below the horizon."""
+    exposure_locked: bool = False
+    """Whether the pilot locked exposure and white balance, by the site's file."""

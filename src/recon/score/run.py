@@ -63,6 +63,8 @@ class StationRun:
             first_state(scenario.site, settings_of(scenario)),
             jobs=jobs_of(scenario, self._sky, grid, footprint),
             keeps_log=False,
+            # The station computes the same sun as the simulator.
+            epoch_ns=round(self._sky.settings.sun.start_utc_s * NS_PER_S),
         )
         self.apps = ConnectedApps(self.driver)
         self.apps.connect_all(build_fleet(config_of(scenario, seed), 0))

@@ -55,6 +55,7 @@ def imager_from_table(site_file: Path, table: ImagerTable, frame: LocalFrame) ->
         solution=solution,
         marked_frame=_reference(table),
         image_circle=_circle(table),
+        exposure_locked=table.exposure == "locked",
     )
     _refuse_other_place(points_file, imager, frame)
     _refuse_other_marked_frame(site_file, imager, frame)

@@ -83,6 +83,7 @@ class ImagerTable(_Table, frozen=True):
     control_points: FileName = "GCPs.txt"
     marked_frame: MarkedFrameTable | None = None
     image_circle: ImageCircleTable | None = None
+    exposure: Literal["auto", "locked"] = "auto"
 
 
 class GroundImageTable(_Table, frozen=True):

@@ -32,6 +32,8 @@ class Imager:
     solution: PoseSolution
     marked_frame: TelemetryReference | None = None
     image_circle: ImageCircle | None = None
+    exposure_locked: bool = False
+    """Whether exposure and white balance are locked in flight."""
 
     @property
     def first_frame_stands_for_marked_frame(self) -> bool:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon.geo.sun import SunPosition
 from recon.model.imagery import RgbImage
 from recon.sim.camera import CameraSettings, HoverSettings, ImageSensorSettings, LensSettings
 from recon.sim.camera.development import light_of_value
@@ -17,7 +18,7 @@ from recon.sim.land.farmland import lay_out
 from recon.sim.land.farmland_raster import draw, draw_shadows
 from recon.sim.land.land_part import LandPart
 from recon.sim.land.land_tiles import TILES_KEPT, LandTiles, land_of
-from recon.sim.world import LayerSettings, Sky, SkySettings, SunPosition
+from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.sim.world.light import light_under
 from recon.sim.world.relief import Relief, ReliefSettings
 

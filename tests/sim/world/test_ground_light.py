@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon.sim.world import LayerSettings, LightSettings, Sky, SkySettings, SunPosition
+from recon.geo.sun import SunPosition
+from recon.sim.world import LayerSettings, LightSettings, Sky, SkySettings
 from recon.sim.world.light import (
     REFERENCE_W_M2,
     beam_share,

@@ -6,6 +6,7 @@ from math import inf, radians, sin
 import numpy as np
 import pytest
 
+from recon.geo.sun import SunPosition
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.sim.world.fractal_field import FieldSample, disk_weight
 from recon.sim.world.penumbra import (
@@ -17,7 +18,6 @@ from recon.sim.world.penumbra import (
     penumbra,
     spread,
 )
-from recon.sim.world.sun import SunPosition
 
 
 @pytest.mark.parametrize("elevation_deg", [12.0, 35.0, 70.0])

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo.sun import SunPosition
 from recon.model.imagery import RgbImage
 from recon.sim.land.farmland import (
     MEADOW,
@@ -33,7 +34,6 @@ from recon.sim.land.land_part import (
     slices,
     visible_trees,
 )
-from recon.sim.world import SunPosition
 from recon.sim.world.keyframes import FloatImage
 
 GRAVEL = (168.0, 160.0, 145.0)

@@ -15,10 +15,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo.sun import SunPosition
 from recon.sim.land.farmland import Farmland, lay_out
 from recon.sim.land.farmland_raster import draw, draw_shadows
 from recon.sim.land.land_part import LandPart
-from recon.sim.world import SunPosition
 
 CELLS_M = (0.25, 1.0, 4.0, 16.0)
 """Pixel sizes of the levels: the finest for the ground below, the coarsest for the horizon."""

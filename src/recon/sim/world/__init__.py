@@ -13,7 +13,6 @@ from recon.sim.world.settings import (
     WindShift,
 )
 from recon.sim.world.sky import Sky
-from recon.sim.world.sun import SunPosition, sun_position
 from recon.sim.world.wind import Wind
 
 __all__ = [
@@ -21,10 +20,8 @@ __all__ = [
     "LightSettings",
     "Sky",
     "SkySettings",
-    "SunPosition",
     "SunSettings",
     "Wind",
     "WindSettings",
     "WindShift",
-    "sun_position",
 ]

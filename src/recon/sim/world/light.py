@@ -8,16 +8,16 @@ light of the sky, which shade leaves, is bluer than the beam.
 """
 
 from dataclasses import dataclass, replace
-from math import cos, exp, radians, sin
+from math import exp, radians, sin
 
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo.sun import SunPosition
 from recon.sim.world.keyframes import FloatArray, FloatImage
 from recon.sim.world.relief import Relief
 from recon.sim.world.settings import LightSettings
 from recon.sim.world.sky import Sky
-from recon.sim.world.sun import SunPosition
 
 SOLAR_CONSTANT_W_M2 = 1361.0
 SCALE_HEIGHT_M = 8434.5
@@ -125,14 +125,7 @@ def ground_light(
     blue_sky = clear.diffuse_share * np.array(SKY_COLOUR)
     beam = np.maximum(1.0 - blue_sky, 0.0) if clear.direct_w_m2 > 0.0 else np.zeros(3)
     from_clouds = (settings.cloud_brightening - 1.0) * clear.diffuse_share
-    return GroundLight(strength * beam, strength * (blue_sky + from_clouds), toward(sun))
-
-
-def toward(sun: SunPosition) -> FloatArray:
-    """Return the unit vector to the sun, east, north, up."""
-    azimuth, elevation = radians(sun.azimuth_deg), radians(sun.elevation_deg)
-    level = cos(elevation)
-    return np.array([level * sin(azimuth), level * cos(azimuth), sin(elevation)])
+    return GroundLight(strength * beam, strength * (blue_sky + from_clouds), sun.toward_enu)
 
 
 LEAST_SUN_HEIGHT = 0.08

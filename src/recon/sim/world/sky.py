@@ -10,13 +10,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo.sun import SunPosition, sun_position
 from recon.model.geo import GroundGrid
 from recon.sim.world.fractal_field import AT_ONCE, IndexArray
 from recon.sim.world.keyframes import FloatArray, FloatImage
 from recon.sim.world.layer import CloudLayer
 from recon.sim.world.penumbra import penumbra
 from recon.sim.world.settings import SkySettings
-from recon.sim.world.sun import SunPosition, sun_position
 
 POINTS_AT_ONCE = 65_536
 """Points computed together: their arrays fit the processor's cache."""

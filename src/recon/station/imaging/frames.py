@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 from recon.camera.ground import GroundProjector
 from recon.camera.motion import TelemetryReference, displaced_pose
-from recon.geo import shift_east_north_m
+from recon.geo import shift_east_north_m, sun_position
 from recon.model.errors import ReconError
-from recon.model.imagery import Frame, GroundImage
+from recon.model.geo import LatLon, LocalFrame
+from recon.model.imagery import FloatArray, Frame, GroundImage
 from recon.model.replacing import replace
 from recon.model.report import ImageReport
-from recon.model.units import seconds_to_ns
+from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.site import Site
 from recon.station.imaging import shade
@@ -38,6 +39,8 @@ class LayFrame:
     frame: Frame
     telemetry: TelemetryReference
     reference: TelemetryReference
+    captured_utc_s: float | None = None
+    """By the computer's clock, for the sun's position; None before the clock was read."""
 
 
 def on_telemetry(station: Station, vehicle: VehicleState, now_ns: int) -> Station:
@@ -67,7 +70,9 @@ def on_frame(station: Station, vehicle: VehicleState, report: ImageReport, now_n
     station = replace(station, frames=frames, next_frame_id=frame.id + 1)
     if frame.serial != station.imaging.imager_serial:
         return station, ()
-    imaging, job = lay_job(station.imaging, frame, vehicle.is_flying.value is True)
+    imaging, job = lay_job(
+        station.imaging, frame, vehicle.is_flying.value is True, _utc_s(station, frame)
+    )
     return replace(station, imaging=imaging), () if job is None else (job,)
 
 
@@ -82,8 +87,16 @@ def with_sample(imaging: Imaging, imager: VehicleState, now_ns: int, kept: int) 
     return replace(imaging, samples=samples[-kept:])
 
 
+def _utc_s(station: Station, frame: Frame) -> float | None:
+    """Return when a frame was captured, for the sun: seconds after 1970."""
+    if station.clock is None:
+        return None
+    clock_s = ns_to_seconds(frame.captured_at_ns + station.clock.ahead_ns)
+    return clock_s + station.settings.sun_time_ahead_s
+
+
 def lay_job(
-    imaging: Imaging, frame: Frame, is_flying: bool
+    imaging: Imaging, frame: Frame, is_flying: bool, captured_utc_s: float | None = None
 ) -> tuple[Imaging, Job[LayFrame, GroundImage] | None]:
     """Return the job for a frame; None without telemetry at its capture or a marked frame."""
     sample = _sample_at(imaging.samples, frame.captured_at_ns)
@@ -94,7 +107,8 @@ def lay_job(
         if not is_flying:
             return imaging, None
         reference = sample.telemetry
-    job = Job(imaging.next_job_id, LAY_FRAME, LayFrame(frame, sample.telemetry, reference))
+    work = LayFrame(frame, sample.telemetry, reference, captured_utc_s)
+    job = Job(imaging.next_job_id, LAY_FRAME, work)
     return replace(imaging, reference=reference, next_job_id=job.id + 1), job
 
 
@@ -132,11 +146,25 @@ def _projection(site: Site) -> Callable[[LayFrame], GroundImage]:
     def lay(work: LayFrame) -> GroundImage:
         marked, now = work.reference, work.telemetry
         shift_m = shift_east_north_m(frame, marked, now)
-        return projector.lay(
+        image = projector.lay(
             work.frame, displaced_pose(imager.solution.pose, marked, now, shift_m, mount)
+        )
+        return replace(
+            image,
+            toward_sun_enu=_toward_sun_enu(frame, work.captured_utc_s),
+            exposure_locked=imager.exposure_locked,
         )
 
     return lay
+
+
+def _toward_sun_enu(frame: LocalFrame, utc_s: float | None) -> FloatArray | None:
+    """Return the unit vector to the sun; None at night and without a time."""
+    if utc_s is None:
+        return None
+    place = LatLon(frame.origin.latitude_deg, frame.origin.longitude_deg)
+    toward_enu = sun_position(place, utc_s).toward_enu
+    return toward_enu if toward_enu[2] > 0.0 else None
 
 
 def _laid(station: Station, _job_id: int, image: GroundImage, _now_ns: int) -> Stepped:

@@ -54,6 +54,7 @@ from recon.station.kernel.users_watch import UsersWatch
 from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.recovery.restart import LastRun, restart_entries, restored
 from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
+from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
 
 
@@ -87,6 +88,8 @@ class RunConfig:
     """The list of admitted apps; None: any app is admitted."""
     apps: tuple[AllowedApp, ...] | None = None
     """The entries of that file."""
+    sun_time_ahead_s: float = 0.0
+    """How far the time of day of simulated drones is ahead of the computer's clock."""
 
     @property
     def network(self) -> NetworkConfig:
@@ -127,7 +130,8 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
     async with AsyncExitStack() as stack:
         doors = _open_doors(config, certificate, stack)
         clock = station_clock()
-        station = restored(first_state(config.site, apps=config.apps), last_run, clock())
+        begins = first_state(config.site, _settings(config), config.apps)
+        station = restored(begins, last_run, clock())
         auditor = _start_auditor(config, begun, last_run, clock, stack)
         auditor.put(restart_entries(station))
         driver = AsyncioDriver(station, clock, auditor.observe)
@@ -316,7 +320,7 @@ def _start_auditor(
     begun.log.start()
     stack.callback(begun.log.close)
     stack.push(lambda kind, problem, trace: auditor.put([ended_entry(problem)]))
-    settings, folder = first_state(config.site).settings, config.site_folder
+    settings, folder = first_state(config.site, _settings(config)).settings, config.site_folder
     site = {
         "name": config.site.name,
         "folder": _text(folder),
@@ -326,6 +330,12 @@ def _start_auditor(
     first_ids = last_run.first_ids
     auditor.put([started_entry(settings, site, begun.ended_in_order, first_ids, troubles)])
     return auditor
+
+
+def _settings(config: RunConfig) -> StationSettings:
+    return StationSettings(
+        failsafe_matrix=config.site.failsafe, sun_time_ahead_s=config.sun_time_ahead_s
+    )
 
 
 def _taken_up(station: Station, troubles: tuple[str, ...]) -> str:

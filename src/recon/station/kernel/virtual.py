@@ -36,7 +36,7 @@ STEP_NS = 10_000_000
 TICK_EVERY_NS = 50_000_000
 FAR_NS = 2**63 - 1
 EPOCH_NS = 1_780_000_000_000_000_000
-"""What the computer's clock shows when virtual time begins: a day in 2026."""
+"""What the computer's clock shows when virtual time begins, by default: a day in 2026."""
 
 
 class Peer(Protocol):
@@ -95,6 +95,7 @@ class VirtualDriver:
         link_settings: LinkSettings | None = None,
         work_takes_s: float = 0.05,
         keeps_log: bool = True,
+        epoch_ns: int = EPOCH_NS,
     ) -> None:
         self.station = station
         self.now_ns = 0
@@ -111,7 +112,7 @@ class VirtualDriver:
         self._due: list[tuple[int, int, Callable[[], None]]] = []
         self._sequence = 0
         self._queue = EventQueue(self._step)
-        self.handle(ClockRead(EPOCH_NS))
+        self.handle(ClockRead(epoch_ns))
 
     def connect(self, peer: Peer, link: FakeLink | None = None) -> int:
         """Open a connection for a peer; return its link id."""

@@ -160,6 +160,10 @@ class StationSettings:
     frames_kept: int = 16
     """The newest frame of this many vehicles: 25 MB each at most."""
 
+    sun_time_ahead_s: float = 0.0
+    """Added to the computer's clock for the sun's position: simulated drones fly by day at any
+    hour."""
+
     imaging_trouble_after_s: float = 3.0
     """A first frame comes before the first telemetry, and one lost frame is no problem."""
 

@@ -1,15 +1,12 @@
-"""The sun against pvlib's, and the light of a clear sky against pvlib's models."""
+"""The sun's position against pvlib's."""
 
 import numpy as np
 import pandas as pd
 import pvlib
 import pytest
 
+from recon.geo.sun import SunPosition, refraction_deg, sun_position
 from recon.model.geo import LatLon
-from recon.sim.errors import SimulationError
-from recon.sim.world.light import clear_sky_light
-from recon.sim.world.settings import LightSettings
-from recon.sim.world.sun import SunPosition, refraction_deg, sun_position
 
 PLACES = [(45.0, -93.0), (-33.0, 18.0), (66.0, 25.0), (0.0, 0.0), (20.0, 179.9)]
 
@@ -46,30 +43,16 @@ def test_refraction_is_a_sun_diameter_at_the_horizon_and_0_at_the_zenith() -> No
     ("place", "utc_s"), [(LatLon(91.0, 0.0), 0.0), (LatLon(0.0, 0.0), float("nan"))]
 )
 def test_an_invalid_place_or_time_is_refused(place: LatLon, utc_s: float) -> None:
-    with pytest.raises(SimulationError, match="expected a place on the globe and a time"):
+    with pytest.raises(ValueError, match="expected a place on the globe and a time"):
         sun_position(place, utc_s)
 
 
-@pytest.mark.parametrize("elevation_deg", [20.0, 30.0, 45.0, 60.0, 80.0])
-def test_clear_light_lies_near_pvlibs_models(elevation_deg: float) -> None:
-    light = clear_sky_light(SunPosition(180.0, elevation_deg, 1.0), LightSettings(3.5, 0.0))
-    mass = pvlib.atmosphere.get_relative_airmass(90.0 - elevation_deg)
-    truth = pvlib.clearsky.ineichen(90.0 - elevation_deg, mass, 3.5, altitude=0, dni_extra=1361)
-    assert light.global_w_m2 == pytest.approx(truth["ghi"], rel=0.08)
-    assert light.diffuse_w_m2 == pytest.approx(truth["dhi"], abs=15.0)
-
-
-def test_haze_turns_direct_light_into_diffuse() -> None:
-    sun = SunPosition(180.0, 45.0, 1.0)
-    clear, hazy = (clear_sky_light(sun, LightSettings(t)) for t in (2.0, 6.0))
-    assert hazy.direct_w_m2 < 0.7 * clear.direct_w_m2
-    assert hazy.diffuse_w_m2 > 1.5 * clear.diffuse_w_m2
-    assert hazy.global_w_m2 < clear.global_w_m2
-
-
-def test_there_is_no_light_by_night_and_little_before() -> None:
-    night = clear_sky_light(SunPosition(0.0, -5.0, 1.0), LightSettings())
-    assert (night.global_w_m2, night.diffuse_share) == (0.0, 1.0)
-    low = clear_sky_light(SunPosition(0.0, 1.0, 1.0), LightSettings())
-    assert 0.0 < low.global_w_m2 < 40.0
-    assert low.diffuse_share > 0.5
+@pytest.mark.parametrize(
+    ("azimuth_deg", "elevation_deg", "toward_enu"),
+    [(0.0, 0.0, (0, 1, 0)), (90.0, 0.0, (1, 0, 0)), (270.0, 45.0, (-(0.5**0.5), 0, 0.5**0.5))],
+)
+def test_the_direction_to_the_sun_is_east_north_up(
+    azimuth_deg: float, elevation_deg: float, toward_enu: tuple[float, float, float]
+) -> None:
+    found = SunPosition(azimuth_deg, elevation_deg, 1.0).toward_enu
+    np.testing.assert_allclose(found, toward_enu, atol=1e-12)

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import asin, atan2, cos, degrees, hypot, isfinite, radians, sin, tan
 
+import numpy as np
+import numpy.typing as npt
+
 from recon.model.geo import LatLon
-from recon.sim.errors import SimulationError
 
 J2000_UNIX_S = 946_728_000.0
 """2000-01-01 12:00 UTC."""
@@ -26,6 +28,13 @@ class SunPosition:
     elevation_deg: float
     distance_au: float
 
+    @property
+    def toward_enu(self) -> npt.NDArray[np.float64]:
+        """Unit vector (3,) to the sun: east, north, up."""
+        azimuth, elevation = radians(self.azimuth_deg), radians(self.elevation_deg)
+        level = cos(elevation)
+        return np.array([level * sin(azimuth), level * cos(azimuth), sin(elevation)])
+
 
 @dataclass(frozen=True, slots=True)
 class _Ecliptic:
@@ -36,9 +45,12 @@ class _Ecliptic:
 
 @lru_cache(maxsize=POSITIONS_KEPT)
 def sun_position(place: LatLon, utc_s: float) -> SunPosition:
-    """Return the sun's position at a place, `utc_s` seconds after 1970-01-01 00:00 UTC."""
+    """Return the sun's position at a place, `utc_s` seconds after 1970-01-01 00:00 UTC.
+
+    Raises `ValueError` for an invalid place or a time that is NaN or infinity.
+    """
     if not (place.is_valid() and isfinite(utc_s)):
-        raise SimulationError(f"expected a place on the globe and a time, got {place} at {utc_s}")
+        raise ValueError(f"expected a place on the globe and a time, got {place} at {utc_s}")
     days = (utc_s - J2000_UNIX_S) / DAY_S
     sun = _ecliptic(days)
     latitude = radians(place.latitude_deg)
