@@ -28,7 +28,7 @@ from recon import wire
 from recon.link.acks import AckBook
 from recon.link.outbox import Lane, Outbox
 from recon.link.settings import LinkSettings
-from recon.model.command import FlyMission, Phase, VirtualStick
+from recon.model.command import FlyMission, Phase, Refusal, VirtualStick
 from recon.model.event import CommandDropped, CommandSent, Event, PacketReceived
 from recon.model.report import AckReport, CoreReport, ExtendedReport
 from recon.model.units import seconds_to_ns
@@ -45,11 +45,11 @@ class Outgoing:
     event: CommandSent
 
 
-Objection = Callable[[ApprovedCommand], str | None]
+Objection = Callable[[ApprovedCommand], Refusal | None]
 """Why an approved order may not be sent at this moment; None: it may."""
 
 
-def no_objection(_approved: ApprovedCommand) -> str | None:
+def no_objection(_approved: ApprovedCommand) -> Refusal | None:
     """Let every approved order go."""
     return None
 
@@ -200,9 +200,10 @@ class Session:
         if approved is None:
             return None
         command = approved.command
-        why_not = objection(approved)
-        if why_not is not None:
-            return CommandDropped(self.link_id, command.id, Phase.REFUSED_BY_STATION, why_not)
+        refusal = objection(approved)
+        if refusal is not None:
+            phase, why = Phase.REFUSED_BY_STATION, refusal.reason
+            return CommandDropped(self.link_id, command.id, phase, why, refusal)
         self.acks.sent(answered_kind(command.body), command.id, now_ns)
         self._last_sent_at_ns = now_ns
         self._last_was_stick = isinstance(command.body, VirtualStick)

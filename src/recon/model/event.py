@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from recon.model.command import Body, Phase
+from recon.model.command import Body, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.report import Report
 from recon.model.survey import Survey
@@ -61,12 +61,16 @@ class CommandAnswered:
 
 @dataclass(frozen=True, slots=True)
 class CommandDropped:
-    """A command left a link's queue without being sent."""
+    """A command left a link's queue without being sent.
+
+    `refusal` is the gate's, if it refused the command at the moment of sending.
+    """
 
     link_id: int
     command_id: int
     phase: Phase
     reason: str
+    refusal: Refusal | None = None
 
 
 @dataclass(frozen=True, slots=True)

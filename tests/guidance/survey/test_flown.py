@@ -29,6 +29,7 @@ from recon.guidance.survey import (
     start,
     step,
 )
+from recon.guidance.survey.settings import DEFAULT
 from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.survey import CellState, Survey, SurveyBudget, SurveyPhase
@@ -285,6 +286,24 @@ class TestTroubles:
         asked = [m.length_m for m in flights.given if m.serial == "S-1"]
         assert len(asked) == 3
         assert asked[0] == asked[1] == asked[2]
+
+    def test_one_refused_for_what_may_end_is_asked_for_again_also_alone(self) -> None:
+        flyers = fleet(1)
+        asked_s = []
+
+        def refuse(flights: Flights) -> None:
+            flight = flights.state.flights.get("S-1")
+            if flight is not None and len(asked_s) < 2:
+                asked_s.append(flights.time_s)
+                flyers[0].stop()
+                now_ns = seconds_to_ns(flights.time_s)
+                number = flight.number
+                flights.state = refused(flights.state, "S-1", number, "late", now_ns, may_end=True)
+
+        flights = Flights(begun(survey_of(rectangle()), flyers), flyers)
+        end = flights.run(each_second=refuse)
+        assert (end.phase, end.round, end.barred) == (SurveyPhase.DONE, 1, frozenset())
+        assert asked_s[1] - asked_s[0] == pytest.approx(DEFAULT.retry_soon_s)
 
     def test_a_field_in_two_parts_is_flown_in_two_missions(self) -> None:
         across = Region(np.array([(130.0, -50.0), (160.0, -50.0), (160.0, 250.0), (130.0, 250.0)]))

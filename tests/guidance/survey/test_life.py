@@ -89,11 +89,11 @@ class SurveyLife(RuleBasedStateMachine):
         if flight is not None:
             self.seats[serial].ended = flight.number
 
-    @rule(serial=st.sampled_from(SERIALS))
-    def refuse(self, serial: str) -> None:
+    @rule(serial=st.sampled_from(SERIALS), may_end=st.booleans())
+    def refuse(self, serial: str, may_end: bool) -> None:
         flight = self.state.flights.get(serial)
         number = 0 if flight is None else flight.number
-        self.state = refused(self.state, serial, number, "no", self._now_ns())
+        self.state = refused(self.state, serial, number, "no", self._now_ns(), may_end=may_end)
         self.refused_m += 0.0 if flight is None else flight.length_m
 
     @rule(serial=st.sampled_from(SERIALS), row=st.integers(0, 9))

@@ -8,7 +8,7 @@ from tests.safety.cases import STICK, mission
 from tests.station.commanded import CommandedStation
 from tests.station.station_world import square_mission, world
 
-from recon.model.command import Body, FlyMission, Hover, Phase, StartCamera
+from recon.model.command import Body, FlyMission, Hover, Phase, Refusal, StartCamera
 from recon.model.control import AuthorityHolder, StopLatch
 from recon.model.event import CommandDropped
 from recon.model.vehicle import FlightMode
@@ -28,7 +28,7 @@ def waiting(body: Body) -> CommandedStation:
     return scene
 
 
-def objection(scene: CommandedStation, station: Station | None = None) -> str | None:
+def objection(scene: CommandedStation, station: Station | None = None) -> Refusal | None:
     """Why the first order may not leave 0.2 s after its approval."""
     now_ns = scene.handed[0].approved_at_ns + LATER_NS
     return dispatch.objection(station or scene.station, scene.handed[0], now_ns)
@@ -59,9 +59,9 @@ def test_an_order_that_has_ended_never_leaves_even_at_once() -> None:
     scene = waiting(mission())
     scene.order(Hover())
     at_once_ns = scene.handed[0].approved_at_ns
-    why_not = dispatch.objection(scene.station, scene.handed[0], at_once_ns)
-    assert why_not is not None
-    assert "its order has ended" in why_not
+    refusal = dispatch.objection(scene.station, scene.handed[0], at_once_ns)
+    assert refusal is not None
+    assert "its order has ended" in refusal.reason
 
 
 def test_what_leaves_within_a_tick_is_not_judged_twice() -> None:
@@ -104,3 +104,6 @@ def test_a_mission_in_a_queue_is_dropped_when_the_vehicle_has_landed() -> None:
     here.run_for(1.0)
     assert here.record(order).phase is Phase.REFUSED_BY_STATION
     assert here.record(order).times_sent == 0
+    refusal = here.record(order).refusal
+    assert refusal is not None
+    assert refusal.rule == "stop_latch"

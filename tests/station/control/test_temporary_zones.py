@@ -160,8 +160,8 @@ class TestOrders:
         scene.happens(person(30.0))
         objection = dispatch.objection(scene.station, approved, scene.now_ns + S // 10)
         assert objection is not None
-        assert "the situation has changed" in objection
-        assert "person 1 (temporary)" in objection
+        assert "the situation has changed" in objection.reason
+        assert "person 1 (temporary)" in objection.reason
 
     def test_the_next_part_of_a_mission_is_not_flown_into_it(self) -> None:
         here = world(max_waypoints=2)

@@ -14,7 +14,8 @@ while PAUSED too, since a vehicle may still be flying its row.
 
 - Timeouts: a refused mission is requested again after `retry_s` if other vehicles fly. If none
   flies, the vehicle is barred until the next start, as nothing will change by itself. When all
-  are barred the survey pauses.
+  are barred the survey pauses. A refusal that may end by itself bars none, and is requested again
+  after `retry_soon_s`; for how long, the caller decides.
 - A vehicle drops out by not being able in `step`; its unimaged rows belong to the next round.
 - A pause discards the round under way, since its shares fit the vehicles of that moment only.
 
@@ -40,6 +41,7 @@ from recon.guidance.survey.state import Refused, Surveyor, SurveyState
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
 from recon.model.survey import PLANNER_GOALS, SurveyPhase
+from recon.model.units import seconds_to_ns
 
 
 def create(plan: SurveyPlan) -> SurveyState | Refusal:
@@ -84,23 +86,35 @@ def abort(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
     return ended(state, SurveyPhase.ABORTED, "aborted", now_ns)
 
 
-def refused(state: SurveyState, serial: str, number: int, reason: str, now_ns: int) -> SurveyState:
+def refused(
+    state: SurveyState,
+    serial: str,
+    number: int,
+    reason: str,
+    now_ns: int,
+    *,
+    may_end: bool = False,
+) -> SurveyState:
     """Return the survey after the gate refused a mission; its rows stay with the vehicle.
 
     While others fly, the mission is requested again after `retry_s`; otherwise the vehicle is
-    barred and its rows go to others. Without a vehicle left the survey pauses.
+    barred and its rows go to others. Without a vehicle left the survey pauses. If the refusal may
+    end by itself, the mission is requested again after `retry_soon_s`, whether others fly or not.
     """
     flight = state.flights.get(serial)
     if flight is None or flight.number != number:
         return state
     flights = {key: each for key, each in state.flights.items() if key != serial}
     route = (*flight.route, *state.waiting.get(serial, ()))
+    settings = state.plan.settings
+    again_ns = now_ns + seconds_to_ns(settings.retry_soon_s if may_end else settings.retry_s)
+    is_barred = not flights and not may_end
     return replace(
         state,
         flights=MappingProxyType(flights),
         waiting=MappingProxyType({**state.waiting, serial: route}),
-        refusals=MappingProxyType({**state.refusals, serial: Refused(reason, now_ns)}),
-        barred=state.barred if flights else state.barred | {serial},
+        refusals=MappingProxyType({**state.refusals, serial: Refused(reason, again_ns)}),
+        barred=state.barred | {serial} if is_barred else state.barred,
         flown_m=state.flown_m - flight.length_m,
     )
 

@@ -109,9 +109,8 @@ def _without_able(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int)
 
 
 def _shared_anew(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) -> Step:
-    """Share left-over rows among able vehicles; wait while a refusal is newer than `retry_s`."""
-    again_ns = now_ns - seconds_to_ns(state.plan.settings.retry_s)
-    if any(serial in free and state.refusals[serial].at_ns > again_ns for serial in state.refusals):
+    """Share left-over rows among able vehicles; wait while one is to be asked for again."""
+    if any(serial in free and now_ns < each.again_ns for serial, each in state.refusals.items()):
         return state, ()
     pieces = [leg.piece for route in state.waiting.values() for leg in route]
     return _handed_out(state, pieces, free, now_ns)
@@ -177,8 +176,7 @@ def _may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_
     if serial not in able or serial in state.flights or serial in state.barred:
         return False
     refused = state.refusals.get(serial)
-    retry_ns = seconds_to_ns(state.plan.settings.retry_s)
-    return refused is None or now_ns - refused.at_ns >= retry_ns
+    return refused is None or now_ns >= refused.again_ns
 
 
 def _flying(

@@ -74,6 +74,10 @@ class SurveySettings:
     """A mission refused while others flew is asked for again after this: by then they are
     elsewhere."""
 
+    retry_soon_s: float = 3.0
+    """A mission refused for what may end by itself, such as late telemetry, is asked for again
+    after this: telemetry comes ten times a second, and a link is open again within seconds."""
+
     way_home_waits_s: float = 60.0
     """A vehicle that waits for others' rows keeps this beside its return: there it may wait too."""
 

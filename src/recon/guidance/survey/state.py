@@ -49,10 +49,10 @@ class AssignedMission:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """A mission that the gate refused."""
+    """A mission that the gate refused; from `again_ns` on the next one may be requested."""
 
     reason: str
-    at_ns: int
+    again_ns: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +61,7 @@ class SurveyState:
 
     `waiting` is the rest of each vehicle's share of the round. `refusals` are the newest of each
     vehicle. A vehicle refused while no other flew is `barred` until the next start: the cause is
-    the vehicle or its rows.
+    the vehicle or its rows, unless the refusal may end by itself.
     """
 
     plan: SurveyPlan

@@ -85,11 +85,12 @@ def _member(
     vehicle = station.fleet.vehicles.get(member.serial)
     is_active = record.is_running or is_under_way(station, member)
     waits = hindrance(station, member, now_ns) if is_active else None
-    refused = None if record.is_over else state.refusals.get(member.serial)
+    flies = is_flown(station, member)
+    refused = None if record.is_over or flies else state.refusals.get(member.serial)
     return schema.SurveyingView(
         serial=member.serial,
         vehicle_name=member.serial if vehicle is None else vehicle.display_name,
-        is_flying_rows=is_flown(station, member),
+        is_flying_rows=flies,
         not_flying_reason=waits,
         refused=None if refused is None else refused.reason,
         has_come_home=member.return_reason is not None and is_on_ground(station, member),

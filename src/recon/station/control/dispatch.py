@@ -5,26 +5,35 @@ was withdrawn, telemetry or traffic changed, another holder has control, an all 
 the gate is asked again at the moment of sending, about anything that has waited.
 """
 
+from dataclasses import replace
+
+from recon.model.command import Refusal
 from recon.model.units import seconds_to_ns
 from recon.safety import ApprovedCommand, judge
 from recon.station.control.situation_builder import situation
 from recon.station.state.station import Station
 
+RULE = "dispatch"
+"""Of what no rule of the gate refuses: an order that has ended, a fault in judging it."""
+
 SAME_MOMENT_S = 0.05
 """What leaves within a tick of its approval was judged by the facts of that moment."""
 
 
-def objection(station: Station, approved: ApprovedCommand, now_ns: int) -> str | None:
+def objection(station: Station, approved: ApprovedCommand, now_ns: int) -> Refusal | None:
     """Return why an approved order may not be sent now, else None."""
     command = approved.command
     record = station.orders.records.get(command.id)
     if record is not None and record.phase.is_final:
-        return f"not sent: its order has ended ({record.note})"
+        return Refusal(RULE, f"not sent: its order has ended ({record.note})")
     if now_ns - approved.approved_at_ns <= seconds_to_ns(SAME_MOMENT_S):
         return None
     try:
         refusal = judge(command, situation(station, command, now_ns))
     except Exception as fault:  # in the station's own code: it must not keep a stop from going out
         is_stop = command.is_emergency and not command.takeoff
-        return None if is_stop else f"not sent: it could not be judged again ({fault})"
-    return None if refusal is None else f"not sent, the situation has changed: {refusal.reason}"
+        why = f"not sent: it could not be judged again ({fault})"
+        return None if is_stop else Refusal(RULE, why)
+    if refusal is None:
+        return None
+    return replace(refusal, reason=f"not sent, the situation has changed: {refusal.reason}")

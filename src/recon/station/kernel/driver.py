@@ -10,6 +10,7 @@ from typing import Any
 
 from recon.fleet.step import CloseLink
 from recon.link.server import LinkServer
+from recon.model.command import Refusal
 from recon.model.errors import describe_fault
 from recon.model.event import ClockGap, ClockRead, Event, SetpointsDue, StationFaulted, Tick
 from recon.model.units import NS_PER_S
@@ -88,7 +89,7 @@ class AsyncioDriver:
         """Queue an event and step by it; events caused by its outputs are queued behind it."""
         self._queue.put(event)
 
-    def objection(self, approved: ApprovedCommand) -> str | None:
+    def objection(self, approved: ApprovedCommand) -> Refusal | None:
         """Return why an approved order may not be sent at this moment, else None."""
         return dispatch.objection(self.station, approved, self.now_ns())
 

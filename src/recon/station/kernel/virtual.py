@@ -13,6 +13,7 @@ from typing import Protocol
 from recon.fleet.step import CloseLink
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
+from recon.model.command import Refusal
 from recon.model.event import (
     ClockRead,
     CommandDropped,
@@ -219,7 +220,7 @@ class VirtualDriver:
             self._pump(wire)
 
     def _pump(self, wire: _Wire) -> None:
-        def objection(approved: ApprovedCommand) -> str | None:
+        def objection(approved: ApprovedCommand) -> Refusal | None:
             return dispatch.objection(self.station, approved, self.now_ns)
 
         while (outgoing := wire.session.next_packet(self.now_ns, objection)) is not None:

@@ -67,6 +67,10 @@ class SurveyTimes:
     shade_maps_kept: int = 16
     """Between two steps: as many as a survey keeps itself."""
 
+    unsent_within_s: float = 60.0
+    """A vehicle whose missions could not be sent for so long, for reasons that time ends otherwise,
+    is stopped: its telemetry or link needs attention, and no takeoff comes as a surprise."""
+
     home_waits_s: float = 60.0
     """A turn to fly home comes within a minute; a vehicle that waits longer raises an alarm."""
 

@@ -104,7 +104,8 @@ class OrderRecord:
     plan: FlightPlan | None = None
     """Of a mission: its parts, and which one is flown."""
     refusal: Refusal | None = None
-    """The gate's refusal that ended it: of the order, a mission's later part or a setpoint."""
+    """The gate's refusal that ended it: of the order when given or when sent, of a mission's later
+    part, or of a setpoint."""
 
     @property
     def phase(self) -> Phase:
@@ -326,6 +327,7 @@ def on_dropped(record: OrderRecord, event: CommandDropped, now_ns: int) -> Order
         return record
     if record.phase is not Phase.QUEUED or record.waiting_link_ids:
         return record
+    record = replace(record, refusal=event.refusal or record.refusal)
     return unsent(record, event.phase, now_ns, event.reason)
 
 

@@ -52,7 +52,8 @@ class SurveyMember:
 
     `number` and `command_id` are its newest mission's, as the survey and the station count.
     `may_take_off` is the operator's permission, for one takeoff. `stop_reason`: why it gets no
-    mission until it is started again. `return_reason`: why it was called home.
+    mission until it is started again. `return_reason`: why it was called home. `unsent_since_ns`:
+    since when no mission could be sent to it, for reasons that time may end.
     """
 
     serial: str
@@ -61,6 +62,7 @@ class SurveyMember:
     command_id: int | None = None
     stop_reason: str | None = None
     return_reason: str | None = None
+    unsent_since_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

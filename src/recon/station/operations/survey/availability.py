@@ -79,6 +79,8 @@ def after_mission(
     Such a mission is not flown again by itself: an operator must check and start it again.
     """
     order = _order(station, member)
+    if order is not None and order.times_sent:
+        member = replace(member, unsent_since_ns=None)
     if order is None or member.stop_reason is not None or not order.phase.is_final:
         return member, None
     if order.phase is Phase.DONE:

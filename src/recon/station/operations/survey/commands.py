@@ -65,6 +65,7 @@ def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Stepped
             may_take_off=event.takeoff,
             stop_reason=None,
             return_reason=None,
+            unsent_since_ns=None,
         )
         for serial in serials
     }

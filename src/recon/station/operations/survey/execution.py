@@ -5,7 +5,8 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
 
 1. On a tick, at most once a second, the survey that has waited longest is due. The outcome of each
    vehicle's mission is read: a vehicle whose mission ended unfinished is stopped until an operator
-   starts it again. If its mission was ignored it is held, for it might begin late.
+   starts it again. If its mission was ignored it is held, for it might begin late. One that was not
+   sent, for a reason that time may end, is asked for again (`unsent_missions`).
 2. The worker counts the positions and shade maps since the last step, and decides which vehicle
    flies what next. One step at a time; after 30 s without an answer it counts as lost. A command
    to the survey meanwhile makes the answer count for nothing.
@@ -43,6 +44,13 @@ from recon.station.operations.survey.return_to_home import (
     is_under_way,
     returns_home,
     send_home,
+)
+from recon.station.operations.survey.unsent_missions import (
+    asked_again,
+    given_back,
+    may_be_sent_later,
+    may_end,
+    stopped_if_overdue,
 )
 from recon.station.operations.survey.zone_changes import is_outdated, start_replan
 from recon.station.state.station import Station, take_id
@@ -125,7 +133,8 @@ def advance(station: Station, now_ns: int, settings: SurveyTimes = SURVEY_TIMES)
     if not due:
         return replace(station, surveys=surveys), ()
     record = min(due, key=lambda each: each.step_due_ns)
-    station, held = _read_missions(replace(station, surveys=surveys), record, now_ns)
+    station = replace(station, surveys=surveys)
+    station, held = _read_missions(station, record, settings, now_ns)
     station, job = _start_step(station, record.survey.id, settings, now_ns)
     return station, (*held, *job)
 
@@ -198,12 +207,17 @@ def _needs_steps(record: SurveyRecord) -> bool:
     return record.is_running or (is_paused and bool(record.positions.items))
 
 
-def _read_missions(station: Station, record: SurveyRecord, now_ns: int) -> Stepped:
+def _read_missions(
+    station: Station, record: SurveyRecord, settings: SurveyTimes, now_ns: int
+) -> Stepped:
     """Read the outcome of each vehicle's mission; hold a vehicle that might begin one late."""
     outputs: tuple[Output, ...] = ()
     for member in record.members.values():
         updated, order = after_mission(station, member)
-        record = record.put(updated)
+        if order is not None and may_be_sent_later(order):
+            record = given_back(record, member, order, now_ns)
+            continue
+        record = record.put(stopped_if_overdue(record, updated, now_ns, settings))
         if order is not None and order.phase is Phase.TIMED_OUT and record.is_running:
             station, number = take_id(station)
             why = f"the mission of order {order.command.id} was ignored"
@@ -247,6 +261,10 @@ def _order_mission(
         used = replace(member, number=given.number, command_id=number, may_take_off=False)
         return replace(station, surveys=station.surveys.put(record.put(used))), sent
     why = f"{refusal.reason}{tried}"
+    if may_end(refusal):
+        record = asked_again(record, member, given.number, why, now_ns)
+        return replace(station, surveys=station.surveys.put(record)), sent
+    record = record.put(replace(member, unsent_since_ns=None))
     record = replace(record, state=refused(state, given.serial, given.number, why, now_ns))
     station = replace(station, surveys=station.surveys.put(record))
     if returns_home(record) and refusal.rule == BATTERY:
