@@ -264,6 +264,20 @@ class FleetReturnOrdered:
     person: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class LookAsideOrdered:
+    """The imaging drone is to fly a little aside and back, so that a flat scene is decided.
+
+    `given_at_ns` is when its person gave the command, in station time; None if not stated.
+    `survey_id` is the survey for which the station itself orders it; None: a person does.
+    """
+
+    by: str
+    given_at_ns: int | None = None
+    person: str = ""
+    survey_id: int | None = None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyRequested:
     """A survey is to be planned; its id is chosen by the client. Nothing flies yet."""
@@ -406,6 +420,7 @@ Event = (
     | UsersChanged
     | ZoneEnded
     | FleetReturnOrdered
+    | LookAsideOrdered
     | SurveyRequested
     | SurveyStarted
     | SurveyStopped

@@ -83,6 +83,8 @@ class Survey:
     cell_m: float = 4.0
     """Progress is kept in cells of this size: finer than shadows' edges are known."""
     when_done: WhenDone = WhenDone.RETURN_HOME
+    look_aside_allowed: bool = False
+    """Whether the imaging drone may look aside by itself while light is mostly unknown."""
 
 
 class SurveyPhase(Enum):

@@ -4,10 +4,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+import numpy as np
+
 from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imaging import WAITING_KEPT, ShadePipeline
 from recon.station.state.station import Station
@@ -38,6 +41,8 @@ class ShadeRead:
     detection: DetectionState
     forecast: ForecastState
     found: tuple[ShadeMap, SunForecast] | RejectedFrame
+    seen: MaskMap | None = None
+    """The cells of the map that the image showed; None for a rejected frame."""
 
 
 def on_ground_image(station: Station, image: GroundImage) -> Stepped:
@@ -60,7 +65,23 @@ def read_shade(work: ReadShade) -> ShadeRead:
     if isinstance(shade, RejectedFrame):
         return ShadeRead(detection, work.forecast, shade)
     forecast, sun = predict(work.forecast, shade, work.forecast_settings)
-    return ShadeRead(detection, forecast, (shade, sun))
+    return ShadeRead(detection, forecast, (shade, sun), seen_cells(work.image, shade.grid))
+
+
+def seen_cells(image: GroundImage, grid: GroundGrid) -> MaskMap:
+    """Return (R, C) of `grid`: whether a ground image shows the middle of each cell.
+
+    Both grids are of one local frame.
+    """
+    laid = image.grid
+    north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
+    east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
+    row = np.floor((laid.north_m - north_m) / laid.cell_m).astype(np.intp)
+    col = np.floor((east_m - laid.west_m) / laid.cell_m).astype(np.intp)
+    is_inside = np.logical_and.outer((row >= 0) & (row < laid.rows), (col >= 0) & (col < laid.cols))
+    row, col = row.clip(0, laid.rows - 1), col.clip(0, laid.cols - 1)
+    seen: MaskMap = image.valid[np.ix_(row, col)] & is_inside
+    return seen
 
 
 def conditions(station: Station) -> Iterator[Condition]:
@@ -87,7 +108,8 @@ def _read(station: Station, job_id: int, read: ShadeRead, _now_ns: int) -> Stepp
         return _next(station, replace(pipeline, rejected=read.found, frames_rejected=rejected))
     shade, sun = read.found
     number = pipeline.number + 1
-    return _next(station, replace(pipeline, shade=shade, sun=sun, rejected=None, number=number))
+    pipeline = replace(pipeline, shade=shade, sun=sun, seen=read.seen, rejected=None, number=number)
+    return _next(station, pipeline)
 
 
 def _not_read(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:

@@ -1,12 +1,13 @@
-"""Operations: surveys and fleet returns. What several vehicles do together, for minutes.
+"""Operations: surveys, fleet returns, looks aside. What vehicles do by several orders.
 
 Each is one `Operation`; the kernel, the alarms and the audit go through `OPERATIONS` and know none
 by name. Every motion that an operation commands is an order, judged by the gate like any other.
 """
 
 from recon.station.operations.fleet_return import FLEET_RETURN
+from recon.station.operations.look_aside import LOOK_ASIDE
 from recon.station.operations.operation import Operation
 from recon.station.operations.survey import SURVEY
 
-OPERATIONS: tuple[Operation, ...] = (FLEET_RETURN, SURVEY)
+OPERATIONS: tuple[Operation, ...] = (FLEET_RETURN, LOOK_ASIDE, SURVEY)
 """In the order of their ticks."""

@@ -6,7 +6,7 @@ from recon.camera.motion import TelemetryReference
 from recon.detection import DetectionState, RejectedFrame
 from recon.forecast import ForecastState
 from recon.model.imagery import GroundImage
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 
 WAITING_KEPT = 8
 """Ground images that wait to be read, of 1 MB each: at one a second, the worker has this long to
@@ -54,6 +54,8 @@ class ShadePipeline:
     forecast: ForecastState = field(default_factory=ForecastState)
     number: int = 0
     shade: ShadeMap | None = None
+    seen: MaskMap | None = None
+    """The cells of `shade` that its ground image showed; those without a value are unknown."""
     sun: SunForecast | None = None
     waiting: tuple[GroundImage, ...] = ()
     job_id: int | None = None

@@ -15,6 +15,7 @@ from recon.station.state.alarm_book import AlarmBook, Condition
 from recon.station.state.failsafe_state import FailsafeState
 from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imaging import Imaging, ShadePipeline
+from recon.station.state.look_aside_record import LookAsides
 from recon.station.state.orders import OrderBook
 from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.settings import StationSettings
@@ -103,6 +104,8 @@ class Station:
     """The all stop in force. Writer: `control/stop_latch.py`."""
     fleet_return: FleetReturn | None = None
     """The newest fleet return of this run."""
+    look_asides: LookAsides = field(default_factory=LookAsides)
+    """Of this run. Writer: `operations/look_aside`."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """Findings, holds and switches of the watchdogs."""
     failsafe_state: FailsafeState = field(default_factory=FailsafeState)

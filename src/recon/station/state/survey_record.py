@@ -79,6 +79,8 @@ class SurveyRecord:
     state: SurveyState | None = None
     refusal: Refusal | None = None
     started_by: str = ""
+    person: str = ""
+    """Who started it, by name."""
     members: Mapping[str, SurveyMember] = field(default_factory=lambda: MappingProxyType({}))
     step_due_ns: int = 0
     trouble: str | None = None

@@ -79,6 +79,7 @@ def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Stepped
         record,
         state=state,
         started_by=event.by,
+        person=event.person,
         members=MappingProxyType({**kept, **fresh}),
         step_due_ns=now_ns,
     )
