@@ -49,7 +49,7 @@ PARTS: Mapping[str, Part] = {
     ),
     "trust": Part(("src/recon/fleet/trust.py", "src/recon/fleet/airborne.py"), ("tests/fleet",)),
     "guard": Part(("src/recon/guard/watch.py",), ("tests/guard",)),
-    "failsafe": Part(_safety("failsafe/*.py"), ("tests/safety/failsafe", "tests/station/failsafe")),
+    "failsafe": Part(_safety("failsafe/*.py"), ("tests/safety/failsafe",)),
     "returns": Part(
         _safety("go_home.py", "return_missions.py", "landing_time.py"),
         (

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from tests.safety.cases import (
     NOW,
@@ -88,3 +89,22 @@ class TestOverAnElevationModel:
     def test_without_a_place_or_off_the_model_it_may_have_landed(self) -> None:
         assert not self.blind(4.0, position=None)
         assert not self.blind(4.0, position=place(-950.0, 0.0))
+
+    @pytest.mark.parametrize(
+        "peak_m",
+        [(0, 50), (40, 30), (50, 0), (40, -30), (0, -50), (-40, -30), (-50, 0), (-40, 30)],
+    )
+    def test_a_peak_within_its_reach_counts_on_every_side(self, peak_m: tuple[int, int]) -> None:
+        assert not self.blind_beside(peak_m)
+
+    def test_a_peak_beyond_its_reach_does_not_count(self) -> None:
+        assert self.blind_beside((0, -70))
+
+    def blind_beside(self, peak_m: tuple[int, int]) -> bool:
+        """After 2.02 s it may have come 50.5 m; a peak of 40 m stands this far east and north."""
+        ground_m = np.zeros((40, 40))
+        ground_m[19 - peak_m[1] // 10, 20 + peak_m[0] // 10] = 40.0
+        here = place(5.0, 5.0)
+        state = vehicle(age_s=2.02, height_above_takeoff_m=60.0, position=here, takeoff_point=here)
+        model = hills(ground_m, cell_m=10.0)
+        return cannot_have_landed(replace(situation(state), airspace=airspace(elevation=model)))

@@ -5,12 +5,13 @@ from dataclasses import replace
 import pytest
 from tests.safety.cases import TAKEOFF, mission, vehicle, waypoint
 
+from recon.geo.distance import horizontal_distance_m
 from recon.model.airspace import Airspace, LandingPad
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import Mission
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
-from recon.safety import OPEN_AIRSPACE, PreparedAirspace
+from recon.safety import OPEN_AIRSPACE, PreparedAirspace, return_missions
 from recon.safety.return_missions import leads_home
 
 
@@ -50,6 +51,16 @@ def out_at(metres: float, **changes: object) -> VehicleState:
 def test_it_lands_at_home_and_makes_no_long_detour(way: Mission, only_lands: bool) -> None:
     """From 300 m away the whole way may be 650 m long."""
     assert only_lands is leads_home(way, out_at(300.0), OPEN_AIRSPACE)
+
+
+def test_a_way_of_exactly_the_longest_length_leads_home(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Out and back to where it is: the whole way is the detour."""
+    way, here = landing(20.0, 0.0), out_at(0.0)
+    out_m = horizontal_distance_m(north(0.0), north(20.0))
+    monkeypatch.setattr(
+        return_missions, "DETOUR_M", out_m + horizontal_distance_m(north(20.0), north(0.0))
+    )
+    assert leads_home(way, here, OPEN_AIRSPACE)
 
 
 def test_a_pause_on_the_way_is_another_purpose() -> None:

@@ -82,12 +82,12 @@ def asked_height_m(vehicle: VehicleState) -> float | None:
 def seen_height_m(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) -> float | None:
     """Return the height above takeoff at which it goes home, once telemetry shows another one than
     is asked; None while it does not."""
-    if vehicle.go_home is None:
-        return None
+    flight, far_m = vehicle.go_home, home_distance_m(vehicle)
     asked_m, height_m = asked_height_m(vehicle), vehicle.height_above_takeoff_m.value
-    if asked_m is None or height_m is None or not _is_level(vehicle, settings):
+    if flight is None or asked_m is None or height_m is None:
         return None
-    far_m = home_distance_m(vehicle)
+    if not _is_level(vehicle, flight, settings):
+        return None
     if far_m is None or far_m <= settings.near_home_m:
         return None
     return height_m if abs(height_m - asked_m) > settings.height_off_m else None
@@ -97,7 +97,7 @@ def is_off_track(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) -> 
     """Return whether it goes home and is beside the straight way to the home that the station
     believes, or turns away from it."""
     flight = vehicle.go_home
-    if flight is None or flight.level_from is None or not _is_level(vehicle, settings):
+    if flight is None or flight.level_from is None or not _is_level(vehicle, flight, settings):
         return False
     place, there, velocity = vehicle.position.value, home(vehicle), vehicle.velocity_ned.value
     if place is None or there is None or velocity is None:
@@ -131,7 +131,7 @@ def _height(
     if height_m > asked_m + settings.height_off_m:
         text = f"goes home too high: {figures}. Other vehicles' layers may be there: {todo}"
         yield GoHomeDeviation(HEIGHT, Severity.ERROR, text, settings.off_height_s)
-    elif _is_level(vehicle, settings) and height_m < asked_m - settings.height_off_m:
+    elif _is_level(vehicle, flight, settings) and height_m < asked_m - settings.height_off_m:
         text = (
             f"goes home too low: {figures}. Zones and other vehicles' layers may be in its way: "
             f"{todo}"
@@ -155,13 +155,9 @@ def _lands_elsewhere(
         yield GoHomeDeviation(LANDING, Severity.CRITICAL, text, 0.5)
 
 
-def _is_level(vehicle: VehicleState, settings: GoHomeSettings) -> bool:
+def _is_level(vehicle: VehicleState, flight: GoHomeFlight, settings: GoHomeSettings) -> bool:
     """Whether it flies home and no longer brakes from its former flight nor climbs."""
-    flight, velocity, at_ns = (
-        vehicle.go_home,
-        vehicle.velocity_ned.value,
-        vehicle.core_received_at_ns,
-    )
-    if flight is None or velocity is None or at_ns is None:
+    velocity, at_ns = vehicle.velocity_ned.value, vehicle.core_received_at_ns
+    if velocity is None or at_ns is None:
         return False
     return is_under_way(vehicle, flight, at_ns) and -velocity.down_mps < settings.climb_mps

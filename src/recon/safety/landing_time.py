@@ -4,12 +4,17 @@ A hover on the ground makes apps in the field take off. As long as no aircraft c
 to the ground, that cannot happen, and a stop needs no newer telemetry (decisions on the ICD, 16 a).
 """
 
+from typing import Final
+
 import numpy as np
 
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import is_ground_assumed_flat, vehicle_enu_m
 from recon.safety.situation import Situation
+
+AROUND_UNIT_CIRCLE: Final = np.array([[(0.0, 2.0), (-np.sqrt(3.0), -1.0), (np.sqrt(3.0), -1.0)]])
+"""A triangle (1, 3, 2), east and north, with the circle of radius 1 in it."""
 
 
 def cannot_have_landed(situation: Situation) -> bool:
@@ -41,10 +46,6 @@ def _height_above_ground_m(
     if place_m is None:
         return None
     east_m, north_m, up_m = place_m
-    # A triangle around the circle of its reach.
-    far_m = 2.0 * reach_m
-    side_m = np.sqrt(3.0) * reach_m
-    corners = [(0.0, far_m), (-side_m, -reach_m), (side_m, -reach_m)]
-    triangle_m = np.array([[(east_m + east, north_m + north) for east, north in corners]])
+    triangle_m = np.array([east_m, north_m]) + reach_m * AROUND_UNIT_CIRCLE
     _, highest_m = airspace.ground_within_up_m(triangle_m)
     return float(up_m - highest_m[0])

@@ -13,10 +13,12 @@ from recon.model.failsafe_matrix import (
 from recon.model.severity import Severity
 from recon.model.vehicle import Attitude, BatteryWarning
 from recon.safety.failsafe import DEFAULT_MATRIX, ROWS, RelatedFinding, SharedFacts, cell_words
+from recon.safety.failsafe import attitude as attitude_row
 from recon.safety.failsafe import battery_critical as critical_row
 from recon.safety.failsafe import battery_low as low_row
 from recon.safety.failsafe import gnss_lost as gnss_row
-from recon.safety.failsafe.row import FlightFacts
+from recon.safety.failsafe import wind as wind_row
+from recon.safety.failsafe.row import FlightFacts, call_home, cells, hold
 
 
 def since(condition: FailsafeCondition, given: FlightFacts) -> int | None:
@@ -43,6 +45,11 @@ class TestLinkLost:
         assert since(FailsafeCondition.LINK_LOST, new) == ago_ns(7.0)
         assert since(FailsafeCondition.TELEMETRY_LOST, new) is None
         assert since(FailsafeCondition.LINK_LOST, facts(opened_at_ns=ago_ns(1.0))) is None
+
+    def test_telemetry_as_old_as_the_link_came_on_it(self) -> None:
+        same = facts(opened_at_ns=ago_ns(2.0), core_received_at_ns=ago_ns(2.0))
+        assert since(FailsafeCondition.LINK_LOST, same) is None
+        assert since(FailsafeCondition.TELEMETRY_LOST, same) == ago_ns(2.0)
 
     def test_a_vehicle_without_any_telemetry_has_lost_none(self) -> None:
         never = facts(opened_at_ns=None, core_received_at_ns=None)
@@ -108,11 +115,6 @@ class TestBattery:
             assert since(self.LOW, given) is None
             assert since(self.CRITICAL, given) is None
 
-    def test_the_words_name_level_and_limit(self) -> None:
-        vehicle = facts(battery_fraction=0.2).vehicle
-        assert low_row.words(vehicle, 0.25) == "battery at 20%, limit 25%: return home"
-        assert critical_row.words(vehicle, 0.10) is None
-
 
 class TestWindAndAttitude:
     def test_wind_from_the_warning_level_on(self) -> None:
@@ -120,11 +122,61 @@ class TestWindAndAttitude:
         assert since(FailsafeCondition.WIND, facts(wind_level=2)) == NOW_NS
         assert since(FailsafeCondition.WIND, facts(wind_level=2, **STALE)) is None
 
-    def test_a_tilt_beyond_the_limit(self) -> None:
-        tilted = Attitude(0.0, -50.0, 0.0)
-        assert since(FailsafeCondition.ATTITUDE, facts(attitude=tilted)) == NOW_NS
-        assert since(FailsafeCondition.ATTITUDE, facts(attitude=tilted, **STALE)) is None
+    @pytest.mark.parametrize("sign", [1.0, -1.0])
+    def test_a_tilt_beyond_the_limit(self, sign: float) -> None:
+        for tilt_deg, is_far in [(45.0, False), (45.1, True)]:
+            for tilted in (
+                Attitude(0.0, sign * tilt_deg, 0.0),
+                Attitude(0.0, 0.0, sign * tilt_deg),
+            ):
+                expected = NOW_NS if is_far else None
+                assert since(FailsafeCondition.ATTITUDE, facts(attitude=tilted)) == expected
+                assert since(FailsafeCondition.ATTITUDE, facts(attitude=tilted, **STALE)) is None
         assert since(FailsafeCondition.ATTITUDE, facts(attitude=None)) is None
+
+
+@pytest.mark.parametrize("age_s", [2.999, 3.0])
+def test_telemetry_of_3_s_is_too_old_to_show_how_it_flies(age_s: float) -> None:
+    old = facts(battery_fraction=0.05, core_received_at_ns=ago_ns(age_s))
+    assert old.is_live is (age_s < 3.0)
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (
+            attitude_row.words(facts(attitude=Attitude(0.0, 5.0, -50.4)).vehicle, 45.0),
+            "tilted by 50 deg, limit 45 deg: its pilot must take over; keep clear below",
+        ),
+        (
+            critical_row.words(facts(battery_warning=BatteryWarning.SERIOUS).vehicle, 0.1),
+            "battery critically low, reported by the aircraft: land now",
+        ),
+        (
+            critical_row.words(facts(battery_fraction=0.1).vehicle, 0.1),
+            "battery at 10%, limit 10%: land now",
+        ),
+        (critical_row.words(facts(battery_fraction=0.2).vehicle, 0.1), None),
+        (
+            low_row.words(facts(battery_warning=BatteryWarning.LOW).vehicle, 0.25),
+            "battery low, reported by the aircraft: return home",
+        ),
+        (
+            low_row.words(facts(battery_fraction=0.2).vehicle, 0.25),
+            "battery at 20%, limit 25%: return home",
+        ),
+        (low_row.words(facts().vehicle, 0.25), None),
+        (
+            wind_row.words(facts(wind_level=3).vehicle, 2),
+            "strong wind, reported by the aircraft (level 3, limit 2), near what it can fly in: "
+            "bring it lower and home, or land it",
+        ),
+    ],
+)
+def test_the_words_state_value_limit_and_what_to_do(
+    words: str | None, expected: str | None
+) -> None:
+    assert words == expected
 
 
 class TestTheStationsOwn:
@@ -156,6 +208,15 @@ class TestWhatASiteMayChoose:
         row = ROWS[FailsafeCondition.TELEMETRY_LOST]
         assert row.offered(Activity.STEERED) == {Reaction.HOLD}
         assert row.offered(Activity.MISSION) == {Reaction.ALARM, Reaction.HOLD}
+
+    def test_cells_as_the_rows_write_them(self) -> None:
+        row = cells(hold(3.0), hold(), call_home(4.0), call_home())
+        assert row == {
+            Activity.MISSION: FailsafeCell(Reaction.HOLD, 3.0),
+            Activity.STEERED: FailsafeCell(Reaction.HOLD, 0.0),
+            Activity.HOLDING: FailsafeCell(Reaction.RETURN, 4.0),
+            Activity.RETURNING: FailsafeCell(Reaction.RETURN, 0.0),
+        }
 
     def test_cells_in_words(self) -> None:
         link, battery = (

@@ -112,7 +112,7 @@ def _faults(height_m: float, vehicle: VehicleState, situation: Situation) -> Ite
     for other, apart_m in _neighbours(vehicle, situation):
         if apart_m < least_m:
             yield (
-                f"must be {round(least_m, 1):g} m from that of "
+                f"must be {least_m:.1f} m from that of "
                 f"{other.display_name}; got {apart_m:.1f} m at {height_m:g} m"
             )
 

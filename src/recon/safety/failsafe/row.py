@@ -124,7 +124,12 @@ def cells(
     mission: FailsafeCell, steered: FailsafeCell, holding: FailsafeCell, returning: FailsafeCell
 ) -> Mapping[Activity, FailsafeCell]:
     """Return the cells of a row."""
-    return dict(zip(Activity, (mission, steered, holding, returning), strict=True))
+    return {
+        Activity.MISSION: mission,
+        Activity.STEERED: steered,
+        Activity.HOLDING: holding,
+        Activity.RETURNING: returning,
+    }
 
 
 NOTHING = FailsafeCell(Reaction.NOTHING)
