@@ -14,6 +14,8 @@ PILOT_S = FAULT_S = 12.0
 """From 15 m/s a vehicle needs 6 s to stand still, and the other one as long after it."""
 FRESH_S = PUSHED_S = 8.0
 ALARMED_S = 20.0
+BRAKES_S = 3.0
+"""A landing that an order ends goes on down while the descent is braked."""
 
 
 class ViolationClass(Enum):
@@ -50,6 +52,8 @@ class VehicleMarks:
     """No motion packet has reached it since its pilot flew it."""
     is_coming_down: bool = False
     """No packet that moves has reached it since land or return; a hold may have left it low."""
+    landing_ended_s: float | None = None
+    """When a packet that moves last reached it while it landed."""
     is_given_to_pilot: bool = False
     """A person has given it to its pilot; the watchdogs may only warn of it."""
     battery_alarm_since_s: float | None = None
@@ -63,6 +67,10 @@ class VehicleMarks:
         """Note that something is so now."""
         self.last_s[mark] = now_s
         self.why[mark] = why
+
+    def brakes_descent(self, now_s: float) -> bool:
+        """Whether an order has ended its landing only just."""
+        return self.landing_ended_s is not None and now_s - self.landing_ended_s < BRAKES_S
 
     def was(self, mark: Mark, now_s: float, within_s: float) -> bool:
         """Whether something was so lately."""

@@ -209,6 +209,8 @@ class ClosedLoopRun:
             if packet.action == 0:
                 self.stops.arrived(serial, now_s)
         if moves:
+            if marks.is_coming_down:
+                marks.landing_ended_s = now_s
             marks.is_coming_down = marks.left_by_pilot = False
             if isinstance(packet, wire.ExecuteWaypointMission):
                 self.book.note(serial, f"received a mission of {len(packet.waypoints)}")

@@ -142,6 +142,7 @@ class TrueFleet:
         mode, marks = self.apps[serial].aircraft.active_mode, self.book.marks[serial]
         here = self.place(serial)
         is_low = isinstance(mode, Land | TakeOff | GoHome) or marks.is_coming_down
+        is_low = is_low or marks.brakes_descent(self.book.now_s())
         is_low = self._stays_low(marks, here, is_low)
         return TruePlace(*here, self.scene.homes_m[serial][:2], is_low)
 
