@@ -93,17 +93,19 @@ def test_a_step_from_an_old_state_gives_the_same_again(method: str) -> None:
 
 
 @methods
-def test_a_dark_patch_that_appears_is_shade(method: str) -> None:
-    """On even ground, where any method must see it."""
+def test_a_dark_and_bluer_patch_that_appears_is_shade(method: str) -> None:
+    """On even ground, where any method must see it; corners may be rounded."""
     rng = np.random.default_rng(3)
     state, imager = DetectionState(), Imager(grid=SMALL)
-    for i in range(8):
+    for i in range(9):
         levels = rng.normal(150.0, 3.0, (SMALL.rows, SMALL.cols, 3))
-        if i == 7:
-            levels[10:20, 10:20] *= 0.6
+        if i >= 7:
+            levels[10:26, 10:26] *= (0.5, 0.6, 0.7)
         image = imager.image(np.rint(levels).astype(np.uint8), 5.0 * i)
         state, found = DETECTORS[method](state, image, DetectionSettings())
     assert isinstance(found, ShadeMap)
     expected = np.zeros((20, 18), bool)
-    expected[5:10, 5:10] = True
-    assert np.array_equal(found.valid & (found.transmittance < SUNLIT_TRANSMITTANCE), expected)
+    expected[5:13, 5:13] = True
+    wrong = (found.valid & (found.transmittance < SUNLIT_TRANSMITTANCE)) != expected
+    assert np.count_nonzero(wrong) <= 12
+    assert not wrong[6:12, 6:12].any()

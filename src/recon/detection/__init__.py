@@ -15,6 +15,7 @@ from recon.detection.frame_step import FrameFault, RejectedFrame
 from recon.detection.otsu import otsu
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
+from recon.detection.sunlit_reference import sunlit_reference
 from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap
 
@@ -39,6 +40,10 @@ rejected frame leaves the state unchanged. Pure: no clock, no random numbers, no
 """
 
 DETECTORS: Mapping[str, Detector] = MappingProxyType(
-    {"brightness_ratio": brightness_ratio, "otsu": otsu}
+    {
+        "sunlit_reference": sunlit_reference,
+        "brightness_ratio": brightness_ratio,
+        "otsu": otsu,
+    }
 )
 """The methods by name."""

@@ -19,6 +19,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from recon.detection.cells import cell_light
 from recon.detection.exposure import gain_now
 from recon.detection.frame_step import RejectedFrame, shade_map, take_frame
 from recon.detection.settings import DetectionSettings
@@ -31,7 +32,7 @@ def brightness_ratio(
     state: DetectionState, image: GroundImage, settings: DetectionSettings
 ) -> tuple[DetectionState, ShadeMap | RejectedFrame]:
     """Return the state after a frame, and its shade map; see `recon.detection.Detector`."""
-    taken = take_frame(state, image, settings)
+    taken = take_frame(state, image, settings, cell_light)
     if isinstance(taken, RejectedFrame):
         return state, taken
     state, grid, cells = taken

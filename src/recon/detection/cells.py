@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil
+from typing import Protocol
 
 import cv2
 import numpy as np
@@ -23,6 +24,20 @@ class CellLight:
 
     light: FloatMap
     seen: MaskMap
+
+
+class CellSamples(Protocol):
+    """One frame on the field's grid: `light` (R, C), NaN where not `seen`."""
+
+    @property
+    def light(self) -> FloatMap:
+        """Light, in any unit that tells two frames apart."""
+        ...
+
+    @property
+    def seen(self) -> MaskMap:
+        """Whether the frame shows the cell."""
+        ...
 
 
 def field_grid(image_grid: GroundGrid, settings: DetectionSettings) -> GroundGrid:
@@ -48,15 +63,15 @@ def cell_light(image: GroundImage, grid: GroundGrid, settings: DetectionSettings
     # LUT before averaging: the mean of levels is not the level of the mean light.
     levels = np.ascontiguousarray(image.rgb[..., GREEN])
     shown = image.valid.astype(np.float32)
-    light = cv2.LUT(levels, _light_of_levels(settings.gamma)) * shown
-    both = _box_means(np.dstack([light, shown]), image.grid, grid)
+    light = cv2.LUT(levels, light_of_levels(settings.gamma)) * shown
+    both = box_means(np.dstack([light, shown]), image.grid, grid)
     seen = both[..., 1] >= settings.least_seen
     # Divide by the visible share: cells cut by the edge of the frame keep their brightness.
     mean = np.where(seen, both[..., 0] / np.maximum(both[..., 1], 1e-6), np.nan)
     return CellLight(mean.astype(np.float32), seen)
 
 
-def _box_means(
+def box_means(
     values: npt.NDArray[np.float32], laid: GroundGrid, grid: GroundGrid
 ) -> npt.NDArray[np.float32]:
     """Return (R, C, K) means of (r, c, K) values over boxes as large as a cell of `grid`.
@@ -82,7 +97,7 @@ def _box_means(
 
 
 @lru_cache(maxsize=4)
-def _light_of_levels(gamma: float) -> npt.NDArray[np.float32]:
+def light_of_levels(gamma: float) -> npt.NDArray[np.float32]:
     """Return the light (256,) of each level; level 0 counts as 0.5, so that ratios are finite."""
     levels = np.maximum(np.arange(256), 0.5) / 255.0
     light: npt.NDArray[np.float32] = (levels**gamma).astype(np.float32)

@@ -4,19 +4,23 @@ Checks reject what a camera or link defect would make look like shade: black, to
 repeated, out of order, or of another place. A rejected frame changes nothing.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import TypeVar
 
 import cv2
 import numpy as np
 
-from recon.detection.cells import GREEN, CellLight, cell_light, field_grid
+from recon.detection.cells import GREEN, CellSamples, field_grid
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.model.geo import GroundGrid
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.shade import FloatMap, MaskMap, ShadeMap
 from recon.model.units import ns_to_seconds
+
+Sampled = TypeVar("Sampled", bound=CellSamples)
 
 
 class FrameFault(Enum):
@@ -58,7 +62,7 @@ def picture_fault(
 
 
 def cells_fault(
-    image: GroundImage, cells: CellLight, latest: CellLight | None, settings: DetectionSettings
+    image: GroundImage, cells: CellSamples, latest: CellSamples | None, settings: DetectionSettings
 ) -> RejectedFrame | None:
     """Return why to reject a frame by its cells: too few visible, or identical to the last."""
     seen_share = float(cells.seen.mean())
@@ -113,9 +117,12 @@ def metres_per_pixel(grid: GroundGrid, pose: CameraPose, pixels_per_radian: floa
 
 
 def take_frame(
-    state: DetectionState, image: GroundImage, settings: DetectionSettings
-) -> tuple[DetectionState, GroundGrid, CellLight] | RejectedFrame:
-    """Return the state with this frame as its latest, the field grid, and each cell's light.
+    state: DetectionState,
+    image: GroundImage,
+    settings: DetectionSettings,
+    sampled: Callable[[GroundImage, GroundGrid, DetectionSettings], Sampled],
+) -> tuple[DetectionState, GroundGrid, Sampled] | RejectedFrame:
+    """Return the state with this frame as its latest, the field grid, and the frame sampled on it.
 
     Another camera, or another grid in the settings, resets the state.
     """
@@ -127,7 +134,7 @@ def take_frame(
     fault = picture_fault(image, state.latest_ns, grid, settings)
     if fault is not None:
         return fault
-    cells = cell_light(image, grid, settings)
+    cells = sampled(image, grid, settings)
     fault = cells_fault(image, cells, state.latest, settings)
     if fault is not None:
         return fault

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.detection.cells import cell_light
 from recon.detection.frame_step import RejectedFrame, shade_map, take_frame
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
@@ -19,7 +20,7 @@ def otsu(
     state: DetectionState, image: GroundImage, settings: DetectionSettings
 ) -> tuple[DetectionState, ShadeMap | RejectedFrame]:
     """Return the state after a frame, and its shade map; see `recon.detection.Detector`."""
-    taken = take_frame(state, image, settings)
+    taken = take_frame(state, image, settings, cell_light)
     if isinstance(taken, RejectedFrame):
         return state, taken
     state, grid, cells = taken

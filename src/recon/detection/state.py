@@ -6,9 +6,10 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from recon.detection.cells import CellLight
+from recon.detection.cells import CellSamples
 from recon.detection.exposure import Exposure
 from recon.detection.settings import DetectionSettings
+from recon.detection.sunlit.memory import SunlitMemory
 from recon.model.geo import GroundGrid
 from recon.model.shade import FloatMap
 from recon.model.units import seconds_to_ns
@@ -77,8 +78,9 @@ class DetectionState:
     """The field grid, from the first frame on."""
     serial: str = ""
     """Serial of the vehicle whose camera the rest belongs to."""
-    latest: CellLight | None = None
+    latest: CellSamples | None = None
     """The last accepted frame; `latest_ns` is its capture time."""
     latest_ns: int | None = None
     exposure: Exposure | None = None
     history: LightHistory | None = None
+    sunlit: SunlitMemory | None = None

@@ -1,0 +1,250 @@
+"""Frames kept over the whole flight, and the reference found from all of them together."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from recon.detection.sunlit.colour import CellColour
+from recon.detection.sunlit.contrast import Contrast, explained
+from recon.detection.sunlit.land import FloatStack, land_of
+from recon.detection.sunlit.levels import Level, Reading, nearer, read, refined
+from recon.model.shade import FloatMap, MaskMap
+from recon.model.units import NS_PER_S, seconds_to_ns
+
+MOST = 28
+"""Keyframes: with more, memory and time grow, but the land is not known better."""
+SPACING_S = 10.0
+"""In which shadows move by about the width of their edges."""
+OLDEST_S = 2_400.0
+"""The sun moves ten degrees meanwhile."""
+LEAST = 4
+"""Keyframes for a median over time."""
+KNOWN_SHARE = 0.5
+"""Of the keyframes must show a cell."""
+ROUNDS = 3
+LAND_WEIGHT = 0.5
+"""Of the land found from differences, in samples, against each cell's own samples."""
+SUN_WEIGHT, SHADE_WEIGHT, EDGE_WEIGHT = 1.0, 0.5, 0.05
+PRIOR_WEIGHT = 0.3
+"""Of the usual contrast, as the share of cells of a measured one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Keyframe:
+    """A frame on the coarse grid, and the level of sun in it, once known."""
+
+    at_ns: int
+    cells: CellColour
+    level: Level | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SunlitLand:
+    """Light and colour (R, C) of the coarse cells in full sun, up to a constant of each frame."""
+
+    light: FloatMap
+    colour: FloatMap
+    known: MaskMap
+    contrast: Contrast
+
+
+def with_keyframe(kept: tuple[Keyframe, ...], new: Keyframe) -> tuple[Keyframe, ...]:
+    """Return the keyframes with a new one; the rest stays spread evenly over the flight."""
+    oldest_ns = new.at_ns - seconds_to_ns(OLDEST_S)
+    all_of = [each for each in kept if each.at_ns > oldest_ns] + [new]
+    if len(all_of) > MOST:
+        times = np.array([each.at_ns for each in all_of])
+        # The one whose neighbours are nearest to each other; the first and last two stay.
+        all_of.pop(1 + int(np.argmin(times[2:-1] - times[:-3])))
+    return tuple(all_of)
+
+
+def is_due(kept: tuple[Keyframe, ...], at_ns: int) -> bool:
+    """Return whether the next keyframe is due; later in a flight they are further apart."""
+    if not kept:
+        return True
+    span_s = (at_ns - kept[0].at_ns) / NS_PER_S
+    return at_ns - kept[-1].at_ns >= seconds_to_ns(max(SPACING_S, 0.5 * span_s / MOST) - 0.5)
+
+
+def solved(
+    kept: tuple[Keyframe, ...], before: SunlitLand | None, is_locked: bool
+) -> tuple[tuple[Keyframe, ...], SunlitLand | None]:
+    """Return the keyframes with their levels, and the land in full sun; None while all are flat."""
+    light = np.stack([each.cells.light for each in kept])
+    colour = np.stack([each.cells.colour for each in kept])
+    seen = np.isfinite(light)
+    known: MaskMap = seen.mean(axis=0) >= KNOWN_SHARE
+    if not known.any():
+        return kept, before
+    contrast = Contrast() if before is None else before.contrast
+    land = SunlitLand(land_of(light, known), land_of(colour, known), known, contrast)
+    land, readings = _read_all(light, colour, seen, land)
+    levels = _levels(kept, readings, land, before, is_locked)
+    if levels is None:
+        return kept, before
+    land, levels = _alternated(light, colour, land, levels)
+    if is_locked:
+        levels = _steady(kept, levels)
+    named = (replace(each, level=level) for each, level in zip(kept, levels, strict=True))
+    return tuple(named), land
+
+
+def _read_all(
+    light: FloatStack, colour: FloatStack, seen: MaskMap, land: SunlitLand
+) -> tuple[SunlitLand, list[Reading | None]]:
+    """Return each frame's reading, and the land with the contrast that they show."""
+    readings: list[Reading | None] = []
+    for _ in range(2):
+        readings = []
+        for one_light, one_colour, one_seen in zip(light, colour, seen, strict=True):
+            cells = one_seen & land.known
+            if np.count_nonzero(cells) < 50:
+                readings.append(None)
+                continue
+            parts = (one_light - land.light)[cells], (one_colour - land.colour)[cells]
+            readings.append(read(*parts, land.contrast))
+        land = replace(land, contrast=_contrast(readings))
+    return land, readings
+
+
+def _contrast(readings: list[Reading | None]) -> Contrast:
+    """Return the weighted median of the measured contrasts and the usual one."""
+    measured = [(each.contrast, each.weight) for each in readings if each and each.contrast]
+    usual = Contrast()
+    values = [*measured, (usual, PRIOR_WEIGHT)]
+    weights = np.array([weight for _, weight in values])
+    light, colour = (
+        _weighted_median(np.array([getattr(one, name) for one, _ in values]), weights)
+        for name in ("light", "colour")
+    )
+    return Contrast(light, colour).bounded()
+
+
+def _weighted_median(values: FloatStack, weights: FloatStack) -> float:
+    order = np.argsort(values)
+    total = np.cumsum(weights[order])
+    return float(values[order][np.searchsorted(total, 0.5 * total[-1])])
+
+
+def _levels(
+    kept: tuple[Keyframe, ...],
+    readings: list[Reading | None],
+    land: SunlitLand,
+    before: SunlitLand | None,
+    is_locked: bool,
+) -> list[Level] | None:
+    """Return the level of sun of every keyframe; None while nothing tells sun from shade."""
+    levels = [None if each is None else each.sun for each in readings]
+    if all(level is None for level in levels):
+        levels = _carried_over(kept, land, before)
+    first = next((i for i, level in enumerate(levels) if level is not None), None)
+    if first is None:
+        return None
+    # From the first known one backwards and then forwards, always beside a known one.
+    for i in (*range(first - 1, -1, -1), *range(first + 1, len(kept))):
+        beside = levels[i + 1 if i < first else i - 1]
+        reading = readings[i]
+        assert beside is not None
+        if levels[i] is None:
+            levels[i] = (
+                beside
+                if reading is None
+                else nearer(reading.main, beside, land.contrast, is_locked)[0]
+            )
+    return [level for level in levels if level is not None]
+
+
+def _carried_over(
+    kept: tuple[Keyframe, ...], land: SunlitLand, before: SunlitLand | None
+) -> list[Level | None]:
+    """Return the levels that were known, relative to the new land."""
+    if before is None:
+        return [None] * len(kept)
+    both = land.known & before.known
+    light = float(np.median((before.light - land.light)[both]))
+    colour = float(np.median((before.colour - land.colour)[both]))
+    return [
+        None if each.level is None else Level(each.level.light + light, each.level.colour + colour)
+        for each in kept
+    ]
+
+
+def _alternated(
+    light: FloatStack, colour: FloatStack, land: SunlitLand, levels: list[Level]
+) -> tuple[SunlitLand, list[Level]]:
+    """Return land and levels after rounds of: transmittance, land from it, levels from both."""
+    first = land
+    is_seen = np.isfinite(light)
+    for _ in range(ROUNDS):
+        relative = _relative(light, colour, land, levels)
+        flat_light, flat_colour = (each.reshape(-1, light.shape[2]) for each in relative)
+        in_rows = explained(flat_light, flat_colour, land.contrast)
+        found = [each.reshape(light.shape) for each in in_rows]
+        weight = _weights(found[0], is_seen)
+        total = weight.sum(axis=0) + np.float32(LAND_WEIGHT)
+        parts = []
+        for own, rest, made in (
+            (first.light, relative[0] + land.light, found[1]),
+            (first.colour, relative[1] + land.colour, found[2]),
+        ):
+            samples = np.where(is_seen, rest - made, 0.0)
+            summed = np.einsum("krc,krc->rc", weight, samples.astype(np.float32))
+            parts.append(((summed + LAND_WEIGHT * own) / total).astype(np.float32))
+        land = replace(land, light=parts[0], colour=parts[1])
+        levels = _refined(light, colour, found[0], land, levels)
+    return land, levels
+
+
+def _relative(
+    light: FloatStack, colour: FloatStack, land: SunlitLand, levels: list[Level]
+) -> tuple[FloatStack, FloatStack]:
+    lights = np.array([level.light for level in levels], np.float32)[:, np.newaxis, np.newaxis]
+    colours = np.array([level.colour for level in levels], np.float32)[:, np.newaxis, np.newaxis]
+    return light - land.light - lights, colour - land.colour - colours
+
+
+def _weights(transmittance: FloatStack, is_seen: MaskMap) -> FloatStack:
+    weight = np.full(transmittance.shape, EDGE_WEIGHT, dtype=np.float32)
+    weight[transmittance < 0.1] = SHADE_WEIGHT
+    weight[transmittance > 0.9] = SUN_WEIGHT
+    weight[~is_seen] = 0.0
+    return weight
+
+
+def _refined(
+    light: FloatStack,
+    colour: FloatStack,
+    transmittance: FloatStack,
+    land: SunlitLand,
+    levels: list[Level],
+) -> list[Level]:
+    found = []
+    for i, level in enumerate(levels):
+        rest_light, rest_colour = light[i] - land.light, colour[i] - land.colour
+        cells = np.isfinite(rest_light)
+        shown = transmittance[i][cells]
+        level = refined(rest_light[cells], rest_colour[cells], shown, land.contrast, level)
+        found.append(level)
+    return found
+
+
+def _steady(kept: tuple[Keyframe, ...], levels: list[Level]) -> list[Level]:
+    """Return the levels of a locked camera: only the sun's height changes them, slowly."""
+    times = np.array([each.at_ns for each in kept], dtype=np.float64)
+    times = (times - times[0]) / NS_PER_S
+    table = np.array([(level.light, level.colour) for level in levels])
+    if times[-1] < 120.0:
+        smooth = np.broadcast_to(np.median(table, axis=0), table.shape)
+    else:
+        smooth = np.stack([_line(times, column) for column in table.T], axis=1)
+    return [Level(float(light), float(colour)) for light, colour in smooth]
+
+
+def _line(times: FloatStack, values: FloatStack) -> FloatStack:
+    """Return a straight line through values, the half farthest from it left out."""
+    fitted = np.polyval(np.polyfit(times, values, 1), times)
+    off = np.abs(values - fitted)
+    near = off <= np.median(off)
+    line = np.polyval(np.polyfit(times[near], values[near], 1), times)
+    return np.asarray(line)

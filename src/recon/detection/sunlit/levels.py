@@ -1,0 +1,121 @@
+"""Where full sun lies in a frame: its level of light (exposure) and of colour (white balance).
+
+Most cells of a frame are alike once the land is taken out: the main level. Cells clearly brighter
+and redder beside it make the main level shade; cells clearly darker and bluer make it sun. A frame
+with neither is flat: its main level may be either, and only its neighbours in time can tell.
+"""
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.detection.sunlit.contrast import Contrast
+
+Values: TypeAlias = npt.NDArray[np.float32]
+
+LIGHT_BIN, COLOUR_BIN = 0.03, 0.02
+SMOOTHING = np.array([1.0, 2.0, 3.0, 2.0, 1.0])
+MAIN_WIDTH = 0.12
+"""Half width of the main level in light, within which its colour is read."""
+CLEAR_LIGHT, CLEAR_COLOUR = 0.45, 0.4
+"""Shares of the contrast by which a cell must differ from the main level to count."""
+LEAST_SHARE = 0.02
+"""Share of the cells that shows that there are both sun and shade."""
+MEASURED_SHARE = 0.08
+"""Share of the cells from which the second level can be measured."""
+LEAST_CELLS = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """Full sun in a frame: natural logs, relative to the land's own light and colour."""
+
+    light: float
+    colour: float
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What one frame by itself says."""
+
+    main: Level
+    sun: Level | None
+    """None for a flat frame."""
+    contrast: Contrast | None = None
+    """Where both levels can be measured."""
+    weight: float = field(default=0.0)
+
+
+def mode(values: Values, width: float) -> float:
+    """Return the most frequent value: the mean around the peak of a smoothed histogram."""
+    lowest = float(values.min())
+    counts = np.bincount(((values - lowest) / width).astype(np.intp))
+    peak = int(np.argmax(np.convolve(counts, SMOOTHING, "same")))
+    centre = lowest + (peak + 0.5) * width
+    near = values[np.abs(values - centre) < 2.0 * width]
+    return float(near.mean(dtype=np.float64)) if near.size else centre
+
+
+def level_of(light: Values, colour: Values) -> Level:
+    """Return the modes of both."""
+    return Level(mode(light, LIGHT_BIN), mode(colour, COLOUR_BIN))
+
+
+def read(light: Values, colour: Values, contrast: Contrast) -> Reading:
+    """Return what a frame's cells (N,), with the land taken out, say about the level of sun."""
+    main_light = mode(light, LIGHT_BIN)
+    near = np.abs(light - np.float32(main_light)) < MAIN_WIDTH
+    main = Level(main_light, mode(colour[near], COLOUR_BIN))
+    by_light, by_colour = CLEAR_LIGHT * contrast.light, CLEAR_COLOUR * contrast.colour
+    brighter = (light > main.light + by_light) & (colour < main.colour - by_colour)
+    darker = (light < main.light - by_light) & (colour > main.colour + by_colour)
+    share_brighter, share_darker = float(brighter.mean()), float(darker.mean())
+    if max(share_brighter, share_darker) < LEAST_SHARE:
+        return Reading(main, None)
+    is_sun = share_darker >= share_brighter
+    share, chosen = (share_darker, darker) if is_sun else (share_brighter, brighter)
+    if share < MEASURED_SHARE:
+        return Reading(main, main if is_sun else above(main, contrast))
+    other = level_of(light[chosen], colour[chosen])
+    sun, shade = (main, other) if is_sun else (other, main)
+    measured = Contrast(sun.light - shade.light, shade.colour - sun.colour)
+    return Reading(main, sun, measured, share)
+
+
+def above(shade: Level, contrast: Contrast) -> Level:
+    """Return the level of sun over a level of shade."""
+    return Level(shade.light + contrast.light, shade.colour - contrast.colour)
+
+
+def nearer(main: Level, last: Level, contrast: Contrast, is_locked: bool) -> tuple[Level, float]:
+    """Return the level of sun of a flat frame, and how doubtful it is, 0 to 1.
+
+    The main level is taken for sun or for shade, whichever changes the level of sun less. White
+    balance drifts slowly; exposure counts little unless it is locked.
+    """
+    by_light = LOCKED_WEIGHT if is_locked else AUTO_WEIGHT
+    chosen = []
+    for sun in (main, above(main, contrast)):
+        light = by_light * abs(sun.light - last.light) / contrast.light
+        chosen.append((abs(sun.colour - last.colour) / contrast.colour + light, sun))
+    chosen.sort(key=lambda pair: pair[0])
+    (least, sun), (most, _) = chosen
+    return sun, least / max(most, 1e-6)
+
+
+LOCKED_WEIGHT, AUTO_WEIGHT = 3.0, 0.3
+
+
+def refined(
+    light: Values, colour: Values, transmittance: Values, contrast: Contrast, level: Level
+) -> Level:
+    """Return the level of sun from the modes of the cells taken for sun, or else for shade."""
+    sunlit, shaded = transmittance > 0.6, transmittance < 0.25
+    sunlit_count, shaded_count = np.count_nonzero(sunlit), np.count_nonzero(shaded)
+    if sunlit_count > LEAST_CELLS and sunlit_count >= 0.3 * shaded_count:
+        return level_of(light[sunlit], colour[sunlit])
+    if shaded_count > LEAST_CELLS:
+        return above(level_of(light[shaded], colour[shaded]), contrast)
+    return level

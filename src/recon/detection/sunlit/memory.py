@@ -1,0 +1,55 @@
+"""What the method remembers from frame to frame; bounded, and never changed in place."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from recon.detection.sunlit.colour import CellColour, upsampled
+from recon.detection.sunlit.keyframes import Keyframe, SunlitLand
+from recon.detection.sunlit.levels import Level
+from recon.model.shade import FloatMap
+
+DETAIL_FRAMES = 40
+"""Frames over which the detail inside coarse cells is averaged."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detail:
+    """Mean difference (R, C) of the field's cells from the coarse cells around; light and colour.
+
+    Shade has no edges as sharp as a cell, so the detail is the land's in sun and shade alike.
+    """
+
+    light: FloatMap
+    colour: FloatMap
+    frames: int = 0
+
+    def with_frame(self, fine: CellColour, coarse: CellColour) -> "Detail":
+        """Return the detail with a frame added."""
+        share = np.float32(1.0 / min(self.frames + 1, DETAIL_FRAMES))
+        parts = []
+        for mean, cells, means in (
+            (self.light, fine.light, coarse.light),
+            (self.colour, fine.colour, coarse.colour),
+        ):
+            new = cells - upsampled(means, cells.shape)
+            blended = np.where(np.isfinite(mean), mean + share * (new - mean), new)
+            parts.append(np.where(np.isfinite(new), blended, mean).astype(np.float32))
+        return Detail(parts[0], parts[1], self.frames + 1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SunlitMemory:
+    """Keyframes, the land in full sun, and the level of sun in the latest frame."""
+
+    keyframes: tuple[Keyframe, ...] = ()
+    land: SunlitLand | None = None
+    """None while sun and shade cannot be told apart."""
+    detail: Detail | None = None
+    level: Level | None = None
+
+    def with_detail(self, fine: CellColour, coarse: CellColour) -> "SunlitMemory":
+        """Return the memory with a frame's detail."""
+        nothing = np.full(fine.light.shape, np.nan, dtype=np.float32)
+        detail = self.detail or Detail(nothing, nothing)
+        return replace(self, detail=detail.with_frame(fine, coarse))

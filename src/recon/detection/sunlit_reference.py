@@ -1,0 +1,121 @@
+"""Shade against a reference of the land in full sun, learned over the whole flight.
+
+Theory of operation, per frame:
+
+1. `cell_colour` averages light and colour (blue over red) over each cell of the field grid.
+2. Every ten seconds or more a keyframe is kept. From all keyframes, `keyframes.solved` finds the
+   land: edges that stand still are land, edges that move are shade.
+3. With the land taken out, a frame has one or two levels. `levels.read` names them sun and shade,
+   or leaves a flat frame to its neighbours in time.
+4. `contrast.explained` finds each cell's transmittance from its light and colour against full sun.
+
+While nothing has told sun from shade, no cell is valid.
+"""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from recon.detection.frame_step import RejectedFrame, shade_map, take_frame
+from recon.detection.settings import DetectionSettings
+from recon.detection.state import DetectionState
+from recon.detection.sunlit.colour import CellColour, cell_colour, upsampled
+from recon.detection.sunlit.contrast import explained
+from recon.detection.sunlit.keyframes import LEAST, Keyframe, is_due, solved, with_keyframe
+from recon.detection.sunlit.levels import LEAST_CELLS, Level, nearer, read, refined
+from recon.detection.sunlit.memory import SunlitMemory
+from recon.model.imagery import GroundImage
+from recon.model.shade import FloatMap, MaskMap, ShadeMap
+
+DOUBT = 0.6
+"""A flat frame's level is refused when the other choice is nearly as good."""
+SMOOTHED_CELLS = 5
+"""Of the median filter over the map: edges of shade are wider than 20 m."""
+
+
+def sunlit_reference(
+    state: DetectionState, image: GroundImage, settings: DetectionSettings
+) -> tuple[DetectionState, ShadeMap | RejectedFrame]:
+    """Return the state after a frame, and its shade map; see `recon.detection.Detector`."""
+    taken = take_frame(state, image, settings, cell_colour)
+    if isinstance(taken, RejectedFrame):
+        return state, taken
+    state, grid, fine = taken
+    coarse = fine.coarse()
+    is_locked = image.exposure_locked or not settings.follows_exposure
+    memory = (state.sunlit or SunlitMemory()).with_detail(fine, coarse)
+    memory = _with_keyframe(memory, coarse, image.captured_at_ns, is_locked)
+    level = None if memory.land is None else _level(memory, coarse, is_locked)
+    memory = replace(memory, level=level or memory.level)
+    found = _unknown(fine) if level is None else _transmittance(memory, level, fine)
+    return replace(state, sunlit=memory), shade_map(image, grid, found, settings)
+
+
+def _with_keyframe(
+    memory: SunlitMemory, coarse: CellColour, at_ns: int, is_locked: bool
+) -> SunlitMemory:
+    if not is_due(memory.keyframes, at_ns):
+        return memory
+    kept = with_keyframe(memory.keyframes, Keyframe(at_ns, coarse))
+    if len(kept) < LEAST:
+        return replace(memory, keyframes=kept)
+    kept, land = solved(kept, memory.land, is_locked)
+    return replace(memory, keyframes=kept, land=land, level=kept[-1].level)
+
+
+def _level(memory: SunlitMemory, coarse: CellColour, is_locked: bool) -> Level | None:
+    """Return the level of sun in a frame; None where it cannot be told."""
+    land, last = memory.land, memory.level
+    assert land is not None
+    if is_locked and last is not None:
+        return last
+    cells = coarse.seen & land.known
+    if np.count_nonzero(cells) < LEAST_CELLS:
+        return None
+    light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]
+    reading = read(light, colour, land.contrast)
+    level = reading.sun
+    if level is None:
+        if last is None:
+            return None
+        level, doubt = nearer(reading.main, last, land.contrast, is_locked)
+        if doubt > DOUBT:
+            return None
+    for _ in range(2):
+        by_light = (light - np.float32(level.light))[np.newaxis]
+        by_colour = (colour - np.float32(level.colour))[np.newaxis]
+        found, _, _ = explained(by_light, by_colour, land.contrast)
+        level = refined(light, colour, found[0], land.contrast, level)
+    return level
+
+
+def _unknown(fine: CellColour) -> tuple[FloatMap, MaskMap, FloatMap]:
+    nothing = np.zeros(fine.light.shape, dtype=np.float32)
+    return nothing, np.zeros(fine.light.shape, dtype=np.bool_), nothing
+
+
+def _transmittance(
+    memory: SunlitMemory, level: Level, fine: CellColour
+) -> tuple[FloatMap, MaskMap, FloatMap]:
+    """Return transmittance, validity and confidence, (R, C) each."""
+    land, detail = memory.land, memory.detail
+    assert land is not None
+    assert detail is not None
+    shape = fine.light.shape
+    light = fine.light - upsampled(land.light, shape) - detail.light - np.float32(level.light)
+    colour = fine.colour - upsampled(land.colour, shape) - detail.colour - np.float32(level.colour)
+    valid: MaskMap = np.isfinite(light) & np.isfinite(colour)
+    found, _, _ = explained(light, colour, land.contrast)
+    # Outside the frame as in sun: the median there must not see cells of any other value.
+    smooth = cv2.medianBlur(np.where(valid, found, np.float32(1.0)), SMOOTHED_CELLS)
+    transmittance = np.asarray(smooth, dtype=np.float32)
+    return transmittance, valid, _confidence(memory, transmittance)
+
+
+def _confidence(memory: SunlitMemory, transmittance: FloatMap) -> FloatMap:
+    """Return (R, C): the share of the keyframes gathered, times the distance from the edge."""
+    gathered = min(1.0, len(memory.keyframes) / (3.0 * LEAST))
+    clear = np.abs(transmittance - 0.5) * 2.0
+    confidence: FloatMap = (gathered * (0.3 + 0.7 * clear)).astype(np.float32)
+    return confidence

@@ -1,0 +1,308 @@
+"""Shade methods on rendered frames, without the station: quick enough to develop with.
+
+    python -m studies.shade --scenario cumulus-40 --seeds 0-4 --minutes 20
+    python -m studies.shade --scenario cumulus-40 --exposure locked --pose telemetry
+
+Frames are rendered at a small size, laid on the ground with the true pose (or telemetry's), and
+kept in a temporary folder for the next call. Unknown cells count as wrong in the IoU. The row
+`true reference` is a ceiling: the frame over the same ground under a clear sky, at the true gain.
+"""
+
+import argparse
+import hashlib
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from recon.camera import GroundProjector
+from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
+from recon.model.geo import GroundGrid
+from recon.model.imagery import CameraPose, GroundImage
+from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
+from recon.model.units import seconds_to_ns
+from recon.score.scenario import Scenario
+from recon.score.scenario_file import load_scenario
+from recon.score.simulation import rig_of, simulation_of
+from recon.sim.camera.field import FieldRenderer
+from recon.sim.camera.frames import CameraView
+
+IMAGE_CELL_M, FIELD_CELL_M = 2.0, 4.0
+FULL_COLS, FULL_ROWS = 1280, 720
+MIXED = (0.05, 0.95)
+"""Shade share of the frames that the percentile is taken over."""
+SERIAL = "SIM-IMAGER"
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """What is rendered; the key of the cache."""
+
+    scenario: str
+    seed: int
+    minutes: float
+    exposure: str
+    pose: str
+    cols: int
+    every_s: float
+
+    @property
+    def folder(self) -> Path:
+        """The flight's folder in the cache."""
+        key = hashlib.sha256(repr(self).encode()).hexdigest()[:16]
+        return Path(tempfile.gettempdir()) / "recon-shade" / f"{self.scenario}-{self.seed}-{key}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moment:
+    """A ground image and the true transmittance on the field grid."""
+
+    image: GroundImage
+    transmittance: FloatMap
+
+
+@dataclass(slots=True)
+class Tally:
+    """Sums over the frames of a flight."""
+
+    both: int = 0
+    either: int = 0
+    cells: int = 0
+    false: int = 0
+    missed: int = 0
+    unknown: int = 0
+    error: float = 0.0
+    known: int = 0
+    mixed_iou: list[float] | None = None
+    ms: list[float] | None = None
+    first_right_s: float = float("inf")
+
+    def add(self, found: ShadeMap | None, truth: FloatMap, counted: MaskMap, at_s: float) -> None:
+        """Add a frame; a rejected one is unknown throughout."""
+        is_shade = truth < SUNLIT_TRANSMITTANCE
+        valid = np.zeros_like(counted) if found is None else found.valid
+        called = np.zeros_like(counted) if found is None else valid & ~found.is_sunlit
+        wrong = counted & (~valid | (called != is_shade))
+        both = int((called & is_shade & counted).sum())
+        either = int(((called | is_shade | wrong) & counted).sum())
+        self.both += both
+        self.either += either
+        self.cells += int(counted.sum())
+        self.false += int((called & ~is_shade & counted).sum())
+        self.missed += int((valid & ~called & is_shade & counted).sum())
+        self.unknown += int((~valid & counted).sum())
+        if found is not None:
+            known = valid & counted
+            self.error += float(np.abs(found.transmittance - truth)[known].sum())
+            self.known += int(known.sum())
+        if MIXED[0] <= is_shade[counted].mean() <= MIXED[1]:
+            self.mixed_iou = [*(self.mixed_iou or []), both / max(1, either)]
+        if wrong.sum() <= 0.1 * counted.sum():
+            self.first_right_s = min(self.first_right_s, at_s)
+
+
+def main() -> int:
+    """Print a row per method, seed and scenario."""
+    options = _options()
+    cv2.setNumThreads(1)
+    print(HEAD)
+    for name in options.scenario.split(","):
+        sums: dict[str, list[tuple[float, ...]]] = {}
+        for seed in _numbers(options.seeds):
+            flight = Flight(
+                name, seed, options.minutes, options.exposure, options.pose, options.cols,
+                options.every_s,
+            )  # fmt: skip
+            for method in options.methods.split(","):
+                row = score(flight, method)
+                sums.setdefault(method, []).append(row)
+                if not options.brief:
+                    print(_row(f"{name} {seed}", method, row), flush=True)
+        for method, rows in sums.items():
+            print(_row(f"{name} all", method, _pooled(rows)), flush=True)
+    return 0
+
+
+def score(flight: Flight, method: str) -> tuple[float, ...]:
+    """Return the figures of a method on a flight."""
+    tally = Tally(ms=[])
+    state, settings = DetectionState(), DetectionSettings(cell_m=FIELD_CELL_M)
+    if flight.exposure == "locked":
+        settings = replace(settings, follows_exposure=False)
+    for moment in moments(flight):
+        started = time.perf_counter()
+        state, found = DETECTORS[method](state, moment.image, settings)
+        assert tally.ms is not None
+        tally.ms.append(1e3 * (time.perf_counter() - started))
+        shade = None if isinstance(found, RejectedFrame) else found
+        tally.add(shade, moment.transmittance, _counted(moment), moment.image.captured_at_ns / 1e9)
+    mixed, ms = tally.mixed_iou or [], tally.ms or [0.0]
+    return (
+        tally.both, tally.either, tally.cells, tally.false, tally.missed, tally.unknown,
+        tally.error, tally.known, float(np.mean(mixed)) if mixed else np.nan,
+        float(np.quantile(mixed, 0.1)) if mixed else np.nan, tally.first_right_s / 60.0,
+        float(np.mean(ms)), float(np.max(ms)),
+    )  # fmt: skip
+
+
+HEAD = (
+    f"{'scenario seed':22} {'method':18} {'IoU':>5} {'mixed':>5} {'p10':>5} {'false':>6} "
+    f"{'missed':>6} {'wrong':>6} {'unkn':>6} {'T err':>6} {'90% min':>7} {'ms':>5} {'max':>5}"
+)
+
+
+def _row(label: str, method: str, row: tuple[float, ...]) -> str:
+    both, either, cells, false, missed, unknown, error, known, mixed, p10, first, ms, most = row
+    return (
+        f"{label:22} {method:18} {both / max(1, either):5.3f} {mixed:5.3f} {p10:5.3f} "
+        f"{false / cells:6.1%} {missed / cells:6.1%} {(false + missed) / cells:6.1%} "
+        f"{unknown / cells:6.1%} {error / max(1.0, known):6.3f} {first:7.1f} {ms:5.1f} {most:5.1f}"
+    )
+
+
+def _pooled(rows: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
+    """Return sums of the counts and means of the rest."""
+    table = np.array(rows)
+    with np.errstate(all="ignore"):
+        means = [
+            float(np.nanmean(column)) if np.isfinite(column).any() else float("nan")
+            for column in table[:, 8:11].T
+        ]
+    return (*table[:, :8].sum(axis=0), *means, table[:, 11].mean(), table[:, 12].max())
+
+
+def moments(flight: Flight) -> Iterator[Moment]:
+    """Yield a flight's frames, rendered at the first call and read from the cache later."""
+    path = flight.folder
+    grid = _grid(flight)
+    if not (path / "done").exists():
+        path.mkdir(parents=True, exist_ok=True)
+        for number, moment in enumerate(_rendered(flight, grid)):
+            _write(path / f"{number:04}.npz", moment)
+        (path / "done").touch()
+    for file in sorted(path.glob("*.npz")):
+        yield _read(file, grid)
+
+
+def _write(path: Path, moment: Moment) -> None:
+    image = moment.image
+    _, png = cv2.imencode(".png", image.rgb, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    np.savez(
+        path, rgb=png, valid=np.packbits(image.valid), at_ns=image.captured_at_ns,
+        number=image.frame_id, rotation=image.pose.rotation_enu_camera,
+        position=image.pose.position_enu_m, sun=_sun(image), locked=_locked(image),
+        truth=moment.transmittance.astype(np.float16),
+    )  # fmt: skip
+
+
+def _sun(image: GroundImage) -> npt.NDArray[np.float64]:
+    found = getattr(image, "toward_sun_enu", None)
+    return np.zeros(3) if found is None else np.asarray(found)
+
+
+def _locked(image: GroundImage) -> bool:
+    return bool(getattr(image, "exposure_locked", False))
+
+
+def _read(path: Path, grid: GroundGrid) -> Moment:
+    with np.load(path) as kept:
+        rgb = cv2.imdecode(kept["rgb"], cv2.IMREAD_UNCHANGED).astype(np.uint8)
+        size = grid.rows * grid.cols
+        valid = np.unpackbits(kept["valid"])[:size].reshape(grid.rows, grid.cols).astype(np.bool_)
+        pose = CameraPose(kept["rotation"], kept["position"])
+        image = GroundImage(
+            grid, int(kept["number"]), int(kept["at_ns"]), rgb, valid, pose, serial=SERIAL,
+            toward_sun_enu=kept["sun"], exposure_locked=bool(kept["locked"]),
+        )  # fmt: skip
+        return Moment(image, kept["truth"].astype(np.float32))
+
+
+def _scenario(flight: Flight) -> Scenario:
+    return load_scenario(Path("scenarios") / f"{flight.scenario}.toml")
+
+
+def _grid(flight: Flight) -> GroundGrid:
+    scenario = _scenario(flight)
+    east_m, north_m = scenario.imager.over_m
+    half = round(scenario.imager.radius_m / FIELD_CELL_M) * FIELD_CELL_M
+    cells = round(2.0 * half / IMAGE_CELL_M)
+    return GroundGrid(scenario.frame, east_m - half, north_m + half, IMAGE_CELL_M, cells, cells)
+
+
+def _rendered(flight: Flight, grid: GroundGrid) -> Iterator[Moment]:
+    scenario = _scenario(flight)
+    renderer = _renderer(scenario, flight)
+    projector = GroundProjector(grid, renderer.camera, renderer.image_circle)
+    field = replace(grid, cell_m=FIELD_CELL_M, rows=grid.rows // 2, cols=grid.cols // 2)
+    imager = scenario.site.imager
+    assert imager is not None
+    told = rig_of(scenario.frame, imager).marked_pose
+    for number in range(round(flight.minutes * 60.0 / flight.every_s)):
+        at_s = flight.every_s * number
+        view = CameraView(at_s, number, told)
+        pose = renderer.true_pose(view) if flight.pose == "true" else told
+        rgb, valid = projector.lay_pixels(renderer.render(view), pose)
+        image = GroundImage(
+            grid, number, seconds_to_ns(at_s), rgb, valid, pose, serial=SERIAL,
+            toward_sun_enu=renderer.sky.sun_at(at_s).toward_enu,
+            exposure_locked=flight.exposure == "locked",
+        )  # fmt: skip
+        yield Moment(image, renderer.sky.on_grid(field, at_s))
+
+
+def _renderer(scenario: Scenario, flight: Flight) -> FieldRenderer:
+    setup = simulation_of(scenario, flight.seed).imager
+    assert setup is not None
+    renderer = setup.source
+    assert isinstance(renderer, FieldRenderer)
+    camera = renderer.camera.scaled_to(round(flight.cols * FULL_ROWS / FULL_COLS), flight.cols)
+    circle = renderer.image_circle
+    settings = renderer.imager
+    if flight.exposure == "locked":
+        locked = replace(settings.exposure, follows=0.0, drift_stops=0.0, white_balance=0.0)
+        settings = replace(settings, exposure=locked)
+    return FieldRenderer(
+        camera,
+        None if circle is None else circle.scaled(flight.cols / FULL_COLS),
+        renderer.seed,
+        renderer.sky,
+        settings,
+        renderer.relief,
+    )
+
+
+def _counted(moment: Moment) -> MaskMap:
+    """Return the field's cells that the lens shows."""
+    seen = cv2.resize(
+        moment.image.valid.astype(np.uint8), moment.transmittance.shape[::-1],
+        interpolation=cv2.INTER_NEAREST,
+    )  # fmt: skip
+    return seen > 0
+
+
+def _numbers(text: str) -> list[int]:
+    first, _, last = text.partition("-")
+    return list(range(int(first), int(last or first) + 1))
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="Shade methods on rendered frames.")
+    parser.add_argument("--scenario", default="cumulus-40", help="names, with commas")
+    parser.add_argument("--seeds", default="0-4", help="first-last; 1000 and above are for scores")
+    parser.add_argument("--minutes", type=float, default=20.0)
+    parser.add_argument("--every-s", type=float, default=5.0)
+    parser.add_argument("--cols", type=int, default=640, help="width of the rendered frames")
+    parser.add_argument("--exposure", choices=("auto", "locked"), default="auto")
+    parser.add_argument("--pose", choices=("true", "telemetry"), default="true")
+    parser.add_argument("--methods", default="sunlit_reference,brightness_ratio")
+    parser.add_argument("--brief", action="store_true", help="only the rows of all seeds")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
