@@ -24,7 +24,7 @@ from recon.model.command import Body
 from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
 from recon.model.person import Person
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.temporary_zone import DrawnZone
 from recon.site import Site, default_site
 from recon.station.api_views.service import Service
@@ -138,6 +138,9 @@ class FakeStation:
     ) -> OrderResponse:
         return self.service.fleet_return(serials, by, given_at_ns)
 
+    def look_aside(self, by: Person, given_at_ns: int | None = None) -> ActionResponse:
+        return self.service.look_aside(by, given_at_ns)
+
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         return self.service.dismiss_hazard(name, by)
 
@@ -170,7 +173,7 @@ class FakeStation:
     def ground_image(self) -> GroundImage | None:
         return self.image
 
-    def shade(self) -> tuple[int, ShadeMap] | None:
+    def shade(self) -> tuple[int, ShadeMap, MaskMap] | None:
         return self.service.shade()
 
     def forecast(self) -> tuple[int, SunForecast] | None:

@@ -47,6 +47,7 @@ BODIES: dict[str, tuple[str, object, Role]] = {
     "start": ("/api/surveys/1/start", START, Role.OPERATOR),
     "release": ("/api/all-stop/release", {"serials": None}, Role.OPERATOR),
     "fleet return": ("/api/fleet-return", {"serials": None}, Role.OPERATOR),
+    "look aside": ("/api/look-aside", {}, Role.OPERATOR),
     "dismiss": ("/api/vehicle/hazard/dismiss?serial=A", None, Role.OPERATOR),
     "acknowledge": ("/api/alarms/1/acknowledge", None, Role.OPERATOR),
     "holds on": ("/api/separation-hold/on", None, Role.OPERATOR),

@@ -1,5 +1,7 @@
 """Surveys and shade by HTTP: requests, refusals, answers and pictures."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from tests.ready import ready_profile, ready_site
 from tests.station.imaging.test_shade_line import ground_image
 from tests.station.station_world import HOME
 
+from recon.api.pictures import cells_png, cells_values_png
 from recon.detection import DetectionState, RejectedFrame
 from recon.detection.frame_step import FrameFault
 from recon.forecast import ForecastSettings, ForecastState
@@ -16,7 +19,10 @@ from recon.forecast.persistence import persisting
 from recon.geo import geo_from_enu
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
+from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.shade import READ_SHADE, ShadeRead, on_ground_image
+from recon.station.state.imaging import Imaging, ShadePipeline
+from recon.station.state.station import Station
 from recon.station.state.steps import JobDone
 
 FRAME = LocalFrame(HOME)
@@ -198,6 +204,31 @@ class TestShade:
         assert picture[0, 0, 0] > picture[0, 0, 2], "shade is blue"
         assert picture[0, -1, 0] < picture[0, -1, 2], "sun is yellow"
 
+    def test_what_is_in_view_without_a_value_is_hatched_and_counted_as_unknown(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        shade, sun = found()
+        seen = np.ones((3, 4), np.bool_)
+        seen[2, 2:] = False
+        put(station, shade, sun, seen)
+        cells = decoded(client.get("/api/shade.png").content)[..., 3].reshape(3, 8, 4, 8)
+        drawn = (cells > 0).mean(axis=(1, 3))
+        assert (drawn[:2] == 1.0).all()
+        assert (drawn[2, :2] == 0.25).all()
+        assert (drawn[2, 2:] == 0.0).all()
+
+    def test_the_shares_of_the_ground_in_view_add_up(self) -> None:
+        shade, _ = found()
+        seen = np.ones((3, 4), np.bool_)
+        seen[2, 2:] = False
+        station = replace(Station(), imaging=Imaging(imager_serial="IMAGER"))
+        pipeline = ShadePipeline(shade=shade, seen=seen, number=1)
+        view = shade_view(replace(station, shade=pipeline), 0)
+        assert view is not None
+        assert view.map is not None
+        assert view.map.in_view is not None
+        assert view.map.in_view.model_dump() == pytest.approx(IN_VIEW)
+
     @pytest.mark.parametrize(("asked_s", "nearest_s"), [(0.0, "0"), (44.0, "30"), (4_000.0, "600")])
     def test_the_nearest_lead_is_drawn_and_named(
         self, client: Client, station: FakeStation, asked_s: float, nearest_s: str
@@ -212,6 +243,42 @@ class TestShade:
     @pytest.mark.parametrize("authority", ["-1", "nan", "soon"])
     def test_a_lead_that_is_none_is_refused(self, client: Client, authority: str) -> None:
         assert client.get(f"/api/forecast.png?lead_s={authority}").status_code == 422
+
+
+class TestCells:
+    def test_unknown_light_is_drawn_neither_as_sun_nor_as_shade(self) -> None:
+        state = np.array([[0, 1, 1, 2]], np.uint8)
+        inside, known = np.ones((1, 4), np.bool_), np.array([[False, True, False, True]])
+        values = decoded(cells_values_png(state, inside, known))
+        assert values[0, :, 0].tolist() == [0, 128, 64, 255]
+        picture = decoded(cells_png(state, inside, known)).reshape(8, 4, 8, 4)
+        drawn = picture[..., 3] > 0
+        assert drawn.mean(axis=(0, 2)).tolist() == [0.0, 3 / 8, 2 / 8, 1.0]
+        unknown = picture[:, 2][drawn[:, 2]]
+        assert (unknown[:, 0] == unknown[:, 2]).all(), "unknown is grey"
+
+
+class TestLookAside:
+    def test_without_an_imaging_drone_it_is_refused_and_audited(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        answer = client.post("/api/look-aside", json={}).json()
+        assert answer == {
+            "accepted": False,
+            "rule": "look_aside",
+            "reason": "the site has no imaging drone",
+        }
+        assert client.get("/api/state").json()["look_aside"] is None
+
+    def test_a_survey_allows_it_only_when_asked(self, client: Client) -> None:
+        plain = client.post("/api/surveys", json=ASKED).json()["survey"]
+        allowed = client.post("/api/surveys", json={**ASKED, "look_aside_allowed": True}).json()
+        assert plain["look_aside_allowed"] is False
+        assert allowed["survey"]["look_aside_allowed"] is True
+
+
+IN_VIEW = {"sun": 0.4, "shade": 0.4, "unknown": 0.2}
+"""Of `found`, with the last row seen by half."""
 
 
 def decoded(data: bytes) -> np.ndarray:
@@ -232,14 +299,16 @@ def found() -> tuple[ShadeMap, SunForecast]:
     return shade, persisting(shade, 0.5, ForecastSettings())
 
 
-def put(station: FakeStation, shade: ShadeMap, sun: SunForecast) -> None:
+def put(
+    station: FakeStation, shade: ShadeMap, sun: SunForecast, seen: np.ndarray | None = None
+) -> None:
     """As if the worker had read them from a frame."""
     driver = station.driver
     driver.worker = None
     driver.station, _ = on_ground_image(driver.station, ground_image(1))
     job = driver.station.shade.job_id
     assert job is not None
-    read = ShadeRead(DetectionState(), ForecastState(), (shade, sun))
+    read = ShadeRead(DetectionState(), ForecastState(), (shade, sun), seen)
     driver.handle(JobDone(job, READ_SHADE, read))
 
 

@@ -78,6 +78,13 @@ class TestOnTheGround:
         again = station.recon("release-stop", "--all")
         assert (again.code, "refused (stop_latch)" in again.out) == (1, True)
 
+    def test_a_look_aside_without_its_imaging_drone_is_refused(
+        self, station: StationProcess
+    ) -> None:
+        result = station.recon("look-aside")
+        assert result.code != 0
+        assert "refused (look_aside): the imaging drone SIM-IMAGER is not connected" in result.out
+
     def test_a_temporary_zone_is_added_listed_and_ended(self, station: StationProcess) -> None:
         (first, *_) = station.recon("status", "--json").json
         place = first["position"]

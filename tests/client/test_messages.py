@@ -9,6 +9,7 @@ from tests.client import fake_state
 from recon.api import schema
 from recon.client import BadAnswerError, Staleness
 from recon.client.messages import (
+    LookAsideStatus,
     OrderMessage,
     OrderStatus,
     PhaseReport,
@@ -38,6 +39,7 @@ from recon.model.vehicle import staleness_at
 PAIRS = [
     (StateMessage, schema.StationState),
     (StationMessage, schema.StationView),
+    (LookAsideStatus, schema.LookAsideView),
     (Telemetry, schema.VehicleView),
     (OrderStatus, schema.CommandView),
     (PhaseReport, schema.PhaseView),

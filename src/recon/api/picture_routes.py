@@ -53,10 +53,10 @@ def _add_sun(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/shade.png", response_class=Response, responses=PROBLEMS | PNG)
     async def shade(form: Form = "picture") -> Response:
         """The newest shade map; its corners are in the state. Values: grey is transmittance."""
-        number, newest = found(port.shade(), NO_SHADE)
-        is_picture = form == "picture"
-        draw = pictures.shade_png if is_picture else pictures.shade_values_png
-        return png(await asyncio.to_thread(draw, newest), number)
+        number, newest, seen = found(port.shade(), NO_SHADE)
+        if form == "picture":
+            return png(await asyncio.to_thread(pictures.shade_png, newest, seen), number)
+        return png(await asyncio.to_thread(pictures.shade_values_png, newest), number)
 
     @app.get("/api/forecast.png", response_class=Response, responses=PROBLEMS | PNG)
     async def forecast(

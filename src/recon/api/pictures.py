@@ -54,9 +54,13 @@ def ground_png(image: GroundImage) -> bytes:
     return _encoded(".png", bgra, [cv2.IMWRITE_PNG_COMPRESSION, PNG_COMPRESSION])
 
 
-def shade_png(shade: ShadeMap) -> bytes:
-    """Return a shade map as a picture: sun yellowish, shade blue, unknown dotted grey."""
-    return _shares_png(np.nan_to_num(shade.transmittance, nan=0.0), shade.valid)
+def shade_png(shade: ShadeMap, seen: MaskMap) -> bytes:
+    """Return a shade map as a picture: sun yellowish, shade blue, unknown hatched grey.
+
+    `seen` (R, C) are the cells in view; where nothing was seen it is transparent.
+    """
+    unknown = seen & ~shade.valid
+    return _shares_png(np.nan_to_num(shade.transmittance, nan=0.0), shade.valid, unknown)
 
 
 def shade_values_png(shade: ShadeMap) -> bytes:
@@ -65,8 +69,9 @@ def shade_values_png(shade: ShadeMap) -> bytes:
 
 
 def forecast_png(sun: SunForecast, lead_s: float) -> bytes:
-    """Return the probability of sun at a lead as a picture; beyond a cell's horizon dotted grey."""
-    return _shares_png(*_predicted(sun, lead_s))
+    """Return the probability of sun at a lead as a picture; beyond a cell's horizon hatched."""
+    share, is_known = _predicted(sun, lead_s)
+    return _shares_png(share, is_known, ~is_known)
 
 
 def forecast_values_png(sun: SunForecast, lead_s: float) -> bytes:
@@ -74,19 +79,27 @@ def forecast_values_png(sun: SunForecast, lead_s: float) -> bytes:
     return _values_png(*_predicted(sun, lead_s))
 
 
-def cells_png(state: ByteImage, inside: MaskMap) -> bytes:
-    """Return a survey's cells as a picture: in sun filled, in shade striped, not imaged empty."""
+def cells_png(state: ByteImage, inside: MaskMap, light_known: MaskMap) -> bytes:
+    """Return a survey's cells as a picture: in sun filled, in shade striped, not imaged empty.
+
+    Imaged while the light was unknown: hatched grey, the other way than shade.
+    """
     wide, is_inside = _wide(state), _wide(inside)
     stripes = _pattern(wide.shape, lambda row, col: (row + col) % PIXELS_PER_CELL < 3)
     rgba = np.zeros((*wide.shape, 4), np.uint8)
     _paint(rgba, is_inside & (wide == CellState.IN_SUN), SUN_RGB, CELL_ALPHA)
-    _paint(rgba, is_inside & (wide == CellState.IN_SHADE) & stripes, SHADE_RGB, CELL_ALPHA + 60)
+    not_in_sun, is_known = is_inside & (wide == CellState.IN_SHADE), _wide(light_known)
+    _paint(rgba, not_in_sun & is_known & stripes, SHADE_RGB, CELL_ALPHA + 60)
+    _paint(rgba, not_in_sun & ~is_known & _hatch(wide.shape), UNKNOWN_RGB, CELL_ALPHA + 60)
     return _rgba_png(rgba)
 
 
-def cells_values_png(state: ByteImage, inside: MaskMap) -> bytes:
-    """Return a survey's cells as grey values: 0 not imaged, 127 in shade, 255 in sun."""
-    return _values_png(state.astype(np.float32) / 2.0, inside)
+def cells_values_png(state: ByteImage, inside: MaskMap, light_known: MaskMap) -> bytes:
+    """Return a survey's cells as grey values: 0 not imaged, 64 light unknown, 128 in shade, 255
+    in sun."""
+    share = state.astype(np.float32) / 2.0
+    share[(state == CellState.IN_SHADE) & ~light_known] = 0.25
+    return _values_png(share, inside)
 
 
 def nearest_lead(sun: SunForecast, lead_s: float) -> int:
@@ -101,15 +114,19 @@ def _predicted(sun: SunForecast, lead_s: float) -> tuple[FloatMap, MaskMap]:
     return share, is_known
 
 
-def _shares_png(sunlit: FloatMap, known: MaskMap) -> bytes:
+def _shares_png(sunlit: FloatMap, known: MaskMap, unknown: MaskMap) -> bytes:
     share, is_known = _wide(sunlit)[..., np.newaxis], _wide(known)
-    dots = _pattern(is_known.shape, lambda row, col: (row % 4 == 0) & (col % 4 == 0))
     colour = share * np.array(SUN_RGB) + (1.0 - share) * np.array(SHADE_RGB)
     alpha = share * SUN_ALPHA + (1.0 - share) * DEEPEST_ALPHA
     rgba = np.concatenate([colour, alpha], axis=-1).astype(np.uint8)
     rgba[~is_known] = 0
-    _paint(rgba, ~is_known & dots, UNKNOWN_RGB, UNKNOWN_ALPHA)
+    _paint(rgba, _wide(unknown) & _hatch(is_known.shape), UNKNOWN_RGB, UNKNOWN_ALPHA)
     return _rgba_png(rgba)
+
+
+def _hatch(shape: tuple[int, ...]) -> MaskMap:
+    """Return where unknown is drawn: thin lines, falling to the right."""
+    return _pattern(shape, lambda row, col: (row - col) % PIXELS_PER_CELL < 2)
 
 
 def _values_png(share: FloatMap, known: MaskMap) -> bytes:

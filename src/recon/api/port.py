@@ -22,7 +22,7 @@ from recon.model.command import Body
 from recon.model.control import AuthorityHolder
 from recon.model.imagery import Frame, GroundImage
 from recon.model.person import Person
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.temporary_zone import DrawnZone
 
 
@@ -33,6 +33,8 @@ class SurveyCellStates:
     number: int
     state: npt.NDArray[np.uint8]
     inside: npt.NDArray[np.bool_]
+    light_known: npt.NDArray[np.bool_]
+    """Where the light was known when a photo was taken."""
 
 
 class StationPort(Protocol):
@@ -103,6 +105,9 @@ class StationPort(Protocol):
         Each result is the hold that the return starts with; the state shows waves and heights.
         """
 
+    def look_aside(self, by: Person, given_at_ns: int | None = None) -> ActionResponse:
+        """Have the imaging drone look aside; refusals are results, not errors."""
+
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle; False when it has none."""
 
@@ -141,8 +146,8 @@ class StationPort(Protocol):
     def ground_image(self) -> GroundImage | None:
         """Return the newest ground image."""
 
-    def shade(self) -> tuple[int, ShadeMap] | None:
-        """Return the newest shade map and its number."""
+    def shade(self) -> tuple[int, ShadeMap, MaskMap] | None:
+        """Return the number of the newest shade map, the map, and its cells in view."""
 
     def forecast(self) -> tuple[int, SunForecast] | None:
         """Return the newest forecast and its number."""

@@ -79,12 +79,12 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
         "/api/surveys/{survey_id}/cells.png", response_class=Response, responses=PROBLEMS | PNG
     )
     async def cells(survey_id: int, form: Form = "picture") -> Response:
-        """A survey's cells: not imaged, in shade, in sun; the corners are in the survey."""
+        """A survey's cells: not imaged, light unknown, in shade, in sun; corners in the survey."""
         cells = port.survey_cells(survey_id)
         known = found(cells, "" if cells is not None else _no_rows(port, survey_id))
         is_picture = form == "picture"
         draw = pictures.cells_png if is_picture else pictures.cells_values_png
-        data = await asyncio.to_thread(draw, known.state, known.inside)
+        data = await asyncio.to_thread(draw, known.state, known.inside, known.light_known)
         return png(data, known.number)
 
 

@@ -47,6 +47,10 @@ COMMANDS = {
         "fleet_return:fleet_return_command",
         "Return vehicles in separate height layers; they land one at a time.",
     ),
+    "look-aside": CommandSource(
+        "look_aside:look_aside_command",
+        "Fly the imaging drone 25 m aside and back, to tell even sun from even shade.",
+    ),
     "goto": CommandSource(
         "steering:goto_command",
         "Fly a vehicle straight to a position.",

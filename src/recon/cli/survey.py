@@ -82,6 +82,13 @@ def create_command(
         WhenDone,
         typer.Option("--when-done", help="What vehicles do when finished or low on battery."),
     ] = WhenDone.RETURN_HOME,
+    look_aside: Annotated[
+        bool,
+        typer.Option(
+            "--look-aside",
+            help="The imaging drone may look aside by itself while light is mostly unknown.",
+        ),
+    ] = False,
     as_json: JsonOption = False,
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
@@ -100,6 +107,7 @@ def create_command(
         "camera": {"interval_s": interval},
         "budget": {"rounds": rounds, "time_s": None if minutes is None else 60.0 * minutes},
         "when_done": when_done.value,
+        "look_aside_allowed": look_aside,
     }
 
     async def work(station: Station) -> int:
@@ -254,7 +262,7 @@ def _print_surveys(surveys: list[SurveyStatus]) -> None:
     ]
     columns = (
         *("number", "name", "phase", "rows", "region"),
-        *("not yet", "in shade", "in sun", "reason"),
+        *("not yet", "light unknown", "in shade", "in sun", "reason"),
     )
     print_table("surveys", columns, rows)
     members = [
@@ -269,10 +277,15 @@ def _print_surveys(surveys: list[SurveyStatus]) -> None:
         print_table("vehicles", ("vehicle", "activity"), members)
 
 
-def _areas(survey: SurveyStatus) -> tuple[str, str, str, str]:
+def _areas(survey: SurveyStatus) -> tuple[str, ...]:
     figures = survey.figures
     if figures is None:
-        return "", "", "", ""
-    areas = (figures.region_m2, figures.not_yet_m2, figures.in_shade_m2, figures.in_sun_m2)
-    region, not_yet, in_shade, in_sun = (f"{area / HECTARE_M2:.2f} ha" for area in areas)
-    return region, f"not yet {not_yet}", f"in shade {in_shade}", f"in sun {in_sun}"
+        return "", "", "", "", ""
+    areas = {
+        "": figures.region_m2,
+        "not yet ": figures.not_yet_m2,
+        "light unknown ": figures.sun_unknown_m2,
+        "in shade ": figures.in_shade_m2,
+        "in sun ": figures.in_sun_m2,
+    }
+    return tuple(f"{what}{area_m2 / HECTARE_M2:.2f} ha" for what, area_m2 in areas.items())

@@ -16,6 +16,7 @@ M = TypeVar("M")
 SHOWN_CHARACTERS = 60
 
 ReturnStage = Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
+LookAsideStageName = Literal["aside", "waiting", "back", "done", "stopped"]
 
 
 class PhaseReport(msgspec.Struct, frozen=True):
@@ -100,6 +101,24 @@ class FleetReturnMessage(msgspec.Struct, frozen=True):
     """The newest return in layers."""
 
     vehicles: tuple[VehicleReturn, ...]
+
+
+class LookAsideStatus(msgspec.Struct, frozen=True):
+    """The newest look aside of the imaging drone. `reason` states why it waits or has stopped."""
+
+    serial: str
+    vehicle_name: str
+    stage: LookAsideStageName
+    begun_by: str
+    begun_age_s: float
+    bearing_deg: float
+    reason: str | None
+    survey_id: int | None
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it is done or has stopped."""
+        return self.stage in ("done", "stopped")
 
 
 class AlarmStatus(msgspec.Struct, frozen=True):
@@ -253,6 +272,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     commands: tuple[OrderStatus, ...]
     alarms: tuple[AlarmStatus, ...]
     fleet_return: FleetReturnMessage | None = None
+    look_aside: LookAsideStatus | None = None
     stop_latch: StopLatchStatus | None = None
     links: tuple[LinkStatus, ...] = ()
 

@@ -10,6 +10,7 @@ from recon.client.messages import (
     AnswerMessage,
     AuditLogPage,
     LinkStatus,
+    LookAsideStatus,
     OrderStatus,
     StateMessage,
     StopAnswer,
@@ -136,6 +137,21 @@ class Station:
     async def stop_in_force(self) -> StopLatchStatus | None:
         """Return the all stop in force; None without one."""
         return (await self._state()).stop_latch
+
+    async def look_aside(self) -> Refusal | None:
+        """Have the imaging drone fly 25 m aside and back; None on success.
+
+        It goes on after this call; `looking_aside` has the progress, a hold stops it.
+        """
+        request = {"given_at_unix_ms": self._order_api.station_time_ms()}
+        answer = await self._http.post(
+            "/api/look-aside", request, AnswerMessage, "an answer to a look aside"
+        )
+        return answer.refusal
+
+    async def looking_aside(self) -> LookAsideStatus | None:
+        """Return the newest look aside; None before the first."""
+        return (await self._state()).look_aside
 
     async def waiting_apps(self) -> tuple[LinkStatus, ...] | None:
         """Return the links whose app waits to be admitted; None: the station has no list."""

@@ -49,6 +49,7 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     reason: str
     planner: str
     when_done: WhenDoneName
+    look_aside_allowed: bool
     round: int
     missions: int
     flown_m: float

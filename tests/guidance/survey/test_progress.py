@@ -310,11 +310,34 @@ class TestFigures:
         state, _ = step(state, [], LATE_NS)
         found = figures(state)
         assert found.region_m2 == found.reached_m2 == pytest.approx(60_000.0, rel=0.02)
-        parts = (found.not_yet_m2, found.in_shade_m2, found.in_sun_m2)
+        parts = (found.not_yet_m2, found.sun_unknown_m2, found.in_sun_m2)
         assert min(parts) > 0.0
         assert sum(parts) == pytest.approx(found.region_m2)
-        assert found.sun_unknown_m2 == found.in_shade_m2
+        assert found.in_shade_m2 == 0.0
         assert found.time_to_95_imaged_s is None
+
+    def test_unknown_light_is_neither_sun_nor_shade(self) -> None:
+        """A row flown in shade, and one while the shade maps had no value."""
+        created = create(PLAN)
+        assert isinstance(created, SurveyState)
+        state = start(created, ["A", "B"], 0)
+        assert isinstance(state, SurveyState)
+        for t in (12.0, 20.0, 28.0, 36.0, 44.0):
+            state = observe_shade(state, shade(t, is_lit=False))
+        state = observe(state, "A", row_flown())
+        state, _ = step(state, [], LATE_NS)
+        in_shade_m2 = figures(state).in_shade_m2
+        assert in_shade_m2 > 0.0
+        assert figures(state).sun_unknown_m2 == 0.0
+        for t in (1012.0, 1020.0, 1028.0, 1036.0, 1044.0):
+            state = observe_shade(state, shade(t, valid=False))
+        later = [replace(s, at_ns=s.at_ns + LATE_NS, north_m=s.north_m + 60.0) for s in row_flown()]
+        state, _ = step(observe(state, "B", later), [], 3 * LATE_NS)
+        found = figures(state)
+        assert found.in_shade_m2 == in_shade_m2
+        assert found.sun_unknown_m2 > 0.0
+        parts = (found.not_yet_m2, found.sun_unknown_m2, found.in_shade_m2)
+        assert sum(parts) == pytest.approx(found.region_m2)
 
     def test_before_the_start_nothing_counts(self) -> None:
         created = create(PLAN)

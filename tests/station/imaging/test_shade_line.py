@@ -15,7 +15,7 @@ from recon.site import Site
 from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.frames import LAY_FRAME
-from recon.station.imaging.shade import READ_SHADE, ReadShade
+from recon.station.imaging.shade import READ_SHADE, ReadShade, seen_cells
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
 from recon.station.state.imaging import WAITING_KEPT
@@ -185,3 +185,16 @@ def test_the_same_results_give_the_same_station() -> None:
         again.happens(event)
     assert again.station.shade.number == 5
     assert again.station.shade.shade is first.station.shade.shade
+
+
+def test_the_cells_in_view_are_those_whose_middle_the_image_shows() -> None:
+    """Also on a coarser grid that reaches farther than the image on two sides."""
+    image = ground_image(1)
+    image.valid[:, 100:] = False
+    grid = GroundGrid(image.grid.frame, -68.0, 64.0, 4.0, 36, 20)
+    seen = seen_cells(image, grid)
+    assert not seen[:, 0].any()
+    assert not seen[32:].any()
+    assert seen[:32, 1:].all()
+    east = GroundGrid(image.grid.frame, 20.0, 64.0, 4.0, 4, 6)
+    assert seen_cells(image, east).tolist() == [[True] * 4 + [False] * 2] * 4

@@ -33,7 +33,8 @@ class TestFlownByTwo:
 
     def test_without_an_imaging_drone_the_light_is_unknown(self, flown: SurveyedWorld) -> None:
         assert flown.figures().in_sun_m2 == 0.0
-        assert flown.figures().sun_unknown_m2 == flown.figures().in_shade_m2
+        assert flown.figures().in_shade_m2 == 0.0
+        assert flown.figures().sun_unknown_m2 > 0.98 * flown.figures().reached_m2
 
     def test_every_mission_passed_the_gate_as_guidance(self, flown: SurveyedWorld) -> None:
         given = flown.missions()

@@ -33,6 +33,7 @@ function image(frame_id: number): GroundImageView {
     captured_age_s: 0.5,
     captured_sigma_s: 0.2,
     registration: "unregistered",
+    exposure_locked: false,
     reference: "telemetry",
     corners: [at(frame_id, 10), at(10, 10), at(10, -10), at(frame_id, -10)],
     cell_m: 1,

@@ -13,6 +13,7 @@ function image(frame_id: number, captured_age_s: number): GroundImageView {
     captured_age_s,
     captured_sigma_s: 0.2,
     registration: "unregistered",
+    exposure_locked: false,
     reference: "telemetry at the marked frame",
     corners: [at(-10, 10), at(10, 10), at(10, -10), at(-10, -10)],
     cell_m: 0.5,

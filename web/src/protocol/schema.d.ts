@@ -293,6 +293,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/look-aside": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Look Aside
+         * @description Have the imaging drone fly 25 m aside and back, so that a flat scene is decided.
+         *
+         *     Guidance has it meanwhile; `look_aside` in the state shows the progress.
+         */
+        post: operations["look_aside_api_look_aside_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/orders": {
         parameters: {
             query?: never;
@@ -466,7 +488,7 @@ export interface paths {
         };
         /**
          * Cells
-         * @description A survey's cells: not imaged, in shade, in sun; the corners are in the survey.
+         * @description A survey's cells: not imaged, light unknown, in shade, in sun; corners in the survey.
          */
         get: operations["cells_api_surveys__survey_id__cells_png_get"];
         put?: never;
@@ -1273,6 +1295,11 @@ export interface components {
                 number,
                 number
             ][];
+            /**
+             * Exposure Locked
+             * @description by the site: the pilot locks exposure and white balance before takeoff
+             */
+            exposure_locked: boolean;
             /** Frame Id */
             frame_id: number;
             /**
@@ -1389,6 +1416,21 @@ export interface components {
             person: string;
         };
         /**
+         * LightSharesView
+         * @description Shares of the ground in view; they add up to 1.
+         */
+        LightSharesView: {
+            /** Shade */
+            shade: number;
+            /** Sun */
+            sun: number;
+            /**
+             * Unknown
+             * @description seen, but neither sun nor shade is known there
+             */
+            unknown: number;
+        };
+        /**
          * LimitsView
          * @description The site's limits for every vehicle.
          */
@@ -1456,6 +1498,50 @@ export interface components {
             /** Unknown Pid */
             unknown_pid: number;
             waiting: components["schemas"]["WaitingAppView"] | null;
+        };
+        /**
+         * LookAsideRequest
+         * @description The site's imaging drone is to fly a little aside and back.
+         */
+        LookAsideRequest: {
+            /**
+             * Given At Unix Ms
+             * @description when its person gave it, in Unix milliseconds of the station's time (a state's `time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
+             */
+            given_at_unix_ms?: number | null;
+        };
+        /**
+         * LookAsideView
+         * @description The newest look aside of the imaging drone.
+         */
+        LookAsideView: {
+            /** Bearing Deg */
+            bearing_deg: number;
+            /** Begun Age S */
+            begun_age_s: number;
+            /** Begun By */
+            begun_by: string;
+            /**
+             * Reason
+             * @description why it waits beside its place, or has stopped
+             */
+            reason: string | null;
+            /** Serial */
+            serial: string;
+            /** Since Age S */
+            since_age_s: number;
+            /**
+             * Stage
+             * @enum {string}
+             */
+            stage: "aside" | "waiting" | "back" | "done" | "stopped";
+            /**
+             * Survey Id
+             * @description the survey it began for by itself; null: ordered
+             */
+            survey_id: number | null;
+            /** Vehicle Name */
+            vehicle_name: string;
         };
         /**
          * MissionOrder
@@ -1800,6 +1886,8 @@ export interface components {
                 number,
                 number
             ][];
+            /** @description null: the frame shows none of the cells */
+            in_view: components["schemas"]["LightSharesView"] | null;
             /**
              * Known Share
              * @description of all cells: those with a known value
@@ -1878,6 +1966,7 @@ export interface components {
             ground_image: components["schemas"]["GroundImageView"] | null;
             /** Links */
             links: components["schemas"]["LinkView"][];
+            look_aside: components["schemas"]["LookAsideView"] | null;
             shade: components["schemas"]["ShadeLineView"] | null;
             site: components["schemas"]["SiteView"] | null;
             station: components["schemas"]["StationView"];
@@ -2067,7 +2156,7 @@ export interface components {
         SurveyFiguresView: {
             /**
              * In Shade M2
-             * @description imaged, not certainly in sun
+             * @description imaged, light known, not certainly in sun
              */
             in_shade_m2: number;
             /** In Sun M2 */
@@ -2083,7 +2172,7 @@ export interface components {
             region_m2: number;
             /**
              * Sun Unknown M2
-             * @description imaged, light unknown
+             * @description imaged, not certainly in sun, light unknown
              */
             sun_unknown_m2: number;
             /** Time To 95 Imaged S */
@@ -2161,6 +2250,12 @@ export interface components {
             front_overlap: number;
             /** Height Above Takeoff M */
             height_above_takeoff_m: number;
+            /**
+             * Look Aside Allowed
+             * @description the imaging drone may look aside by itself while light is mostly unknown
+             * @default false
+             */
+            look_aside_allowed: boolean;
             /**
              * Name
              * @description null: the region's name
@@ -2245,6 +2340,8 @@ export interface components {
             height_above_takeoff_m: number;
             /** Id */
             id: number;
+            /** Look Aside Allowed */
+            look_aside_allowed: boolean;
             /** Missions */
             missions: number;
             /** Name */
@@ -2987,6 +3084,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    look_aside_api_look_aside_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LookAsideRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ActionResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };

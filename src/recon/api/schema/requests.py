@@ -179,6 +179,12 @@ class FleetReturnRequest(StrictMessage):
     given_at_unix_ms: GivenAt = None
 
 
+class LookAsideRequest(StrictMessage):
+    """The site's imaging drone is to fly a little aside and back."""
+
+    given_at_unix_ms: GivenAt = None
+
+
 class StopReleaseRequest(StrictMessage):
     """Vehicles to release from an all stop; null: all, also those that connect later."""
 

@@ -15,6 +15,9 @@ class GroundImageView(Message):
     captured_age_s: float
     captured_sigma_s: float
     registration: Literal["unregistered"]
+    exposure_locked: bool = Field(
+        description="by the site: the pilot locks exposure and white balance before takeoff"
+    )
     reference: str = Field(description="the telemetry used for the marked frame")
     corners: list[tuple[float, float]]
     cell_m: float
@@ -84,6 +87,14 @@ class SiteView(Message):
     pads: list[PadView]
 
 
+class LightSharesView(Message):
+    """Shares of the ground in view; they add up to 1."""
+
+    sun: float
+    shade: float
+    unknown: float = Field(description="seen, but neither sun nor shade is known there")
+
+
 class ShadeMapView(Message):
     """The newest shade map; corners are (longitude, latitude) NW, NE, SE, SW."""
 
@@ -91,6 +102,7 @@ class ShadeMapView(Message):
     captured_age_s: float
     known_share: float = Field(description="of all cells: those with a known value")
     sunlit_share: float | None = Field(description="of the known cells")
+    in_view: LightSharesView | None = Field(description="null: the frame shows none of the cells")
     mean_confidence: float | None = Field(description="of the known cells")
     corners: list[tuple[float, float]]
     cell_m: float

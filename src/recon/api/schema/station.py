@@ -100,6 +100,20 @@ class FleetReturnView(Message):
     vehicles: list[ReturningView]
 
 
+class LookAsideView(Message):
+    """The newest look aside of the imaging drone."""
+
+    serial: str
+    vehicle_name: str
+    stage: Literal["aside", "waiting", "back", "done", "stopped"]
+    since_age_s: float
+    begun_by: str
+    begun_age_s: float
+    bearing_deg: float
+    reason: str | None = Field(description="why it waits beside its place, or has stopped")
+    survey_id: int | None = Field(description="the survey it began for by itself; null: ordered")
+
+
 class StationState(Message):
     """Everything a console shows; the stream pushes one of these at up to 10 Hz."""
 
@@ -114,5 +128,6 @@ class StationState(Message):
     temporary_zones: list[TemporaryZoneView]
     ground_image: GroundImageView | None
     fleet_return: FleetReturnView | None
+    look_aside: LookAsideView | None
     shade: ShadeLineView | None
     surveys: list[SurveyView]

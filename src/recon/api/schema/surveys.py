@@ -55,6 +55,10 @@ class SurveyRequest(StrictMessage):
         default="return_home",
         description="what vehicles do when it is complete, or no battery is sufficient for a row",
     )
+    look_aside_allowed: bool = Field(
+        default=False,
+        description="the imaging drone may look aside by itself while light is mostly unknown",
+    )
     camera: SurveyCameraRequest = SurveyCameraRequest()
     budget: SurveyBudgetRequest = SurveyBudgetRequest()
 
@@ -76,9 +80,9 @@ class SurveyFiguresView(Message):
     region_m2: float
     reached_m2: float = Field(description="imaged by the rows with certainty")
     not_yet_m2: float
-    in_shade_m2: float = Field(description="imaged, not certainly in sun")
+    in_shade_m2: float = Field(description="imaged, light known, not certainly in sun")
     in_sun_m2: float
-    sun_unknown_m2: float = Field(description="imaged, light unknown")
+    sun_unknown_m2: float = Field(description="imaged, not certainly in sun, light unknown")
     time_to_95_imaged_s: float | None
     time_to_95_in_sun_s: float | None
 
@@ -119,6 +123,7 @@ class SurveyView(Message):
     started_by: str | None
     planner: str
     when_done: WhenDoneName
+    look_aside_allowed: bool
     height_above_takeoff_m: float
     speed_mps: float
     round: int

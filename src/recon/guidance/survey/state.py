@@ -93,10 +93,10 @@ class CoverageFigures:
     """Certain to be on photos of the rows; less than the region where rows had to be cut."""
     not_yet_m2: float
     in_shade_m2: float
-    """Imaged, and not certainly in sun."""
+    """Imaged with the light known, and not certainly in sun."""
     in_sun_m2: float
     sun_unknown_m2: float
-    """Imaged without a shade map of that moment; counted as in shade."""
+    """Imaged while no shade map had a value: neither in sun nor in shade."""
     time_to_95_imaged_s: float | None
     time_to_95_in_sun_s: float | None
     """Of the reached cells."""
@@ -107,14 +107,14 @@ def figures(state: SurveyState) -> CoverageFigures:
     cells, progress = state.plan.cells, state.progress
     inside = cells.is_inside
     states = progress.state[inside]
-    unknown = (states == CellState.IN_SHADE) & ~progress.is_sun_known[inside]
+    not_in_sun, is_known = states == CellState.IN_SHADE, progress.is_sun_known[inside]
     return CoverageFigures(
         region_m2=float(inside.sum()) * cells.cell_m2,
         reached_m2=float(cells.is_reached.sum()) * cells.cell_m2,
         not_yet_m2=_area_m2(states, CellState.NOT_YET, cells.cell_m2),
-        in_shade_m2=_area_m2(states, CellState.IN_SHADE, cells.cell_m2),
+        in_shade_m2=float((not_in_sun & is_known).sum()) * cells.cell_m2,
         in_sun_m2=_area_m2(states, CellState.IN_SUN, cells.cell_m2),
-        sun_unknown_m2=float(unknown.sum()) * cells.cell_m2,
+        sun_unknown_m2=float((not_in_sun & ~is_known).sum()) * cells.cell_m2,
         time_to_95_imaged_s=_after_s(state, progress.imaged_95_at_ns),
         time_to_95_in_sun_s=_after_s(state, progress.in_sun_95_at_ns),
     )

@@ -6,7 +6,7 @@ from recon.api import schema
 from recon.geo import geo_from_enu
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.station.state.station import Station
 
@@ -24,6 +24,7 @@ def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView |
         captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
         captured_sigma_s=0.25 if profile is None else profile.video_latency_sigma_s,
         registration=image.registration.value,
+        exposure_locked=image.exposure_locked,
         reference=_reference_text(imaging.is_reference_assumed),
         corners=corners_lon_lat(image.grid),
         cell_m=image.grid.cell_m,
@@ -50,23 +51,34 @@ def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
         frames_dropped=line.frames_dropped,
         rejected=None if line.rejected is None else line.rejected.reason,
         error=line.error,
-        map=None if line.shade is None else _map(line.shade, line.number, now_ns),
+        map=None if line.shade is None else _map(line.shade, line.seen, line.number, now_ns),
         forecast=None if line.sun is None else _forecast(line.sun, line.number, now_ns),
     )
 
 
-def _map(shade: ShadeMap, number: int, now_ns: int) -> schema.ShadeMapView:
+def _map(shade: ShadeMap, seen: MaskMap | None, number: int, now_ns: int) -> schema.ShadeMapView:
     known = int(shade.valid.sum())
     return schema.ShadeMapView(
         number=number,
         captured_age_s=ns_to_seconds(now_ns - shade.captured_at_ns),
         known_share=known / shade.valid.size,
         sunlit_share=float(shade.is_sunlit.sum() / known) if known else None,
+        in_view=_light_shares(shade, shade.valid if seen is None else seen | shade.valid),
         mean_confidence=float(np.mean(shade.confidence[shade.valid])) if known else None,
         corners=corners_lon_lat(shade.grid),
         cell_m=shade.grid.cell_m,
         rows=shade.grid.rows,
         cols=shade.grid.cols,
+    )
+
+
+def _light_shares(shade: ShadeMap, in_view: MaskMap) -> schema.LightSharesView | None:
+    cells = int(in_view.sum())
+    if cells == 0:
+        return None
+    sun, known = int(shade.is_sunlit.sum()), int(shade.valid.sum())
+    return schema.LightSharesView(
+        sun=sun / cells, shade=(known - sun) / cells, unknown=(cells - known) / cells
     )
 
 

@@ -1,4 +1,4 @@
-"""Surveys and the fleet return, as the API sends them."""
+"""Surveys, the fleet return and looks aside, as the API sends them."""
 
 from collections.abc import Iterable
 from functools import lru_cache
@@ -42,6 +42,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         started_by=record.started_by or None,
         planner=survey.planner,
         when_done=survey.when_done.value,
+        look_aside_allowed=survey.look_aside_allowed,
         height_above_takeoff_m=survey.height_above_takeoff_m,
         speed_mps=survey.speed_mps,
         round=0 if state is None else state.round,
@@ -115,8 +116,9 @@ def _figures(state: SurveyState) -> schema.SurveyFiguresView:
 
 
 def cells_number(state: SurveyState) -> int:
-    """Return a number that rises whenever a cell does: the sum of their states."""
-    return int(state.progress.state.sum(dtype="int64"))
+    """Return a number that rises whenever a cell does: with its state, or its known light."""
+    progress = state.progress
+    return int(progress.state.sum(dtype="int64") + progress.is_sun_known.sum(dtype="int64"))
 
 
 def _cells(state: SurveyState) -> schema.SurveyCellsView:
@@ -150,6 +152,24 @@ def fleet_return_view(station: Station, now_ns: int) -> schema.FleetReturnView |
         age_s=ns_to_seconds(now_ns - running.called_at_ns),
         is_over=running.is_over,
         vehicles=[_returning(member, now_ns) for member in in_turn(running)],
+    )
+
+
+def look_aside_view(station: Station, now_ns: int) -> schema.LookAsideView | None:
+    """Return the newest look aside; None before the first."""
+    newest = station.look_asides.newest
+    if newest is None:
+        return None
+    return schema.LookAsideView(
+        serial=newest.serial,
+        vehicle_name=newest.name,
+        stage=newest.stage.value,
+        since_age_s=ns_to_seconds(now_ns - newest.since_ns),
+        begun_by=newest.by,
+        begun_age_s=ns_to_seconds(now_ns - newest.begun_at_ns),
+        bearing_deg=newest.bearing_deg,
+        reason=newest.reason or None,
+        survey_id=newest.survey_id,
     )
 
 

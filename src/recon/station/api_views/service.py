@@ -19,6 +19,7 @@ from recon.model.event import (
     AuthorityTaken,
     FleetReturnOrdered,
     HazardDismissed,
+    LookAsideOrdered,
     OperatorOrder,
     OwnerConnected,
     OwnerDisconnected,
@@ -32,7 +33,7 @@ from recon.model.event import (
 )
 from recon.model.imagery import Frame, GroundImage
 from recon.model.person import Person
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.temporary_zone import DrawnZone
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
@@ -48,6 +49,7 @@ from recon.station.api_views.vehicle_views import preflight_view
 from recon.station.api_views.zone_views import zone_views
 from recon.station.control import handover, preflight, stop_latch, temporary_zones
 from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
+from recon.station.operations.look_aside.commands import refusal as look_aside_refusal
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import is_dismissible
@@ -214,6 +216,13 @@ class Service:
         called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
         return schema.OrderResponse(results=[self._call_one(s, by, given_at_ns) for s in called])
 
+    def look_aside(self, by: Person, given_at_ns: int | None = None) -> schema.ActionResponse:
+        """Have the imaging drone look aside; the audit has a refusal too."""
+        event = LookAsideOrdered(by.label, given_at_ns, by.name)
+        refused = look_aside_refusal(self.driver.station, event, self.driver.now_ns())
+        self.driver.handle(event)
+        return _action(refused)
+
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle."""
         if not is_dismissible(self.driver.station, name, self.driver.now_ns()):
@@ -269,10 +278,12 @@ class Service:
         """Return the newest ground image."""
         return self.driver.station.imaging.ground_image
 
-    def shade(self) -> tuple[int, ShadeMap] | None:
-        """Return the newest shade map and its number."""
+    def shade(self) -> tuple[int, ShadeMap, MaskMap] | None:
+        """Return the number of the newest shade map, the map, and its cells in view."""
         line = self.driver.station.shade
-        return None if line.shade is None else (line.number, line.shade)
+        if line.shade is None:
+            return None
+        return line.number, line.shade, line.shade.valid if line.seen is None else line.seen
 
     def forecast(self) -> tuple[int, SunForecast] | None:
         """Return the newest forecast and its number."""
@@ -329,19 +340,16 @@ class Service:
         refusal: Refusal | None,
     ) -> schema.ActionResponse:
         """Handle an operator command, unless it is refused."""
-        if refusal is not None:
-            return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
-        self.driver.handle(event)
-        return schema.ActionResponse(accepted=True, rule=None, reason=None)
+        if refusal is None:
+            self.driver.handle(event)
+        return _action(refusal)
 
     def _decided(
         self, event: AppAdmitted | AppRefused, refusal: Refusal | None
     ) -> schema.ActionResponse:
         """Handle a decision about a waiting app; a refused one changes nothing but the audit."""
         self.driver.handle(event)
-        if refusal is not None:
-            return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
-        return schema.ActionResponse(accepted=True, rule=None, reason=None)
+        return _action(refusal)
 
     def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
         return schema.OrderResponse(results=[self._give_one(order) for order in orders])
@@ -395,6 +403,12 @@ class Service:
             connections_refused=0 if links is None else links.refused_connections,
             apps_listed=None if listed is None else len(listed),
         )
+
+
+def _action(refusal: Refusal | None) -> schema.ActionResponse:
+    if refusal is not None:
+        return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
+    return schema.ActionResponse(accepted=True, rule=None, reason=None)
 
 
 def _not_taken(command_id: int, serial: str | None) -> schema.OrderResult:

@@ -78,7 +78,10 @@ class SurveyService:
             return None
         state = record.state
         return SurveyCellStates(
-            cells_number(state), state.progress.state, state.plan.cells.is_inside
+            cells_number(state),
+            state.progress.state,
+            state.plan.cells.is_inside,
+            state.progress.is_sun_known,
         )
 
     def _taken(self, survey_id: int) -> schema.SurveyResponse:
@@ -126,6 +129,7 @@ def _survey(number: int, asked: schema.SurveyRequest, region: Region) -> Survey:
         counts_neighbours=asked.counts_neighbours,
         cell_m=asked.cell_m,
         when_done=WhenDone(asked.when_done),
+        look_aside_allowed=asked.look_aside_allowed,
     )
 
 

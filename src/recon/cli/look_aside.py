@@ -1,0 +1,68 @@
+"""`recon look-aside`: the imaging drone flies 25 m aside and back, and its progress."""
+
+import asyncio
+import time
+
+import msgspec
+
+from recon.cli.connection import (
+    DEFAULT_ADDRESS,
+    DONE,
+    REFUSED,
+    AddressOption,
+    JsonOption,
+    TokenOption,
+    WaitOption,
+    run_at_station,
+)
+from recon.cli.output import print_json, print_line
+from recon.client import LookAsideStatus, Station
+
+POLL_INTERVAL_S = 0.5
+
+
+def look_aside_command(
+    wait: WaitOption = 0.0,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Fly the imaging drone 25 m aside and back, to tell even sun from even shade.
+
+    It must hover. Exits once it has begun; with --wait, once it has ended or after that many
+    seconds. It continues after the exit: `recon hold` stops it.
+    """
+
+    async def work(station: Station) -> int:
+        refusal = await station.look_aside()
+        if refusal is not None:
+            print_line(f"look aside: refused ({refusal.rule}): {refusal.reason}")
+            return REFUSED
+        status = await _ended_within(station, wait)
+        assert status is not None, "the station has accepted one"
+        _print(status, as_json)
+        is_good = status.stage == "done" if wait > 0.0 else status.stage != "stopped"
+        return DONE if is_good else REFUSED
+
+    run_at_station(address, token_file, work)
+
+
+async def _ended_within(station: Station, timeout_s: float) -> LookAsideStatus | None:
+    """Return the look aside once it has ended, or at the timeout."""
+    end_s = time.monotonic() + timeout_s
+    while True:
+        status = await station.looking_aside()
+        if status is None or status.is_over or time.monotonic() >= end_s:
+            return status
+        await asyncio.sleep(POLL_INTERVAL_S)
+
+
+def _print(status: LookAsideStatus, as_json: bool) -> None:
+    if as_json:
+        print_json(msgspec.to_builtins(status))
+        return
+    reason = f": {status.reason}" if status.reason else ""
+    print_line(
+        f"{status.vehicle_name}: look aside to bearing {status.bearing_deg:.0f} deg, "
+        f"{status.stage}{reason}"
+    )
