@@ -22,15 +22,53 @@ from recon.forecast.global_shift import visible_upwind_s
 from recon.forecast.motion import ShadowMotion, motion_of
 from recon.forecast.state import PairVelocity
 from recon.model.geo import GroundGrid
-from recon.model.shade import SunForecast
+from recon.model.shade import ShadeMap, SunForecast
 
 SEEDS = range(700, 710)
 SETTINGS = ForecastSettings(lead_s=(0.0, 30.0, 60.0, 120.0, 300.0))
 
 
+def with_gaps(one: ShadeMap, share: float, seed: int) -> ShadeMap:
+    """Return the map with this share of its cells unknown, drawn at random."""
+    unknown = np.random.default_rng([900, seed]).random(one.valid.shape) < share
+    return shade_map(one.transmittance, one.captured_at_ns / 1e9, seen=one.valid & ~unknown)
+
+
 def brier(issued: SunForecast, lead: int, truth: np.ndarray, where: np.ndarray) -> float:
     chances = issued.sun_probability[lead] / 255.0
     return float(((chances - truth) ** 2)[where].mean())
+
+
+class TestUnknownCells:
+    def test_single_ones_do_not_end_the_horizon_of_all_downwind(self) -> None:
+        """A tenth of the cells undecided, elsewhere in each map."""
+        covered = []
+        for seed in SEEDS[:3]:
+            shade = DriftingShade(seed, velocity_mps=drawn_velocity(seed, fastest=5.0))
+            whole = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 60.0, 5.0)]
+            holed = [with_gaps(one, 0.1, number) for number, one in enumerate(whole)]
+            issued = forecasts("global_shift", holed, SETTINGS)[-1]
+            complete = forecasts("global_shift", whole, SETTINGS)[-1]
+            assert (issued.horizon_s[~holed[-1].valid] == 0.0).all()
+            known = holed[-1].valid
+            reached = (issued.horizon_s >= 30.0)[known].mean()
+            covered.append(reached / (complete.horizon_s >= 30.0)[known].mean())
+            truth = is_sunlit(shade, 55.0 + 30.0)
+            near = issued.horizon_s >= 30.0
+            assert brier(issued, 1, truth, near) < brier(complete, 1, truth, near) + 0.02
+        assert min(covered) > 0.9
+
+    @pytest.mark.parametrize("method", FORECASTERS)
+    def test_a_map_without_any_known_cell_predicts_nothing_and_keeps_the_prior(
+        self, method: str
+    ) -> None:
+        shade = DriftingShade(700, velocity_mps=(3.0, 1.0))
+        whole = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 60.0, 5.0)]
+        unknown = with_gaps(noisy_map(shade, 60.0), 1.0, 0)
+        *_, before, after = forecasts(method, [*whole, unknown], SETTINGS)
+        assert after.prior_sunlit == before.prior_sunlit
+        assert (after.horizon_s == 0.0).all()
+        assert (after.sun_probability == round(after.prior_sunlit * 255.0)).all()
 
 
 class TestAgainstPersistence:

@@ -6,7 +6,8 @@ Theory of operation, per map:
    median over the last minute is the motion. Without enough agreeing pairs the forecast is that
    of `persistence`, and its `method` is reported as such.
 2. At each lead a cell gets the probability of the place now upwind of it, as long as that place is
-   visible now: this bounds the cell's horizon.
+   visible now: this bounds the cell's horizon. Single unknown cells between known ones do not: they
+   get their neighbours' mean. For a cell that is unknown itself nothing is predicted.
 3. The map is blurred by the growing error of the velocity, and fades to the prior as clouds change
    shape (`shape_memory_s`).
 """
@@ -42,8 +43,10 @@ def _moving_on(
     shade: ShadeMap, motion: ShadowMotion, prior: float, settings: ForecastSettings
 ) -> SunForecast:
     lead_s = np.array(settings.lead_s, dtype=np.float64)
-    horizon_s = visible_upwind_s(shade.valid, shade.grid, motion, settings)
-    now = sunlit_now(shade, prior, settings)
+    closed = without_single_gaps(shade.valid)
+    upwind_s = visible_upwind_s(closed, shade.grid, motion, settings)
+    horizon_s = np.where(shade.valid, upwind_s, np.float32(0.0))
+    now = _filled(sunlit_now(shade, prior, settings), shade.valid, closed)
     shape = (len(lead_s), *now.shape)
     probability = np.full(shape, round(prior * SURE), dtype=np.uint8)
     for i, lead in enumerate(settings.lead_s):
@@ -63,6 +66,27 @@ def _moving_on(
         method="global_shift",
         velocity_mps=(motion.east_mps, motion.north_mps),
     )
+
+
+def without_single_gaps(known: MaskMap) -> MaskMap:
+    """Return (R, C): the known cells, and the unknown ones in gaps up to two cells wide.
+
+    Shadows' edges are wider than such a gap, and one unknown cell must not end the horizon of all
+    cells downwind of it.
+    """
+    gaps = cv2.morphologyEx(known.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
+    return gaps > 0
+
+
+def _filled(now: FloatMap, known: MaskMap, closed: MaskMap) -> FloatMap:
+    """Return (R, C): the map with the mean of the known neighbours in the closed gaps."""
+    weight = known.astype(np.float32)
+    sums, counts = (
+        cv2.boxFilter(each, -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
+        for each in (now * weight, weight)
+    )
+    gaps = closed & ~known & (counts > 0.0)
+    return np.where(gaps, sums / np.maximum(counts, 1.0), now).astype(np.float32)
 
 
 def visible_upwind_s(
