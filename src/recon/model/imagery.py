@@ -46,7 +46,11 @@ class Registration(Enum):
     """How a ground image was georeferenced."""
 
     UNREGISTERED = "unregistered"
-    """By the reference frame's pose and telemetry: errors of metres are possible."""
+    """By the marked frame's pose and telemetry: errors of metres are possible."""
+    REGISTERED = "registered"
+    """Aligned with a reference frame by its content."""
+    LOST = "lost"
+    """As unregistered, and no frame of the last seconds could be aligned."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +64,9 @@ class GroundImage:
     valid: npt.NDArray[np.bool_]
     pose: CameraPose
     registration: Registration = Registration.UNREGISTERED
+    registration_residual_m: float | None = None
+    """Median distance on the ground between features and their places in the reference frame; None
+    unless registered."""
     serial: str = ""
     """The vehicle that took it; empty when unknown."""
     toward_sun_enu: FloatArray | None = None

@@ -44,8 +44,8 @@ def geotiff_bytes(
     """Return a GeoTIFF file: red, green, blue and alpha (0 where invalid), uint8.
 
     Tags RECON_* carry the frame's id, capture time in station time (ns), registration state and
-    cell size; `captured_utc` (ISO 8601) and the marked frame's `rms_px` when given. Raises
-    `RecordError` when the image's arrays do not fit its grid.
+    residual, cell size; `captured_utc` (ISO 8601) and the marked frame's `rms_px` when given.
+    Raises `RecordError` when the image's arrays do not fit its grid.
     """
     _refuse_misfit(image)
     grid = image.grid
@@ -109,6 +109,8 @@ def _tags(image: GroundImage, captured_utc: str | None, rms_px: float | None) ->
         "RECON_CELL_M": f"{image.grid.cell_m:g}",
         "RECON_GROUND_ALTITUDE_M": f"{image.grid.frame.origin.ellipsoid_height_m:g}",
     }
+    if image.registration_residual_m is not None:
+        tags["RECON_REGISTRATION_RESIDUAL_M"] = f"{image.registration_residual_m:.3f}"
     if captured_utc is not None:
         tags["RECON_CAPTURED_UTC"] = captured_utc
     if rms_px is not None:

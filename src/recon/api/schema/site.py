@@ -14,7 +14,11 @@ class GroundImageView(Message):
     serial: str
     captured_age_s: float
     captured_sigma_s: float
-    registration: Literal["unregistered"]
+    registration: Literal["unregistered", "registered", "lost"]
+    registration_residual_m: float | None = Field(
+        description="median distance of features from their places in the reference frame, on the "
+        "ground; null unless registered"
+    )
     exposure_locked: bool = Field(
         description="by the site: the pilot locks exposure and white balance before takeoff"
     )

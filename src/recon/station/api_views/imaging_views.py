@@ -24,6 +24,7 @@ def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView |
         captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
         captured_sigma_s=0.25 if profile is None else profile.video_latency_sigma_s,
         registration=image.registration.value,
+        registration_residual_m=image.registration_residual_m,
         exposure_locked=image.exposure_locked,
         reference=_reference_text(imaging.is_reference_assumed),
         corners=corners_lon_lat(image.grid),
