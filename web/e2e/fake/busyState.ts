@@ -80,6 +80,7 @@ export function busyState(elapsed_s: number): StationState {
       captured_sigma_s: 0.2,
       registration: "unregistered",
       exposure_locked: false,
+      registration_residual_m: null,
       reference: "telemetry at the marked frame",
       corners: [at(-170, 130), at(90, 130), at(90, -130), at(-170, -130)],
       cell_m: 0.5,

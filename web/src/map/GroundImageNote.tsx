@@ -19,9 +19,12 @@ export function GroundImageNote(props: { shown: GroundImageInfo | null }) {
   );
 }
 
-const ALIGNMENT: Readonly<Record<GroundImageInfo["registration"], string>> = {
-  unregistered: "not aligned",
-};
+/** How the frame was aligned: the median distance of its features from their places. */
+function alignment({ registration, registration_residual_m: residualM }: GroundImageInfo): string {
+  if (registration === "unregistered") return "not aligned";
+  if (registration === "lost") return "alignment lost: positions may be off by metres";
+  return residualM === null ? "aligned" : `aligned to ${residualM.toFixed(1)} m`;
+}
 
 function ShownNote(props: { shown: GroundImageInfo }) {
   const { behindS } = useConsole();
@@ -34,7 +37,10 @@ function ShownNote(props: { shown: GroundImageInfo }) {
       <Show when={isOld()}>
         <strong class="map-note-old">old</strong>{" "}
       </Show>
-      Ground image: {frameCaption(props.shown, behindS())}, {ALIGNMENT[props.shown.registration]}
+      Ground image: {frameCaption(props.shown, behindS())},{" "}
+      <span classList={{ "tone-warning": props.shown.registration === "lost" }}>
+        {alignment(props.shown)}
+      </span>
       <Show when={isSuperseded(props.shown, behindS())}>
         <span class="tone-warning">; a newer frame exists</span>
       </Show>

@@ -34,6 +34,7 @@ function image(frame_id: number): GroundImageView {
     captured_sigma_s: 0.2,
     registration: "unregistered",
     exposure_locked: false,
+    registration_residual_m: null,
     reference: "telemetry",
     corners: [at(frame_id, 10), at(10, 10), at(10, -10), at(frame_id, -10)],
     cell_m: 1,

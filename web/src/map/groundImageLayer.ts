@@ -129,11 +129,11 @@ export class GroundImageLayer implements Layer {
   }
 }
 
+/** How a frame was aligned with the ground, and how well in metres. */
+type Alignment = Pick<GroundImageView, "registration" | "registration_residual_m">;
+
 /** The displayed ground image. */
-export interface GroundImageInfo extends FrameInfo {
-  /** How this frame was aligned with the ground. */
-  readonly registration: GroundImageView["registration"];
-}
+export interface GroundImageInfo extends FrameInfo, Alignment {}
 
 /** Connects the layer, which displays the ground image, and the note, which describes it. */
 export interface DisplayedGround extends GroundImageListener {
@@ -143,17 +143,20 @@ export interface DisplayedGround extends GroundImageListener {
 /** Tracks the displayed ground image over the source's states. */
 export function createDisplayedGround(source: Pick<StationSource, "state">): DisplayedGround {
   const frame = createDisplayedFrame(source, announcedIn);
-  const [registration, setRegistration] =
-    createSignal<GroundImageView["registration"]>("unregistered");
+  const [alignment, setAlignment] = createSignal<Alignment>({
+    registration: "unregistered",
+    registration_residual_m: null,
+  });
   return {
     run: frame.run,
     show: (image) => {
-      setRegistration(image.registration);
+      const { registration, registration_residual_m } = image;
+      setAlignment({ registration, registration_residual_m });
       frame.show(image.frame_id);
     },
     shown: () => {
       const info = frame.info();
-      return info === null ? null : { ...info, registration: registration() };
+      return info === null ? null : { ...info, ...alignment() };
     },
   };
 }

@@ -14,6 +14,7 @@ function image(frame_id: number, captured_age_s: number): GroundImageView {
     captured_sigma_s: 0.2,
     registration: "unregistered",
     exposure_locked: false,
+    registration_residual_m: null,
     reference: "telemetry at the marked frame",
     corners: [at(-10, 10), at(10, 10), at(10, -10), at(-10, -10)],
     cell_m: 0.5,
@@ -51,6 +52,15 @@ describe("the note on the ground image", () => {
     page.age(4.3);
     expect(isOld()).toBe(true);
     expect(text()).toMatch(/^old Ground image: frame 12, taken 5\.1 s ago/);
+  });
+
+  it("states how well a frame is aligned, and that alignment was lost", () => {
+    page = renderPage(Note, announcing(12, 12.8));
+    ground.show({ ...image(12, 0.8), registration: "registered", registration_residual_m: 0.14 });
+    expect(text()).toMatch(/, aligned to 0\.1 m$/);
+    ground.show({ ...image(12, 0.8), registration: "lost" });
+    expect(text()).toMatch(/, alignment lost: positions may be off by metres$/);
+    expect(find(page.root, ".tone-warning").textContent).toMatch(/^alignment lost/);
   });
 
   it("describes the displayed frame until a newer picture has loaded", () => {

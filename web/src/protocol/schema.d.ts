@@ -1309,9 +1309,14 @@ export interface components {
             reference: string;
             /**
              * Registration
-             * @constant
+             * @enum {string}
              */
-            registration: "unregistered";
+            registration: "unregistered" | "registered" | "lost";
+            /**
+             * Registration Residual M
+             * @description median distance of features from their places in the reference frame, on the ground; null unless registered
+             */
+            registration_residual_m: number | null;
             /** Rows */
             rows: number;
             /** Serial */

@@ -42,8 +42,8 @@ class LensView:
     """255 where a pixel of the window shows the scene, else 0."""
     inner_mask: GreyImage
     """255 where a feature may lie: the patch around it is in the scene."""
-    mask_weight: MapArray
-    """Share of shown pixels in the contrast window around each pixel; at least 0.01."""
+    mask_scale: MapArray
+    """From a mean over the contrast window to the mean of its pixels that are shown."""
     lattice_rays: FloatArray
     """Unit rays (r, c, 3) at the lattice's nodes."""
 
@@ -101,7 +101,7 @@ def view_of(
         window,
         shown,
         cv2.erode(shown, rim).astype(np.uint8, copy=False),
-        np.maximum(weight, np.float32(0.01)),
+        (1.0 / np.maximum(weight, 0.01)).astype(np.float32),
         _lattice_rays(working, window),
     )
 

@@ -18,7 +18,7 @@ from recon.model.imagery import CameraPose
 
 FloatArray = npt.NDArray[np.float64]
 
-CAUCHY_ROUNDS, TUKEY_ROUNDS = 8, 6
+MOST_ROUNDS, CONVERGED_PX = 10, 0.01
 CAUCHY, TUKEY = 2.385, 4.685
 """Tuning constants for 95 % efficiency on normal errors (Huber, Robust Statistics)."""
 LEAST_SCALE_PX, LARGEST_SCALE_PX = 0.15, 4.0
@@ -56,16 +56,19 @@ def fit_to_rays(
     prior_information = np.diag((settings.feature_sigma_px / sigmas) ** 2)
     rotation, position = start.rotation_enu_camera, start.position_enu_m
     information = prior_information
-    for number in range(CAUCHY_ROUNDS + TUKEY_ROUNDS):
-        errors, jacobian = _linearised(ground_m, rays, rotation, position, px_per_rad)
-        weights = _weights(np.hypot(*errors.T), is_last=number >= CAUCHY_ROUNDS)
-        design = jacobian.reshape(-1, 6)
-        weighted = (jacobian * weights[:, np.newaxis, np.newaxis]).reshape(-1, 6)
-        information = weighted.T @ design + prior_information
-        pull = weighted.T @ errors.ravel() - prior_information @ _moved(prior, rotation, position)
-        step: FloatArray = np.linalg.solve(information, pull).astype(np.float64, copy=False)
-        rotation = turned(rotation, step[:3])
-        position = position + step[3:]
+    for is_last in (False, True):
+        for _ in range(MOST_ROUNDS):
+            errors, jacobian = _linearised(ground_m, rays, rotation, position, px_per_rad)
+            weights = _weights(np.hypot(*errors.T), is_last=is_last)
+            design = jacobian.reshape(-1, 6)
+            weighted = (jacobian * weights[:, np.newaxis, np.newaxis]).reshape(-1, 6)
+            information = weighted.T @ design + prior_information
+            pull = weighted.T @ errors.ravel()
+            pull -= prior_information @ _moved(prior, rotation, position)
+            step: FloatArray = np.linalg.solve(information, pull).astype(np.float64, copy=False)
+            rotation, position = turned(rotation, step[:3]), position + step[3:]
+            if np.abs(design @ step).max() < CONVERGED_PX:
+                break
     errors, _ = _linearised(ground_m, rays, rotation, position, px_per_rad)
     covariance: FloatArray = np.linalg.inv(information).astype(np.float64, copy=False)
     covariance = covariance * settings.feature_sigma_px**2

@@ -15,7 +15,7 @@ from recon.camera.registration.settings import RegistrationSettings
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
-MIDDLE_LEVEL, LEVELS_PER_DEVIATION = 128.0, 40.0
+MIDDLE_LEVEL, LEVELS_PER_DEVIATION = 128, 40.0
 """Grey of the mean, and of one standard deviation: three fit on each side."""
 STEPS, LEAST_STEP_PX = 20, 0.02
 LEAST_EIGENVALUE = 1e-3
@@ -29,15 +29,21 @@ def local_contrast(view: LensView, grey: GreyImage) -> GreyImage:
     """Return the frame's local contrast, `MIDDLE_LEVEL` where there is none."""
     settings, mask = view.settings, view.mask
     side = (settings.contrast_px, settings.contrast_px)
-    shown = cv2.bitwise_and(grey, mask).astype(np.float32)
-    mean = cv2.boxFilter(shown, cv2.CV_32F, side) / view.mask_weight
-    square = cv2.sqrBoxFilter(shown, cv2.CV_32F, side) / view.mask_weight
-    deviation = cv2.sqrt(np.maximum(square - mean * mean, np.float32(0.0)))
-    deviation += np.float32(settings.contrast_floor)
-    contrast = (shown - mean) / deviation
-    levels = cv2.addWeighted(contrast, LEVELS_PER_DEVIATION, contrast, 0.0, MIDDLE_LEVEL)
-    kept = np.where(mask > 0, levels, np.float32(MIDDLE_LEVEL))
-    return np.clip(kept, 0.0, 255.0).astype(np.uint8)
+    shown = cv2.bitwise_and(grey, mask)
+    mean, square = cv2.boxFilter(shown, cv2.CV_32F, side), cv2.sqrBoxFilter(shown, cv2.CV_32F, side)
+    # In place: allocating a megabyte for each step would take longer than the step.
+    for average in (mean, square):
+        cv2.multiply(average, view.mask_scale, dst=average)
+    deviation = cv2.subtract(square, cv2.multiply(mean, mean), dst=square)
+    np.maximum(deviation, 0.0, out=deviation)
+    np.sqrt(deviation, out=deviation)
+    np.add(deviation, settings.contrast_floor, out=deviation)
+    contrast = cv2.subtract(shown, mean, dst=mean, dtype=cv2.CV_32F)
+    cv2.divide(contrast, deviation, dst=contrast, scale=LEVELS_PER_DEVIATION)
+    np.add(contrast, MIDDLE_LEVEL, out=contrast)
+    levels = np.clip(contrast, 0.0, 255.0, out=contrast).astype(np.uint8)
+    levels[mask == 0] = MIDDLE_LEVEL
+    return levels
 
 
 def choose_features(view: LensView, contrast: GreyImage) -> FloatArray:
