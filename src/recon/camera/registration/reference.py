@@ -41,7 +41,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Alignment:
-    """A frame's pose by one reference; `problem` says why it must not be used, empty if it may."""
+    """A frame's pose by one reference; `problem` states why it must not be used, else empty."""
 
     pose: CameraPose
     inliers: int

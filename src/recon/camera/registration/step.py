@@ -1,4 +1,4 @@
-"""Registration frame by frame: which reference a frame is aligned with, and what is said of it.
+"""Registration frame by frame: which reference a frame is aligned with, and with what result.
 
 Theory of operation. The first frame with enough texture, taken at a hover, becomes the reference;
 its pose is what telemetry (and, through the marked frame, the control points) gives. Each later

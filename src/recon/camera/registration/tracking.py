@@ -26,7 +26,7 @@ COARSE_TURNS_DEG = (0.0, 2.5, -2.5, 5.0, -5.0, 7.5, -7.5, 10.0, -10.0)
 
 
 def local_contrast(view: LensView, grey: GreyImage) -> GreyImage:
-    """Return the frame's local contrast, `MIDDLE_LEVEL` where there is none."""
+    """Return the frame's local contrast; `MIDDLE_LEVEL` stands for no contrast."""
     settings, mask = view.settings, view.mask
     side = (settings.contrast_px, settings.contrast_px)
     shown = cv2.bitwise_and(grey, mask)
