@@ -6,6 +6,7 @@ import type {
   FleetReturnView,
   GroundImageView,
   LinkView,
+  LookAsideView,
   ShadeLineView,
   SiteView,
   StationView,
@@ -34,6 +35,7 @@ interface FleetData {
   site: SiteView | null;
   groundImage: GroundImageView | null;
   fleetReturn: FleetReturnView | null;
+  lookAside: LookAsideView | null;
   shade: ShadeLineView | null;
   surveys: SurveyView[];
   temporaryZones: TemporaryZoneView[];
@@ -50,6 +52,7 @@ const NO_DATA: FleetData = {
   site: null,
   groundImage: null,
   fleetReturn: null,
+  lookAside: null,
   shade: null,
   surveys: [],
   temporaryZones: [],
@@ -79,6 +82,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("temporaryZones", reconcile([...state.temporary_zones], { key: "id" }));
     setView("site", reconcile(state.site));
     setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
+    setView("lookAside", reconcile(state.look_aside));
     setView("shade", reconcile(state.shade));
     setView("surveys", reconcile([...state.surveys], { key: "id" }));
     setView("groundImage", reconcile(state.ground_image));

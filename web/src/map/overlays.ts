@@ -150,7 +150,7 @@ export class ForecastLayer extends PictureOverlay {
   }
 }
 
-/** Survey coverage: cells photographed in sun (filled), in shade (striped), not yet (empty). */
+/** Survey coverage: cells photographed in sun (filled), in shade (striped), light unknown (hatched). */
 export class SurveyCellsLayer extends PictureOverlay {
   constructor(
     private readonly overlay: Overlay,

@@ -126,6 +126,10 @@ export class LiveSource implements StationSource {
     return this.requests.fleetReturn(serials, this.stationNowMs());
   }
 
+  lookAside() {
+    return this.requests.lookAside(this.stationNowMs());
+  }
+
   setAuthority(serial: string, holder: AuthorityHolder, takeOver = false) {
     return this.requests.setAuthority(serial, holder, takeOver);
   }

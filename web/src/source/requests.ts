@@ -73,6 +73,14 @@ export class Requests {
     );
   }
 
+  lookAside(given_at_unix_ms: number | null): Promise<Outcome<ActionResponse>> {
+    const body = { given_at_unix_ms };
+    return answered(
+      () => this.client.POST("/api/look-aside", { body, signal: timeout() }),
+      identity,
+    );
+  }
+
   /** `take_over`: also from another person who operates the vehicle. */
   setAuthority(
     serial: string,

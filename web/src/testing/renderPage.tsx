@@ -65,6 +65,7 @@ export type PageRequest =
     }
   | { readonly refusedLink: number }
   | { readonly fleetReturn: readonly string[] | null }
+  | { readonly lookAside: true }
   | { readonly plannedSurvey: NewSurvey }
   | {
       readonly startedSurvey: number;
@@ -208,6 +209,10 @@ function fakeSource(
     fleetReturn: async (serials) => {
       recorded.requests.push({ fleetReturn: serials });
       return { kind: "answered", value: recorded.answer };
+    },
+    lookAside: async () => {
+      recorded.requests.push({ lookAside: true });
+      return { kind: "answered", value: recorded.response };
     },
     setAuthority: async (serial, authority, takeOver) => {
       recorded.requests.push({ authority, serial, ...(takeOver && { takeOver }) });

@@ -5,6 +5,8 @@ import type { ForecastView, ShadeLineView } from "../../protocol";
 import { formatAge, formatFraction } from "../../text/quantities";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
+import { LightShares } from "./LightShares";
+import { LookAside } from "./LookAside";
 import "./sun.css";
 
 const OVERLAYS: readonly (readonly [OverlayKind, string])[] = [
@@ -36,24 +38,35 @@ export function SunPanel() {
         </For>
       </fieldset>
       <Show when={fleet.shade} fallback={<p class="panel-empty">No imaging drone at this site.</p>}>
-        {(line) => <ShadeStatus line={line()} />}
+        {(line) => (
+          <>
+            <ShadeStatus line={line()} />
+            <LookAside />
+          </>
+        )}
       </Show>
     </Panel>
   );
 }
 
 function ShadeStatus(props: { line: ShadeLineView }) {
-  const { behindS } = useConsole();
+  const { behindS, fleet } = useConsole();
   const problem = () => props.line.rejected ?? props.line.error;
   return (
     <div class="section">
       <Show when={props.line.map} fallback={<p class="muted">No shade map yet.</p>}>
         {(map) => (
-          <p>
-            In sun: {formatFraction(map().sunlit_share)} of the measured area (
-            {formatFraction(map().known_share)} of the view),{" "}
-            {formatAge(map().captured_age_s + behindS())} ago
-          </p>
+          <>
+            <Show when={map().in_view} fallback={<p class="muted">No ground in view.</p>}>
+              {(inView) => <LightShares inView={inView()} />}
+            </Show>
+            <p class="muted">
+              of the ground in view, {formatAge(map().captured_age_s + behindS())} ago
+              <Show when={fleet.groundImage}>
+                {(image) => <>; exposure {image().exposure_locked ? "locked" : "automatic"}</>}
+              </Show>
+            </p>
+          </>
         )}
       </Show>
       <Show when={props.line.forecast}>{(forecast) => <ForecastLead forecast={forecast()} />}</Show>

@@ -1,6 +1,9 @@
 import { afterEach, describe, expect, it } from "vitest";
+import type { LookAsideView } from "../../protocol";
 import { shadeLine, station, survey, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { lightPercents } from "../../text/light";
+import { GUARD_MS } from "../guard/GuardButton";
 import { SunPanel } from "./SunPanel";
 
 let page: RenderedPage;
@@ -11,13 +14,24 @@ function show(changes: Parameters<typeof shadeLine>[0] = {}) {
 }
 
 describe("sun and shade", () => {
-  it("shows the share of the measured area in sun, and its age", () => {
+  it("shows the shares of the ground in view in sun, in shade and unknown, and their age", () => {
     show();
-    expect(page.root.textContent).toContain(
-      "In sun: 62\u00a0% of the measured area (90\u00a0% of the view), 1.5 s ago",
+    expect(find(page.root, ".light-legend").textContent).toBe(
+      "Sun 56\u00a0%Shade 34\u00a0%Light unknown 10\u00a0%",
     );
+    expect(page.root.textContent).toContain("of the ground in view, 1.5 s ago");
     page.age(4);
     expect(page.root.textContent).toContain("5.5 s ago");
+  });
+
+  it("shows a scene of which nothing is known as unknown, not as shade", () => {
+    const map = shadeLine().map;
+    if (map === null) throw new Error("expected a shade map in the fake state");
+    show({ map: { ...map, sunlit_share: null, in_view: { sun: 0, shade: 0, unknown: 1 } } });
+    expect(find(page.root, ".light-legend").textContent).toBe(
+      "Sun 0\u00a0%Shade 0\u00a0%Light unknown 100\u00a0%",
+    );
+    expect(find<HTMLElement>(page.root, ".light-bar .is-unknown").style.width).toBe("100%");
   });
 
   it("shows the selected overlay on the map", () => {
@@ -57,5 +71,72 @@ describe("sun and shade", () => {
   it("reports a site without an imaging drone", () => {
     page = renderPage(SunPanel, station([vehicle(1)]));
     expect(page.root.textContent).toContain("No imaging drone at this site");
+  });
+});
+
+describe("look aside", () => {
+  const view: LookAsideView = {
+    serial: "SN-001",
+    vehicle_name: "Alder",
+    stage: "aside",
+    since_age_s: 3,
+    begun_by: "anna (127.0.0.1)",
+    begun_age_s: 3,
+    bearing_deg: 123,
+    reason: null,
+    survey_id: null,
+  };
+
+  function showImager(lookAside: LookAsideView | null, isImager = true) {
+    const vehicles = [vehicle(1, { is_imager: isImager })];
+    page = renderPage(SunPanel, station(vehicles, { shade: shadeLine(), look_aside: lookAside }));
+  }
+
+  const button = () =>
+    find<HTMLButtonElement>(page.root, "section[aria-label='Look aside'] button");
+
+  it("is ordered by a held button that names the imaging drone", () => {
+    showImager(null);
+    expect(button().getAttribute("aria-label")).toContain("25 m aside and back");
+    button().dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(GUARD_MS);
+    expect(page.requests).toEqual([{ lookAside: true }]);
+  });
+
+  it("is not offered while one is under way, or without the imaging drone", () => {
+    showImager(view);
+    expect(button().getAttribute("aria-disabled")).toBe("true");
+    page.dispose();
+    showImager(null, false);
+    expect(button().getAttribute("aria-disabled")).toBe("true");
+    page.dispose();
+    showImager({ ...view, stage: "done" });
+    expect(button().getAttribute("aria-disabled")).toBe("false");
+  });
+
+  it("shows its stage and why it waits or has stopped", () => {
+    showImager({ ...view, stage: "stopped", reason: "hover, ordered by bob" });
+    const text = find(page.root, "[data-testid=look-aside]").textContent;
+    expect(text).toContain("Alder stopped its look aside, bearing 123°");
+    expect(text).toContain("hover, ordered by bob");
+  });
+});
+
+describe("whole per cents", () => {
+  it.each([
+    [
+      { sun: 0.999, shade: 0.0005, unknown: 0.0005 },
+      { sun: 99, shade: 0, unknown: 1 },
+    ],
+    [
+      { sun: 0.333, shade: 0.333, unknown: 0.334 },
+      { sun: 33, shade: 33, unknown: 34 },
+    ],
+    [
+      { sun: 1, shade: 0, unknown: 0 },
+      { sun: 100, shade: 0, unknown: 0 },
+    ],
+  ])("of %o never read better known than they are", (shares, percents) => {
+    expect(lightPercents(shares)).toEqual(percents);
   });
 });

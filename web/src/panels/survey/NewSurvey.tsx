@@ -32,6 +32,7 @@ export function NewSurvey(props: {
       height_above_takeoff_m: Number(data.get("height")),
       speed_mps: Number(data.get("speed")),
       planner: String(data.get("planner")),
+      look_aside_allowed: data.get("look_aside") !== null,
       when_done: data.get("when_done") === "hover" ? "hover" : "return_home",
     });
     setPlanning(false);
@@ -77,6 +78,10 @@ export function NewSurvey(props: {
             <select name="when_done">
               <For each={WHEN_DONE}>{([name, label]) => <option value={name}>{label}</option>}</For>
             </select>
+          </label>
+          <label class="survey-wide survey-check">
+            <input name="look_aside" type="checkbox" />
+            Imaging drone may look aside by itself
           </label>
           <button
             type="submit"

@@ -82,17 +82,16 @@ function Figures(props: { survey: SurveyView }) {
         const percent = (area_m2: number) => sharePercent(area_m2, figures().region_m2);
         const text = () =>
           `In sun ${percent(figures().in_sun_m2)} %, in shade ${percent(figures().in_shade_m2)} %, ` +
+          `light unknown ${percent(figures().sun_unknown_m2)} %, ` +
           `remaining ${formatArea(figures().not_yet_m2)} of ${formatArea(figures().region_m2)}`;
         return (
           <>
             <div class="survey-bar" role="img" aria-label={text()}>
               <span class="is-sun" style={{ width: `${percent(figures().in_sun_m2)}%` }} />
               <span class="is-shade" style={{ width: `${percent(figures().in_shade_m2)}%` }} />
+              <span class="is-unknown" style={{ width: `${percent(figures().sun_unknown_m2)}%` }} />
             </div>
             <p>{text()}</p>
-            <Show when={figures().sun_unknown_m2 > 0}>
-              <p class="muted">light unknown: {formatArea(figures().sun_unknown_m2)}</p>
-            </Show>
           </>
         );
       }}

@@ -24,7 +24,9 @@ describe("a survey in the list", () => {
     show(survey(7));
     const text = find(page.root, "[data-testid=survey-7]").textContent;
     expect(text).toContain("7 south field: Running");
-    expect(text).toContain("In sun 40 %, in shade 10 %, remaining 1.00\u00a0ha of 2.00\u00a0ha");
+    expect(text).toContain(
+      "In sun 40 %, in shade 10 %, light unknown 0 %, remaining 1.00\u00a0ha of 2.00\u00a0ha",
+    );
     expect(text).toContain("Alder flying rows");
     expect(text).toContain("battery too low");
   });
@@ -94,9 +96,22 @@ describe("a new survey", () => {
           speed_mps: 5,
           planner: "lawnmower_once",
           when_done: "return_home",
+          look_aside_allowed: false,
         },
       },
     ]);
+  });
+
+  it("allows looks aside only when the operator ticks it", () => {
+    const regions = [area("survey", [0, 0], 50, { name: "south field" })];
+    const base = station([vehicle(1)]);
+    const site = base.site === null ? null : { ...base.site, areas: regions };
+    page = renderPage(SurveyPanel, { ...base, site });
+    find<HTMLInputElement>(page.root, "input[name=look_aside]").click();
+    find<HTMLFormElement>(page.root, "form").dispatchEvent(
+      new SubmitEvent("submit", { bubbles: true, cancelable: true }),
+    );
+    expect(page.requests).toMatchObject([{ plannedSurvey: { look_aside_allowed: true } }]);
   });
 
   it("is not available without survey regions", () => {
