@@ -35,10 +35,11 @@ from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.imagery import Frame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.imaging.frames import LAY_FRAME, LayFrame
+from recon.station.imaging.frames import LAY_FRAME
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.worker import JobRunner, ThreadWorker
+from recon.station.state.imaging import LayFrame
 from recon.station.state.steps import Job, JobDropped
 
 LIMIT_MS = 20.0

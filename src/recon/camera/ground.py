@@ -133,6 +133,7 @@ class _Source:
     """Camera model and valid pixels for frames of one size."""
 
     camera: OmnidirectionalCamera
+    circle: ImageCircle | None
     mask: MaskArray
     """(rows, cols): 255 where a pixel lies in the image circle, else 0."""
     searches_left: int
@@ -161,12 +162,16 @@ class GroundProjector:
         self._laid: cv2.typing.MatLike | None = None
 
     def lay(self, frame: Frame, pose: CameraPose) -> GroundImage:
-        """Return the frame as a ground image, marked as not aligned.
+        """Return the frame as a ground image, marked as unregistered.
 
         Raises `FrameDecodeError` for an unreadable frame, `FrameSizeError` for another aspect ratio
         than the camera's, `PoseError` for a camera that is not above the ground.
         """
-        rgb, valid = self.lay_pixels(decode_frame(frame), pose)
+        return self.lay_decoded(frame, decode_frame(frame), pose)
+
+    def lay_decoded(self, frame: Frame, pixels: RgbImage, pose: CameraPose) -> GroundImage:
+        """Return `lay` of a frame whose pixels (rows, cols, 3) are decoded already."""
+        rgb, valid = self.lay_pixels(pixels, pose)
         return GroundImage(
             grid=self.grid,
             frame_id=frame.id,
@@ -192,6 +197,11 @@ class GroundProjector:
         shown = cv2.bitwise_and(self._laid, self._laid, mask=seen)
         return shown.astype(np.uint8, copy=False), seen > 0
 
+    def lens_of(self, rgb: RgbImage) -> tuple[OmnidirectionalCamera, ImageCircle | None] | None:
+        """Return lens and image circle for frames like this one; None while it is searched for."""
+        source = self._source(rgb)
+        return None if source.searches_left > 0 else (source.camera, source.circle)
+
     def _source(self, rgb: RgbImage) -> _Source:
         size = (rgb.shape[0], rgb.shape[1])
         source = self._sources.get(size)
@@ -208,10 +218,10 @@ class GroundProjector:
         camera = self.camera.scaled_to(rgb.shape[0], rgb.shape[1])
         if self._circle is not None:
             known = self._circle.scaled(camera.cols / self.camera.cols)
-            return _Source(camera, source_mask(camera, known), searches_left=0)
+            return _Source(camera, known, source_mask(camera, known), searches_left=0)
         found = find_image_circle(rgb, camera)
         searches_left = searches - 1 if found is None else 0
-        return _Source(camera, source_mask(camera, found), searches_left)
+        return _Source(camera, found, source_mask(camera, found), searches_left)
 
 
 def source_mask(camera: OmnidirectionalCamera, circle: ImageCircle | None) -> MaskArray:

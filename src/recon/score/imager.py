@@ -19,9 +19,11 @@ from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.camera.frames import CameraView
 from recon.sim.fleet import IMAGER_SERIAL, SimulationConfig
 from recon.sim.world import Sky
-from recon.station.imaging.frames import LAY_FRAME, LayFrame
+from recon.station.imaging.frames import LAY_FRAME
+from recon.station.imaging.projection import LaidFrame
 from recon.station.imaging.shade import READ_SHADE, ReadShade, ShadeRead
 from recon.station.kernel.worker import JobRunner
+from recon.station.state.imaging import LayFrame
 from recon.station.state.settings import StationSettings
 
 PLACEHOLDER_PX = 8
@@ -67,13 +69,14 @@ def jobs_of(scenario: Scenario, sky: Sky, grid: GroundGrid, footprint: MaskMap) 
     if scenario.methods.detection != IDEAL:
         return jobs
 
-    def lay(work: LayFrame) -> GroundImage:
+    def lay(work: LayFrame) -> LaidFrame:
         nothing = np.zeros((grid.rows, grid.cols, 3), dtype=np.uint8)
         pose = CameraPose(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
         frame = work.frame
-        return GroundImage(
+        image = GroundImage(
             grid, frame.id, frame.captured_at_ns, nothing, footprint, pose, serial=IMAGER_SERIAL
         )
+        return LaidFrame(image)
 
     def read(work: ReadShade) -> ShadeRead:
         shade = true_shade(sky, grid, footprint, work.image.captured_at_ns)

@@ -15,6 +15,7 @@ from recon.site import Site
 from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.frames import LAY_FRAME
+from recon.station.imaging.projection import LaidFrame
 from recon.station.imaging.shade import READ_SHADE, ReadShade, seen_cells
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
@@ -37,7 +38,7 @@ def ground_image(second: int, level: float = 1.0) -> GroundImage:
 
 
 def laid(image: GroundImage) -> Event:
-    return JobDone(image.frame_id, LAY_FRAME, image)
+    return JobDone(image.frame_id, LAY_FRAME, LaidFrame(image))
 
 
 def jobs_of(outputs: tuple[Output, ...]) -> list[AnyJob]:

@@ -12,6 +12,7 @@ from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.survey import CellState, SurveyBudget, SurveyPhase
 from recon.station.imaging.frames import LAY_FRAME
+from recon.station.imaging.projection import LaidFrame
 from recon.station.state.steps import JobDone
 
 GRID = GroundGrid(LocalFrame(HOME), -40.0, 100.0, 1.0, 140, 200)
@@ -56,7 +57,7 @@ def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
 
 def seen(world: SurveyedWorld, number: int, is_shaded: bool) -> Event:
     image = ground_image(number, world.driver.now_ns, is_shaded)
-    return JobDone(number, LAY_FRAME, image)
+    return JobDone(number, LAY_FRAME, LaidFrame(image))
 
 
 def states(state: SurveyState, is_west: bool) -> np.ndarray:

@@ -76,6 +76,8 @@ def step(
     at_s: float,
 ) -> tuple[RegistrationState, RegisteredPose]:
     """Register one frame (rows, cols, 3) taken at `at_s`; `prior` is the pose by telemetry."""
+    if state.references and state.references[0].contrast.shape != view.mask.shape:
+        state = RegistrationState()  # frames of another size
     before = state.newest_prior
     since_s = at_s if state.last_at_s is None else state.last_at_s
     state = replace(

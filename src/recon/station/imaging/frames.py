@@ -1,26 +1,22 @@
 """Frames: kept for showing; those of the imaging drone are projected on the ground by the worker.
 
-A frame carries no capture time and no telemetry. It is projected with the telemetry nearest to its
-estimated capture time, relative to the frame on which the site's control points were marked.
+A frame carries no capture time and no telemetry. It is given the telemetry nearest to its estimated
+capture time, relative to the frame on which the site's control points were marked; the worker
+aligns it by its content from there. Frames are taken in order, one at a time.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 
-from recon.camera.ground import GroundProjector
-from recon.camera.motion import TelemetryReference, displaced_pose
-from recon.geo import shift_east_north_m, sun_position
-from recon.model.errors import ReconError
-from recon.model.geo import LatLon, LocalFrame
-from recon.model.imagery import FloatArray, Frame, GroundImage
+from recon.camera.motion import TelemetryReference
+from recon.model.imagery import Frame, Registration
 from recon.model.replacing import replace
 from recon.model.report import ImageReport
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.site import Site
 from recon.station.imaging import shade
+from recon.station.imaging.projection import LaidFrame, projection
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imaging import ImagerSample, Imaging
+from recon.station.state.imaging import ImagerSample, Imaging, LayFrame
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
 
@@ -28,19 +24,13 @@ SAMPLE_NEAR_S = 3.0
 """Running video causes telemetry dropouts of a second or two; further from the moment of capture, a
 frame would be projected from where the imaging drone was, not from where it is."""
 
+LOST_FOR_S = 10.0
+"""A climb or a flight to another place loses registration for some seconds: no trouble."""
+
+LayJob = Job[LayFrame, LaidFrame]
+
 _MISSING = "no telemetry of the imaging drone within 3 s of the frame's capture"
 _NO_PROFILE = VehicleProfile(serial="")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LayFrame:
-    """A frame to project, the telemetry at its capture, and that of the marked frame."""
-
-    frame: Frame
-    telemetry: TelemetryReference
-    reference: TelemetryReference
-    captured_utc_s: float | None = None
-    """By the computer's clock, for the sun's position; None before the clock was read."""
 
 
 def on_telemetry(station: Station, vehicle: VehicleState, now_ns: int) -> Station:
@@ -70,10 +60,8 @@ def on_frame(station: Station, vehicle: VehicleState, report: ImageReport, now_n
     station = replace(station, frames=frames, next_frame_id=frame.id + 1)
     if frame.serial != station.imaging.imager_serial:
         return station, ()
-    imaging, job = lay_job(
-        station.imaging, frame, vehicle.is_flying.value is True, _utc_s(station, frame)
-    )
-    return replace(station, imaging=imaging), () if job is None else (job,)
+    is_flying = vehicle.is_flying.value is True
+    return _started(station, lay_job(station.imaging, frame, is_flying, _utc_s(station, frame)))
 
 
 def with_sample(imaging: Imaging, imager: VehicleState, now_ns: int, kept: int) -> Imaging:
@@ -97,8 +85,12 @@ def _utc_s(station: Station, frame: Frame) -> float | None:
 
 def lay_job(
     imaging: Imaging, frame: Frame, is_flying: bool, captured_utc_s: float | None = None
-) -> tuple[Imaging, Job[LayFrame, GroundImage] | None]:
-    """Return the job for a frame; None without telemetry at its capture or a marked frame."""
+) -> tuple[Imaging, LayJob | None]:
+    """Return the job for a frame.
+
+    None without telemetry at its capture or a marked frame, and while another frame's job runs: the
+    frame waits then, in place of one that waited before.
+    """
     sample = _sample_at(imaging.samples, frame.captured_at_ns)
     if sample is None:
         return replace(imaging, latest_error=_MISSING), None
@@ -107,14 +99,41 @@ def lay_job(
         if not is_flying:
             return imaging, None
         reference = sample.telemetry
-    work = LayFrame(frame, sample.telemetry, reference, captured_utc_s)
-    job = Job(imaging.next_job_id, LAY_FRAME, work)
-    return replace(imaging, reference=reference, next_job_id=job.id + 1), job
+    dropped = imaging.frames_dropped + (imaging.waiting is not None)
+    waiting = LayFrame(frame, sample.telemetry, reference, captured_utc_s)
+    return _next(replace(imaging, reference=reference, waiting=waiting, frames_dropped=dropped))
+
+
+def _next(imaging: Imaging) -> tuple[Imaging, LayJob | None]:
+    """Start a job for the frame that waits, unless one is running."""
+    if imaging.job_id is not None or imaging.waiting is None:
+        return imaging, None
+    work = replace(imaging.waiting, registration=imaging.registration)
+    number = imaging.next_job_id
+    imaging = replace(imaging, waiting=None, job_id=number, next_job_id=number + 1)
+    return imaging, Job(number, LAY_FRAME, work)
+
+
+def _started(station: Station, started: tuple[Imaging, LayJob | None]) -> Stepped:
+    imaging, job = started
+    return replace(station, imaging=imaging), () if job is None else (job,)
 
 
 def conditions(station: Station) -> Iterator[Condition]:
-    """Yield the alarms of the imaging pipeline: frames not projected, no shade read."""
+    """Yield the alarms of the imaging pipeline: frames not projected, not aligned, not read."""
     imaging = station.imaging
+    image = imaging.ground_image
+    if image is not None and image.registration is Registration.LOST:
+        yield Condition(
+            key="registration",
+            severity=Severity.WARNING,
+            rule="registration",
+            vehicle_name=imaging.imager_serial or "",
+            text="the ground image is placed by telemetry alone and may be off by metres: "
+            f"{imaging.registration_problem}",
+            serial=imaging.imager_serial,
+            after_s=LOST_FOR_S,
+        )
     if imaging.latest_error is not None:
         yield Condition(
             key="imaging",
@@ -136,56 +155,38 @@ def _sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | 
     return nearest
 
 
-def _projection(site: Site) -> Callable[[LayFrame], GroundImage]:
-    if site.imager is None or site.frame is None or site.ground_grid is None:
-        raise ReconError("the site has no imaging drone with a ground grid")
-    imager, frame = site.imager, site.frame
-    projector = GroundProjector(site.ground_grid, imager.camera, imager.image_circle)
-    mount = site.profiles.get(imager.serial, VehicleProfile(imager.serial)).mount
-
-    def lay(work: LayFrame) -> GroundImage:
-        marked, now = work.reference, work.telemetry
-        shift_m = shift_east_north_m(frame, marked, now)
-        image = projector.lay(
-            work.frame, displaced_pose(imager.solution.pose, marked, now, shift_m, mount)
-        )
-        return replace(
-            image,
-            toward_sun_enu=_toward_sun_enu(frame, work.captured_utc_s),
-            exposure_locked=imager.exposure_locked,
-        )
-
-    return lay
-
-
-def _toward_sun_enu(frame: LocalFrame, utc_s: float | None) -> FloatArray | None:
-    """Return the unit vector to the sun; None at night and without a time."""
-    if utc_s is None:
-        return None
-    place = LatLon(frame.origin.latitude_deg, frame.origin.longitude_deg)
-    toward_enu = sun_position(place, utc_s).toward_enu
-    return toward_enu if toward_enu[2] > 0.0 else None
-
-
-def _laid(station: Station, _job_id: int, image: GroundImage, _now_ns: int) -> Stepped:
+def _laid(station: Station, job_id: int, laid: LaidFrame, _now_ns: int) -> Stepped:
     """Keep a ground image unless a newer one is there already, and read it for shade."""
-    latest = station.imaging.ground_image
-    if latest is not None and latest.captured_at_ns > image.captured_at_ns:
-        return station, ()
-    imaging = replace(station.imaging, ground_image=image, latest_error=None)
-    return shade.on_ground_image(replace(station, imaging=imaging), image)
+    imaging = station.imaging
+    if job_id == imaging.job_id:
+        imaging = replace(
+            imaging, registration=laid.registration, registration_problem=laid.problem, job_id=None
+        )
+    station, next_job = _started(station, _next(imaging))
+    latest = imaging.ground_image
+    if latest is not None and latest.captured_at_ns > laid.image.captured_at_ns:
+        return station, next_job
+    imaging = replace(station.imaging, ground_image=laid.image, latest_error=None)
+    station, outputs = shade.on_ground_image(replace(station, imaging=imaging), laid.image)
+    return station, (*next_job, *outputs)
 
 
-def _not_laid(station: Station, _job_id: int, error: str, _now_ns: int) -> Stepped:
-    return replace(station, imaging=replace(station.imaging, latest_error=error)), ()
+def _not_laid(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
+    imaging = replace(_ended(station.imaging, job_id), latest_error=error)
+    return _started(station, _next(imaging))
 
 
-def _dropped(station: Station, _job_id: int, _now_ns: int) -> Stepped:
-    dropped = station.imaging.frames_dropped + 1
-    return replace(station, imaging=replace(station.imaging, frames_dropped=dropped)), ()
+def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
+    imaging = _ended(station.imaging, job_id)
+    imaging = replace(imaging, frames_dropped=imaging.frames_dropped + 1)
+    return _started(station, _next(imaging))
 
 
-LAY_FRAME: JobKind[LayFrame, GroundImage] = JobKind(
-    "lay_frame", _projection, _laid, _not_laid, _dropped
+def _ended(imaging: Imaging, job_id: int) -> Imaging:
+    return replace(imaging, job_id=None) if job_id == imaging.job_id else imaging
+
+
+LAY_FRAME: JobKind[LayFrame, LaidFrame] = JobKind(
+    "lay_frame", projection, _laid, _not_laid, _dropped
 )
-"""Projects a frame on the site's ground grid."""
+"""Aligns a frame and projects it on the site's ground grid."""

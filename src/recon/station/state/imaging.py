@@ -3,9 +3,10 @@
 from dataclasses import dataclass, field
 
 from recon.camera.motion import TelemetryReference
+from recon.camera.registration import RegistrationState
 from recon.detection import DetectionState, RejectedFrame
 from recon.forecast import ForecastState
-from recon.model.imagery import GroundImage
+from recon.model.imagery import Frame, GroundImage
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 
 WAITING_KEPT = 8
@@ -22,9 +23,24 @@ class ImagerSample:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LayFrame:
+    """A frame to project, the telemetry at its capture, and that of the marked frame."""
+
+    frame: Frame
+    telemetry: TelemetryReference
+    reference: TelemetryReference
+    captured_utc_s: float | None = None
+    """By the computer's clock, for the sun's position; None before the clock was read."""
+    registration: RegistrationState = field(default_factory=RegistrationState)
+    """What registration keeps of the frames before; set when the job starts."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Imaging:
     """Frames and ground images of the imaging drone.
 
+    What registration keeps travels with each job and comes back with its result, as the memories of
+    the shade methods do: one frame at a time. Of the frames received meanwhile the newest waits.
     `reference` is the telemetry of the frame the control points were marked on. If the site does
     not give it, the first frame received in flight takes its place.
     """
@@ -35,6 +51,12 @@ class Imaging:
     samples: tuple[ImagerSample, ...] = ()
     ground_image: GroundImage | None = None
     captured_sigma_s: float = 0.0
+    registration: RegistrationState = field(default_factory=RegistrationState)
+    registration_problem: str = ""
+    """Why the newest frame was not aligned; empty if it was."""
+    waiting: LayFrame | None = None
+    job_id: int | None = None
+    """Of the job that runs now."""
     next_job_id: int = 1
     frames_dropped: int = 0
     latest_error: str | None = None

@@ -1,0 +1,85 @@
+"""The worker's part of a frame: frames of known poses aligned over a site."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from tests.camera.registered_scenes import CAMERA, displacements_m, seen
+
+from recon.camera.registration import RegistrationState
+from recon.model.imagery import CameraPose, Frame, Registration, RgbImage
+from recon.model.units import seconds_to_ns
+from recon.site import Site, demo_site_folder, load_site
+from recon.station.imaging.projection import LaidFrame, projection
+from recon.station.state.imaging import LayFrame
+
+
+@pytest.fixture(scope="module")
+def site() -> Site:
+    return load_site(demo_site_folder())
+
+
+class Worker:
+    """Lays frame after frame, a second apart, all with the marked frame's telemetry."""
+
+    def __init__(self, site: Site) -> None:
+        assert site.imager is not None
+        self.marked_pose = site.imager.solution.pose
+        self.marked = site.imager.marked_frame
+        self.lay = projection(site)
+        self.state = RegistrationState()
+        self.number = 0
+
+    def lays(self, rgb: RgbImage) -> LaidFrame:
+        assert self.marked is not None
+        self.number += 1
+        at_ns = seconds_to_ns(self.number)
+        frame = Frame(self.number, "SIM-IMAGER", at_ns, at_ns, 0.25, rgb=rgb)
+        laid = self.lay(LayFrame(frame, self.marked, self.marked, registration=self.state))
+        self.state = laid.registration
+        return laid
+
+
+def moved(pose: CameraPose) -> CameraPose:
+    turn = Rotation.from_rotvec(np.deg2rad((1.0, -1.5, 0.8))).as_matrix()
+    shift_m = np.array((3.0, -2.0, 0.5))
+    return CameraPose(turn @ pose.rotation_enu_camera, pose.position_enu_m + shift_m)
+
+
+def test_a_frame_is_laid_where_its_content_shows(site: Site) -> None:
+    worker = Worker(site)
+    start = seen(worker.marked_pose)
+    for _ in range(2):
+        first = worker.lays(start)
+        assert first.image.registration is Registration.UNREGISTERED
+        assert first.problem
+    true = moved(worker.marked_pose)
+    laid = worker.lays(seen(true))
+    assert laid.image.registration is Registration.REGISTERED
+    assert laid.problem == ""
+    assert laid.image.registration_residual_m is not None
+    off_m = displacements_m(laid.image.pose, true, worker.marked_pose, worker.marked_pose)
+    assert np.percentile(off_m, 95) < 0.6
+
+
+def test_frames_of_another_size_begin_with_a_reference_of_their_own(site: Site) -> None:
+    worker = Worker(site)
+    small = seen(worker.marked_pose)
+    worker.lays(small)
+    worker.lays(small)
+    large = np.repeat(np.repeat(small, 2, axis=0), 2, axis=1)
+    worker.lays(large)
+    worker.lays(large)
+    assert worker.lays(large).image.registration is Registration.REGISTERED
+
+
+def test_a_lens_without_a_known_circle_is_registered_once_it_is_found(site: Site) -> None:
+    assert site.imager is not None
+    bare = replace(site, imager=replace(site.imager, image_circle=None))
+    worker = Worker(bare)
+    black = np.zeros((CAMERA.rows, CAMERA.cols, 3), dtype=np.uint8)
+    assert "image circle" in worker.lays(black).problem
+    start = seen(worker.marked_pose)
+    statuses = [worker.lays(start).image.registration for _ in range(3)]
+    assert statuses[-1] is Registration.REGISTERED
