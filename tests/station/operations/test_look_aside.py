@@ -273,6 +273,17 @@ class TestTheWayBack:
         assert "25 m from its place" in blocked.alarms()["look_aside:stopped"]
         assert hypot(*blocked.off_m()) == pytest.approx(25.0, abs=2.0)
 
+    def test_a_lost_connection_meanwhile_ends_it(self, blocked: LookingWorld) -> None:
+        connected = blocked.surveyed.fleet.world.connected[IMAGER]
+        blocked.surveyed.driver.disconnect(connected.link_id)
+        blocked.surveyed.runs(0.5)
+        blocked.surveyed.fleet.put("SIM-2", (0.0, -40.0, 40.0))
+        blocked.surveyed.fleet.world.connect(connected.app)
+        blocked.surveyed.runs(20.0)
+        assert blocked.newest().stage is LookAsideStage.STOPPED
+        assert blocked.holder() is AuthorityHolder.OPERATOR
+        assert hypot(*blocked.off_m()) == pytest.approx(25.0, abs=2.0)
+
 
 def test_each_stage_is_audited() -> None:
     world = looking_world()

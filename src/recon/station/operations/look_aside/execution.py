@@ -24,6 +24,8 @@ from recon.station.state.look_aside_record import LookAside, LookAsideStage
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Stepped
 
+HOLD_ENDED = "the station could no longer hold it beside its place"
+
 
 def advance(
     station: Station, now_ns: int, settings: LookAsideSettings = LOOK_ASIDE_SETTINGS
@@ -47,8 +49,10 @@ def _read_way(
     if record is None:
         return _hold(station, current, "the record of its order was lost", now_ns)
     if record.phase is Phase.DONE:
-        if current.stage is LookAsideStage.ASIDE:
+        if current.stage is LookAsideStage.ASIDE and _is_held_aside(station, current):
             return _fly_back(station, current, now_ns)
+        if current.stage is LookAsideStage.ASIDE:
+            return _stopped(station, current, HOLD_ENDED, now_ns), ()
         return _come_back(station, current, now_ns)
     if record.phase.is_final:
         return _stopped(station, current, record.note or record.phase.value, now_ns), ()
@@ -61,12 +65,22 @@ def _wait(
     station: Station, current: LookAside, settings: LookAsideSettings, now_ns: int
 ) -> Stepped:
     """Beside its place: have the gate judge the way back again, for a while."""
+    if not _is_held_aside(station, current):
+        return _stopped(station, current, HOLD_ENDED, now_ns), ()
     if now_ns - current.since_ns > seconds_to_ns(settings.gate_waits_s):
         why = f"its way back was refused for {settings.gate_waits_s:g} s: {current.reason}"
         return _hold(station, current, why, now_ns)
     if now_ns - current.judged_at_ns < seconds_to_ns(settings.judged_again_s):
         return station, ()
     return _fly_back(station, current, now_ns)
+
+
+def _is_held_aside(station: Station, current: LookAside) -> bool:
+    """Whether the goto aside still holds it there: when that has ended, nothing resumes."""
+    stream = station.control(current.serial).stream
+    if stream is None or stream.command.id != current.command_id:
+        return False
+    return stream.closing is None
 
 
 def _fly_back(station: Station, current: LookAside, now_ns: int) -> Stepped:
