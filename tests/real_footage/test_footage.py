@@ -88,7 +88,7 @@ def test_deep_shade_has_the_measured_ratios(place: Place) -> None:
 
 
 def test_the_drawn_shade_lies_where_the_truth_says(place: Place) -> None:
-    """Told by the light of the same frame without clouds: a reference that no method has."""
+    """Judged by the light of the same frame without clouds: a reference that no method has."""
     grid = place.grid(cell_m=4.0, side_m=320.0)
     settings = replace(STILL, seed=2, cover=0.4, wobble_deg=0.5, drift_m=2.0)
     clear = GroundProjector(grid, place.camera, place.circle)

@@ -8,7 +8,8 @@ from hypothesis.extra.numpy import arrays
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import SunForecast
-from recon.score.shade_scoring import HorizonCells, LeadScore, Overlap, score_lead
+from recon.score.forecast_figures import HorizonCells, LeadScore, score_lead
+from recon.score.shade_figures import Overlap
 
 GRID = GroundGrid(LocalFrame(GeoPoint(45.0, -93.0, 250.0)), 0.0, 8.0, 4.0, 2, 2)
 ALL = np.ones((2, 2), dtype=np.bool_)
@@ -32,7 +33,7 @@ def forecast(levels: object, horizon_s: object) -> SunForecast:
 def test_brier_and_iou_of_seen_unseen_and_all() -> None:
     predicted = forecast([255, 0, 51, 204], [60.0, 60.0, 0.0, 30.0])
     is_sunlit = np.array([[True, True], [False, False]])
-    found = score_lead(predicted, 60.0, is_sunlit, ALL)
+    found = score_lead(predicted, 60.0, GRID, is_sunlit, ALL)
     # Within: right and in sun; and wrong, in shade. Beyond: 0.2 and 0.8 of sun, both in shade.
     assert found[HorizonCells.WITHIN] == LeadScore(1.0, 2, Overlap(0, 1))
     assert found[HorizonCells.BEYOND].squares == pytest.approx(0.2**2 + 0.8**2)
@@ -42,24 +43,33 @@ def test_brier_and_iou_of_seen_unseen_and_all() -> None:
 
 
 def test_a_coin_has_a_quarter() -> None:
-    found = score_lead(forecast([128] * 4, [0.0] * 4), 60.0, ~ALL, ALL)
+    found = score_lead(forecast([128] * 4, [0.0] * 4), 60.0, GRID, ~ALL, ALL)
     assert found[HorizonCells.ALL].brier == pytest.approx(0.25, abs=0.003)
 
 
 def test_nothing_seen_has_no_brier() -> None:
     assert (
-        score_lead(forecast([9] * 4, [0.0] * 4), 60.0, ALL, ALL)[HorizonCells.WITHIN].brier is None
+        score_lead(forecast([9] * 4, [0.0] * 4), 60.0, GRID, ALL, ALL)[HorizonCells.WITHIN].brier
+        is None
     )
 
 
 def test_cells_outside_the_footprint_do_not_count() -> None:
-    found = score_lead(forecast([255] * 4, [60.0] * 4), 60.0, ~ALL, np.diag([True, False]))
+    found = score_lead(forecast([255] * 4, [60.0] * 4), 60.0, GRID, ~ALL, np.diag([True, False]))
     assert found[HorizonCells.ALL].cells == 1
+
+
+def test_cells_off_the_forecasts_grid_have_its_prior() -> None:
+    wider = GroundGrid(GRID.frame, GRID.west_m, GRID.north_m, GRID.cell_m, 2, 3)
+    counted = np.ones((2, 3), dtype=np.bool_)
+    found = score_lead(forecast([255] * 4, [60.0] * 4), 60.0, wider, counted, counted)
+    assert found[HorizonCells.WITHIN] == LeadScore(0.0, 4, Overlap())
+    assert found[HorizonCells.BEYOND] == LeadScore(2 * 0.5**2, 2, Overlap())
 
 
 def test_a_lead_that_is_not_there_is_refused() -> None:
     with pytest.raises(ValueError, match=r"expected a lead of \[0.0, 60.0\] s, got 45.0"):
-        score_lead(forecast([9] * 4, [0.0] * 4), 45.0, ALL, ALL)
+        score_lead(forecast([9] * 4, [0.0] * 4), 45.0, GRID, ALL, ALL)
 
 
 @given(
@@ -76,7 +86,7 @@ def test_ranges_and_the_parts_are_the_whole(
     counted: np.ndarray,
     lead_s: float,
 ) -> None:
-    found = score_lead(forecast(levels, horizon_s), lead_s, truth, counted)
+    found = score_lead(forecast(levels, horizon_s), lead_s, GRID, truth, counted)
     for score in found.values():
         assert score.brier is None or 0.0 <= score.brier <= 1.0
         assert 0 <= score.shade.both <= score.shade.either <= score.cells

@@ -13,8 +13,8 @@ from tests.score.scenes import SMALL, small
 
 from recon.model.geo import GeoPoint
 from recon.score import Methods, RunScore, Scenario, StationRun, run, tables
+from recon.score.forecast_figures import HorizonCells
 from recon.score.run_score import shares_by, time_to_share
-from recon.score.shade_scoring import HorizonCells
 from recon.score.true_paths import TruePath, encounters, times_begun
 from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.fleet import IMAGER_SERIAL
@@ -85,7 +85,7 @@ def test_a_seed_repeats_to_the_bit(short: tuple[Scenario, RunScore]) -> None:
 
 def test_another_seed_has_another_sky(short: tuple[Scenario, RunScore]) -> None:
     scenario, first = short
-    assert run(scenario, 6).shade_share != first.shade_share
+    assert run(scenario, 6).shade.shaded != first.shade.shaded
 
 
 def test_an_overcast_survey_ends_at_the_limit_and_all_return(folder: Path) -> None:
@@ -116,9 +116,17 @@ def test_flying_again_images_no_less_in_sun_than_once(folder: Path) -> None:
     assert (once.to_95_in_sun_s is None) or (again.to_95_in_sun_s is not None)
 
 
-def test_ideal_detection_has_no_error(cumulus: RunScore) -> None:
-    assert (cumulus.shade.iou, cumulus.known_share) == (1.0, 1.0)
-    assert cumulus.boundary_error_m in (0.0, None)
+def test_ideal_detection_errs_by_latency_and_pose_alone(cumulus: RunScore) -> None:
+    shade = cumulus.shade
+    assert shade.iou is not None
+    assert 0.9 < shade.iou < 1.0
+    assert 0 < shade.wrong < 0.03 * shade.cells
+    assert shade.unknown < 0.02 * shade.cells
+    assert cumulus.to_right_s is not None
+    assert cumulus.to_right_s < 15.0
+    assert cumulus.registration_m is not None
+    median_m, high_m = cumulus.registration_m
+    assert 0.0 < median_m < high_m < 8.0
     assert cumulus.wrongly_in_sun_share is not None
     assert cumulus.wrongly_in_sun_share < 0.02
 
@@ -143,12 +151,14 @@ def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:
     scored = flown.shade_score
     assert scored.shade.iou is not None
     assert scored.shade.iou < 1.0
+    assert len(scored.registration_errors_m) > 3
 
 
 def test_frames_that_stop_leave_maps_unknown(folder: Path) -> None:
     faults = 'faults = ["camera-stops:SIM-IMAGER:45:120"]\n[site]'
     text = CALM.replace("[site]", faults).replace("limit_min = 10.0", SHORT)
-    assert 0.0 < run(small(folder, text), 0).known_share < 1.0
+    found = run(small(folder, text), 0).shade
+    assert 0 < found.unknown < found.cells
 
 
 def flown_to_the_surveys_end(scenario: Scenario, at_most_s: float) -> StationRun:

@@ -1,21 +1,27 @@
 """The imaging drone of a run: rendered frames for the station's detector, or true shade maps.
 
 With ideal detection, frames of a few pixels are sent over the link, with latency and faults; the
-worker then returns the true shade map of the capture time instead of reading the pixels.
+worker then returns the true sky of each frame instead of reading its pixels.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from recon.camera import displaced_pose
+from recon.detection import DetectionSettings
+from recon.detection.cells import field_grid
 from recon.forecast import FORECASTERS
-from recon.model.geo import GroundGrid
+from recon.geo import shift_east_north_m
 from recon.model.imagery import CameraPose, GroundImage, RgbImage
 from recon.model.shade import MaskMap, ShadeMap
-from recon.model.units import NS_PER_S
+from recon.model.vehicle import VehicleProfile
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
+from recon.score.score_grid import cell_centres, field_angle_rad
 from recon.score.simulation import simulation_of
+from recon.score.true_frames import TrueFrames, ground_seen
 from recon.sim.app.camera_feed import FeedSettings, ImageFormat
+from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.fleet import IMAGER_SERIAL, SimulationConfig
 from recon.sim.world import Sky
@@ -43,6 +49,14 @@ class Placeholders:
         return np.full((PLACEHOLDER_PX, PLACEHOLDER_PX, 3), level, dtype=np.uint8)
 
 
+def renderer_of(scenario: Scenario, seed: int) -> FieldRenderer:
+    """Return the renderer of the scenario's frames, which knows their true poses."""
+    imager = simulation_of(scenario, seed).imager
+    assert imager is not None  # a scenario has an imaging drone
+    assert isinstance(imager.source, FieldRenderer)
+    return imager.source
+
+
 def config_of(scenario: Scenario, seed: int) -> SimulationConfig:
     """Return the scenario's simulation, with rendered frames only where they are read."""
     feed = FeedSettings(1.0 / scenario.imager.period_s, ImageFormat.RAW)
@@ -63,36 +77,84 @@ def settings_of(scenario: Scenario) -> StationSettings:
     return settings
 
 
-def jobs_of(scenario: Scenario, sky: Sky, grid: GroundGrid, footprint: MaskMap) -> JobRunner:
+def jobs_of(scenario: Scenario, sky: Sky, frames: TrueFrames) -> JobRunner:
     """Return the runner of the station's jobs; with ideal detection it reads the truth of `sky`."""
     jobs = JobRunner(scenario.site)
-    if scenario.methods.detection != IDEAL:
-        return jobs
-
-    def lay(work: LayFrame) -> LaidFrame:
-        nothing = np.zeros((grid.rows, grid.cols, 3), dtype=np.uint8)
-        pose = CameraPose(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
-        frame = work.frame
-        image = GroundImage(
-            grid, frame.id, frame.captured_at_ns, nothing, footprint, pose, serial=IMAGER_SERIAL
-        )
-        return LaidFrame(image)
-
-    def read(work: ReadShade) -> ShadeRead:
-        shade = true_shade(sky, grid, footprint, work.image.captured_at_ns)
-        method = FORECASTERS[work.forecast_settings.method]
-        forecast, sun = method(work.forecast, shade, work.forecast_settings)
-        return ShadeRead(work.detection, forecast, (shade, sun))
-
-    jobs.replace(LAY_FRAME, lay)
-    jobs.replace(READ_SHADE, read)
+    if scenario.methods.detection == IDEAL:
+        ideal = IdealDetection(scenario, sky, frames)
+        jobs.replace(LAY_FRAME, ideal.lay)
+        jobs.replace(READ_SHADE, ideal.read)
     return jobs
 
 
-def true_shade(sky: Sky, grid: GroundGrid, footprint: MaskMap, at_ns: int) -> ShadeMap:
-    """Return the true shade map of a moment, valid in the footprint."""
-    truth = np.where(footprint, sky.on_grid(grid, at_ns / NS_PER_S), np.nan).astype(np.float32)
-    fine = np.where(footprint, METRES_PER_PIXEL, np.nan).astype(np.float32)
-    return ShadeMap(
-        grid, at_ns, (IMAGER_SERIAL,), truth, footprint, footprint.astype(np.float32), fine
-    )
+class IdealDetection:
+    """The true sky of each frame, where the station believes that the frame lies.
+
+    Latency and pose are the station's: the sky is that of the true capture, seen from the true
+    pose, and is laid on the station's grid by the pose from telemetry. Only the pixels are ideal.
+    """
+
+    def __init__(self, scenario: Scenario, sky: Sky, frames: TrueFrames) -> None:
+        site = scenario.site
+        assert site.imager is not None  # or it would not have been read
+        assert site.ground_grid is not None
+        self._frame, self._imager = scenario.frame, site.imager
+        self._mount = site.profiles.get(IMAGER_SERIAL, VehicleProfile(IMAGER_SERIAL)).mount
+        self._sky, self._frames = sky, frames
+        self._grid = field_grid(site.ground_grid, DetectionSettings())
+        east_m, north_m = (part.ravel() for part in np.meshgrid(*cell_centres(self._grid)))
+        self._points_m = np.column_stack([east_m, north_m])
+        self._field_rad = field_angle_rad(site.imager)
+
+    def lay(self, work: LayFrame) -> LaidFrame:
+        """Return a frame's time and believed pose, without pixels."""
+        marked, now, frame = work.reference, work.telemetry, work.frame
+        shift_m = shift_east_north_m(self._frame, marked, now)
+        pose = displaced_pose(self._imager.solution.pose, marked, now, shift_m, self._mount)
+        nothing = np.zeros((self._grid.rows, self._grid.cols, 3), dtype=np.uint8)
+        is_seen = self._seen(pose).reshape(nothing.shape[:2])
+        image = GroundImage(
+            self._grid,
+            frame.id,
+            frame.captured_at_ns,
+            nothing,
+            is_seen,
+            pose,
+            serial=IMAGER_SERIAL,
+        )
+        return LaidFrame(image)
+
+    def read(self, work: ReadShade) -> ShadeRead:
+        """Return the true sky of an image as a shade map, and the forecast from it."""
+        shade = self._shade(work.image)
+        method = FORECASTERS[work.forecast_settings.method]
+        forecast, sun = method(work.forecast, shade, work.forecast_settings)
+        return ShadeRead(work.detection, forecast, (shade, sun), work.image.valid)
+
+    def _shade(self, image: GroundImage) -> ShadeMap:
+        """Return the true sky as this image shows it; raises `ValueError` without its frame."""
+        true = self._frames.of_image(image)
+        if true is None:
+            raise ValueError("expected a frame that the simulator has sent, got another one")
+        seen_m = ground_seen(true.pose, image.pose, self._points_m)
+        known = image.valid & np.isfinite(seen_m).all(axis=1).reshape(image.valid.shape)
+        places_m = np.nan_to_num(seen_m)
+        share = self._sky.transmittance(places_m[:, 0], places_m[:, 1], true.taken_at_s)
+        transmittance = np.where(known, share.reshape(known.shape), np.nan).astype(np.float32)
+        fine = np.where(known, METRES_PER_PIXEL, np.nan).astype(np.float32)
+        return ShadeMap(
+            image.grid,
+            image.captured_at_ns,
+            (IMAGER_SERIAL,),
+            transmittance,
+            known,
+            known.astype(np.float32),
+            fine,
+        )
+
+    def _seen(self, pose: CameraPose) -> MaskMap:
+        """(N,): whether the lens shows the points, were the pose true."""
+        level = np.column_stack([self._points_m, np.zeros(len(self._points_m))])
+        rays = (level - pose.position_enu_m) @ pose.rotation_enu_camera
+        seen: MaskMap = np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]) <= self._field_rad
+        return seen

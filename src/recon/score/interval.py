@@ -75,6 +75,28 @@ def ratio(parts: Sequence[tuple[float, float]]) -> Interval | None:
     return Interval(float(total[0] / total[1]), float(low), float(high), count)
 
 
+def pooled_quantile(groups: Sequence[Sequence[float]], share: float) -> Interval | None:
+    """Return a quantile of all values of all runs, one group per run; None without values.
+
+    The interval is a percentile bootstrap over whole runs, as that of `ratio`.
+    """
+    present = sorted(sorted(group) for group in groups if group)
+    if not present:
+        return None
+    count = len(present)
+    mean = float(np.quantile(np.concatenate(present), share))
+    if count == 1:
+        return Interval(mean, -inf, inf, 1)
+    rng = np.random.default_rng(RESAMPLING_SEED)
+    drawn = [
+        np.quantile(np.concatenate([present[i] for i in numbers]), share)
+        for numbers in rng.integers(0, count, (RESAMPLES, count))
+    ]
+    tail = (1.0 - CONFIDENCE) / 2.0
+    low, high = np.quantile(drawn, [tail, 1.0 - tail])
+    return Interval(mean, float(low), float(high), count)
+
+
 def times(values: Sequence[float | None], limit_s: float) -> Times | None:
     """Return times to an event (None: not reached), cut at the limit; None without runs."""
     cut = interval([limit_s if value is None else min(value, limit_s) for value in values])

@@ -3,24 +3,31 @@
 Every byte, the gate and the watchdogs take part; only sockets and clock are replaced.
 """
 
+from collections import deque
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from recon.model.command import Phase
-from recon.model.geo import GroundGrid
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
 from recon.score.connected_apps import ConnectedApps
-from recon.score.imager import config_of, jobs_of, settings_of
-from recon.score.run_score import ENOUGH, RunScore, shares_by, time_to_share
+from recon.score.imager import config_of, jobs_of, renderer_of, settings_of
+from recon.score.run_score import (
+    ENOUGH,
+    RunScore,
+    registration_quantiles_m,
+    shares_by,
+    time_to_share,
+)
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
 from recon.score.scripted_operator import ScriptedOperator
 from recon.score.settings import SCORE
-from recon.score.shade_scoring import ImagerScore, ShadeScoring, footprint_on
+from recon.score.shade_scoring import ImagerScore, ShadeScoring
 from recon.score.simulation import sky_of
 from recon.score.station_operator import SURVEY_ID, StationOperator
+from recon.score.true_frames import TrueFrames
 from recon.score.true_paths import (
     Imaged,
     TruePath,
@@ -31,6 +38,8 @@ from recon.score.true_paths import (
     photos_on_rows,
     true_path,
 )
+from recon.sim.app.app import SimulatedApp
+from recon.sim.app.camera_feed import CaptureTimes
 from recon.sim.fleet import IMAGER_SERIAL, build_fleet
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
@@ -57,23 +66,23 @@ class StationRun:
     def __init__(self, scenario: Scenario, seed: int) -> None:
         self.scenario, self.seed = scenario, seed
         self._sky = sky_of(scenario, seed)
-        grid = _grid(scenario)
-        footprint = footprint_on(grid, scenario)
+        apps = build_fleet(config_of(scenario, seed), 0)
+        frames = TrueFrames.of(scenario, _captures(apps), renderer_of(scenario, seed))
         self.driver = VirtualDriver(
             first_state(scenario.site, settings_of(scenario)),
-            jobs=jobs_of(scenario, self._sky, grid, footprint),
+            jobs=jobs_of(scenario, self._sky, frames),
             keeps_log=False,
             # The station computes the same sun as the simulator.
             epoch_ns=round(self._sky.settings.sun.start_utc_s * NS_PER_S),
         )
         self.apps = ConnectedApps(self.driver)
-        self.apps.connect_all(build_fleet(config_of(scenario, seed), 0))
+        self.apps.connect_all(apps)
         self._paths = {
             app.settings.serial: true_path(app, scenario.frame) for app in self.apps.apps
         }
         operator = ScriptedOperator(scenario.fleet.serials, scenario.limit_s)
         self._operator = StationOperator(scenario.survey, operator)
-        self._shade = ShadeScoring(scenario, self._sky, footprint, grid)
+        self._shade = ShadeScoring(scenario, self._sky, frames)
         self._refused: set[int] = set()
 
     @property
@@ -158,9 +167,8 @@ class StationRun:
         return RunScore(
             seed=self.seed,
             shade=shade.shade,
-            boundary_error_m=_mean(shade.boundary_errors_m),
-            known_share=_mean(shade.known_shares) or 0.0,
-            shade_share=_mean(shade.shade_shares) or 0.0,
+            to_right_s=shade.to_right_s,
+            registration_m=registration_quantiles_m(shade.registration_errors_m),
             leads=shade.leads,
             in_sun_share=shares_by(first_in_sun_s, curve_s),
             to_95_imaged_s=time_to_share(found.first_s[inside], ENOUGH, limit_s),
@@ -191,10 +199,6 @@ class StationRun:
         return imaged(photos, plan, self._sky)
 
 
-def _mean(values: Sequence[float]) -> float | None:
-    return float(np.mean(values)) if values else None
-
-
 def _wrongly(record: SurveyRecord, found: Imaged) -> float | None:
     assert record.state is not None
     inside = record.state.plan.cells.is_inside
@@ -202,12 +206,8 @@ def _wrongly(record: SurveyRecord, found: Imaged) -> float | None:
     return float(np.isinf(found.first_in_sun_s[counted]).mean()) if counted.any() else None
 
 
-def _grid(scenario: Scenario) -> GroundGrid:
-    """Return the imaging drone's footprint in the scenario's cells, inside the ground image."""
-    imager, image = scenario.imager, scenario.site.ground_grid
-    assert image is not None  # a site with an imaging drone has one
-    side_m = min(2.0 * imager.radius_m, image.cols * image.cell_m, image.rows * image.cell_m)
-    count = int(side_m // imager.cell_m)
-    half_m = count * imager.cell_m / 2.0
-    west_m, north_m = imager.over_m[0] - half_m, imager.over_m[1] + half_m
-    return GroundGrid(scenario.frame, west_m, north_m, imager.cell_m, count, count)
+def _captures(apps: Sequence[SimulatedApp]) -> deque[CaptureTimes]:
+    """Return the imaging drone's frames, as they are taken."""
+    feeds = [app.feed for app in apps if app.feed is not None]
+    assert len(feeds) == 1  # a scenario has one imaging drone
+    return feeds[0].captures

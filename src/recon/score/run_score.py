@@ -1,12 +1,13 @@
 """The figures of one run."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from recon.score.shade_scoring import HorizonCells, LeadScore, Overlap
+from recon.score.forecast_figures import HorizonCells, LeadScore
+from recon.score.shade_figures import ShadeFigures
 
 FloatArray = npt.NDArray[np.float64]
 ENOUGH = 0.95
@@ -17,11 +18,11 @@ class RunScore:
     """Figures of one seed; None where a run has no such figure, or ended before reaching it."""
 
     seed: int
-    shade: Overlap
-    boundary_error_m: float | None
-    known_share: float
-    shade_share: float
-    """Of the imaging drone's footprint, in truth."""
+    shade: ShadeFigures
+    to_right_s: float | None
+    """Until most of the scored cells were first known and right."""
+    registration_m: tuple[float, float] | None
+    """Median and 95th percentile of the ground images' errors."""
     leads: Mapping[tuple[float, HorizonCells], LeadScore]
     in_sun_share: tuple[float, ...]
     """Of the region, truly on a photo in sun, at each of `SCORE.curve_min` within the limit."""
@@ -68,3 +69,11 @@ def shares_by(first_s: FloatArray, at_s: FloatArray) -> tuple[float, ...]:
     """Return the share of cells (N,) reached by each of some times."""
     reached = np.searchsorted(np.sort(first_s), at_s, side="right")
     return tuple((reached / max(first_s.size, 1)).tolist())
+
+
+def registration_quantiles_m(errors_m: Sequence[FloatArray]) -> tuple[float, float] | None:
+    """Return median and 95th percentile over all points of all images; None without images."""
+    if not errors_m:
+        return None
+    median_m, high_m = np.nanquantile(np.concatenate(errors_m), [0.5, 0.95])
+    return float(median_m), float(high_m)

@@ -20,6 +20,12 @@ class ScoreSettings:
     oldest_map_s: float = 10.0
     """An older shade map does not describe the present: its cells count as wrong."""
 
+    right_share: float = 0.9
+    """Of the scored cells known and right: the time until then is a figure."""
+
+    coarse_cell_m: float = 12.0
+    """For that time every map is scored, not one of six: on a ninth of the cells."""
+
     watch_s: float = 1_200.0
     """Least length of a run in which detection or forecast is scored: otherwise a sky under which
     the survey ends early would be scored on fewer maps."""

@@ -3,11 +3,12 @@
 from collections.abc import Callable, Sequence
 from math import inf, isinf
 
-from recon.score.interval import Interval, interval, ratio, times
+from recon.score.forecast_figures import HorizonCells, LeadScore
+from recon.score.interval import Interval, interval, pooled_quantile, ratio, times
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.settings import SCORE
-from recon.score.shade_scoring import HorizonCells, LeadScore
+from recon.score.shade_figures import Overlap
 
 Row = tuple[str, ...]
 Parts = Callable[[LeadScore], tuple[float, float]]
@@ -63,14 +64,47 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
 
 
 def _shade(runs: Sequence[RunScore]) -> str:
-    overlaps = ratio([(r.shade.both, r.shade.either) for r in runs])
+    figures = [run.shade for run in runs]
+    edges = [figure.edges for figure in figures if figure.edges.true_area]
+    cells = [figure.cells for figure in figures]
+    shaded = [figure.shaded for figure in figures]
+    lit = [figure.cells - figure.shaded for figure in figures]
+    known = [figure.known for figure in figures]
+    places = [run.registration_m for run in runs if run.registration_m is not None]
+    longest_s = max((run.simulated_s for run in runs), default=0.0)
+
+    def share(name: str, parts: Sequence[float], of: Sequence[float]) -> Row:
+        return _formatted(name, ratio(list(zip(parts, of, strict=True))), _percent, 1.0)
+
     rows = [
-        _formatted("shade IoU", overlaps, _fine),
-        _row("boundary error, m", _of(runs, "boundary_error_m"), _plain),
-        _row("footprint with a detected value, %", _of(runs, "known_share"), _percent, 1.0),
-        _row("footprint in shade, %", _of(runs, "shade_share"), _percent, 1.0),
+        _overlaps("shade IoU", [f.shade for f in figures]),
+        _overlaps("shade IoU, maps with 5 to 95 % shade", [f.mixed for f in figures]),
+        _formatted(
+            "shade IoU, 10th percentile of these maps",
+            pooled_quantile([f.mixed_ious for f in figures], 0.1),
+            _fine,
+            1.0,
+        ),
+        share("false shade, % of cells in sun", [f.false for f in figures], lit),
+        share("missed shade, % of cells in shade", [f.missed for f in figures], shaded),
+        share("called wrongly, %", [f.wrong for f in figures], cells),
+        share("unknown, %", [f.unknown for f in figures], cells),
+        _formatted(
+            "transmittance, mean absolute error",
+            ratio([(f.transmittance_error, n) for f, n in zip(figures, known, strict=True)]),
+            _fine,
+        ),
+        _formatted("boundary error, m", ratio([(e.area_distance, e.area) for e in edges]), _plain),
+        _time("time until 90 % is right, min", [run.to_right_s for run in runs], longest_s),
+        _row("registration error, median, m", [each[0] for each in places], _fine),
+        _row("registration error, 95th percentile, m", [each[1] for each in places], _fine),
+        share("scored ground in shade, %", shaded, cells),
     ]
     return _table(("shade", "figure", "95 %", "runs"), rows)
+
+
+def _overlaps(name: str, overlaps: Sequence[Overlap]) -> Row:
+    return _formatted(name, ratio([(each.both, each.either) for each in overlaps]), _fine, 1.0)
 
 
 def _forecast(runs: Sequence[RunScore]) -> str:
