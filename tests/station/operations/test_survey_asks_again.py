@@ -86,6 +86,18 @@ class TestLateTelemetry:
         assert not world.record().members["SIM-1"].may_take_off
 
 
+def test_an_operators_pause_after_it_is_no_pause_by_itself() -> None:
+    world = with_waiting_mission()
+    is_silent(world, True)
+    world.runs(2.2)
+    is_silent(world, False)
+    world.runs(0.8)
+    assert refusal_shown(world) is not None
+    world.pauses()
+    world.runs(0.2)
+    assert ("survey", None) not in world.fleet.alarms()
+
+
 def test_after_a_reconnection_a_mission_that_was_not_sent_is_asked_for_again() -> None:
     world = with_waiting_mission()
     connected = world.fleet.world.connected["SIM-1"]

@@ -76,7 +76,7 @@ def pause(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
         return _wrong_phase(state, "paused")
     was_flying = bool(state.flights or state.waiting)
     paused = ended(state, SurveyPhase.PAUSED, "paused", now_ns)
-    return replace(paused, round=state.round - was_flying)
+    return replace(paused, round=state.round - was_flying, refusals=MappingProxyType({}))
 
 
 def abort(state: SurveyState, now_ns: int) -> SurveyState | Refusal:

@@ -1,12 +1,13 @@
 """The surveys of this run, and the observations that wait for their next step."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, Literal, TypeVar
 
 from recon.guidance.survey import PositionSample, SurveyState
 from recon.model.command import Refusal
+from recon.model.replacing import replace
 from recon.model.shade import ShadeMap
 from recon.model.survey import Survey, SurveyPhase, unknown_survey
 
@@ -65,12 +66,13 @@ class SurveyMember:
     unsent_since_ns: int | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SurveyRecord:
     """One survey. `state` is None while its rows are being planned, and if it is refused.
 
     `positions` and `shade_maps` came since the last step and are not counted in `state` yet.
-    `flown` holds the path of each mission, by serial and mission number, for showing.
+    `flown` holds the path of each mission, by serial and mission number, for showing. It changes
+    with every position, so it has no slots: see `model.replacing`.
     """
 
     survey: Survey

@@ -18,7 +18,6 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
    hover and go back to the operator.
 """
 
-from dataclasses import replace
 from math import hypot
 from types import MappingProxyType
 
@@ -26,6 +25,7 @@ from recon.guidance.survey import PositionSample, refused
 from recon.model.command import Hover, Phase
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
+from recon.model.replacing import replace
 from recon.model.shade import ShadeMap
 from recon.model.survey import MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
