@@ -62,6 +62,7 @@ class MadeFrame:
     gains: FloatArray
     """Exposure times white balance (3,), 1 in the real frame."""
     clouds: DrawnClouds | None
+    exposure_locked: bool
 
     def transmittance(self, grid: GroundGrid) -> np.ndarray:
         """Return the truth: the direct beam's share at each cell of a grid, (rows, cols)."""
@@ -83,11 +84,22 @@ def footage(place: Place, settings: FootageSettings, count: int) -> Iterator[Mad
 def ground_images(
     place: Place, frames: Iterator[MadeFrame], grid: GroundGrid, *, is_pose_true: bool = False
 ) -> Iterator[tuple[GroundImage, MadeFrame]]:
-    """Yield the frames on a grid, by their believed poses or by their true ones."""
+    """Yield the frames on a grid, by their believed poses or by their true ones.
+
+    The images have what a station knows: the sun's direction, and whether exposure is locked.
+    """
     projector = GroundProjector(grid, place.camera, place.circle)
     for made in frames:
         pose = made.true_pose if is_pose_true else made.believed_pose
-        yield projector.lay(made.frame, pose), made
+        image = projector.lay(made.frame, pose)
+        yield (
+            replace(
+                image,
+                toward_sun_enu=place.toward_sun_enu,
+                exposure_locked=made.exposure_locked,
+            ),
+            made,
+        )
 
 
 def drawn_pose(place: Place, settings: FootageSettings, time_s: float) -> CameraPose:
@@ -140,7 +152,8 @@ class _Painter:
         rgb[self._window] = np.where(self._shown[..., np.newaxis], levels_of(light), 0)
         at_ns = round(time_s * NS_PER_S)
         frame = _sent(Frame(number, self._place.name, at_ns, at_ns, 0.0, rgb=rgb), settings)
-        return MadeFrame(frame, self._place.marked_pose, pose, time_s, gains, clouds)
+        is_locked = settings.exposure_follows == 0.0 and settings.white_balance == 0.0
+        return MadeFrame(frame, self._place.marked_pose, pose, time_s, gains, clouds, is_locked)
 
     def _light(self, pose: CameraPose, clouds: DrawnClouds | None, time_s: float) -> np.ndarray:
         """(R, C, 3): the light of the window's pixels, before exposure."""

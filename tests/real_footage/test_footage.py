@@ -132,3 +132,15 @@ def test_the_same_seed_makes_the_same_bytes(fisheye_data: Path) -> None:
     assert first == again
     other = [made.frame.jpeg for made in footage(place, FootageSettings(seed=6), 3)]
     assert other != first
+
+
+def test_ground_images_carry_what_a_station_knows(place: Place) -> None:
+    grid = place.grid(cell_m=4.0)
+    for follows in (0.0, 0.7):
+        settings = FootageSettings(exposure_follows=follows)
+        image, _ = next(ground_images(place, footage(place, settings, 1), grid))
+        assert image.exposure_locked == (follows == 0.0)
+        if image.toward_sun_enu is not None:
+            # In July at these places the sun is never higher than 70 degrees.
+            assert np.linalg.norm(image.toward_sun_enu) == pytest.approx(1.0, abs=1e-3)
+            assert 25.0 < np.degrees(np.arcsin(image.toward_sun_enu[2])) < 70.0
