@@ -27,7 +27,8 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
 
 FIELDS = ("becker-1", "elgin-5", "grand-meadow-7")
 EVERY_S = 5.0
-DIFFUSE_SHARE = 0.25
+DIFFUSE_SHARES = np.array([0.21, 0.36, 0.50])
+"""Shade over sun in red, green and blue, measured on becker-1: shade is bluer than sun."""
 WANDER_M = 0.5
 
 
@@ -51,8 +52,9 @@ def under(image: GroundImage, shade: DriftingShade, i: int, seed: int) -> Ground
     rng = np.random.default_rng([seed, i])
     around = GroundGrid(FIELD.frame, -256.0, 256.0, 1.0, 512, 512)
     direct = shade.transmittance(around, EVERY_S * i)
-    lit = (DIFFUSE_SHARE + (1.0 - DIFFUSE_SHARE) * direct) ** (1.0 / 2.2)
-    levels = image.rgb * lit[..., np.newaxis] + rng.normal(0.0, 2.0, (512, 512, 1))
+    beam = (1.0 - DIFFUSE_SHARES) * direct[..., np.newaxis]
+    lit = (DIFFUSE_SHARES + beam) ** (1.0 / 2.2)
+    levels = image.rgb * lit + rng.normal(0.0, 2.0, (512, 512, 1))
     wander_m = rng.normal(0.0, WANDER_M, 2)
     grid = replace(
         image.grid,
@@ -88,9 +90,10 @@ def test_drawn_shadows_are_found_on_real_ground(fisheye_data: Path, name: str) -
                     assert found.valid[near].mean() > 0.9
                     counted = near & found.valid
                     wrong[method].append(float((found.is_sunlit == is_shade)[counted].mean()))
-    ratio, single = (float(np.mean(wrong[method])) for method in ("brightness_ratio", "otsu"))
-    assert ratio < 0.1, (ratio, single)
-    assert ratio < 0.5 * single, (ratio, single)
+    mean = {method: float(np.mean(shares)) for method, shares in wrong.items()}
+    assert mean["sunlit_reference"] < 0.05, mean
+    assert mean["brightness_ratio"] < 0.1, mean
+    assert mean["brightness_ratio"] < 0.5 * mean["otsu"], mean
 
 
 @pytest.mark.parametrize("name", FIELDS)

@@ -22,12 +22,19 @@ from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.detection.sunlit.colour import CellColour, cell_colour, upsampled
 from recon.detection.sunlit.contrast import explained
+from recon.detection.sunlit.drift import followed, moved
+from recon.detection.sunlit.hot_spot import shape_of
 from recon.detection.sunlit.keyframes import LEAST, Keyframe, is_due, solved, with_keyframe
-from recon.detection.sunlit.levels import LEAST_CELLS, Level, nearer, read, refined
+from recon.detection.sunlit.levels import LEAST_CELLS, Level, apart, nearer, read, refined
 from recon.detection.sunlit.memory import SunlitMemory
+from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import FloatMap, MaskMap, ShadeMap
 
+CLEAR_SHARE = 0.25
+"""Share of the cells beside the main level from which a frame by itself decides which it is."""
+OPPOSED = 0.5
+"""Levels farther apart than this contradict each other."""
 DOUBT = 0.6
 """A flat frame's level is refused when the other choice is nearly as good."""
 SMOOTHED_CELLS = 5
@@ -45,23 +52,31 @@ def sunlit_reference(
     coarse = fine.coarse()
     is_locked = image.exposure_locked or not settings.follows_exposure
     memory = (state.sunlit or SunlitMemory()).with_detail(fine, coarse)
-    memory = _with_keyframe(memory, coarse, image.captured_at_ns, is_locked)
+    drift = followed(memory.drift, coarse, image.captured_at_ns)
+    memory = replace(memory, drift=drift)
+    memory = _with_keyframe(memory, coarse, image, grid, is_locked)
     level = None if memory.land is None else _level(memory, coarse, is_locked)
-    memory = replace(memory, level=level or memory.level)
+    if level is not None:
+        memory = replace(memory, level=level, level_drift=drift.total)
     found = _unknown(fine) if level is None else _transmittance(memory, level, fine)
     return replace(state, sunlit=memory), shade_map(image, grid, found, settings)
 
 
 def _with_keyframe(
-    memory: SunlitMemory, coarse: CellColour, at_ns: int, is_locked: bool
+    memory: SunlitMemory, coarse: CellColour, image: GroundImage, grid: GroundGrid, is_locked: bool
 ) -> SunlitMemory:
+    at_ns, drift = image.captured_at_ns, memory.drift
+    assert drift is not None
     if not is_due(memory.keyframes, at_ns):
         return memory
-    kept = with_keyframe(memory.keyframes, Keyframe(at_ns, coarse))
+    kept = with_keyframe(
+        memory.keyframes, Keyframe(at_ns, coarse, drift.total, shape_of(image, grid))
+    )
     if len(kept) < LEAST:
         return replace(memory, keyframes=kept)
     kept, land = solved(kept, memory.land, is_locked)
-    return replace(memory, keyframes=kept, land=land, level=kept[-1].level)
+    level = kept[-1].level
+    return replace(memory, keyframes=kept, land=land, level=level, level_drift=drift.total)
 
 
 def _level(memory: SunlitMemory, coarse: CellColour, is_locked: bool) -> Level | None:
@@ -76,12 +91,16 @@ def _level(memory: SunlitMemory, coarse: CellColour, is_locked: bool) -> Level |
     light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]
     reading = read(light, colour, land.contrast)
     level = reading.sun
+    if last is not None and reading.weight < CLEAR_SHARE:
+        assert memory.drift is not None
+        last = moved(last, memory.level_drift, memory.drift.total)
+        near, doubt = nearer(reading.main, last, land.contrast, is_locked)
+        if level is None and doubt > DOUBT:
+            return None
+        if level is None or apart(level, near, land.contrast) > OPPOSED:
+            level = near
     if level is None:
-        if last is None:
-            return None
-        level, doubt = nearer(reading.main, last, land.contrast, is_locked)
-        if doubt > DOUBT:
-            return None
+        return None
     for _ in range(2):
         by_light = (light - np.float32(level.light))[np.newaxis]
         by_colour = (colour - np.float32(level.colour))[np.newaxis]

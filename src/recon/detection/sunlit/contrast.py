@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 LIGHT_SPAN, LIGHT_STEP = (-2.4, 0.8), 0.04
 COLOUR_SPAN, COLOUR_STEP = (-0.8, 1.6), 0.03
 TRANSMITTANCES = np.linspace(0.0, 1.0, 41)
-ENDS_WEIGHT = 8.0
+ENDS_WEIGHT = 20.0
 """Full sun and full shade are this many times as frequent as any step of 1/40 between them."""
 LIGHT_NOISE, COLOUR_NOISE = 0.10, 0.07
 """Standard deviations of a cell against its reference, frames some decimetres off."""
@@ -55,7 +55,7 @@ def curve(contrast: Contrast) -> tuple[FloatArray, FloatArray]:
     return green, blue - red
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=32)
 def _table(light: float, colour: float) -> npt.NDArray[np.float32]:
     """Return (light steps, colour steps, 3): expected transmittance, light and colour."""
     lights = np.arange(*LIGHT_SPAN, LIGHT_STEP)[:, np.newaxis, np.newaxis]
@@ -77,7 +77,7 @@ def explained(
     Light and colour are relative to full sun. NaN gives any value.
     """
     # Rounded: few tables are ever made.
-    table = _table(round(contrast.light, 2), round(contrast.colour, 2))
+    table = _table(*(0.04 * round(part / 0.04) for part in (contrast.light, contrast.colour)))
     cols = (colour - np.float32(COLOUR_SPAN[0])) * np.float32(1.0 / COLOUR_STEP)
     rows = (light - np.float32(LIGHT_SPAN[0])) * np.float32(1.0 / LIGHT_STEP)
     found = cv2.remap(

@@ -6,22 +6,31 @@ import numpy as np
 
 from recon.detection.sunlit.colour import CellColour
 from recon.detection.sunlit.contrast import Contrast, explained
+from recon.detection.sunlit.drift import moved
+from recon.detection.sunlit.hot_spot import FlatScene, hot_spot
 from recon.detection.sunlit.land import FloatStack, land_of
-from recon.detection.sunlit.levels import Level, Reading, nearer, read, refined
+from recon.detection.sunlit.levels import LEAST_CELLS, Level, Reading, above, apart, read, refined
 from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
 
-MOST = 28
+MOST = 24
 """Keyframes: with more, memory and time grow, but the land is not known better."""
-SPACING_S = 10.0
-"""In which shadows move by about the width of their edges."""
+SPACING_S, FIRST_SPACING_S, FIRST_S = 10.0, 5.0, 30.0
+"""In the first shadows move by about the width of their edges; the second holds for the first half
+minute, so that there is an answer soon."""
 OLDEST_S = 2_400.0
 """The sun moves ten degrees meanwhile."""
 LEAST = 4
 """Keyframes for a median over time."""
 KNOWN_SHARE = 0.5
 """Of the keyframes must show a cell."""
-ROUNDS = 3
+ROUNDS = 2
+FLAT_VOTE = 0.05
+"""Of a keyframe that does not tell by itself, in shares of the cells."""
+VOTE_S = 60.0
+"""A vote counts half after this time: the drift's errors add up."""
+AGREED = 0.25
+"""Distance of two levels at which they agree by half."""
 LAND_WEIGHT = 0.5
 """Of the land found from differences, in samples, against each cell's own samples."""
 SUN_WEIGHT, SHADE_WEIGHT, EDGE_WEIGHT = 1.0, 0.5, 0.05
@@ -35,6 +44,10 @@ class Keyframe:
 
     at_ns: int
     cells: CellColour
+    drift: Level
+    """The camera's changes since the first frame."""
+    hot_spot: FloatMap | None
+    """Its shape in this frame; None while the sun's direction is unknown."""
     level: Level | None = None
 
 
@@ -64,7 +77,9 @@ def is_due(kept: tuple[Keyframe, ...], at_ns: int) -> bool:
     if not kept:
         return True
     span_s = (at_ns - kept[0].at_ns) / NS_PER_S
-    return at_ns - kept[-1].at_ns >= seconds_to_ns(max(SPACING_S, 0.5 * span_s / MOST) - 0.5)
+    spacing_s = FIRST_SPACING_S if span_s <= FIRST_S else max(SPACING_S, 0.5 * span_s / MOST)
+    # Frames come a little early or late.
+    return at_ns - kept[-1].at_ns >= seconds_to_ns(spacing_s - 0.5)
 
 
 def solved(
@@ -79,8 +94,10 @@ def solved(
         return kept, before
     contrast = Contrast() if before is None else before.contrast
     land = SunlitLand(land_of(light, known), land_of(colour, known), known, contrast)
-    land, readings = _read_all(light, colour, seen, land)
-    levels = _levels(kept, readings, land, before, is_locked)
+    # Twice at first: what counts as darker depends on the contrast that is measured.
+    for _ in range(2 if before is None else 1):
+        land, readings = _read_all(light, colour, seen, land)
+    levels = _levels(kept, readings, land, before)
     if levels is None:
         return kept, before
     land, levels = _alternated(light, colour, land, levels)
@@ -95,17 +112,14 @@ def _read_all(
 ) -> tuple[SunlitLand, list[Reading | None]]:
     """Return each frame's reading, and the land with the contrast that they show."""
     readings: list[Reading | None] = []
-    for _ in range(2):
-        readings = []
-        for one_light, one_colour, one_seen in zip(light, colour, seen, strict=True):
-            cells = one_seen & land.known
-            if np.count_nonzero(cells) < 50:
-                readings.append(None)
-                continue
-            parts = (one_light - land.light)[cells], (one_colour - land.colour)[cells]
-            readings.append(read(*parts, land.contrast))
-        land = replace(land, contrast=_contrast(readings))
-    return land, readings
+    for one_light, one_colour, one_seen in zip(light, colour, seen, strict=True):
+        cells = one_seen & land.known
+        if np.count_nonzero(cells) < LEAST_CELLS:
+            readings.append(None)
+            continue
+        parts = (one_light - land.light)[cells], (one_colour - land.colour)[cells]
+        readings.append(read(*parts, land.contrast))
+    return replace(land, contrast=_contrast(readings)), readings
 
 
 def _contrast(readings: list[Reading | None]) -> Contrast:
@@ -132,27 +146,53 @@ def _levels(
     readings: list[Reading | None],
     land: SunlitLand,
     before: SunlitLand | None,
-    is_locked: bool,
 ) -> list[Level] | None:
     """Return the level of sun of every keyframe; None while nothing tells sun from shade."""
     levels = [None if each is None else each.sun for each in readings]
     if all(level is None for level in levels):
         levels = _carried_over(kept, land, before)
-    first = next((i for i, level in enumerate(levels) if level is not None), None)
-    if first is None:
+    if all(level is None for level in levels):
+        levels = _by_hot_spot(kept, readings, land)
+    if all(level is None for level in levels):
         return None
-    # From the first known one backwards and then forwards, always beside a known one.
-    for i in (*range(first - 1, -1, -1), *range(first + 1, len(kept))):
-        beside = levels[i + 1 if i < first else i - 1]
-        reading = readings[i]
-        assert beside is not None
-        if levels[i] is None:
-            levels[i] = (
-                beside
-                if reading is None
-                else nearer(reading.main, beside, land.contrast, is_locked)[0]
-            )
-    return [level for level in levels if level is not None]
+    return [_agreed(i, kept, readings, levels, land.contrast) for i in range(len(kept))]
+
+
+def _agreed(
+    number: int,
+    kept: tuple[Keyframe, ...],
+    readings: list[Reading | None],
+    levels: list[Level | None],
+    contrast: Contrast,
+) -> Level:
+    """Return the level of sun of a keyframe on which most keyframes near in time agree.
+
+    Each keyframe that tells sun from shade votes for its own level, moved by the camera's drift;
+    the more cells show it, the more it counts. So a shadow that stood still long enough to be taken
+    for land does not turn a whole view around.
+    """
+    frame, reading = kept[number], readings[number]
+    votes = []
+    for other, said, level in zip(kept, readings, levels, strict=True):
+        if level is None:
+            continue
+        age_s = abs(other.at_ns - frame.at_ns) / NS_PER_S
+        share = said.weight if said and said.sun else FLAT_VOTE
+        weight = share * float(np.exp2(-age_s / VOTE_S))
+        votes.append((weight, moved(level, other.drift, frame.drift)))
+    if reading is None:
+        return max(votes, key=lambda vote: vote[0])[1]
+    choices = [reading.main, above(reading.main, contrast)]
+    if reading.sun is not None:
+        choices.append(reading.sun)
+
+    def support(choice: Level) -> float:
+        return sum(
+            weight * float(np.exp2(-((apart(level, choice, contrast) / AGREED) ** 2)))
+            for weight, level in votes
+        )
+
+    return max(choices, key=support)
 
 
 def _carried_over(
@@ -168,6 +208,21 @@ def _carried_over(
         None if each.level is None else Level(each.level.light + light, each.level.colour + colour)
         for each in kept
     ]
+
+
+def _by_hot_spot(
+    kept: tuple[Keyframe, ...], readings: list[Reading | None], land: SunlitLand
+) -> list[Level | None]:
+    """Return the levels of flat frames that are all in sun, or all in shade."""
+    light = np.stack([each.cells.light for each in kept])
+    found = hot_spot(light, [each.hot_spot for each in kept])
+    scene = FlatScene.UNKNOWN if found is None else found.scene
+    if scene is FlatScene.UNKNOWN:
+        return [None] * len(kept)
+    mains = [None if each is None else each.main for each in readings]
+    if scene is FlatScene.SUN:
+        return list(mains)
+    return [None if main is None else above(main, land.contrast) for main in mains]
 
 
 def _alternated(

@@ -5,7 +5,7 @@ and redder beside it make the main level shade; cells clearly darker and bluer m
 with neither is flat: its main level may be either, and only its neighbours in time can tell.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -45,7 +45,8 @@ class Reading:
     """None for a flat frame."""
     contrast: Contrast | None = None
     """Where both levels can be measured."""
-    weight: float = field(default=0.0)
+    weight: float = 0.0
+    """The share of the cells beside the main level that show which one it is."""
 
 
 def mode(values: Values, width: float) -> float:
@@ -77,7 +78,7 @@ def read(light: Values, colour: Values, contrast: Contrast) -> Reading:
     is_sun = share_darker >= share_brighter
     share, chosen = (share_darker, darker) if is_sun else (share_brighter, brighter)
     if share < MEASURED_SHARE:
-        return Reading(main, main if is_sun else above(main, contrast))
+        return Reading(main, main if is_sun else above(main, contrast), None, share)
     other = level_of(light[chosen], colour[chosen])
     sun, shade = (main, other) if is_sun else (other, main)
     measured = Contrast(sun.light - shade.light, shade.colour - sun.colour)
@@ -92,8 +93,8 @@ def above(shade: Level, contrast: Contrast) -> Level:
 def nearer(main: Level, last: Level, contrast: Contrast, is_locked: bool) -> tuple[Level, float]:
     """Return the level of sun of a flat frame, and how doubtful it is, 0 to 1.
 
-    The main level is taken for sun or for shade, whichever changes the level of sun less. White
-    balance drifts slowly; exposure counts little unless it is locked.
+    The main level is taken for sun or for shade, whichever changes the level of sun less. `last` is
+    the level before, with the camera's drift since.
     """
     by_light = LOCKED_WEIGHT if is_locked else AUTO_WEIGHT
     chosen = []
@@ -105,7 +106,13 @@ def nearer(main: Level, last: Level, contrast: Contrast, is_locked: bool) -> tup
     return sun, least / max(most, 1e-6)
 
 
-LOCKED_WEIGHT, AUTO_WEIGHT = 3.0, 0.3
+LOCKED_WEIGHT, AUTO_WEIGHT = 3.0, 1.0
+
+
+def apart(one: Level, other: Level, contrast: Contrast) -> float:
+    """Return how far two levels are apart: 1 for sun against shade, in light and in colour."""
+    light = abs(one.light - other.light) / contrast.light
+    return 0.5 * (light + abs(one.colour - other.colour) / contrast.colour)
 
 
 def refined(

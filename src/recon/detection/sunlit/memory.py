@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon.detection.sunlit.colour import CellColour, upsampled
+from recon.detection.sunlit.drift import Drift
 from recon.detection.sunlit.keyframes import Keyframe, SunlitLand
 from recon.detection.sunlit.levels import Level
 from recon.model.shade import FloatMap
@@ -47,6 +48,9 @@ class SunlitMemory:
     """None while sun and shade cannot be told apart."""
     detail: Detail | None = None
     level: Level | None = None
+    drift: Drift | None = None
+    level_drift: Level = Level(0.0, 0.0)  # noqa: RUF009
+    """The total drift at the time of `level`."""
 
     def with_detail(self, fine: CellColour, coarse: CellColour) -> "SunlitMemory":
         """Return the memory with a frame's detail."""

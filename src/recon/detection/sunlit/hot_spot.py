@@ -1,0 +1,111 @@
+"""The hot spot: opposite the sun, sunlit ground hides its own shadows and is brighter.
+
+In shade there is none, so it tells a view that is all in sun from one that is all in shade. The
+land has bright spots too, but they stand still: the hot spot moves over the land with the sun
+(0.25 degrees a minute) and with the drone. Only that motion is used.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from recon.detection.sunlit.colour import COARSE
+from recon.detection.sunlit.land import FloatStack
+from recon.model.geo import GroundGrid
+from recon.model.imagery import GroundImage
+from recon.model.shade import FloatMap
+
+FOLD_DEG = 6.0
+"""Angle at which it falls to 1/e: 4 to 8 degrees over crops."""
+REACH_DEG = 24.0
+"""Cells farther from its middle are not used."""
+ALIKE = 6.0
+"""Samples that are wrong together: neighbours, and frames of one drift of the drone."""
+LEAST_CELLS, LEAST_FRAMES = 20, 4
+WORST_ERROR = 0.04
+"""Largest standard error of a strength that is believed: moving edges of shade give larger ones."""
+ABOVE_SHADE, BELOW_SUN = 0.06, 0.10
+"""Strengths that a view in shade stays below, and one in sun above: crops have 0.2 to 0.6, of
+which the coarse cells show two thirds."""
+SURE = 3.0
+"""Standard errors between the strength and the bound."""
+
+
+class FlatScene(Enum):
+    """What the hot spot says about a view without an edge of shade."""
+
+    UNKNOWN = "unknown"
+    SUN = "sun"
+    SHADE = "shade"
+
+
+@dataclass(frozen=True, slots=True)
+class HotSpot:
+    """Brightness of the hot spot over its surround, less 1, and its standard error."""
+
+    strength: float
+    standard_error: float
+
+    @property
+    def scene(self) -> FlatScene:
+        """Return what it says."""
+        if self.standard_error > WORST_ERROR:
+            return FlatScene.UNKNOWN
+        margin = SURE * self.standard_error
+        if self.strength - margin > ABOVE_SHADE:
+            return FlatScene.SUN
+        if self.strength + margin < BELOW_SUN:
+            return FlatScene.SHADE
+        return FlatScene.UNKNOWN
+
+
+def shape_of(image: GroundImage, grid: GroundGrid) -> FloatMap | None:
+    """Return the hot spot's shape (r, c) on the coarse cells of `grid`, 1 in its middle.
+
+    None without the sun's direction.
+    """
+    sun = image.toward_sun_enu
+    if sun is None or not np.any(sun):
+        return None
+    cell_m = COARSE * grid.cell_m
+    east, north, up = (float(part) for part in image.pose.position_enu_m)
+    east_m = grid.west_m + (np.arange(grid.cols // COARSE) + 0.5) * cell_m - east
+    north_m = grid.north_m - (np.arange(grid.rows // COARSE) + 0.5) * cell_m - north
+    along = np.add.outer(-sun[1] * north_m, -sun[0] * east_m) + sun[2] * up
+    cosine = along / np.sqrt(np.add.outer(north_m**2, east_m**2) + up**2)
+    angle_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    shape: FloatMap = np.exp(-angle_deg / FOLD_DEG).astype(np.float32)
+    return shape
+
+
+def hot_spot(light: FloatStack, shapes: Sequence[FloatMap | None]) -> HotSpot | None:
+    """Return the hot spot that moves through frames of log light (K, r, c); None without one.
+
+    Least squares of light on shape, both less each cell's mean over time and each frame's mean.
+    """
+    used = [i for i, shape in enumerate(shapes) if shape is not None]
+    if len(used) < LEAST_FRAMES:
+        return None
+    shape = np.stack([each for each in shapes if each is not None])
+    near = (shape.max(axis=0) > np.exp(-REACH_DEG / FOLD_DEG)) & np.isfinite(light[used]).all(
+        axis=0
+    )
+    if np.count_nonzero(near) < LEAST_CELLS:
+        return None
+    seen, expected = _centred(light[used][:, near]), _centred(shape[:, near])
+    # A few samples that are far off (a vehicle, an error of place) must not decide.
+    spread = 1.48 * float(np.median(np.abs(seen)))
+    seen = np.clip(seen, -3.0 * spread, 3.0 * spread)
+    power = float((expected**2).sum())
+    strength = float((seen * expected).sum()) / max(power, 1e-9)
+    rest = seen - strength * expected
+    error = float(np.sqrt(ALIKE * np.mean(rest**2) / max(power, 1e-9)))
+    return HotSpot(strength, error)
+
+
+def _centred(values: FloatStack) -> FloatStack:
+    values = values - values.mean(axis=0)
+    centred: FloatStack = values - values.mean(axis=1, keepdims=True)
+    return centred

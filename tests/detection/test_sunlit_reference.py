@@ -1,0 +1,231 @@
+"""Against a reference learned over the flight: known shade over known ground, and a moving sun."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from tests.detection.shaded_field import (
+    FIELD,
+    FOOTPRINT,
+    GRID,
+    HEIGHT_M,
+    DriftingShade,
+    Imager,
+    Land,
+    centres,
+    shade_iou,
+)
+
+from recon.detection import DETECTORS, DetectionSettings, DetectionState
+from recon.detection.sunlit.contrast import Contrast, curve, explained
+from recon.detection.sunlit.hot_spot import FlatScene, HotSpot
+from recon.detection.sunlit.keyframes import MOST, Keyframe, with_keyframe
+from recon.detection.sunlit.land import land_of
+from recon.detection.sunlit.levels import Level, read
+from recon.geo.sun import SunPosition
+from recon.model.imagery import GroundImage
+from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
+from recon.model.units import seconds_to_ns
+
+METHOD = "sunlit_reference"
+SHADE_RGB = np.array([0.21, 0.36, 0.50])
+"""Shade over sun in linear light, measured on real frames."""
+EVERY_S = 5.0
+BLUE_OVER_RED = np.array([0.8, 1.0, 0.6])
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """A camera over a field whose shade is bluer than sun, as in real frames."""
+
+    seed: int
+    cover: float = 0.4
+    lasts_s: float = 180.0
+    every_s: float = EVERY_S
+    gains: tuple[float, ...] = (1.0,)
+    """Taken in turns of 30 s each."""
+    balance: float = 0.0
+    """Amplitude of a slow swing of blue against red."""
+    hot_spot: float = 0.0
+    direct: float | None = None
+    """The same transmittance everywhere; None: drifting shade."""
+    size_m: float = 90.0
+
+    @property
+    def shade(self) -> DriftingShade:
+        return DriftingShade(self.seed + 60_000, self.cover, size_m=self.size_m, softness=0.4)
+
+    def truth(self, at_s: float, shade: DriftingShade) -> np.ndarray:
+        if self.direct is not None:
+            return np.full((FIELD.rows, FIELD.cols), self.direct)
+        return shade.transmittance(FIELD, at_s)
+
+    def moments(self) -> Iterator[tuple[GroundImage, np.ndarray]]:
+        """Each image and the true transmittance on the field."""
+        shade, land = self.shade, Land(self.seed).reflectance(GRID)
+        for at_s in np.arange(0.0, self.lasts_s, self.every_s):
+            fine = (
+                np.full((GRID.rows, GRID.cols), self.direct)
+                if self.direct is not None
+                else shade.transmittance(GRID, at_s)
+            )
+            yield self._image(at_s, land, fine), self.truth(at_s, shade)
+
+    def _image(self, at_s: float, land: np.ndarray, direct: np.ndarray) -> GroundImage:
+        # An afternoon's sun, 0.25 degrees a minute.
+        sun = SunPosition(150.0 + 0.25 * at_s / 60.0, 55.0, 1.0).toward_enu
+        east_m, north_m = centres(GRID)
+        far_m = np.sqrt(east_m**2 + north_m**2 + HEIGHT_M**2)
+        cosine = (HEIGHT_M * sun[2] - east_m * sun[0] - north_m * sun[1]) / far_m
+        spot = self.hot_spot * np.exp(-np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))) / 6.0)
+        beam = direct[..., np.newaxis] * (1.0 + spot[..., np.newaxis])
+        lit = SHADE_RGB + (1.0 - SHADE_RGB) * beam
+        swing = 1.0 + self.balance * np.sin(at_s / 60.0) * np.array([-0.5, 0.0, 0.5])
+        gain = self.gains[int(at_s // 30.0) % len(self.gains)]
+        light = land[..., np.newaxis] * BLUE_OVER_RED * lit * 1.8 * gain * swing
+        rng = np.random.default_rng([round(at_s * 1000.0), self.seed])
+        levels = 255.0 * np.clip(light, 0.0, 1.0) ** (1.0 / 2.2) + rng.normal(0.0, 2.0, light.shape)
+        rgb = np.clip(np.rint(levels), 0, 255).astype(np.uint8)
+        return replace(Imager().image(rgb, float(at_s)), toward_sun_enu=sun)
+
+
+def found_in(
+    moments: Iterable[tuple[GroundImage, np.ndarray]], settings: DetectionSettings | None = None
+) -> list[tuple[ShadeMap, np.ndarray]]:
+    """Each shade map with the truth."""
+    state, maps = DetectionState(), []
+    for image, truth in moments:
+        state, found = DETECTORS[METHOD](state, image, settings or DetectionSettings())
+        assert isinstance(found, ShadeMap), found
+        maps.append((found, truth))
+    return maps
+
+
+def mean_iou(maps: list[tuple[ShadeMap, np.ndarray]]) -> float:
+    """Unknown counts as wrong."""
+    return float(
+        np.mean([shade_iou(m.is_sunlit, m.valid, t < SUNLIT_TRANSMITTANCE) for m, t in maps])
+    )
+
+
+def known_share(found: ShadeMap) -> float:
+    return float(found.valid[FOOTPRINT].mean())
+
+
+SEED = 9_200
+
+
+class TestDriftingShade:
+    @pytest.mark.parametrize(
+        "changes",
+        [{}, {"gains": (1.0, 0.6, 1.3)}, {"balance": 0.1}],
+        ids=["still", "gain", "white"],
+    )
+    def test_shade_is_found_whatever_the_camera_does(self, changes: dict[str, object]) -> None:
+        assert mean_iou(found_in(Flight(SEED, **changes).moments())[12:]) > 0.85
+
+    def test_it_beats_the_recent_maximum_under_large_clouds(self) -> None:
+        flight = Flight(9_210, cover=0.6, size_m=180.0)
+        own = mean_iou(found_in(flight.moments())[12:])
+        state, ratio = DetectionState(), []
+        for image, truth in flight.moments():
+            state, found = DETECTORS["brightness_ratio"](state, image, DetectionSettings())
+            assert isinstance(found, ShadeMap)
+            ratio.append((found, truth))
+        assert own > mean_iou(ratio[12:]) + 0.02
+
+    def test_transmittance_with_locked_exposure(self) -> None:
+        images = (
+            (replace(image, exposure_locked=True), truth)
+            for image, truth in Flight(9_220).moments()
+        )
+        errors = [
+            float(np.abs(m.transmittance - t)[FOOTPRINT & m.valid].mean())
+            for m, t in found_in(images)[12:]
+        ]
+        assert np.mean(errors) < 0.06
+
+
+class TestFlatScenes:
+    """All sun or all shade: unknown, until the hot spot tells."""
+
+    @pytest.mark.parametrize("direct", [1.0, 0.0])
+    def test_without_a_hot_spot_or_an_edge_nothing_is_known_of_the_sun(self, direct: float) -> None:
+        flight = Flight(9_230, direct=direct, lasts_s=120.0)
+        images = ((replace(image, toward_sun_enu=None), t) for image, t in flight.moments())
+        assert max(known_share(found) for found, _ in found_in(images)) == 0.0
+
+    def test_a_moving_hot_spot_shows_sun(self) -> None:
+        last, _ = found_in(
+            Flight(9_231, direct=1.0, hot_spot=0.5, lasts_s=600.0, every_s=10.0).moments()
+        )[-1]
+        assert known_share(last) > 0.95
+        assert last.is_sunlit[FOOTPRINT & last.valid].mean() > 0.99
+
+    def test_in_shade_sun_is_never_seen(self) -> None:
+        maps = found_in(
+            Flight(9_232, direct=0.0, hot_spot=0.5, lasts_s=600.0, every_s=10.0).moments()
+        )
+        assert max(float(found.is_sunlit[FOOTPRINT].mean()) for found, _ in maps) == 0.0
+
+    def test_a_hot_spot_is_believed_only_with_a_small_error(self) -> None:
+        assert HotSpot(0.4, 0.05).scene is FlatScene.UNKNOWN
+        assert HotSpot(0.3, 0.02).scene is FlatScene.SUN
+        assert HotSpot(0.0, 0.02).scene is FlatScene.SHADE
+        assert HotSpot(0.08, 0.02).scene is FlatScene.UNKNOWN
+
+
+class TestParts:
+    def test_land_is_what_stands_still(self) -> None:
+        """A dark square moves over a step; the median of differences is the step alone."""
+        land = np.zeros((12, 20), np.float32)
+        land[:, 10:] = -0.7
+        frames = np.repeat(land[np.newaxis], 9, axis=0)
+        for i in range(9):
+            frames[i, 3:9, 2 * i : 2 * i + 3] -= 1.0
+        found = land_of(frames, np.ones((12, 20), np.bool_))
+        assert np.abs(found - found[0, 0] - land).max() < 1e-3
+
+    def test_the_curve_ends_at_the_contrast(self) -> None:
+        light, colour = curve(Contrast(1.0, 0.6))
+        assert (light[-1], colour[-1]) == pytest.approx((0.0, 0.0))
+        assert (light[0], colour[0]) == pytest.approx((-1.0, 0.6))
+
+    def test_light_on_the_curve_gives_its_transmittance(self) -> None:
+        contrast = Contrast(1.04, 0.6)
+        light, colour = (part.astype(np.float32)[np.newaxis] for part in curve(contrast))
+        found, _, _ = explained(light, colour, contrast)
+        assert np.abs(found[0] - np.linspace(0.0, 1.0, 41)).max() < 0.12
+        assert np.abs(found[0, [0, 20, 40]] - [0.0, 0.5, 1.0]).max() < 0.04
+
+    @pytest.mark.parametrize(("share", "sun_is_main"), [(0.2, True), (0.8, False)])
+    def test_sun_is_the_brighter_and_redder_level(self, share: float, sun_is_main: bool) -> None:
+        rng = np.random.default_rng(4)
+        shaded = rng.random(4_000) < share
+        light = rng.normal(0.3, 0.03, 4_000) - 1.0 * shaded
+        colour = rng.normal(-0.1, 0.03, 4_000) + 0.5 * shaded
+        found = read(light.astype(np.float32), colour.astype(np.float32), Contrast())
+        assert found.sun is not None
+        assert (found.sun.light, found.sun.colour) == pytest.approx((0.3, -0.1), abs=0.02)
+        assert (found.main == found.sun) is sun_is_main
+        assert found.contrast is not None
+        assert (found.contrast.light, found.contrast.colour) == pytest.approx((1.0, 0.5), abs=0.03)
+
+    def test_a_dimming_without_a_change_of_colour_is_no_shade(self) -> None:
+        rng = np.random.default_rng(5)
+        light = rng.normal(0.0, 0.03, 4_000) - 0.8 * (rng.random(4_000) < 0.3)
+        colour = rng.normal(0.0, 0.03, 4_000)
+        assert read(light.astype(np.float32), colour.astype(np.float32), Contrast()).sun is None
+
+    def test_keyframes_are_bounded_and_span_the_flight(self) -> None:
+        kept: tuple[Keyframe, ...] = ()
+        cells = None
+        for i in range(200):
+            new = Keyframe(seconds_to_ns(10.0 * i), cells, Level(0.0, 0.0), None)  # type: ignore[arg-type]
+            kept = with_keyframe(kept, new)
+        times_s = [each.at_ns / 1e9 for each in kept]
+        assert len(kept) == MOST
+        assert times_s[0] == 0.0
+        assert times_s[-1] == 1990.0
+        assert max(np.diff(times_s)) < 200.0
