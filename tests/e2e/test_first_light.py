@@ -63,7 +63,7 @@ def test_a_real_frame_comes_over_the_wire_and_lies_on_its_field(
 
     sent = load_replay(folder)[1].rgb
     image = _ground_image(folder, site, image_format)
-    assert image.registration is Registration.UNREGISTERED
+    assert image.registration is Registration.REGISTERED
 
     assert site.ground_grid is not None
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)

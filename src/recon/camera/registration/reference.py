@@ -17,9 +17,6 @@ BoolArray = npt.NDArray[np.bool_]
 
 ENOUGH_SHARE = 0.7
 """Of the features in view as inliers: another round of tracking would not find many more."""
-MOST_ROUNDS = 3
-LEAST_GAIN = 1.1
-"""Of inliers by one round: a reference that fits only in part does not get better."""
 LEAST_SLOPE = 0.05
 """Of a ray downwards (sine) that meets the ground."""
 
@@ -76,37 +73,40 @@ def align(
 ) -> Alignment:
     """Return the frame's pose by a reference.
 
-    Tracking begins at telemetry's pose. If that is too far off, a second round begins where the
-    frames correlate best; if it is near, at the fit, which brings in the features that were lost.
+    Tracking begins at telemetry's pose and near it: far tracks follow the edges of cloud shadow. If
+    no pose is found, it begins where the frames correlate best, and last it looks far. A pose that
+    few features support is the start of one more round, which brings in those that were lost.
     """
-    warped, best = _aligned_from(view, reference, contrast, prior, prior)
-    start = prior
-    for _ in range(MOST_ROUNDS - 1):
-        if best.inlier_share >= ENOUGH_SHARE:
-            break
-        is_far = best.problem != ""
-        start = _coarse_start(view, reference, warped, start, prior) if is_far else best.pose
-        warped, found = _aligned_from(view, reference, contrast, start, prior)
-        if found.inliers < LEAST_GAIN * best.inliers:
-            break
-        best = found
+    settings = view.settings
+    near, coarse, far = settings.near_levels, settings.coarse_levels, settings.far_levels
+    warped, best = _aligned_from(view, reference, contrast, prior, prior, near)
+    if best.problem:
+        start = _coarse_start(view, reference, warped, prior)
+        best = _better(best, _aligned_from(view, reference, contrast, start, prior, coarse)[1])
+    if best.problem:
+        best = _better(best, _aligned_from(view, reference, contrast, prior, prior, far)[1])
+    if not best.problem and best.inlier_share < ENOUGH_SHARE:
+        best = _better(best, _aligned_from(view, reference, contrast, best.pose, prior, near)[1])
     return best
+
+
+def _better(first: Alignment, second: Alignment) -> Alignment:
+    return second if second.inliers > first.inliers else first
 
 
 def _coarse_start(
     view: LensView,
     reference: Reference,
     warped: GreyImage,
-    start: CameraPose,
     prior: CameraPose,
 ) -> CameraPose:
-    """Return roughly the frame's pose; `warped` is the frame as seen from `start`."""
+    """Return roughly the frame's pose; `warped` is the frame as seen from the prior pose."""
     places = coarse_places(reference.contrast, warped, reference.pixels)
-    rays = view.rays(places) @ homography(reference.pose, start).T
+    rays = view.rays(places) @ homography(reference.pose, prior).T
     is_seen = np.isfinite(rays).all(axis=1)
     unit = rays[is_seen] / np.linalg.norm(rays[is_seen], axis=1, keepdims=True)
     ground_m = reference.ground_m[is_seen]
-    return fit_to_rays(ground_m, unit, start, prior, view.px_per_rad, view.settings).pose
+    return fit_to_rays(ground_m, unit, prior, prior, view.px_per_rad, view.settings).pose
 
 
 def _aligned_from(
@@ -115,13 +115,14 @@ def _aligned_from(
     contrast: GreyImage,
     start: CameraPose,
     prior: CameraPose,
+    levels: int,
 ) -> tuple[GreyImage, Alignment]:
     """Return the frame warped to the reference's view from `start`, and the fit."""
     settings, relation = view.settings, homography(reference.pose, start)
     maps = view.warp_map(relation)
     warped = cv2.remap(contrast, *maps, cv2.INTER_LINEAR).astype(np.uint8, copy=False)
     in_view = _in_view(view, reference.pixels, maps)
-    pixels, is_found = track(reference.contrast, warped, reference.pixels, settings)
+    pixels, is_found = track(reference.contrast, warped, reference.pixels, levels, settings)
     rays = view.rays(pixels) @ relation.T
     is_used = in_view & is_found & np.isfinite(rays).all(axis=1)
     rays = rays[is_used] / np.linalg.norm(rays[is_used], axis=1, keepdims=True)

@@ -25,10 +25,12 @@ class RegistrationSettings:
     """Inside the image circle: a patch must not reach over its edge."""
     window_px: int = 21
     """Side of a tracked patch."""
-    levels: int = 3
-    """Halvings of the frame: with a patch of 21 px a feature may be 60 px away from its prediction,
-    as after a tilt of 10 degrees that telemetry does not show."""
-
+    near_levels: int = 1
+    """Halvings of the frame where a pose is roughly known: a feature may be some 10 px away."""
+    coarse_levels: int = 2
+    """Halvings where the pose is that of the best correlation: some 20 px."""
+    far_levels: int = 3
+    """Halvings where nothing better than telemetry is known: some 40 px."""
     back_px: float = 0.7
     """A feature tracked to the frame and back must end this near to where it began."""
 

@@ -63,22 +63,31 @@ def choose_features(view: LensView, contrast: GreyImage) -> FloatArray:
 
 
 def track(
-    reference: GreyImage, frame: GreyImage, pixels: FloatArray, settings: RegistrationSettings
+    reference: GreyImage,
+    frame: GreyImage,
+    pixels: FloatArray,
+    levels: int,
+    settings: RegistrationSettings,
 ) -> tuple[FloatArray, BoolArray]:
     """Return where the frame has the reference's features (N, 2), and which of them it has (N,).
 
-    The frame is warped to the reference's view already: each search begins at the feature's place.
+    `levels` is the number of halvings of both frames: how far a feature may have moved. The frame
+    is warped to the reference's view already: each search begins at the feature's place.
     A feature counts that is found back from where it was found: one whose surroundings are gone
     ends anywhere near its start, and many of those would agree on a pose that is wrong.
     """
-    places, is_found = _flow(reference, frame, pixels, settings)
-    back, is_back = _flow(frame, reference, places, settings)
+    places, is_found = _flow(reference, frame, pixels, levels, settings)
+    back, is_back = _flow(frame, reference, places, levels, settings)
     is_same = np.hypot(*(back - pixels).T) < settings.back_px
     return places, is_found & is_back & is_same
 
 
 def _flow(
-    first: GreyImage, second: GreyImage, pixels: FloatArray, settings: RegistrationSettings
+    first: GreyImage,
+    second: GreyImage,
+    pixels: FloatArray,
+    levels: int,
+    settings: RegistrationSettings,
 ) -> tuple[FloatArray, BoolArray]:
     begin = np.ascontiguousarray(pixels, dtype=np.float32).reshape(-1, 1, 2)
     found, status, _ = cv2.calcOpticalFlowPyrLK(
@@ -87,7 +96,7 @@ def _flow(
         begin,
         begin.copy(),
         winSize=(settings.window_px, settings.window_px),
-        maxLevel=settings.levels,
+        maxLevel=levels,
         criteria=(cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, STEPS, LEAST_STEP_PX),
         flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
         minEigThreshold=LEAST_EIGENVALUE,
