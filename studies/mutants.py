@@ -47,7 +47,15 @@ PARTS: Mapping[str, Part] = {
     "rules": Part(
         _safety("rules/*.py", "gate.py"), ("tests/safety/rules", "tests/safety/test_gate.py")
     ),
-    "trust": Part(("src/recon/fleet/trust.py", "src/recon/fleet/airborne.py"), ("tests/fleet",)),
+    "trust": Part(
+        ("src/recon/fleet/trust.py", "src/recon/fleet/airborne.py"),
+        (
+            "tests/fleet/test_trust.py",
+            "tests/fleet/test_trust_limits.py",
+            "tests/fleet/test_airborne.py",
+            "tests/fleet/test_airborne_limits.py",
+        ),
+    ),
     "guard": Part(("src/recon/guard/watch.py",), ("tests/guard",)),
     "failsafe": Part(_safety("failsafe/*.py"), ("tests/safety/failsafe",)),
     "returns": Part(

@@ -82,7 +82,7 @@ def believe(
     if report.is_flying:
         return _reported_in_flight(state, report, now_ns, settings)
     if report.is_flying is None:
-        return AirborneBelief(None, _without_ground(evidence))
+        return AirborneBelief(None, replace(evidence, ground=None))
     if evidence.flown_at_ns is not None:
         return _reported_on_ground_after_flight(state, report, now_ns, settings, is_changed)
     return _reported_on_ground(state, report, now_ns, settings)
@@ -91,10 +91,6 @@ def believe(
 def flown(at_ns: int) -> FlightEvidence:
     """Return the evidence of a vehicle known only to have flown, as after a restart."""
     return FlightEvidence(flown_at_ns=at_ns)
-
-
-def _without_ground(evidence: FlightEvidence) -> FlightEvidence:
-    return evidence if evidence.ground is None else replace(evidence, ground=None)
 
 
 def _reported_in_flight(

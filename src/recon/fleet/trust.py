@@ -73,7 +73,7 @@ def judge_core(
     if frozen is not None:
         aged = _as_old_as(state, since_ns)
         trust = with_doubt(trust, DoubtKind.FROZEN, frozen, now_ns, limits.lingers_s)
-        return JudgedCore(replace(aged, trust=replace(trust, changed_at_ns=since_ns)), None)
+        return JudgedCore(replace(aged, trust=trust), None)
     reckoning = _reckoning(trust, report, now_ns, limits)
     if reckoning is not None and hypot(reckoning.north_m, reckoning.east_m) > limits.reckoned_m:
         return _not_telemetry(state, since_ns, reckoning, now_ns, limits)
@@ -88,7 +88,7 @@ def judge_core(
             text = f"{jump}; not believed. Check its position on its controller"
             trust = with_doubt(trust, DoubtKind.JUMP, text, now_ns, limits.lingers_s)
             trust = replace(trust, jumped=run, changed_at_ns=since_ns, reckoning=None)
-            return JudgedCore(_perhaps_flying(replace(state, trust=trust), report, now_ns), None)
+            return JudgedCore(_perhaps_flying(replace(state, trust=trust), report), None)
         text = f"{jump}; accepted after {limits.accepted_s:g} s. Check its position before it moves"
         trust = with_doubt(trust, DoubtKind.JUMP, text, now_ns, limits.jump_lingers_s)
         trust = replace(trust, jump_accepted_at_ns=now_ns)
@@ -124,23 +124,21 @@ def judge_battery(
         return fraction, replace(trust, battery=Stamped(fraction, now_ns))
     if state.is_flying.value is False:
         return fraction, replace(trust, battery=Stamped(fraction, now_ns))
-    reference = trust.battery
-    age_s = reference.age_s(now_ns)
-    if reference.value is None or age_s is None or age_s > limits.battery_s:
-        reference = Stamped(before.value, now_ns)
-        trust = replace(trust, battery=reference)
-    assert reference.value is not None, "set just now if it was not"
-    if fraction > max(before.value, reference.value) + limits.battery_rise_fraction:
+    reference, age_s = trust.battery.value, trust.battery.age_s(now_ns)
+    if reference is None or age_s is None or age_s > limits.battery_s:
+        reference = before.value
+        trust = replace(trust, battery=Stamped(reference, now_ns))
+    if fraction > max(before.value, reference) + limits.battery_rise_fraction:
         text = (
             f"its battery rose from {before.value:.0%} to {fraction:.0%} in flight; "
             f"{before.value:.0%} is used"
         )
         return before.value, with_doubt(trust, DoubtKind.BATTERY, text, now_ns, limits.lingers_s)
-    if reference.value - fraction > limits.battery_fall_fraction:
+    if reference - fraction > limits.battery_fall_fraction:
         if before.value - fraction > limits.battery_fall_fraction:
             trust = replace(trust, battery=Stamped(before.value, now_ns))
         text = (
-            f"its battery fell from {reference.value:.0%} to {fraction:.0%} within "
+            f"its battery fell from {reference:.0%} to {fraction:.0%} within "
             f"{limits.battery_s:g} s; {fraction:.0%} is used. Land it soon"
         )
         trust = with_doubt(trust, DoubtKind.BATTERY, text, now_ns, limits.lingers_s)
@@ -148,7 +146,7 @@ def judge_battery(
 
 
 def with_doubt(trust: Trust, kind: DoubtKind, text: str, now_ns: int, lingers_s: float) -> Trust:
-    """Return the trust with a doubt that a packet shows; its first sentence and time are kept."""
+    """Return the trust with a doubt that a packet shows, in its words; its first time is kept."""
     until_ns = now_ns + seconds_to_ns(lingers_s)
     others = tuple(doubt for doubt in trust.doubts if doubt.kind is not kind)
     before = trust.doubt(kind)
@@ -192,13 +190,12 @@ def _unchanged_since_ns(state: VehicleState, report: CoreReport, now_ns: int) ->
     """Return when this packet's values arrived first: now, unless they are those before it."""
     changed_ns = state.trust.changed_at_ns
     is_same = (
-        changed_ns is not None
-        and report.attitude == state.attitude.value
+        report.attitude == state.attitude.value
         and report.position == state.position.value
         and report.height_above_takeoff_m == state.height_above_takeoff_m.value
         and report.velocity_ned == state.velocity_ned.value
     )
-    return changed_ns if is_same and changed_ns is not None else now_ns
+    return now_ns if changed_ns is None or not is_same else changed_ns
 
 
 def _frozen(
@@ -218,12 +215,13 @@ def _frozen(
 
 def _as_old_as(state: VehicleState, since_ns: int) -> VehicleState:
     """Return the state with core telemetry as old as its last change."""
-    if state.core_received_at_ns is None or state.core_received_at_ns <= since_ns:
+    if state.core_received_at_ns is None:
         return state
+    at_ns = min(state.core_received_at_ns, since_ns)
     aged: dict[str, Any] = {
-        name: Stamped(getattr(state, name).value, since_ns) for name in _CORE_FIELDS
+        name: Stamped(getattr(state, name).value, at_ns) for name in _CORE_FIELDS
     }
-    return replace(state, **aged, core_received_at_ns=since_ns)
+    return replace(state, **aged, core_received_at_ns=at_ns)
 
 
 def _reckoning(
@@ -236,8 +234,10 @@ def _reckoning(
     north_mps, east_mps = velocity.north_mps, velocity.east_mps
     if hypot(north_mps, east_mps) < limits.reckoned_mps:
         return None
-    seconds = 0.0 if before is None else (now_ns - before.at_ns) / NS_PER_S
-    if before is None or seconds > limits.reckoned_gap_s:
+    if before is None:
+        return DeadReckoning(position, now_ns)
+    seconds = (now_ns - before.at_ns) / NS_PER_S
+    if seconds > limits.reckoned_gap_s:
         return DeadReckoning(position, now_ns)
     if horizontal_distance_m(before.position, position) > limits.stands_m:
         return DeadReckoning(position, now_ns)
@@ -283,17 +283,15 @@ def _jump(
     """Return how far a packet jumps, None when its place follows from the one before."""
     if before.position is not None and report.position is not None:
         moved_m = horizontal_distance_m(before.position, report.position)
-        if moved_m > limits.jump_m:
-            seconds = _between_s(before.position_at_ns, now_ns, limits)
-            if moved_m > limits.jump_m + DJI.fastest_mps * seconds:
-                return f"its position jumped by {moved_m:.0f} m"
+        seconds = _between_s(before.position_at_ns, now_ns, limits)
+        if moved_m > limits.jump_m + DJI.fastest_mps * seconds:
+            return f"its position jumped by {moved_m:.0f} m"
     height_m = report.height_above_takeoff_m
     if with_height and before.height_m is not None and height_m is not None:
         climbed_m = abs(height_m - before.height_m)
-        if climbed_m > limits.jump_vertical_m:
-            seconds = _between_s(before.height_at_ns, now_ns, limits)
-            if climbed_m > limits.jump_vertical_m + DJI.fastest_vertical_mps * seconds:
-                return f"its height jumped from {before.height_m:.0f} m to {height_m:.0f} m"
+        seconds = _between_s(before.height_at_ns, now_ns, limits)
+        if climbed_m > limits.jump_vertical_m + DJI.fastest_vertical_mps * seconds:
+            return f"its height jumped from {before.height_m:.0f} m to {height_m:.0f} m"
     return None
 
 
@@ -341,7 +339,7 @@ def _is_accepted(run: JumpedPlace, now_ns: int, limits: TrustSettings) -> bool:
     return lasts_ns >= seconds_to_ns(limits.accepted_s) and run.count >= limits.accepted_count
 
 
-def _perhaps_flying(state: VehicleState, report: CoreReport, now_ns: int) -> VehicleState:
+def _perhaps_flying(state: VehicleState, report: CoreReport) -> VehicleState:
     """A packet that is not believed may still be right that the vehicle took off."""
     if report.is_flying is False or state.is_flying.value is not False:
         return state

@@ -32,6 +32,10 @@ STRICT = PreparedAirspace(
 )
 LOW_CEILING = PreparedAirspace(replace(AIRSPACE.airspace, limits=FlightLimits(50.0)))
 
+TWO_WOODS = PreparedAirspace(
+    replace(zone(80.0).airspace, zones=(*zone(80.0).airspace.zones, *zone(70.0).airspace.zones))
+)
+
 LINK = [
     (aircraft.link, READY, {}, OK, "telemetry is 0.1 s old", ""),
     (
@@ -249,6 +253,14 @@ PROFILE = [
     (site_facts.endurance, READY, {}, OK, "25 min", ""),
     (
         site_facts.endurance,
+        vehicle(replace(TAKEOFF, endurance_s=3_600.0)),
+        {},
+        OK,
+        "60 min",
+        "",
+    ),
+    (
+        site_facts.endurance,
         UNSET,
         {},
         UNKNOWN,
@@ -326,9 +338,9 @@ GO_HOME = [
     (
         site_facts.go_home_height,
         READY,
-        {"airspace": zone(80.0)},
+        {"airspace": TWO_WOODS},
         ATTENTION,
-        "60 m does not clear 'wood'",
+        "60 m does not clear 'wood', 'wood'",
         "orders whose way home crosses it are refused; set a greater height to clear it",
     ),
 ]

@@ -80,9 +80,10 @@ class TestNeighbours:
     def test_an_unknown_home_counts_from_the_origins_height(
         self, airspace: PreparedAirspace
     ) -> None:
-        lost = replace(other(60.0), profile=replace(TAKEOFF, serial="B", go_home_height_m=62.0))
-        facts = replace(FACTS, others=(lost,))
-        assert at(60.0, facts=facts, airspace=airspace).state is FAILS
+        for height_m, state in ((67.4, FAILS), (67.5, OK)):
+            profile = replace(TAKEOFF, serial="B", go_home_height_m=height_m)
+            facts = replace(FACTS, others=(replace(other(60.0), profile=profile),))
+            assert at(60.0, facts=facts, airspace=airspace).state is state
 
     def test_others_without_a_height_are_not_compared(self) -> None:
         unsaid = (other(None), replace(other(60.0), profile=None))

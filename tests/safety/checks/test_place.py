@@ -5,14 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.ready import ready_airspace
-from tests.safety.cases import AIRSPACE, FACTS, TAKEOFF, S, vehicle, waypoint
+from tests.safety.cases import AIRSPACE, FACTS, PLACE, TAKEOFF, S, vehicle, waypoint
 from tests.safety.checks.checked import ATTENTION, FAILS, OK, UNKNOWN, checked
 
+from recon.geo.distance import horizontal_distance_m
 from recon.model.airspace import ElevationModel, LandingPad
-from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.check import CheckState
+from recon.safety.checks import place
 from recon.safety.checks.place import clock, fence, ground, home_place, pad_altitude
 from recon.safety.situation import NO_FACTS, ClockReading
 
@@ -64,13 +66,19 @@ class TestHome:
     def test_it_stands_on_its_pad(self, north_m: float, state: CheckState) -> None:
         assert checked(home_place, vehicle(pad_at(north_m), flying=False)).state is state
 
+    def test_at_the_limit_it_stands_on_its_pad(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        pad = waypoint(20.0)
+        far_m = horizontal_distance_m(PLACE, LatLon(pad.latitude_deg, pad.longitude_deg))
+        monkeypatch.setattr(place, "NEAR_PAD_M", far_m)
+        assert checked(home_place, vehicle(pad_at(20.0))).state is OK
+
     def test_the_distance_from_its_pad_is_stated(self) -> None:
         assert checked(home_place, vehicle(pad_at(50.0))).text == "50 m from its pad"
 
     def test_a_pad_of_the_layer_counts_when_it_is_the_vehicles(self) -> None:
-        place = GeoPoint(waypoint(50.0).latitude_deg, -93.6, 270.0)
+        north = GeoPoint(waypoint(50.0).latitude_deg, -93.6, 270.0)
         for serial, state in (("A", ATTENTION), ("B", OK), (None, OK)):
-            pads = (LandingPad("north", serial, place),)
+            pads = (LandingPad("north", serial, north),)
             layered = PreparedAirspace(replace(AIRSPACE.airspace, landing_pads=pads))
             assert checked(home_place, vehicle(), airspace=layered).state is state
 

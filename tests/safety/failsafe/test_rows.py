@@ -97,8 +97,14 @@ class TestBattery:
         assert since(self.CRITICAL, facts(battery_warning=BatteryWarning.SERIOUS)) == NOW_NS
         assert since(self.LOW, facts(battery_warning=BatteryWarning.SERIOUS)) is None
 
+    def test_an_unknown_battery_and_one_on_the_ground_count_as_full(self) -> None:
+        assert critical_row.left_in_flight(facts(battery_fraction=None).vehicle) == 1.0
+        landed = facts(battery_fraction=0.05, is_flying=False).vehicle
+        assert critical_row.left_in_flight(landed) == 1.0
+
     def test_by_the_way_home(self) -> None:
         for severity, low, critical in (
+            (Severity.ERROR, None, None),
             (Severity.WARNING, ago_ns(2.0), None),
             (Severity.CRITICAL, None, ago_ns(2.0)),
         ):
@@ -141,42 +147,30 @@ def test_telemetry_of_3_s_is_too_old_to_show_how_it_flies(age_s: float) -> None:
     assert old.is_live is (age_s < 3.0)
 
 
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        (
-            attitude_row.words(facts(attitude=Attitude(0.0, 5.0, -50.4)).vehicle, 45.0),
-            "tilted by 50 deg, limit 45 deg: its pilot must take over; keep clear below",
-        ),
-        (
-            critical_row.words(facts(battery_warning=BatteryWarning.SERIOUS).vehicle, 0.1),
-            "battery critically low, reported by the aircraft: land now",
-        ),
-        (
-            critical_row.words(facts(battery_fraction=0.1).vehicle, 0.1),
-            "battery at 10%, limit 10%: land now",
-        ),
-        (critical_row.words(facts(battery_fraction=0.2).vehicle, 0.1), None),
-        (
-            low_row.words(facts(battery_warning=BatteryWarning.LOW).vehicle, 0.25),
-            "battery low, reported by the aircraft: return home",
-        ),
-        (
-            low_row.words(facts(battery_fraction=0.2).vehicle, 0.25),
-            "battery at 20%, limit 25%: return home",
-        ),
-        (low_row.words(facts().vehicle, 0.25), None),
-        (
-            wind_row.words(facts(wind_level=3).vehicle, 2),
-            "strong wind, reported by the aircraft (level 3, limit 2), near what it can fly in: "
-            "bring it lower and home, or land it",
-        ),
-    ],
-)
-def test_the_words_state_value_limit_and_what_to_do(
-    words: str | None, expected: str | None
-) -> None:
-    assert words == expected
+def test_the_words_state_value_limit_and_what_to_do() -> None:
+    tilted = facts(attitude=Attitude(0.0, 5.0, -50.4)).vehicle
+    assert attitude_row.words(tilted, 45.0) == (
+        "tilted by 50 deg, limit 45 deg: its pilot must take over; keep clear below"
+    )
+    windy = facts(wind_level=3).vehicle
+    assert wind_row.words(windy, 2) == (
+        "strong wind, reported by the aircraft (level 3, limit 2), near what it can fly in: "
+        "bring it lower and home, or land it"
+    )
+    critical = critical_row.words
+    assert critical(facts(battery_warning=BatteryWarning.SERIOUS).vehicle, 0.1) == (
+        "battery critically low, reported by the aircraft: land now"
+    )
+    at_limit = facts(battery_fraction=0.1).vehicle
+    assert critical(at_limit, 0.1) == "battery at 10%, limit 10%: land now"
+    assert critical(facts(battery_fraction=0.2).vehicle, 0.1) is None
+    low = low_row.words
+    assert low(facts(battery_warning=BatteryWarning.LOW).vehicle, 0.25) == (
+        "battery low, reported by the aircraft: return home"
+    )
+    below = facts(battery_fraction=0.2).vehicle
+    assert low(below, 0.25) == "battery at 20%, limit 25%: return home"
+    assert low(facts().vehicle, 0.25) is None
 
 
 class TestTheStationsOwn:

@@ -1,6 +1,6 @@
 """Checks of the aircraft's own reports: link, battery, GNSS, wind and its app's warnings."""
 
-from recon.model.units import Stamped
+from recon.model.units import ns_to_seconds
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.check import Check, Point
 from recon.safety.rules.gnss import gnss_refusal
@@ -19,9 +19,10 @@ def link(vehicle: VehicleState, situation: Situation) -> Check:
         return LINK.fails(
             "two connections claim this serial", "close the one that is not this aircraft's"
         )
-    age_s = Stamped(True, vehicle.core_received_at_ns).age_s(situation.now_ns)
-    if age_s is None:
+    received_ns = vehicle.core_received_at_ns
+    if received_ns is None:
         return LINK.unknown("no telemetry received yet", "check the app")
+    age_s = ns_to_seconds(situation.now_ns - received_ns)
     if age_s > situation.settings.motion_telemetry_s:
         return LINK.fails(f"telemetry is {age_s:.1f} s old", "bring the app's connection back")
     return LINK.ok(f"telemetry is {age_s:.1f} s old")

@@ -17,6 +17,7 @@ ENDURANCE = Point("endurance", "Endurance")
 FAILSAFE = Point("failsafe", "Failsafe")
 CAMERA = Point("camera_interval", "Camera interval")
 
+_NO_PROFILE = VehicleProfile("")
 _DOES = {
     Failsafe.GO_HOME: "goes home",
     Failsafe.HOVER: "hovers until its battery makes it land",
@@ -68,7 +69,7 @@ def camera_interval(vehicle: VehicleState, _situation: Situation) -> Check:
 
 
 def _profile(vehicle: VehicleState) -> VehicleProfile:
-    return vehicle.profile or VehicleProfile(vehicle.serial or "")
+    return vehicle.profile or _NO_PROFILE
 
 
 def _write(vehicle: VehicleState, line: str) -> str:
@@ -157,4 +158,4 @@ def _top_up_m(prepared: PreparedZone, airspace: PreparedAirspace) -> float | Non
     if zone.datum is HeightDatum.WGS84:
         return zone.ceiling_m - frame.origin.ellipsoid_height_m
     ground_m = airspace.ground_up_m(zone.region.outline_m)
-    return float(np.nanmax(ground_m, initial=-np.inf)) + zone.ceiling_m
+    return float(np.fmax.reduce(ground_m)) + zone.ceiling_m  # corners without ground aside

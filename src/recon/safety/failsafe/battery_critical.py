@@ -34,8 +34,9 @@ def find(facts: FlightFacts) -> int | None:
     if words(facts.vehicle, facts.limits.serious_battery_fraction) is not None:
         return facts.now_ns
     finding = facts.findings.get(BATTERY_HOME)
-    is_critical = finding is not None and finding.severity is Severity.CRITICAL
-    return finding.since_ns if finding is not None and is_critical else None
+    if finding is None or finding.severity is not Severity.CRITICAL:
+        return None
+    return finding.since_ns
 
 
 ROW = FailsafeRow(

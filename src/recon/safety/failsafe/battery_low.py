@@ -30,8 +30,9 @@ def find(facts: FlightFacts) -> int | None:
     if words(facts.vehicle, facts.limits.low_battery_fraction) is not None:
         return facts.now_ns
     finding = facts.findings.get(BATTERY_HOME)
-    is_warned = finding is not None and finding.severity is Severity.WARNING
-    return finding.since_ns if finding is not None and is_warned else None
+    if finding is None or finding.severity is not Severity.WARNING:
+        return None
+    return finding.since_ns
 
 
 ROW = FailsafeRow(
