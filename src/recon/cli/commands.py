@@ -91,6 +91,10 @@ COMMANDS = {
         "score:score_command",
         "Fly a scenario by the whole station in virtual time and score its methods.",
     ),
+    "calibrate": CommandSource(
+        "calibrate:calibrate_command",
+        "Fit a lens to photos of a chessboard, for `camera-model.txt` of a site.",
+    ),
     "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }

@@ -1,0 +1,15 @@
+"""A progress bar on standard error; none where that is no terminal."""
+
+from collections.abc import Iterator, Sequence
+from typing import TypeVar
+
+from rich.console import Console
+from rich.progress import track
+
+Item = TypeVar("Item")
+
+
+def progress_over(items: Sequence[Item], title: str) -> Iterator[Item]:
+    """Yield the items, showing how many are done and how long the rest will take."""
+    console = Console(stderr=True)
+    yield from track(items, title, console=console, disable=not console.is_terminal)
