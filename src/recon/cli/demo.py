@@ -13,14 +13,12 @@ import recon
 from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.run import HAS_GUARD, announce, console_folder, guard_port
 from recon.cli.scripted_operator import fly_surveys
-from recon.client import ClientError
 from recon.model.errors import ReconError
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.station.audit.start import default_place
 from recon.station.kernel.run import RunConfig, Started, run
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
-STATION_ENDS_WITHIN_S = 5.0
 FPS_HZ = 2
 DEMO_SCENARIO = "cumulus-40.toml"
 DEMO_SEED = 11
@@ -103,7 +101,7 @@ class _Demo:
         self._simulator = await self._start_simulator(started.link_port)
         self._add_task(self._report_end(self._simulator))
         if self._flies:
-            self._add_task(self._fly(started.console_url))
+            self._add_task(fly_surveys(started.console_url, self._scenario, print_now))
         print("Open the console in a browser. Ctrl+C ends the demo.", flush=True)
 
     def _add_task(self, work: Coroutine[Any, Any, None]) -> None:
@@ -125,14 +123,6 @@ class _Demo:
         """The station runs on without the simulator, as it does without real apps."""
         code = await simulator.wait()
         print(f"recon: the simulator ended (exit code {code})", file=sys.stderr, flush=True)
-
-    async def _fly(self, url: str) -> None:
-        try:
-            await fly_surveys(url, self._scenario, print_now)
-        except ClientError as problem:
-            # While the station shuts down, this task is cancelled here and reports nothing.
-            await asyncio.sleep(STATION_ENDS_WITHIN_S)
-            print_now(f"scripted operator stopped: {problem}")
 
     async def _end_simulator(self) -> None:
         simulator = self._simulator

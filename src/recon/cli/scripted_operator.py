@@ -6,6 +6,7 @@ It does not restart drones that were stopped one by one either, nor acts on alar
 
 import asyncio
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from recon.client import ClientError, Refusal, Station, SurveyStatus, Telemetry
@@ -27,6 +28,8 @@ from recon.sim.fleet import IMAGER_SERIAL
 
 LOOK_EVERY_S = 1.0
 LIVE_WITHIN_S = 60.0
+TRY_AGAIN_S = 5.0
+"""After a station that did not answer in time: on a busy computer it soon does again."""
 STAGES = {
     "planning": SurveyStage.PLANNING,
     "created": SurveyStage.PLANNED,
@@ -41,22 +44,55 @@ Report = Callable[[str], None]
 async def fly_surveys(url: str, scenario: Scenario, report: Report) -> None:
     """Fly one survey after the other until someone stops one, or the station refuses one.
 
-    Raises `ClientError` when the station cannot be reached.
+    A station that does not answer is asked again, and the survey under way goes on.
     """
-    async with Station(url) as station:
-        for serial in (IMAGER_SERIAL, *scenario.fleet.serials):
-            await station.vehicle(serial, LIVE_WITHIN_S)
-        await _HttpOperator(station, scenario, report).run()
+    report_new, survey = _Report(report), _PlannedSurvey(scenario.name)
+    while True:
+        try:
+            async with Station(url) as station:
+                for serial in (IMAGER_SERIAL, *scenario.fleet.serials):
+                    await station.vehicle(serial, LIVE_WITHIN_S)
+                return await _HttpOperator(station, scenario, survey, report_new).run()
+        except ClientError as problem:
+            # While the station shuts down, this task is cancelled here and reports nothing.
+            await asyncio.sleep(TRY_AGAIN_S)
+            report_new(f"scripted operator tries again: {problem}")
+
+
+class _Report:
+    """Reports what has changed."""
+
+    def __init__(self, report: Report) -> None:
+        self._report = report
+        self._last_line = ""
+
+    def __call__(self, line: str) -> None:
+        if line != self._last_line:
+            self._last_line = line
+            self._report(line)
+
+
+@dataclass(slots=True)
+class _PlannedSurvey:
+    """The survey that the operator has asked for; `id` is None before the station's answer.
+
+    A request without an answer may have been carried out: then the newest survey of the name is it.
+    """
+
+    name: str
+    id: int | None = None
+    is_asked: bool = False
 
 
 class _HttpOperator:
-    """The newest survey, what was last reported of it, and the operator that decides."""
+    """One connection to the station, and the operator that decides."""
 
-    def __init__(self, station: Station, scenario: Scenario, report: Report) -> None:
-        self._station, self._scenario, self._report_line = station, scenario, report
+    def __init__(
+        self, station: Station, scenario: Scenario, planned: _PlannedSurvey, report: Report
+    ) -> None:
+        self._station, self._scenario, self._report = station, scenario, report
         self._operator = ScriptedOperator(scenario.fleet.serials, repeats=True)
-        self._survey_id: int | None = None
-        self._last_line = ""
+        self._planned = planned
 
     async def run(self) -> None:
         """Look and act once a second."""
@@ -78,12 +114,15 @@ class _HttpOperator:
             await asyncio.sleep(LOOK_EVERY_S)
 
     async def _survey(self) -> SurveyStatus | None:
-        if self._survey_id is None:
+        planned = self._planned
+        if not planned.is_asked:
             return None
         for survey in await self._station.surveys.list():
-            if survey.id == self._survey_id:
+            if survey.id == planned.id or (planned.id is None and survey.name == planned.name):
+                planned.id = survey.id
                 return survey
-        raise ClientError(f"survey {self._survey_id} is missing from the station's list")
+        planned.id, planned.is_asked = None, False
+        return None
 
     async def _view(self, survey: SurveyStatus | None) -> FieldView:
         serials = self._scenario.fleet.serials
@@ -102,7 +141,7 @@ class _HttpOperator:
             checklist = await self._station.known(serial).preflight()
             if checklist.is_passed:
                 passed.add(serial)
-            elif self._survey_id is None:
+            elif self._planned.id is None:
                 unmet = "; ".join(f"{point.name} {point.text}" for point in checklist.unmet)
                 self._report(f"{serial}: preflight checklist incomplete: {unmet}")
         return frozenset(passed)
@@ -111,9 +150,10 @@ class _HttpOperator:
         surveys = self._station.surveys
         match action:
             case RequestPlan():
+                self._planned.id, self._planned.is_asked = None, True
                 answer = await surveys.create(**survey_request(self._scenario))
                 if isinstance(answer, SurveyStatus):
-                    self._survey_id = answer.id
+                    self._planned.id = answer.id
             case StartDrones(serials):
                 answer = await surveys.start(self._planned_id, serials, takeoff=True)
                 if isinstance(answer, SurveyStatus):
@@ -129,14 +169,8 @@ class _HttpOperator:
 
     @property
     def _planned_id(self) -> int:
-        assert self._survey_id is not None  # only a planned survey is started or aborted
-        return self._survey_id
-
-    def _report(self, line: str) -> None:
-        """Report what has changed."""
-        if line != self._last_line:
-            self._last_line = line
-            self._report_line(line)
+        assert self._planned.id is not None  # only a planned survey is started or aborted
+        return self._planned.id
 
 
 def _drone(vehicle: Telemetry, is_ready: bool, is_called_home: bool) -> DroneView:
