@@ -121,21 +121,21 @@ def real(seed: int, name: str, is_wobbling: bool, count: int) -> tuple[LensView,
     return view_of(place.camera, place.circle, RegistrationSettings()), frames
 
 
-def rows(seeds: range, count: int) -> Iterator[Row]:
-    """Yield the rows of the table."""
+def rows(seeds: range, count: int, only: str) -> Iterator[Row]:
+    """Yield the rows of the table whose names contain `only`."""
     for name, hover, cover in (
         ("rendered, hover, clear", HoverSettings(), 0.0),
         ("rendered, hover, clouds over 40 %", HoverSettings(), 0.4),
         ("rendered, wobble, clouds over 60 %", WOBBLE, 0.6),
     ):
         row = Row(name)
-        for seed in seeds:
+        for seed in seeds if only in name else ():
             row.add(*rendered(seed, hover, cover, count))
         yield row
     for place in PLACES if "RECON_DATA" in os.environ else ():
         for is_wobbling in (False, True):
             row = Row(f"{place}, {'wobble' if is_wobbling else 'hover'}, clouds over 40 %")
-            for seed in seeds:
+            for seed in seeds if only in row.name else ():
                 row.add(*real(seed, place, is_wobbling, count))
             yield row
 
@@ -145,13 +145,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Measure registration against the truth.")
     parser.add_argument("--seeds", default="0-2", help="first and last, as 0-2")
     parser.add_argument("--frames", type=int, default=30, help="of each flight")
+    parser.add_argument("--only", default="", help="rows whose name contains this")
     asked = parser.parse_args()
     first, last = (int(part) for part in asked.seeds.split("-"))
     cv2.setNumThreads(1)
     print("| frames | registered, m | telemetry, m | registered | ms a frame, median / p95 |")
     print("|---|---|---|---|---|")
-    for row in rows(range(first, last + 1), asked.frames):
-        print(row, flush=True)
+    for row in rows(range(first, last + 1), asked.frames, asked.only):
+        if row.registered_m:
+            print(row, flush=True)
 
 
 if __name__ == "__main__":

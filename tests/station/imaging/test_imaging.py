@@ -131,6 +131,8 @@ def test_a_lost_registration_is_an_alarm_with_its_reason_until_it_is_found() -> 
     (alarm,) = (each for each in conditions(station, 0) if each.rule == "registration")
     assert "5 of 200 features" in alarm.text
     assert alarm.after_s == LOST_FOR_S
+    landed, _ = step(station, JobFailed(2, LAY_FRAME, "the camera is on the ground"), 0)
+    assert [each for each in conditions(landed, 0) if each.rule == "registration"] == []
     found = LaidFrame(image(Registration.REGISTERED, captured_at_s=5.0))
     station, _ = step(station, JobDone(2, LAY_FRAME, found), 0)
     assert [each for each in conditions(station, 0) if each.rule == "registration"] == []

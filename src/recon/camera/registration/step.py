@@ -130,7 +130,9 @@ def _unfit(view: LensView, reference: Reference, now: TimedPose, before: TimedPo
             f"the camera is {height_m:.0f} m above the ground, a reference frame needs "
             f"{settings.least_height_m:g} m"
         )
-    if before is None or not now.speed_mps(before) <= settings.largest_speed_mps:
+    if before is None:
+        return "the first frame: the drone's speed is known from the second on"
+    if not now.speed_mps(before) <= settings.largest_speed_mps:
         return "the drone is moving: a reference frame is taken at a hover"
     count, fewest = len(reference.pixels), 2 * settings.fewest_inliers
     if count < fewest:

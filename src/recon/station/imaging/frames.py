@@ -123,7 +123,9 @@ def conditions(station: Station) -> Iterator[Condition]:
     """Yield the alarms of the imaging pipeline: frames not projected, not aligned, not read."""
     imaging = station.imaging
     image = imaging.ground_image
-    if image is not None and image.registration is Registration.LOST:
+    is_lost = image is not None and image.registration is Registration.LOST
+    # Frames that are not projected at all have an alarm of their own, as after landing.
+    if is_lost and imaging.latest_error is None:
         yield Condition(
             key="registration",
             severity=Severity.WARNING,
