@@ -135,7 +135,7 @@ class TestReportedInFlight:
     def test_after_the_ground_it_is_a_takeoff(self) -> None:
         stood = FlightEvidence(ground=GroundStand(ago(9.0), ago(0.1), PLACE, 0.0))
         belief = after(vehicle(stood, flying=False), core(position=AWAY))
-        assert (belief.takes_off, belief.home, belief.is_doubted) == (True, AWAY, False)
+        assert belief == AirborneBelief(True, belief.evidence, True, AWAY, is_doubted=False)
         assert belief.evidence.ground is None
         again = after(vehicle(belief.evidence), core(position=AWAY))
         assert (again.takes_off, again.home) == (False, None)
@@ -252,6 +252,7 @@ class TestALanding:
             (5.0, 62.1, 2.0, None),
             (5.1, 62.1, 2.0, False),
             (5.0, None, 2.0, False),
+            (5.0, None, -1.0, False),
             (5.0, 40.0, 2.1, None),
             (5.0, 40.0, -2.0, False),
             (5.0, 40.0, None, None),

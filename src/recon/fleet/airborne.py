@@ -103,8 +103,8 @@ def _reported_in_flight(
         high_m, older_m, since_ns = height_m, None, now_ns
     elif now_ns - since_ns >= seconds_to_ns(settings.height_window_s):
         high_m, older_m, since_ns = height_m, high_m, now_ns
-    elif height_m is not None and (high_m is None or height_m > high_m):
-        high_m = height_m
+    elif height_m is not None:
+        high_m = height_m if high_m is None else max(high_m, height_m)
     landing_at_ns, landing_from_m = before.landing_at_ns, before.landing_from_m
     if mode.value in LANDING_MODES:
         landing_at_ns = now_ns
@@ -186,10 +186,10 @@ def _continued(
     height_m, battery = report.height_above_takeoff_m, state.battery_fraction.value
     if before is None:
         return GroundReports(now_ns, now_ns, height_m, battery)
-    off_m = 0.0
+    has_moved = speed_mps is not None and speed_mps > settings.moving_mps
     if height_m is not None and before.height_m is not None:
-        off_m = abs(height_m - before.height_m)
-    if off_m > settings.rest_m or (speed_mps or 0.0) > settings.moving_mps:
+        has_moved = has_moved or abs(height_m - before.height_m) > settings.rest_m
+    if has_moved:
         return GroundReports(before.since_ns, now_ns, height_m, battery, True, now_ns)
     if before.battery_fraction is None and battery is not None:
         return replace(before, rest_since_ns=now_ns, battery_fraction=battery)
@@ -225,21 +225,23 @@ def _has_descended_in_gap(
     if height_m is None or flown_ns is None or reports.has_moved or state.takeoff_point is not None:
         return False
     gap_s = (reports.since_ns - flown_ns) / NS_PER_S
-    drop_m = max(0.0, (evidence.flown_height_m or 0.0) - height_m)
-    return abs(height_m) <= s.takeoff_height_m and gap_s >= max(
-        s.landing_gap_s, drop_m / DJI.fastest_vertical_mps
-    )
+    if gap_s < s.landing_gap_s or abs(height_m) > s.takeoff_height_m:
+        return False
+    flown_m = evidence.flown_height_m
+    return flown_m is None or flown_m - height_m <= gap_s * DJI.fastest_vertical_mps
 
 
 def _battery_was_changed(
     evidence: FlightEvidence, reports: GroundReports, state: VehicleState, s: AirborneSettings
 ) -> bool:
-    flown_ns, battery = evidence.flown_at_ns, state.battery_fraction
-    before = evidence.battery_fraction
-    if flown_ns is None or battery.value is None or before is None:
+    flown_ns, before = evidence.flown_at_ns, evidence.battery_fraction
+    battery = state.battery_fraction
+    if flown_ns is None or before is None:
+        return False
+    if battery.value is None or battery.received_at_ns is None:
         return False
     is_gap = reports.since_ns - flown_ns >= seconds_to_ns(s.battery_change_gap_s)
-    is_new = (battery.received_at_ns or 0) > flown_ns
+    is_new = battery.received_at_ns > flown_ns
     return is_gap and is_new and battery.value > before + s.battery_gain_fraction
 
 
@@ -341,8 +343,8 @@ def _ground_height_m(
         return ground_m if height_m is None else height_m
     seconds = (now_ns - stood.at_ns) / NS_PER_S
     before_m = state.trust.place.height_m
-    step_m = 0.0 if before_m is None else abs(height_m - before_m)
-    if step_m > settings.sign_m + DJI.fastest_vertical_mps * seconds:
+    step_m = settings.sign_m + DJI.fastest_vertical_mps * seconds
+    if before_m is not None and abs(height_m - before_m) > step_m:
         return height_m
     if seconds >= settings.landing_gap_s and abs(height_m) <= settings.takeoff_height_m:
         return height_m  # switched on anew
